@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+namespace railtab {
+
+/// Kalker's creepage coefficients of linear theory for one ellipse.
+struct KalkerCoefficients {
+  double c11, c22, c23, c33;
+};
+
+/// Kalker's table [Kalker1990, Table E.3] (misprints corrected) interpolated smoothly in the ellipse ratio and in
+/// Poisson's ratio; blended into the asymptotes outside a/b = 0.1..10. Continuous with continuous slope.
+/// @param ratio a/b > 0; @param nu 0..0.5
+[[nodiscard]] KalkerCoefficients kalker_coefficients(double ratio, double nu) noexcept;
+
+/// Normalised creepages (G = 1, mu·F_n = 1, sqrt(ab) = 1): x = υx·G·ab/(μF_n), y likewise, spin = φ·G·(ab)^{3/2}/(μF_n).
+struct Creepage {
+  double x = 0.0, y = 0.0, spin = 0.0;
+};
+
+/// Normalised creep force on the wheel: F_x/(μF_n), F_y/(μF_n), M_z/(μF_n·√(ab)). Positive υx gives negative F_x;
+/// the sign of spin follows the right-hand rule about the contact normal into the rail.
+struct CreepForce {
+  double x = 0.0, y = 0.0, moment = 0.0;
+};
+
+/// Kalker's linear theory; with `saturated`, scaled to the friction bound by Vermeulen-Johnson's cubic.
+struct LinearCreep {
+  double nu = 0.28;
+  bool saturated = false;
+};
+
+/// Polach (1999): no moment is given by the method; the spin moment of linear theory, bounded, is returned.
+struct PolachCreep {
+  double nu = 0.28;
+  double k_adhesion = 1.0;  ///< k_A, 0 < k_S <= k_A <= 1
+  double k_slip = 1.0;      ///< k_S
+};
+
+/// FASTSIM (Kalker 1982): three flexibilities, elliptic or parabolic traction bound.
+struct FastsimCreep {
+  double nu = 0.28;
+  int strips = 20;    ///< across the rolling direction, 2..200
+  int elements = 20;  ///< along each strip, 2..200
+  enum class Bound { elliptic, parabolic } bound = Bound::parabolic;
+};
+
+using CreepLaw = std::variant<LinearCreep, PolachCreep, FastsimCreep>;
+
+/// Normalised creep force on the wheel for an ellipse of ratio a/b. Finite for every finite input.
+[[nodiscard]] CreepForce creep_force(const CreepLaw& law, double ratio, const Creepage& creepage) noexcept;
+
+/// "linear", "polach", "fastsim": @throws InputError with the known names.
+[[nodiscard]] CreepLaw creep_law(std::string_view name, double nu);
+[[nodiscard]] std::string_view creep_law_name(const CreepLaw& law) noexcept;
+
+}  // namespace railtab

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "railtab/runtime/contact/contact_search.hpp"
+#include "railtab/tables/geometry_table.hpp"
+
+namespace railtab {
+
+/// Contact patches of a wheel from a geometry table: the table names the branches and gives each a starting pair, the
+/// common-normal Newton polishes it on the stored profiles, and the online search answers where the table cannot be
+/// trusted. Const, allocation-free, thread-safe.
+class TableContact {
+ public:
+  /// Builds the pair and the online search from the profiles stored in the table. @throws InputError
+  explicit TableContact(GeometryTable table);
+
+  /// As ContactSearch::patches; patches from the fallback have an online source.
+  [[nodiscard]] ContactPatches patches(const WheelsetPose& pose, double near_miss = 0.0) const noexcept;
+
+  [[nodiscard]] const GeometryTable& table() const noexcept { return table_; }
+  [[nodiscard]] const ContactSearch& search() const noexcept { return search_; }
+
+ private:
+  GeometryTable table_;
+  ContactSearch search_;
+};
+
+}  // namespace railtab

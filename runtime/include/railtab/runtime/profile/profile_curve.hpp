@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+#include "railtab/tables/profile_knots.hpp"
+
+namespace railtab {
+
+/// Value and first two derivatives of a profile curve at one arc length.
+struct CurvePoint {
+  double y, z;      ///< [m]
+  double dy, dz;    ///< d/ds [-]
+  double ddy, ddz;  ///< d²/ds² [1/m]
+
+  /// Signed curvature dy·ddz − dz·ddy over |t|³ [1/m]: positive where the curve bends towards +z.
+  /// A convex rail head has a positive value, a convex wheel tread a negative one.
+  [[nodiscard]] double curvature() const noexcept;
+};
+
+/// A profile as a piecewise cubic curve in arc length, made for fast evaluation.
+///
+/// Invariant: at least two knots, arc length strictly increasing, all values finite.
+/// Evaluation is const, allocation-free and thread-safe.
+class ProfileCurve {
+ public:
+  /// @throws InputError naming the profile and the first knot that breaks the invariant.
+  explicit ProfileCurve(ProfileKnots knots);
+
+  /// Point at arc length s; outside [s_begin, s_end] the end piece is continued, so that Newton may
+  /// step over the end; callers judge the final s with contains().
+  [[nodiscard]] CurvePoint at(double s) const noexcept {
+    const Piece& p = piece_[interval(s)];
+    const double t = s - p.s0;
+    return {p.y0 + t * (p.y1 + t * (p.y2 + t * p.y3)), p.z0 + t * (p.z1 + t * (p.z2 + t * p.z3)),
+            p.y1 + t * (2 * p.y2 + t * 3 * p.y3),      p.z1 + t * (2 * p.z2 + t * 3 * p.z3),
+            2 * p.y2 + t * 6 * p.y3,                   2 * p.z2 + t * 6 * p.z3};
+  }
+
+  [[nodiscard]] double s_begin() const noexcept { return knots_.s.front(); }
+  [[nodiscard]] double s_end() const noexcept { return knots_.s.back(); }
+  [[nodiscard]] bool contains(double s) const noexcept { return s >= s_begin() && s <= s_end(); }
+  [[nodiscard]] const ProfileKnots& knots() const noexcept { return knots_; }
+
+  /// Arc length of the point whose y is nearest to `y` [m]; a scan and Newton, for set-up code.
+  [[nodiscard]] double s_at_y(double y) const noexcept;
+
+ private:
+  struct Piece {
+    double s0, y0, y1, y2, y3, z0, z1, z2, z3;
+  };
+
+  [[nodiscard]] std::size_t interval(double s) const noexcept {
+    const double q = (s - bucket_origin_) * bucket_inverse_width_;
+    const double last = static_cast<double>(bucket_.size() - 1);
+    std::size_t i = bucket_[static_cast<std::size_t>(q > 0 ? (q < last ? q : last) : 0)];
+    while (i + 1 < piece_.size() && s >= piece_[i + 1].s0) ++i;
+    return i;
+  }
+
+  ProfileKnots knots_;
+  std::vector<Piece> piece_;          // one per interval between knots
+  std::vector<std::size_t> bucket_;   // first interval that reaches into each uniform bucket of s
+  double bucket_origin_ = 0.0;
+  double bucket_inverse_width_ = 0.0;
+};
+
+}  // namespace railtab

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/vehicle/vehicle_model.hpp"  // DofIndices, held
+
+namespace railtab {
+
+enum class RailSide { left = 0, right = 1 };
+
+/// A rail as a line of beam nodes along x.
+struct RailLine {
+  std::vector<double> x;           ///< strictly increasing node positions [m]
+  std::vector<DofIndices> dof;     ///< of each node
+  double head_height = 0.0;        ///< of the rail-head top above the beam axis [m]
+};
+
+/// Rows that give the rail head's motion at a position from the 12 dofs of the beam element there (cubic Hermite for
+/// bending, linear for torsion): value = Σ row[k]·a[dof[k]], held dofs skipped. The transpose distributes a load.
+struct RailInterpolation {
+  std::array<int, 12> dof;
+  std::array<double, 12> y, z, roll;  ///< lateral and vertical displacement of the rail head, roll
+  std::array<double, 12> yaw, pitch;  ///< slope dy/dx, and -dz/dx
+};
+/// @pre x lies on the rail (contains(rail, x)).
+[[nodiscard]] RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept;
+[[nodiscard]] bool contains(const RailLine& rail, double x) noexcept;
+
+/// A node whose motion is asked for by name ("deck-midspan").
+struct StructureNode {
+  std::string name;
+  double x = 0.0;  ///< position along the track [m]
+  DofIndices dof;
+};
+
+/// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite.
+struct StructureModel {
+  Eigen::SparseMatrix<double> mass, damping, stiffness;
+  std::array<RailLine, 2> rail;       ///< indexed by RailSide
+  std::vector<StructureNode> nodes;   ///< nodes of interest
+  [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
+};
+
+}  // namespace railtab

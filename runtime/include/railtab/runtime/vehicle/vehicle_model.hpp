@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace railtab {
+
+/// Order of a body's or node's degrees of freedom: x, y, z, roll, pitch, yaw.
+using DofIndices = std::array<int, 6>;
+inline constexpr int held = -1;  ///< a degree of freedom that is not an unknown
+
+/// A rigid body; position of its centre of gravity in the vehicle frame: x forward from the vehicle centre, y right,
+/// z down from the rail-head tops [m].
+struct RigidBody {
+  std::string name;
+  double mass;                       ///< [kg]
+  Eigen::Vector3d inertia;           ///< about x, y, z through the centre of gravity [kg m²]
+  Eigen::Vector3d position;          ///< [m]
+};
+
+/// Spring-damper between two bodies at one point of the nominal position.
+struct Suspension {
+  int body_a, body_b;                ///< indices
+  Eigen::Vector3d point;             ///< vehicle frame [m]
+  Eigen::Vector3d stiffness;         ///< along x, y, z [N/m]
+  Eigen::Vector3d damping;           ///< [N s/m]
+  Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();  ///< about x, y, z [N m/rad]
+};
+
+/// A rigid-body vehicle with linear suspension, running at constant speed (the car body's x is held). Small
+/// displacements from the vehicle's own static equilibrium, so that gravity acts as the static axle loads only.
+struct VehicleModel {
+  std::string name;
+  std::vector<RigidBody> bodies;
+  std::vector<DofIndices> dof;           ///< per body
+  std::vector<int> wheelsets;            ///< bodies that are wheelsets, front first
+  double nominal_radius = 0.46;          ///< [m]
+  double length = 26.4;                  ///< over couplers: distance to the next vehicle of the same kind [m]
+  Eigen::MatrixXd mass, damping, stiffness;  ///< dofs × dofs
+  Eigen::MatrixXd gyroscopic;            ///< velocity matrix at a wheelset rotation of 1 rad/s [kg m²]; times V/R0, added to damping
+  Eigen::VectorXd static_load;           ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
+
+  [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
+};
+
+/// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points).
+/// @throws InputError where a mass or inertia is not positive or an index is out of range.
+[[nodiscard]] VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
+                                            const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
+                                            const std::vector<DofIndices>& held_dofs, double nominal_radius,
+                                            double length, double gravity = 9.81);
+
+}  // namespace railtab
