@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -46,36 +48,76 @@ ProfileCurve::ProfileCurve(ProfileKnots knots) : knots_(std::move(knots)) {
     const double h = k.s[i + 1] - k.s[i];
     const double vy = (k.y[i + 1] - k.y[i]) / h;
     const double vz = (k.z[i + 1] - k.z[i]) / h;
-    piece_.push_back({k.s[i], k.y[i], k.dy[i], (3 * vy - 2 * k.dy[i] - k.dy[i + 1]) / h,
+    piece_.push_back({k.y[i], k.dy[i], (3 * vy - 2 * k.dy[i] - k.dy[i + 1]) / h,
                       (k.dy[i] + k.dy[i + 1] - 2 * vy) / (h * h), k.z[i], k.dz[i],
                       (3 * vz - 2 * k.dz[i] - k.dz[i + 1]) / h, (k.dz[i] + k.dz[i + 1] - 2 * vz) / (h * h)});
   }
-  // As many buckets as intervals: with near-uniform knots the walk from a bucket's first interval is one step.
-  bucket_.resize(n);
-  bucket_origin_ = k.s.front();
-  bucket_inverse_width_ = static_cast<double>(n) / (k.s.back() - k.s.front());
+  start_ = k.s;
+  start_.back() = std::numeric_limits<double>::quiet_NaN();  // no s is beyond it
+  fill_buckets();
+}
+
+void ProfileCurve::fill_buckets() {
+  const std::vector<double>& s = knots_.s;
+  const std::size_t n = s.size() - 1;
+  double narrowest = s[1] - s[0];
+  for (std::size_t i = 1; i < n; ++i) narrowest = std::min(narrowest, s[i + 1] - s[i]);
+  // Buckets as wide as the narrowest interval: an evaluation then walks at most one interval beyond its bucket's
+  // first. Points that crowd far below the mean spacing are worth a short walk rather than a large table.
+  const double length = s.back() - s.front();
+  const double wanted = std::min(std::ceil(length / narrowest), 8.0 * static_cast<double>(n));
+  const auto buckets = static_cast<std::size_t>(wanted);
+  bucket_.resize(buckets);
+  bucket_origin_ = s.front();
+  bucket_inverse_width_ = static_cast<double>(buckets) / length;
   std::size_t i = 0;
-  for (std::size_t b = 0; b < n; ++b) {
+  for (std::size_t b = 0; b < buckets; ++b) {
     const double left = bucket_origin_ + static_cast<double>(b) / bucket_inverse_width_;
-    while (i + 1 < n && piece_[i + 1].s0 <= left) ++i;
-    bucket_[b] = i;
+    while (start_[i + 1] <= left) ++i;
+    bucket_[b] = static_cast<std::uint32_t>(i);
   }
 }
 
+namespace {
+
+/// Root of f in [a, b], where its signs differ or one end is the root, by bisection to the last bit of s.
+template <class F>
+double bisect(F f, double a, double b) {
+  if (f(a) == 0.0) return a;
+  if (f(b) == 0.0) return b;
+  const bool positive_at_a = f(a) > 0;
+  for (;;) {
+    const double middle = 0.5 * (a + b);
+    if (middle <= a || middle >= b) return middle;
+    ((f(middle) > 0) == positive_at_a ? a : b) = middle;
+  }
+}
+
+}  // namespace
+
 double ProfileCurve::s_at_y(double y) const noexcept {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < knots_.y.size(); ++i) {
-    if (std::abs(knots_.y[i] - y) < std::abs(knots_.y[best] - y)) best = i;
+  const ProfileKnots& k = knots_;
+  const double facing = k.kind == ProfileKind::wheel ? 1.0 : -1.0;
+  std::size_t nearest = 0;
+  bool passes = false;
+  double best = 0.0;
+  for (std::size_t i = 0; i < k.s.size(); ++i) {
+    if (std::abs(k.y[i] - y) < std::abs(k.y[nearest] - y)) nearest = i;
+    if (i == 0 || std::min(k.y[i - 1], k.y[i]) > y || std::max(k.y[i - 1], k.y[i]) < y) continue;
+    const double s = bisect([&](double at_s) { return at(at_s).y - y; }, k.s[i - 1], k.s[i]);
+    if (!passes || facing * at(s).z > facing * at(best).z) best = s;
+    passes = true;
   }
-  double s = knots_.s[best];
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    const CurvePoint p = at(s);
-    if (std::abs(p.dy) < 1e-9) break;
-    const double step = (y - p.y) / p.dy;
-    s += step;
-    if (std::abs(step) < 1e-15) break;
-  }
-  return s;
+  return passes ? best : k.s[nearest];
+}
+
+double ProfileCurve::s_at_highest_point() const noexcept {
+  const ProfileKnots& k = knots_;
+  const auto top = static_cast<std::size_t>(std::min_element(k.z.begin(), k.z.end()) - k.z.begin());
+  // The slope at the least knot tells on which side the curve still rises; at an end it may rise out of the profile.
+  const std::size_t other = k.dz[top] > 0 ? top - 1 : top + 1;
+  if (k.dz[top] == 0.0 || other >= k.s.size() || (k.dz[top] > 0) == (k.dz[other] > 0)) return k.s[top];
+  return bisect([&](double s) { return at(s).dz; }, std::min(k.s[top], k.s[other]), std::max(k.s[top], k.s[other]));
 }
 
 }  // namespace railtab

@@ -11,7 +11,8 @@
 namespace railtab {
 
 /// The one door to HDF5: files of named arrays with attributes. Paths are "group/dataset"; groups are created as
-/// needed. Every error is an InputError that names the file and the dataset or attribute.
+/// needed; "" is the root group. Every error is an InputError that names the file and the dataset or attribute.
+/// Two threads may use two files; one object belongs to one thread at a time.
 ///
 /// An array of any rank in C order; `shape` empty means a scalar.
 struct Array {
@@ -19,44 +20,62 @@ struct Array {
   std::vector<double> values;
 };
 
+/// Writes a file of named arrays.
+///
+/// A growing file is a table of records: all its growing datasets have the same number of rows at each flush(), and
+/// that number is written to the dataset "records" only after the rows themselves. So whatever ends the process, the
+/// file holds the records of the last flush, and a reader takes no row beyond them.
 class ArrayFileWriter {
  public:
   enum class Mode { whole_or_nothing, growing };
 
   /// `whole_or_nothing`: writes to a temporary name beside `file`, renamed by close(); discarded by the destructor if
-  /// close() was not called. `growing`: writes in place, readable after each flush().
-  /// Writes the attributes "filetype" and "format_version" on the root group.
+  /// close() was not called; sealed with a checksum of the whole file. `growing`: likewise until the first append(),
+  /// replace() or flush(), which gives the file its name; from then on nothing more can be created, only appended and
+  /// overwritten. Writes the attributes "filetype" and "format_version" on the root group.
+  /// @throws InputError where the file cannot be created, or another process is writing the growing file of that name.
   ArrayFileWriter(std::filesystem::path file, std::string_view filetype, int format_version,
                   Mode mode = Mode::whole_or_nothing);
-  /// Open an existing growing file again, to continue it. @throws InputError as ArrayFileReader.
+  /// Open an existing growing file again, to continue it after its last flushed record, also where its writer was
+  /// killed. @throws InputError as ArrayFileReader, and where another process is writing it.
   static ArrayFileWriter reopen(std::filesystem::path file, std::string_view filetype, int format_version);
   ~ArrayFileWriter();
   ArrayFileWriter(ArrayFileWriter&&) noexcept;
   ArrayFileWriter& operator=(ArrayFileWriter&&) noexcept;
 
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
-  void write(std::string_view path, std::span<const double> values, std::vector<std::size_t> shape,
+  void write(std::string_view path, std::span<const double> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
-  void write(std::string_view path, std::span<const std::int64_t> values, std::vector<std::size_t> shape,
+  void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);
 
+  /// Create or overwrite an attribute of a group or dataset.
   void attribute(std::string_view path, std::string_view name, double value);
   void attribute(std::string_view path, std::string_view name, std::int64_t value);
-  void attribute(std::string_view path, std::string_view name, std::string_view value);
+  /// Room is kept for `capacity` bytes. A text that overwrites one with less room is cut to it and ends in "...".
+  void attribute(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0);
 
-  /// A dataset that grows along its first dimension; `row_shape` is the rest. Chunked.
-  void create_growing(std::string_view path, std::vector<std::size_t> row_shape, std::string_view unit,
+  /// A dataset that grows along its first dimension; `row_shape` is the rest, no extent zero. Chunked.
+  void create_growing(std::string_view path, const std::vector<std::size_t>& row_shape, std::string_view unit,
                       std::string_view description);
   /// Append whole rows: values.size() is a multiple of the row size.
   void append(std::string_view path, std::span<const double> values);
-  /// Cut every growing dataset back to `rows` (resuming from a checkpoint).
-  void truncate(std::string_view path, std::size_t rows);
-  /// Overwrite a dataset of the same shape, or create it.
-  void replace(std::string_view path, std::span<const double> values, std::vector<std::size_t> shape,
-               std::string_view unit, std::string_view description);
+  /// Cut every growing dataset of a growing file back to `rows`, which is at most records() (resuming from a
+  /// checkpoint).
+  void truncate(std::size_t rows);
+  /// Records of the last flush.
+  [[nodiscard]] std::size_t records() const;
 
+  /// A one-dimensional dataset of any length, empty at first, that replace() overwrites as a whole.
+  void create_slot(std::string_view path, std::string_view unit, std::string_view description);
+  /// Never becomes shorter: what is left of longer content is NaN.
+  /// Not atomic: a process that ends midway leaves a mixture, so what matters needs two slots and a checksum.
+  void replace(std::string_view path, std::span<const double> values);
+
+  /// Hand everything to the operating system and count the appended rows as records (growing files).
   void flush();
+  /// Finish the file. A growing file is flushed.
   void close();
 
  private:
@@ -65,6 +84,7 @@ class ArrayFileWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Reads a file of named arrays, also one that is being written or whose writer was killed.
 class ArrayFileReader {
  public:
   /// Checks that the file exists, is HDF5 and whole, then its filetype, then its format version.
@@ -73,14 +93,18 @@ class ArrayFileReader {
   ArrayFileReader(ArrayFileReader&&) noexcept;
 
   [[nodiscard]] bool contains(std::string_view path) const;
+  /// Of a growing dataset, the rows that were flushed.
   [[nodiscard]] Array read(std::string_view path) const;
   /// As read, and checks the shape; -1 stands for any extent.
-  [[nodiscard]] std::vector<double> read(std::string_view path, std::vector<long> expected_shape) const;
+  [[nodiscard]] std::vector<double> read(std::string_view path, const std::vector<long>& expected_shape) const;
   [[nodiscard]] std::vector<std::int64_t> read_integers(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> read_strings(std::string_view path) const;
   [[nodiscard]] double number(std::string_view path, std::string_view name) const;
   [[nodiscard]] std::string text(std::string_view path, std::string_view name) const;
+  /// In the order of their creation.
   [[nodiscard]] std::vector<std::string> attribute_names(std::string_view path) const;
+  /// Flushed records of a growing file, 0 of any other.
+  [[nodiscard]] std::size_t records() const noexcept;
 
  private:
   struct Impl;
@@ -90,7 +114,8 @@ class ArrayFileReader {
 /// The filetype attribute of a railtab file, to tell tables from results. @throws InputError if it is none.
 [[nodiscard]] std::string array_file_type(const std::filesystem::path& file);
 
-/// 64-bit FNV-1a over bytes: the checksum of what a table stores.
-[[nodiscard]] std::uint64_t checksum(std::span<const double> values, std::uint64_t seed = 14695981039346656037ULL) noexcept;
+/// 64-bit FNV-1a over the little-endian bytes: the checksum of what a table stores.
+[[nodiscard]] std::uint64_t checksum(std::span<const double> values,
+                                     std::uint64_t seed = 14695981039346656037ULL) noexcept;
 
 }  // namespace railtab

@@ -16,10 +16,12 @@ class GridAxis {
   GridAxis(std::string name, std::vector<double> nodes);
 
   struct Cell {
-    int index;         ///< left node
-    double fraction;   ///< position in the cell, 0..1
-    bool inside;       ///< false outside the axis: leaving the table is a status, never a clamp
+    int index;        ///< left node
+    double fraction;  ///< position in the cell, 0..1
+    double width;     ///< of the cell; 0 on an axis of one node
+    bool inside;      ///< false outside the axis: leaving the table is a status, never a clamp
   };
+  /// The cell that holds `value`; on an axis of one node, inside means within 1e-12 of it. NaN is outside.
   [[nodiscard]] Cell locate(double value) const noexcept;
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
@@ -36,13 +38,16 @@ class GridAxis {
 
 /// One local minimum of the wheel-rail distance, followed as a smooth surface over the grid.
 ///
-/// Values at the nodes of the box [first, first+size) of the grid, y fastest; NaN where the branch does not exist.
-/// A wheel that just touches the rail on this branch has its centre at z_touch and the pair at (s_wheel, s_rail).
+/// "Smooth" as far as the profiles are: s_wheel and s_rail have slope jumps where the contact passes a joint of a
+/// profile. Values at the nodes of the box [first, first+size) of the grid, y fastest; NaN where the branch does not
+/// exist. A wheel that just touches the rail on this branch has its centre at z_touch and the pair at (s_wheel,
+/// s_rail).
 struct GeometryBranch {
-  std::array<int, 3> first{};  ///< first node along lateral, yaw, roll
-  std::array<int, 3> size{};   ///< nodes along lateral, yaw, roll
-  std::vector<double> z_touch, s_wheel, s_rail;              ///< [m]
-  std::vector<double> z_touch_dy, s_wheel_dy, s_rail_dy;     ///< derivative along the lateral axis, exact from the geometry
+  std::array<int, 3> first{};                    ///< first node along lateral, yaw, roll
+  std::array<int, 3> size{};                     ///< nodes along lateral, yaw, roll
+  std::vector<double> z_touch, s_wheel, s_rail;  ///< [m]
+  std::vector<double> z_touch_dy, s_wheel_dy,
+      s_rail_dy;  ///< derivative along the lateral axis, exact from the geometry
 };
 
 /// What the offline side stored beside the numbers.
@@ -59,10 +64,12 @@ struct TableProvenance {
 struct GeometryTableData {
   ProfileKnots wheel, rail;
   double track_gauge = 0, gauge_height = 0, flange_back = 0, nominal_radius = 0;  ///< [m]
-  std::vector<double> lateral, yaw_squared, roll;  ///< nodes of the axes
+  std::vector<double> lateral, yaw_squared, roll;                                 ///< nodes of the axes
   std::vector<GeometryBranch> branches;
-  /// Per cell (lateral fastest): smallest height above first touch [m] of a branch that begins, ends or folds in the
-  /// cell; a query that lowers the wheel that far must go to the online search. Infinity: the cell can be trusted.
+  /// Per cell (lateral fastest): a query that lowers the wheel this far [m] below first touch on the lowest branch that
+  /// the table holds for the cell must go to the online search: there a branch begins, ends or folds. 0 where such a
+  /// branch may lie lower than all that the table holds: no query of the cell is answered. Infinity where it can be
+  /// trusted.
   std::vector<double> trusted_lowering;
   double tolerance = 0;  ///< penetration error the table was made for [m]
   /// Measured error statistics and options, name -> value; written as attributes.
@@ -70,16 +77,21 @@ struct GeometryTableData {
   TableProvenance provenance;
 };
 
-/// A branch at one query: where a touching wheel stands and where it touches.
+/// A branch at one query: where a touching wheel stands and where it touches, with d/dy at constant yaw and roll.
 struct BranchValue {
-  double z_touch, z_touch_dy;
-  double s_wheel, s_rail;
+  double z_touch, z_touch_dy;  ///< [m], [-]
+  double s_wheel, s_wheel_dy;  ///< [m], [-]
+  double s_rail, s_rail_dy;    ///< [m], [-]
 };
 
 /// Look-up over the stored branches: const, allocation-free, thread-safe.
+///
+/// Invariant: every branch lies in the grid; a branch that exists at some corners of a cell but not at all of them has
+/// a finite trusted_lowering there.
 class GeometryTable {
  public:
-  /// @throws InputError where shapes disagree, an axis is not increasing or a number is not finite where it must be.
+  /// @throws InputError where shapes disagree, an axis is not increasing, a number is not finite where it must be, or a
+  ///         cell with an incomplete branch is not flagged.
   explicit GeometryTable(GeometryTableData data);
 
   static constexpr int max_branches = 8;
@@ -87,20 +99,45 @@ class GeometryTable {
   struct Lookup {
     std::array<BranchValue, max_branches> branch;
     int count = 0;
-    double trusted_lowering = 0;  ///< of the cell [m]
+    /// Of the cell [m]: largest height of the wheel below first touch on the lowest of `branch` at which these are all
+    /// that can be in contact. 0: not to be trusted at any height; so where the cell has more than max_branches.
+    double trusted_lowering = 0;
     Status status = Status::outside;
   };
 
-  /// All branches that exist in the cell of (y, yaw, roll), interpolated by cubic Hermite along the lateral axis and
-  /// C1 across yaw² and roll.
+  /// All branches that exist in the whole cell of (y, yaw, roll), interpolated by cubic Hermite along the lateral axis
+  /// and C1 across yaw² and roll (Hermite with finite-difference slopes inside the branch).
+  /// @param y lateral shift of the wheelset centre [m]; @param yaw, roll [rad]. Outside the axes, or off the single
+  /// node of one by more than 1e-12: status outside and no branch.
   [[nodiscard]] Lookup lookup(double y, double yaw, double roll) const noexcept;
 
   [[nodiscard]] const GeometryTableData& data() const noexcept { return data_; }
+  /// Memory that look-ups use [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  /// Where a cell finds its branches: packed_ offsets of the branch's first corner in cell_branch_[first, first+count).
+  struct CellEntry {
+    std::uint32_t first;
+    std::uint32_t count;
+    double trusted_lowering;
+  };
+  /// A branch in one cell: offset of its first corner in packed_ and strides to the neighbours.
+  struct BranchCell {
+    std::size_t offset;
+    std::uint32_t yaw_stride, roll_stride;
+  };
+
+  void pack_branches();
+  void index_cells();
+
   GeometryTableData data_;
   GridAxis lateral_, yaw_squared_, roll_;
+  int slopes_ = 1;              ///< derivative combinations per node: 1, 2 (yaw² or roll), 4 (both)
+  std::vector<double> packed_;  ///< per branch and node: per combination z, z', s_w, s_w', s_r, s_r'
+  std::vector<std::size_t> branch_offset_;
+  std::vector<CellEntry> cell_;
+  std::vector<BranchCell> cell_branch_;
 };
 
 }  // namespace railtab

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "railtab/runtime/contact/contact_patch.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 
@@ -9,25 +11,80 @@ namespace railtab {
 /// section is where the wheel's normal has no longitudinal component, sin(theta) = -tan(yaw) R'/a', in closed form.
 /// With it the three-dimensional contact of a surface of revolution on a prism is that of two plane curves.
 struct SilhouettePoint {
-  double x;          ///< longitudinal position relative to the wheelset centre [m]
-  double y, z;       ///< lateral and vertical position relative to the wheelset centre, axes yawed not rolled [m]
-  double dy, dz;     ///< d/ds of y, z
-  double ty, tz;     ///< tangent direction from the surface normal (parallel to dy, dz), not normalised
-  double dty, dtz;   ///< d/ds of ty, tz
-  bool exists;       ///< false where the section has no such point (steep flank at large yaw)
+  double x;         ///< longitudinal position relative to the wheelset centre [m]
+  double y, z;      ///< lateral and vertical position relative to the wheelset centre, axes yawed not rolled [m]
+  double dy, dz;    ///< d/ds of y, z; parallel to (ty, tz)
+  double ty, tz;    ///< tangent direction from the surface normal (first derivatives only), not normalised
+  double dty, dtz;  ///< d/ds of ty, tz
+  double speed;     ///< (dy, dz) = speed·(ty, tz); not positive where the section's point is no lowest one along x
+  bool exists;      ///< false where the section has no such point: steep flank at large yaw, normal not downward
 };
 
 /// sin, cos, tan of yaw and roll, computed once per query.
 struct PoseTrigonometry {
-  explicit PoseTrigonometry(const WheelsetPose& pose) noexcept;
+  explicit PoseTrigonometry(const WheelsetPose& pose) noexcept
+      : sin_yaw(std::sin(pose.yaw)),
+        cos_yaw(std::cos(pose.yaw)),
+        tan_yaw(sin_yaw / cos_yaw),
+        sin_roll(std::sin(pose.roll)),
+        cos_roll(std::cos(pose.roll)) {}
   double sin_yaw, cos_yaw, tan_yaw, sin_roll, cos_roll;
 };
 
 /// @param wheel wheel-profile point at arc length s
 /// @param axial axial position of the tape circle from the wheelset centre [m]
 /// @param radius nominal radius [m]
-[[nodiscard]] SilhouettePoint silhouette_point(const CurvePoint& wheel, double axial, double radius,
-                                               const PoseTrigonometry& trig) noexcept;
+[[nodiscard]] inline SilhouettePoint silhouette_point(const CurvePoint& wheel, double axial, double radius,
+                                                      const PoseTrigonometry& trig) noexcept {
+  SilhouettePoint p{};
+  const double a = axial + wheel.y;
+  const double R = radius + wheel.z;
+  const double t2 = trig.tan_yaw * trig.tan_yaw;
+  const double m = wheel.dz / wheel.dy;
+  const double w2 = 1.0 - t2 * m * m;
+  p.exists = wheel.dy > 0.0 && w2 > 0.0;
+  if (!p.exists) return p;
+  const double w = std::sqrt(w2);
+  const double dm = (wheel.ddz - m * wheel.ddy) / wheel.dy;
+  const double dw = -t2 * m * dm / w;
+  p.x = -trig.sin_yaw * (a + R * m);
+  p.y = trig.cos_yaw * (a - t2 * R * m);
+  p.z = R * w;
+  p.ty = wheel.dy * w;
+  p.tz = wheel.dz / trig.cos_yaw;
+  p.dty = wheel.ddy * w + wheel.dy * dw;
+  p.dtz = wheel.ddz / trig.cos_yaw;
+  p.speed = trig.cos_yaw * (w - t2 * R * dm / p.ty);
+  p.dy = p.speed * p.ty;
+  p.dz = p.speed * p.tz;
+  return p;
+}
+
+/// Centre of the wheelset in the rail-head frame [m].
+struct WheelsetCentre {
+  double y, z;
+};
+[[nodiscard]] inline WheelsetCentre wheelset_centre(const WheelRailPair& pair, const WheelsetPose& pose) noexcept {
+  return {pose.y - pair.rail_offset(), pose.z - pair.nominal_radius()};
+}
+
+/// A silhouette point rolled and moved into the rail-head frame: position, tangent, their derivatives as above.
+[[nodiscard]] inline SilhouettePoint placed(const SilhouettePoint& p, const WheelsetCentre& centre,
+                                            const PoseTrigonometry& trig) noexcept {
+  const double c = trig.cos_roll;
+  const double s = trig.sin_roll;
+  return {p.x,
+          centre.y + c * p.y - s * p.z,
+          centre.z + s * p.y + c * p.z,
+          c * p.dy - s * p.dz,
+          s * p.dy + c * p.dz,
+          c * p.ty - s * p.tz,
+          s * p.ty + c * p.tz,
+          c * p.dty - s * p.dtz,
+          s * p.dty + c * p.dtz,
+          p.speed,
+          p.exists};
+}
 
 enum class PairStatus : std::uint8_t { converged, not_converged, off_profile, not_a_minimum };
 
@@ -39,12 +96,46 @@ struct RefinedPair {
 };
 
 /// Newton on (s_wheel, s_rail) for the common normal of wheel and rail at a pose: paper Eqs. 1-4,
-/// t_r·d_wr = 0 and t_w·n_r = 0, from a starting pair. The kernel that tables, online search and the contact force share.
-/// Needs first and second derivatives of the profiles only. Allocation-free, thread-safe.
+/// t_r·d_wr = 0 and t_w·n_r = 0, from a starting pair. The kernel that tables, online search and the contact force
+/// share. Needs first and second derivatives of the profiles only; a step is held to 1 mm. Allocation-free,
+/// thread-safe. The pair returned is within `tolerance` [m] of the last iterate; the penetration's error is of its
+/// square.
 ///
-/// `not_a_minimum`: the pair found is a maximum or saddle of the distance (relative curvature not positive).
+/// `not_a_minimum`: the pair found is a maximum or saddle of the distance: the relative curvature
+/// kappa_r/(1 - kappa_r d) + kappa_w is not positive. `off_profile`: the pair lies beyond an end of a profile.
+/// `not_converged`: no common normal within `max_iterations`, or the silhouette does not exist there; patch is void.
 [[nodiscard]] RefinedPair refine_pair(const WheelRailPair& pair, const WheelsetPose& pose, const PoseTrigonometry& trig,
                                       double s_wheel, double s_rail, int max_iterations = 12,
                                       double tolerance = 1e-13) noexcept;
+
+/// The geometry of a given pair as it stands: penetration is the wheel point's depth along the rail point's normal.
+/// The silhouette must exist at s_wheel.
+[[nodiscard]] ContactPatch patch_of_pair(const WheelRailPair& pair, const WheelsetPose& pose,
+                                         const PoseTrigonometry& trig, double s_wheel, double s_rail) noexcept;
+
+/// A wheel that just touches the rail, on one local minimum of the vertical gap at fixed lateral shift, roll and yaw.
+struct TouchPoint {
+  double z_touch = 0.0;        ///< z of the pose [m]
+  double s_wheel = 0.0;        ///< arc length on the wheel profile [m]
+  double s_rail = 0.0;         ///< arc length on the rail profile [m]
+  double z_touch_dy = 0.0;     ///< d z_touch / d pose.y = tan(contact angle), exact [-]
+  double s_wheel_dy = 0.0;     ///< d s_wheel / d pose.y, by the implicit function theorem [-]
+  double s_rail_dy = 0.0;      ///< d s_rail / d pose.y, likewise [-]
+  double z_touch_droll = 0.0;  ///< d z_touch / d pose.roll, exact [m/rad]
+};
+
+struct RefinedTouch {
+  TouchPoint touch;
+  PairStatus status = PairStatus::not_converged;
+};
+
+/// The geometry of a given touching pair as it stands (y_wheel = y_rail, common tangent). pose.z is not used.
+[[nodiscard]] TouchPoint touch_of_pair(const WheelRailPair& pair, const WheelsetPose& pose,
+                                       const PoseTrigonometry& trig, double s_wheel, double s_rail) noexcept;
+
+/// As refine_pair(), for a touching wheel: Newton on y_wheel = y_rail, t_w·n_r = 0. pose.z is not used.
+[[nodiscard]] RefinedTouch refine_touch(const WheelRailPair& pair, const WheelsetPose& pose,
+                                        const PoseTrigonometry& trig, double s_wheel, double s_rail,
+                                        int max_iterations = 12, double tolerance = 1e-13) noexcept;
 
 }  // namespace railtab

@@ -15,7 +15,8 @@ struct KalkerCoefficients {
 /// @param ratio a/b > 0; @param nu 0..0.5
 [[nodiscard]] KalkerCoefficients kalker_coefficients(double ratio, double nu) noexcept;
 
-/// Normalised creepages (G = 1, mu·F_n = 1, sqrt(ab) = 1): x = υx·G·ab/(μF_n), y likewise, spin = φ·G·(ab)^{3/2}/(μF_n).
+/// Normalised creepages (G = 1, mu·F_n = 1, sqrt(ab) = 1): x = υx·G·ab/(μF_n), y likewise, spin =
+/// φ·G·(ab)^{3/2}/(μF_n).
 struct Creepage {
   double x = 0.0, y = 0.0, spin = 0.0;
 };
@@ -32,19 +33,21 @@ struct LinearCreep {
   bool saturated = false;
 };
 
-/// Polach (1999): no moment is given by the method; the spin moment of linear theory, bounded, is returned.
+/// Polach [Polach1999]: no moment is given by the method; that of linear theory, saturated, is returned.
 struct PolachCreep {
   double nu = 0.28;
   double k_adhesion = 1.0;  ///< k_A, 0 < k_S <= k_A <= 1
   double k_slip = 1.0;      ///< k_S
 };
 
-/// FASTSIM (Kalker 1982): three flexibilities, elliptic or parabolic traction bound.
+/// FASTSIM [Kalker1982], elliptic or parabolic traction bound; the three flexibilities of linear theory throughout, or
+/// blended into one at large creepage (Vollebregt & Voltr 2023), where tractions must point along the slip.
 struct FastsimCreep {
   double nu = 0.28;
   int strips = 20;    ///< across the rolling direction, 2..200
   int elements = 20;  ///< along each strip, 2..200
   enum class Bound { elliptic, parabolic } bound = Bound::parabolic;
+  enum class Flexibility { three, blended } flexibility = Flexibility::blended;
 };
 
 using CreepLaw = std::variant<LinearCreep, PolachCreep, FastsimCreep>;

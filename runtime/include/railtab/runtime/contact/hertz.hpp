@@ -14,7 +14,8 @@ struct ElasticMaterial {
 };
 
 /// Hertz contact of two bodies whose undeformed distance is A x² + B y², x in the rolling direction:
-/// everything that does not depend on the load. F = stiffness·d^{3/2} (Eq. 11), semi-axes a = a1·F^{1/3}, b = b1·F^{1/3}.
+/// everything that does not depend on the load. F = stiffness·d^{3/2} (Eq. 11), semi-axes a = a1·F^{1/3}, b =
+/// b1·F^{1/3}.
 struct HertzContact {
   double stiffness;  ///< K_h [N/m^{3/2}]
   double a1, b1;     ///< semi-axis along (a) and across (b) the rolling direction at unit load [m/N^{1/3}]
@@ -24,8 +25,8 @@ struct HertzContact {
 /// Exact: complete elliptic integrals, ellipse ratio by Newton to rounding. A, B > 0 [1/m].
 [[nodiscard]] HertzContact hertz_contact_exact(double A, double B, const ElasticMaterial& material);
 
-/// The same from a one-dimensional table of the ellipse over A/B, for the hot path: relative error below 1e-9 for A/B in
-/// 1e-6..1e6 (outside, the exact route). Allocation-free, thread-safe.
+/// The same from a one-dimensional table of the ellipse over A/B, for the hot path: relative error below 1e-9 for A/B
+/// in 1e-6..1e6 (outside, the exact route). Allocation-free, thread-safe.
 [[nodiscard]] HertzContact hertz_contact(double A, double B, const ElasticMaterial& material) noexcept;
 
 }  // namespace railtab

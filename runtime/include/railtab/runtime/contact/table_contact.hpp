@@ -16,12 +16,18 @@ class TableContact {
   /// As ContactSearch::patches; patches from the fallback have an online source.
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose, double near_miss = 0.0) const noexcept;
 
+  /// The table's own answer. @return false where it has none (outside, a branch that begins or ends, a start that does
+  /// not lead to its pair); `result`, empty at the call, is then without meaning.
+  [[nodiscard]] bool patches_from_table(const WheelsetPose& pose, double near_miss,
+                                        ContactPatches& result) const noexcept;
+
   [[nodiscard]] const GeometryTable& table() const noexcept { return table_; }
   [[nodiscard]] const ContactSearch& search() const noexcept { return search_; }
 
  private:
   GeometryTable table_;
   ContactSearch search_;
+  double steepest_;  ///< largest height per normal distance on any branch [-]
 };
 
 }  // namespace railtab

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "railtab/tables/profile_knots.hpp"
@@ -31,11 +31,15 @@ class ProfileCurve {
   /// Point at arc length s; outside [s_begin, s_end] the end piece is continued, so that Newton may
   /// step over the end; callers judge the final s with contains().
   [[nodiscard]] CurvePoint at(double s) const noexcept {
-    const Piece& p = piece_[interval(s)];
-    const double t = s - p.s0;
-    return {p.y0 + t * (p.y1 + t * (p.y2 + t * p.y3)), p.z0 + t * (p.z1 + t * (p.z2 + t * p.z3)),
-            p.y1 + t * (2 * p.y2 + t * 3 * p.y3),      p.z1 + t * (2 * p.z2 + t * 3 * p.z3),
-            2 * p.y2 + t * 6 * p.y3,                   2 * p.z2 + t * 6 * p.z3};
+    const std::size_t i = interval(s);
+    const Piece& p = piece_[i];
+    const double t = s - start_[i];
+    return {p.y0 + t * (p.y1 + t * (p.y2 + t * p.y3)),
+            p.z0 + t * (p.z1 + t * (p.z2 + t * p.z3)),
+            p.y1 + t * (2 * p.y2 + t * 3 * p.y3),
+            p.z1 + t * (2 * p.z2 + t * 3 * p.z3),
+            2 * p.y2 + t * 6 * p.y3,
+            2 * p.z2 + t * 6 * p.z3};
   }
 
   [[nodiscard]] double s_begin() const noexcept { return knots_.s.front(); }
@@ -43,25 +47,34 @@ class ProfileCurve {
   [[nodiscard]] bool contains(double s) const noexcept { return s >= s_begin() && s <= s_end(); }
   [[nodiscard]] const ProfileKnots& knots() const noexcept { return knots_; }
 
-  /// Arc length of the point whose y is nearest to `y` [m]; a scan and Newton, for set-up code.
+  /// Arc length of the point at `y` [m], for set-up code. Where an outline passes `y` several times (undercut
+  /// flank), the point that faces the other body: greatest z of a wheel, least z of a rail. Where it never does,
+  /// the knot of the nearest y.
   [[nodiscard]] double s_at_y(double y) const noexcept;
 
+  /// Arc length of the highest point (least z), for set-up code: the origin of a rail profile.
+  [[nodiscard]] double s_at_highest_point() const noexcept;
+
  private:
-  struct Piece {
-    double s0, y0, y1, y2, y3, z0, z1, z2, z3;
+  struct alignas(64) Piece {  // one cache line
+    double y0, y1, y2, y3, z0, z1, z2, z3;
   };
+
+  void fill_buckets();
 
   [[nodiscard]] std::size_t interval(double s) const noexcept {
     const double q = (s - bucket_origin_) * bucket_inverse_width_;
     const double last = static_cast<double>(bucket_.size() - 1);
     std::size_t i = bucket_[static_cast<std::size_t>(q > 0 ? (q < last ? q : last) : 0)];
-    while (i + 1 < piece_.size() && s >= piece_[i + 1].s0) ++i;
+    i += static_cast<std::size_t>(s >= start_[i + 1]);  // half of the queries, unpredictable: without a branch
+    while (s >= start_[i + 1]) ++i;                     // only where knots crowd
     return i;
   }
 
   ProfileKnots knots_;
-  std::vector<Piece> piece_;          // one per interval between knots
-  std::vector<std::size_t> bucket_;   // first interval that reaches into each uniform bucket of s
+  std::vector<Piece> piece_;           // one per interval between knots
+  std::vector<double> start_;          // arc length at which each piece begins, and a NaN that ends every walk
+  std::vector<std::uint32_t> bucket_;  // first interval that reaches into each uniform bucket of s
   double bucket_origin_ = 0.0;
   double bucket_inverse_width_ = 0.0;
 };

@@ -56,6 +56,7 @@ struct RunSummary {
   bool complete = false;
   std::string message;                ///< empty, or why the run ended early
   long steps = 0, newton_iterations = 0, halved_steps = 0;
+  long back_substitutions = 0;        ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
   double seconds_total = 0, seconds_setup = 0, seconds_contact = 0, seconds_structure = 0, seconds_vehicle = 0, seconds_output = 0;
   long structure_dofs = 0, vehicle_dofs = 0;

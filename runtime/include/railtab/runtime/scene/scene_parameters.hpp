@@ -27,47 +27,52 @@ struct TrainParameters {
 
 struct ContactParameters {
   ContactMode mode = ContactMode::table;
-  std::filesystem::path table;       ///< geometry table; also gives the profiles
-  std::string wheel = "S1002";       ///< where no table is named (online, paper)
+  std::filesystem::path table;  ///< geometry table; also gives the profiles
+  std::string wheel = "S1002";  ///< where no table is named (online, paper)
   std::string rail = "60E1";
   double rail_inclination = 1.0 / 40.0;
-  PairDimensions dimensions;         ///< where no table is named
+  PairDimensions dimensions;  ///< where no table is named
   std::string creep_law = "polach";
-  double friction = 0.30;            ///< Coulomb coefficient [-], 0..2
+  double friction = 0.30;  ///< Coulomb coefficient [-], 0..2
   ElasticMaterial material;
-  double damping = 0.0;              ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
-  double curvature_floor = 0.05;     ///< smallest B of the Hertz ellipse [1/m]
+  double damping = 0.0;           ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
+  double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]
 };
 
 struct IntegrationParameters {
-  double time_step = 5e-4;           ///< [s]
-  double duration = 0.0;             ///< [s]; 0: until the last wheelset has left the bridge or the track ends
-  double alpha = -0.05;              ///< HHT alpha, -1/3..0
-  double tolerance = 1e-8;           ///< Newton: change of contact displacement relative to 1 mm
+  double time_step = 5e-4;  ///< [s]
+  double duration = 0.0;    ///< [s]; 0: until the last wheelset has left the last span
+  double alpha = -0.05;     ///< HHT alpha, -1/3..0
+  double tolerance = 1e-8;  ///< Newton: change of contact displacement relative to 1 mm
   int max_iterations = 20;
-  int max_halvings = 6;              ///< of a step that does not converge
-  void validate() const;
+  int max_halvings = 6;   ///< of a step that does not converge
+  void validate() const;  ///< @throws InputError naming the member out of range
 };
 
 struct OutputParameters {
-  int every = 1;                     ///< steps between records, >= 1
+  int every = 1;  ///< steps between records, >= 1
 };
 
 /// Everything a run needs, read from a TOML scene. Paths are relative to the scene file.
 struct SceneParameters {
   std::string name;
-  std::string text;                  ///< the TOML itself, kept with the results
+  std::string text;  ///< the TOML itself, kept with the results
   TrainParameters train;
   ContactParameters contact;
   TrackKind track_kind = TrackKind::flexible;
   TrackParameters track;
-  std::vector<BridgeParameters> spans;   ///< none: no bridge
+  std::vector<BridgeParameters> spans;  ///< none: no bridge
   std::optional<std::filesystem::path> irregularity;
   IntegrationParameters integration;
   OutputParameters output;
+
+  /// What no single key can tell: a table where contact.mode needs one, spans only on flexible track, integration.
+  /// To be called again where a command changes a parameter. @throws InputError naming the keys.
+  void validate() const;
 };
 
-/// @throws InputError with file and line: unknown key (with the nearest valid spelling), wrong type, value out of range,
+/// @throws InputError with file and line: unknown key (with the nearest valid spelling), wrong type, value out of
+/// range,
 ///         missing file.
 [[nodiscard]] SceneParameters read_scene(const std::filesystem::path& file);
 

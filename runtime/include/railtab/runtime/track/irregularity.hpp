@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -14,24 +15,33 @@ struct RailDeviation {
   double ddy_dx2 = 0, ddz_dx2 = 0;  ///< [1/m]
 };
 
-/// Track irregularity of both rails over x: C2 cubic splines through measured points; zero outside them.
+/// Track irregularity of both rails over x: natural cubic splines (C2) through the measured points, [Press2007,
+/// Sect. 3.3]. y > 0 moves the rail head to the right, z > 0 down. Outside the measured range the deviation is zero: a
+/// record that does not begin and end at zero gives a step there.
 class Irregularity {
  public:
   Irregularity() = default;  ///< a perfect track
-  /// Columns of equal length, x strictly increasing. @throws InputError
+  /// Columns of equal length >= 2 [m], finite, x strictly increasing. @throws InputError naming the point
   Irregularity(std::vector<double> x, std::vector<double> y_left, std::vector<double> z_left,
                std::vector<double> y_right, std::vector<double> z_right);
 
+  /// Constant time on evenly spaced points, O(log n) else; allocation-free.
   [[nodiscard]] RailDeviation at(RailSide side, double x) const noexcept;
   [[nodiscard]] bool empty() const noexcept { return x_.empty(); }
 
  private:
+  /// Values and second derivatives of y_left, z_left, y_right, z_right at one point.
+  struct Knot {
+    std::array<double, 4> value, curvature;
+  };
   std::vector<double> x_;
-  // implementer: spline coefficients of the four columns
+  std::vector<Knot> knots_;
 };
 
-/// Read "x,y_left,z_left,y_right,z_right" with a header row that names the unit of each column ("x[m],y_left[mm],...").
-/// @throws InputError with file and line
+/// Read a text file (docs/file_formats/irregularity.md): comment lines "#", one header row "x[m],y_left[mm],z_left[mm],
+/// y_right[mm],z_right[mm]" with the unit of each column, m or mm, then one row per point.
+/// @throws InputError with file and line: missing unit, wrong columns, a value that is not a finite number, x not
+/// increasing
 [[nodiscard]] Irregularity read_irregularity(const std::filesystem::path& file);
 
 }  // namespace railtab

@@ -15,17 +15,17 @@ inline constexpr int held = -1;  ///< a degree of freedom that is not an unknown
 /// z down from the rail-head tops [m].
 struct RigidBody {
   std::string name;
-  double mass;                       ///< [kg]
-  Eigen::Vector3d inertia;           ///< about x, y, z through the centre of gravity [kg m²]
-  Eigen::Vector3d position;          ///< [m]
+  double mass;               ///< [kg]
+  Eigen::Vector3d inertia;   ///< about x, y, z through the centre of gravity [kg m²]
+  Eigen::Vector3d position;  ///< [m]
 };
 
 /// Spring-damper between two bodies at one point of the nominal position.
 struct Suspension {
-  int body_a, body_b;                ///< indices
-  Eigen::Vector3d point;             ///< vehicle frame [m]
-  Eigen::Vector3d stiffness;         ///< along x, y, z [N/m]
-  Eigen::Vector3d damping;           ///< [N s/m]
+  int body_a, body_b;                                              ///< indices
+  Eigen::Vector3d point;                                           ///< vehicle frame [m]
+  Eigen::Vector3d stiffness;                                       ///< along x, y, z [N/m]
+  Eigen::Vector3d damping;                                         ///< [N s/m]
   Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();  ///< about x, y, z [N m/rad]
 };
 
@@ -34,19 +34,27 @@ struct Suspension {
 struct VehicleModel {
   std::string name;
   std::vector<RigidBody> bodies;
-  std::vector<DofIndices> dof;           ///< per body
-  std::vector<int> wheelsets;            ///< bodies that are wheelsets, front first
-  double nominal_radius = 0.46;          ///< [m]
-  double length = 26.4;                  ///< over couplers: distance to the next vehicle of the same kind [m]
+  std::vector<DofIndices> dof;               ///< per body
+  std::vector<int> wheelsets;                ///< bodies that are wheelsets, front first
+  double nominal_radius = 0.46;              ///< [m]
+  double length = 26.4;                      ///< over couplers: distance to the next vehicle of the same kind [m]
   Eigen::MatrixXd mass, damping, stiffness;  ///< dofs × dofs
-  Eigen::MatrixXd gyroscopic;            ///< velocity matrix at a wheelset rotation of 1 rad/s [kg m²]; times V/R0, added to damping
-  Eigen::VectorXd static_load;           ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
+  /// Velocity matrix at a wheelset rotation of 1 rad/s in the sense of forward rolling (ω_y = -1 rad/s, z being down)
+  /// [kg m²]; antisymmetric. Damping of the running vehicle: damping + (V/R0)·gyroscopic.
+  Eigen::MatrixXd gyroscopic;
+  Eigen::VectorXd static_load;  ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
 
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 
 /// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points).
-/// @throws InputError where a mass or inertia is not positive or an index is out of range.
+/// Dofs are numbered body by body. Static load: the reactions of the wheelsets' z and roll under gravity, so that zero
+/// displacement is the equilibrium on a rigid level track; z parts [N] add up to the weight, roll parts [N m] vanish on
+/// a vehicle that is loaded symmetrically.
+/// @param held_dofs per body; an entry `held` holds that dof, any other value frees it; empty: all are free
+/// @throws InputError where a mass or inertia is not positive, an index is out of range, or the suspension does not
+/// carry
+///         a body's weight.
 [[nodiscard]] VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
                                             const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
                                             const std::vector<DofIndices>& held_dofs, double nominal_radius,

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "railtab/runtime/results/step_record.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
 
@@ -16,17 +21,42 @@ struct RunPlan {
   std::vector<std::string> built, left_out;
 };
 
-/// Called after static equilibrium (with the header) and after each recorded step.
+/// Who listens to a run. Every member may be empty.
 struct RunObserver {
-  std::function<void(const ResultHeader&)> start;
-  std::function<void(const StepRecord&)> record;
-  std::function<void(double fraction)> progress;  ///< 0..1, may be empty
+  std::function<void(const ResultHeader&)> start;         ///< once, before the first record
+  std::function<void(const StepRecord&)> record;          ///< the initial state, then every output.every steps
+  std::function<void(double fraction)> progress;          ///< 0..1
+  std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
+  long checkpoint_every = 2000;
 };
 
+/// Where an interrupted run goes on: the step and the packed state of its last checkpoint.
+struct RunCheckpoint {
+  long step = 0;
+  std::vector<double> state;
+};
+
+/// @throws InputError
 [[nodiscard]] RunPlan plan_run(const SceneParameters& scene);
 
 /// Run a scene. Wrong input throws InputError; a run that cannot go on returns a summary with complete = false and the
-/// reason, everything computed so far having been passed to the observer.
-[[nodiscard]] RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer);
+/// reason, everything computed so far having been passed to the observer. A resumed run passes on what comes after its
+/// checkpoint, to the last bit what the uninterrupted run would have.
+[[nodiscard]] RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
+                                   const std::optional<RunCheckpoint>& resume = std::nullopt);
+
+/// Time integration of a model from time 0 to `duration` [s], with steps halved where Newton fails: the core of
+/// run_scene, for models built in code. `state` is that of step `first_step`.
+[[nodiscard]] RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration,
+                                  int record_every, VsiState& state, const RunObserver& observer, long first_step = 0);
+
+/// The record of a state.
+void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record);
+
+/// The model of a scene: reads the table, builds vehicle, structure and irregularity. @throws InputError
+[[nodiscard]] VsiModel build_model(const SceneParameters& scene);
+/// Time until the scene's run is over: its duration, or until the last wheelset has left the last span [s].
+/// @throws InputError where a scene without a span names no duration.
+[[nodiscard]] double run_duration(const SceneParameters& scene, const VsiModel& model);
 
 }  // namespace railtab

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+
+namespace railtab {
+
+/// Smooth functions of one positive argument over many powers of two: eight polynomial pieces per binade, chosen by the
+/// floating-point bits of the argument, so that a logarithmic table needs no logarithm. `lanes` functions share a piece
+/// and are evaluated side by side. Constant after construction.
+/// Covers [2^first, 2^(last+1)).
+template <int lanes, int degree, int first, int last>
+class BinadePolynomials {
+ public:
+  /// Interpolates f at Chebyshev nodes on every piece. @param f double -> std::array<double, lanes>
+  template <class Function>
+  explicit BinadePolynomials(const Function& f) {
+    std::size_t piece = 0;
+    for (int exponent = first; exponent <= last; ++exponent) {
+      for (int i = 0; i < kPieces; ++i) {
+        const double half = std::ldexp(0.5 / kPieces, exponent);
+        pieces_[piece++] = fit(std::ldexp(1.0 + i / double{kPieces}, exponent) + half, half, f);
+      }
+    }
+  }
+
+  /// @param x in [2^first, 2^(last+1))
+  [[nodiscard]] std::array<double, lanes> operator()(double x) const noexcept {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+    const std::size_t piece = (bits >> (52 - kBits)) - static_cast<std::uint64_t>((1023 + first) * kPieces);
+    assert(piece < pieces_.size());
+    // Mantissa bits below the piece's, as a number in [1, 2), mapped to [-1, 1).
+    const std::uint64_t rest = (bits << kBits) & 0x000fffffffffffffULL;
+    const double t = 2.0 * std::bit_cast<double>(rest | 0x3ff0000000000000ULL) - 3.0;
+    const Coefficients& c = pieces_[piece];
+    std::array<double, lanes> value = c[degree];
+    for (int k = degree - 1; k >= 0; --k) {
+      for (int l = 0; l < lanes; ++l) value[l] = value[l] * t + c[k][l];
+    }
+    return value;
+  }
+
+ private:
+  static constexpr int kBits = 3;
+  static constexpr int kPieces = 1 << kBits;
+  using Coefficients =
+      std::array<std::array<double, lanes>, degree + 1>;  ///< powers of t in [-1, 1], from the constant
+
+  /// Newton's divided differences at the Chebyshev nodes, expanded into powers.
+  template <class Function>
+  static Coefficients fit(double middle, double half, const Function& f) {
+    std::array<double, degree + 1> node{};
+    Coefficients difference{};
+    for (int i = 0; i <= degree; ++i) {
+      node[i] = std::cos(std::numbers::pi * (i + 0.5) / (degree + 1));
+      difference[i] = f(middle + half * node[i]);
+    }
+    for (int order = 1; order <= degree; ++order) {
+      for (int i = degree; i >= order; --i) {
+        for (int l = 0; l < lanes; ++l) {
+          difference[i][l] = (difference[i][l] - difference[i - 1][l]) / (node[i] - node[i - order]);
+        }
+      }
+    }
+    Coefficients power{};
+    for (int i = degree; i >= 0; --i) {
+      for (int k = degree; k >= 0; --k) {
+        for (int l = 0; l < lanes; ++l) {
+          const double shifted = k > 0 ? power[k - 1][l] : difference[i][l];
+          power[k][l] = shifted - node[i] * power[k][l];
+        }
+      }
+    }
+    return power;
+  }
+
+  std::array<Coefficients, std::size_t{(last - first + 1) * kPieces}> pieces_;
+};
+
+}  // namespace railtab

@@ -1,0 +1,102 @@
+#include "contact_search_walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace railtab {
+
+GapSlope GapWalk::at(const SilhouettePoint& S, double s_wheel, double s_rail) const noexcept {
+  constexpr int most_steps = 12;
+  constexpr double largest_step = 3e-3;  // [m]
+  // The last step is applied to the tangent to first order; its error is the square of this over the rail's radius.
+  constexpr double last_step = 3e-6;
+  GapSlope result;
+  result.s_wheel = s_wheel;
+  if (!S.exists) return result;
+  for (int i = 0; i < most_steps; ++i) {
+    const CurvePoint C = pair_.rail().at(s_rail);
+    const double ey = S.y - C.y;
+    const double ez = S.z - C.z;
+    const double length2 = C.dy * C.dy + C.dz * C.dz;
+    double residual;  // zero at the opposite point, falling along the rail at `fall`
+    double fall;
+    double residual_ds;  // along the wheel
+    if (opposite_ == Opposite::nearest) {
+      residual = C.dy * ey + C.dz * ez;
+      // Beyond the centre of curvature Newton would run from the nearest point.
+      fall = std::max(length2 - (C.ddy * ey + C.ddz * ez), 0.2 * length2);
+      residual_ds = C.dy * S.dy + C.dz * S.dz;
+    } else {
+      residual = ey;
+      fall = std::max(C.dy, 1e-3);
+      residual_ds = S.dy;
+    }
+    const double step = std::clamp(residual / fall, -largest_step, largest_step);
+    s_rail += step;
+    if (!(std::abs(step) < last_step)) continue;
+    const double ty = C.dy + step * C.ddy;
+    const double tz = C.dz + step * C.ddz;
+    result.s_rail = s_rail;
+    result.s_rail_ds = residual_ds / fall;
+    result.slope = S.ty * tz - S.tz * ty;
+    result.slope_ds = S.dty * tz - S.dtz * ty + (S.ty * C.ddz - S.tz * C.ddy) * result.s_rail_ds;
+    result.exists = pair_.rail().contains(s_rail) && S.speed > 0.0;
+    return result;
+  }
+  return result;
+}
+
+GapBracket GapWalk::bracket(const GapSlope& left, const GapSlope& right) const noexcept {
+  if (!left.exists || !right.exists) return {};
+  if (left.slope < 0.0 && right.slope >= 0.0) return {left, right, true};
+  const double sign = left.slope >= 0.0 ? 1.0 : -1.0;
+  const bool dips = sign * right.slope > 0.0 && sign * left.slope_ds < 0.0 && sign * right.slope_ds > 0.0;
+  if (!dips) return {};
+  GapSlope a = left;
+  GapSlope b = right;
+  for (int i = 0; i < 8; ++i) {
+    // Where the end tangents meet: at once the kink of a slope that bends at a profile joint, and a bound of a smooth
+    // one.
+    const double width = b.s_wheel - a.s_wheel;
+    const double x = (b.slope - a.slope - b.slope_ds * width) / (a.slope_ds - b.slope_ds);
+    if (sign * (a.slope + x * a.slope_ds) >= 0.0) return {};
+    const double t = std::clamp(x / width, 0.02, 0.98);
+    const double s = a.s_wheel + t * width;
+    const GapSlope c = at(wheel_point(s), s, a.s_rail + t * (b.s_rail - a.s_rail));
+    if (!c.exists) return {};
+    if (sign * c.slope < 0.0) return sign > 0.0 ? GapBracket{c, right, true} : GapBracket{left, c, true};
+    (sign * c.slope_ds < 0.0 ? a : b) = c;
+  }
+  return {};
+}
+
+GapSlope GapWalk::solve(GapBracket bracket) const noexcept {
+  GapSlope& a = bracket.left;
+  GapSlope& b = bracket.right;
+  double fa = a.slope;
+  double fb = b.slope;
+  GapSlope c = b;
+  int side = 0;
+  for (int i = 0; i < 100 && b.s_wheel - a.s_wheel > 1e-14; ++i) {
+    // A bisection every fourth time bounds the number of steps where the slope jumps (profile joints, cusps).
+    const double t = i % 4 == 3 ? 0.5 : fa / (fa - fb);
+    const double s = a.s_wheel + t * (b.s_wheel - a.s_wheel);
+    c = at(wheel_point(s), s, a.s_rail + t * (b.s_rail - a.s_rail));
+    if (!c.exists) return c;
+    if (c.slope < 0.0) {
+      a = c;
+      fa = c.slope;
+      if (side == -1) fb *= 0.5;
+      side = -1;
+    } else {
+      b = c;
+      fb = c.slope;
+      if (side == 1) fa *= 0.5;
+      side = 1;
+    }
+  }
+  // Once more from the foot found: to rounding.
+  return at(wheel_point(c.s_wheel), c.s_wheel, c.s_rail);
+}
+
+}  // namespace railtab

@@ -1,0 +1,30 @@
+#include "railtab/runtime/contact/creepage.hpp"
+
+#include <Eigen/Geometry>
+#include <cassert>
+#include <cmath>
+
+namespace railtab {
+
+PatchCreepage patch_creepage(const RelativeMotion& motion, const Eigen::Vector3d& arm, double angle,
+                             double speed) noexcept {
+  assert(speed > 0.0);
+  const Eigen::Vector3d tangent(0.0, std::cos(angle), std::sin(angle));
+  const Eigen::Vector3d normal(0.0, -std::sin(angle), std::cos(angle));
+  const Eigen::Vector3d slip = motion.velocity + motion.angular_velocity.cross(arm);
+  return {slip.x() / speed, slip.dot(tangent) / speed, motion.angular_velocity.dot(normal) / speed};
+}
+
+Creepage normalised_creepage(double upsilon_x, double upsilon_y, double phi, double a, double b, double G,
+                             double mu_Fn) noexcept {
+  assert(a > 0.0 && b > 0.0 && mu_Fn > 0.0);
+  const double ab = a * b;
+  const double scale = G * ab / mu_Fn;
+  return {upsilon_x * scale, upsilon_y * scale, phi * scale * std::sqrt(ab)};
+}
+
+PatchCreepForce dimensional_creep_force(const CreepForce& force, double a, double b, double mu_Fn) noexcept {
+  return {force.x * mu_Fn, force.y * mu_Fn, force.moment * mu_Fn * std::sqrt(a * b)};
+}
+
+}  // namespace railtab

@@ -1,0 +1,187 @@
+#include "railtab/runtime/contact/paper_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Points of one outline inside the other body.
+struct OverlapPoints {
+  std::array<double, PaperSearch::most_points> y, z;
+  std::array<int, PaperSearch::most_points> index;
+  int count = 0;
+
+  void add(double y_point, double z_point, int i) noexcept {
+    const auto n = static_cast<std::size_t>(count++);
+    y[n] = y_point;
+    z[n] = z_point;
+    index[n] = i;
+  }
+};
+
+double between(double y, double y0, double z0, double y1, double z1) noexcept {
+  return z0 + (y - y0) * (z1 - z0) / (y1 - y0);
+}
+
+struct NearestPoint {
+  double distance2;
+  int position;
+};
+
+// Eq. 9: the nearest of the points. Two passes, the first a plain reduction that vectorises.
+NearestPoint nearest(const OverlapPoints& points, double y, double z) noexcept {
+  const auto n = static_cast<std::size_t>(points.count);
+  double least = infinity;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double dy = points.y[j] - y;
+    const double dz = points.z[j] - z;
+    const double d2 = dy * dy + dz * dz;
+    least = d2 < least ? d2 : least;
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    const double dy = points.y[j] - y;
+    const double dz = points.z[j] - z;
+    if (dy * dy + dz * dz <= least) return {least, static_cast<int>(j)};
+  }
+  return {least, -1};
+}
+
+}  // namespace
+
+// The wheel's points at a pose, rail-head frame; z = -infinity where the section has no silhouette point.
+struct PaperSearch::Outline {
+  std::array<double, most_points> y, z, gap;  // gap: vertical distance down to the rail, infinity beside it
+};
+
+PaperSearch::PaperSearch(WheelRailPair pair, int points) : pair_(std::move(pair)) {
+  if (points < 10 || points > most_points) {
+    throw input_error("points of the published contact search", fmt::format("{}", points),
+                      fmt::format("10 to {}", most_points));
+  }
+  const ProfileCurve& wheel = pair_.wheel();
+  const ProfileCurve& rail = pair_.rail();
+  double sharpest = -infinity;
+  for (int i = 0; i < points; ++i) {
+    const double t = static_cast<double>(i) / (points - 1);
+    const double s = wheel.s_begin() + t * (wheel.s_end() - wheel.s_begin());
+    const CurvePoint p = wheel.at(s);
+    const double axial = pair_.tape_circle_offset() + p.y;
+    if (!(p.dy > 0.0) || (!wheel_.empty() && axial <= wheel_.back().axial)) continue;
+    wheel_.push_back({s, axial, pair_.nominal_radius() + p.z, p.dz / p.dy});
+    // Concave is positive for a wheel: the root between flange and tread.
+    if (p.curvature() > sharpest) {
+      sharpest = p.curvature();
+      split_ = wheel_.size() - 1;
+    }
+  }
+  for (int i = 0; i < points; ++i) {
+    const double t = static_cast<double>(i) / (points - 1);
+    const double s = rail.s_begin() + t * (rail.s_end() - rail.s_begin());
+    const CurvePoint p = rail.at(s);
+    if (p.dy > 0.0 && (rail_.empty() || p.y > rail_.back().y)) rail_.push_back({s, p.y, p.z});
+  }
+  if (wheel_.size() < 4 || rail_.size() < 4) {
+    throw input_error("points of the published contact search", "profiles that face each other in less than 4 points",
+                      "a wheel's lower and a rail's upper outline");
+  }
+}
+
+void PaperSearch::place(const WheelsetPose& pose, const PoseTrigonometry& trig, Outline& outline) const noexcept {
+  const WheelsetCentre centre = wheelset_centre(pair_, pose);
+  const double t2 = trig.tan_yaw * trig.tan_yaw;
+  std::size_t r = 0;
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    const WheelSample& w = wheel_[i];
+    const double w2 = 1.0 - t2 * w.slope * w.slope;
+    const double y0 = trig.cos_yaw * (w.axial - t2 * w.radius * w.slope);
+    const double z0 = w.radius * std::sqrt(std::max(w2, 0.0));
+    outline.y[i] = centre.y + trig.cos_roll * y0 - trig.sin_roll * z0;
+    outline.z[i] = w2 > 0.0 ? centre.z + trig.sin_roll * y0 + trig.cos_roll * z0 : -infinity;
+    // Eq. 6: the rail's point straight below. The outline may step back where yaw folds it: the pointer follows.
+    while (r + 2 < rail_.size() && rail_[r + 1].y < outline.y[i]) ++r;
+    while (r > 0 && rail_[r].y > outline.y[i]) --r;
+    const RailSample& a = rail_[r];
+    const RailSample& b = rail_[r + 1];
+    const bool beside = outline.y[i] < a.y || outline.y[i] > b.y;
+    outline.gap[i] = beside ? infinity : between(outline.y[i], a.y, a.z, b.y, b.z) - outline.z[i];
+  }
+}
+
+ContactPatches PaperSearch::patches(const WheelsetPose& pose) const noexcept {
+  const PoseTrigonometry trig(pose);
+  Outline wheel;
+  place(pose, trig, wheel);
+  ContactPatches result;
+  const int split = static_cast<int>(split_);
+  add_contact(pose, trig, wheel, {0, split}, result);
+  add_contact(pose, trig, wheel, {split, static_cast<int>(wheel_.size()) - 1}, result);
+  std::sort(result.patch.data(), result.patch.data() + result.count,
+            [](const ContactPatch& p, const ContactPatch& q) { return p.y_rail < q.y_rail; });
+  return result;
+}
+
+void PaperSearch::add_contact(const WheelsetPose& pose, const PoseTrigonometry& trig, const Outline& wheel, Zone zone,
+                              ContactPatches& patches) const noexcept {
+  const double* const gap = wheel.gap.data();
+  const int least = static_cast<int>(std::min_element(gap + zone.first, gap + zone.last + 1) - gap);
+  if (least == zone.first || least == zone.last || gap[least] == infinity) return;
+  const auto start = static_cast<std::size_t>(least);
+  const auto below = std::lower_bound(rail_.begin(), rail_.end(), wheel.y[start],
+                                      [](const RailSample& r, double y) { return r.y < y; });
+  const double s_rail = below == rail_.end() ? rail_.back().s : below->s;
+  const RefinedPair convex = refine_pair(pair_, pose, trig, wheel_[start].s, s_rail);
+  const double s_first = wheel_[static_cast<std::size_t>(zone.first)].s;
+  const double s_last = wheel_[static_cast<std::size_t>(zone.last)].s;
+  const bool found = convex.status == PairStatus::converged && convex.patch.s_wheel >= s_first &&
+                     convex.patch.s_wheel <= s_last && convex.patch.curv_wheel > 0.0;  // Eq. 2
+  if (!found) {
+    add_overlap(pose, trig, wheel, zone, patches);
+  } else if (convex.patch.penetration > 0.0) {  // Eq. 3
+    patches.patch[static_cast<std::size_t>(patches.count++)] = convex.patch;
+  }
+}
+
+void PaperSearch::add_overlap(const WheelsetPose& pose, const PoseTrigonometry& trig, const Outline& wheel, Zone zone,
+                              ContactPatches& patches) const noexcept {
+  OverlapPoints inside;  // Eqs. 6, 8
+  for (int j = zone.first; j <= zone.last; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    if (wheel.gap[i] < 0.0) inside.add(wheel.y[i], wheel.z[i], j);
+  }
+  if (inside.count == 0) return;
+  double deepest2 = -1.0;
+  int wheel_index = 0;
+  std::size_t rail_index = 0;
+  auto j = static_cast<std::size_t>(zone.first);
+  for (std::size_t i = 0; i < rail_.size(); ++i) {
+    const RailSample& r = rail_[i];
+    while (j + 1 < static_cast<std::size_t>(zone.last) && wheel.y[j + 1] < r.y) ++j;
+    if (r.y < wheel.y[j] || r.y > wheel.y[j + 1]) continue;
+    // Eqs. 5, 7: the rail's point lies inside the wheel where the wheel's outline is below it.
+    if (!(between(r.y, wheel.y[j], wheel.z[j], wheel.y[j + 1], wheel.z[j + 1]) > r.z)) continue;
+    const NearestPoint point = nearest(inside, r.y, r.z);
+    if (point.distance2 <= deepest2) continue;  // Eq. 10
+    deepest2 = point.distance2;
+    wheel_index = inside.index[static_cast<std::size_t>(point.position)];
+    rail_index = i;
+  }
+  if (deepest2 < 0.0) return;
+  const double s_wheel = wheel_[static_cast<std::size_t>(wheel_index)].s;
+  ContactPatch patch = patch_of_pair(pair_, pose, trig, s_wheel, rail_[rail_index].s);
+  patch.penetration = std::sqrt(deepest2);
+  patch.source = PatchSource::online_concave;
+  patches.patch[static_cast<std::size_t>(patches.count++)] = patch;
+}
+
+}  // namespace railtab

@@ -1,0 +1,200 @@
+#include "railtab/runtime/contact/wheel_contact.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace railtab {
+
+namespace {
+
+// Reflection in the track's plane of symmetry: polar vectors lose the sign of y, axial ones of x and z. The left wheel
+// is computed as the right wheel of the reflected world.
+Vector6 reflected(const Vector6& v) { return {v[0], -v[1], v[2], -v[3], v[4], -v[5]}; }
+Vector3 reflected_rail(const Vector3& v) { return {-v[0], v[1], -v[2]}; }
+
+WheelsetMotion on_right(WheelSide side, const WheelsetMotion& m) {
+  return side == WheelSide::right ? m : WheelsetMotion{reflected(m.displacement), reflected(m.velocity)};
+}
+RailHeadMotion on_right(WheelSide side, const RailHeadMotion& m) {
+  if (side == WheelSide::right) return m;
+  return {reflected_rail(m.displacement), reflected_rail(m.velocity), -m.yaw, m.slope};
+}
+
+// Rotation by the rail's roll: components along track axes -> along rail-head axes (y, z).
+struct RailAxes {
+  double c, s;
+  explicit RailAxes(double roll) : c(std::cos(roll)), s(std::sin(roll)) {}
+  [[nodiscard]] Vector3 from_track(const Vector3& v) const { return {v[0], c * v[1] + s * v[2], -s * v[1] + c * v[2]}; }
+  [[nodiscard]] Vector3 to_track(const Vector3& v) const { return {v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]}; }
+};
+
+WheelsetPose pose_on_right(const WheelRailPair& pair, const WheelsetMotion& w, const RailHeadMotion& r) {
+  const RailAxes axes(r.displacement[2]);
+  const Vector3 centre = axes.from_track({0.0, w.displacement[1] - r.displacement[0] - pair.rail_offset(),
+                                          w.displacement[2] - r.displacement[1] - pair.nominal_radius()});
+  return {centre[1] + pair.rail_offset(), centre[2] + pair.nominal_radius(), w.displacement[3] - r.displacement[2],
+          w.displacement[5] - r.yaw};
+}
+
+// Contact axes of a right wheel's patch, in rail-head axes: x forward, t across, n into the rail.
+struct ContactAxes {
+  Vector3 t, n;
+  explicit ContactAxes(double angle) : t(0.0, std::cos(angle), std::sin(angle)), n(0.0, -std::sin(angle), std::cos(angle)) {}
+};
+
+struct PatchForce {
+  Vector3 force, moment;  // on the wheel, in rail-head axes, moment about the wheelset centre
+};
+
+HertzContact hertz_of(const WheelContactModel& model, const ContactPatch& p) {
+  const double A = 0.5 * p.curv_rolling;
+  const double B = std::max(0.5 * (p.curv_wheel + p.curv_rail), model.curvature_floor);
+  return hertz_contact(A, B, model.material);
+}
+
+double bounded_normal_force(const WheelContactModel& model, const HertzContact& hertz, double penetration,
+                            double approach_velocity) {
+  if (penetration <= 0.0) return 0.0;
+  const double elastic = hertz.stiffness * penetration * std::sqrt(penetration);
+  return std::max(0.0, elastic * (1.0 + model.damping * approach_velocity));
+}
+
+// velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact point.
+PatchForce patch_force(const WheelContactModel& model, const ContactPatch& patch, const Vector3& arm,
+                       const Vector3& velocity, const Vector3& rotation) {
+  const ContactAxes axes(patch.angle);
+  const Vector3 slip = velocity + rotation.cross(arm);
+  const HertzContact hertz = hertz_of(model, patch);
+  const double N = bounded_normal_force(model, hertz, patch.penetration, slip.dot(axes.n));
+  if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero()};
+
+  const double cube_root = std::cbrt(N);
+  const double ab = hertz.a1 * hertz.b1 * cube_root * cube_root;
+  const double bound = model.friction * N;
+  Vector3 force = -N * axes.n;
+  Vector3 moment = Vector3::Zero();
+  if (bound > 0.0) {
+    const double c = std::sqrt(ab);
+    const double scale = model.material.shear_modulus() * ab / (bound * model.speed);
+    const Creepage creepage{slip[0] * scale, slip.dot(axes.t) * scale, rotation.dot(axes.n) * scale * c};
+    const CreepForce creep = creep_force(model.creep_law, hertz.ratio, creepage);
+    force += bound * (creep.x * Vector3::UnitX() + creep.y * axes.t);
+    moment = bound * c * creep.moment * axes.n;
+  }
+  return {force, moment + arm.cross(force)};
+}
+
+}  // namespace
+
+double normal_force(const WheelContactModel& model, const ContactPatch& patch, double approach_velocity) noexcept {
+  return bounded_normal_force(model, hertz_of(model, patch), patch.penetration, approach_velocity);
+}
+
+WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
+                           const RailHeadMotion& rail) noexcept {
+  return pose_on_right(pair, on_right(side, wheelset), on_right(side, rail));
+}
+
+WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                       const RailHeadMotion& rail, const ContactPatches& patches) noexcept {
+  WheelForce result;
+  if (patches.count == 0) return result;
+  const WheelRailPair& pair = model.geometry->pair();
+  const WheelsetMotion w = on_right(side, wheelset);
+  const RailHeadMotion r = on_right(side, rail);
+  const WheelsetPose pose = pose_on_right(pair, w, r);
+  const RailAxes rail_axes(r.displacement[2]);
+
+  // Velocity of the wheelset centre against the rail's material, along the rail's tangent (1, yaw, slope).
+  const double V = model.speed;
+  const Vector3 velocity = rail_axes.from_track({V + w.velocity[0], w.velocity[1] - r.velocity[0] - V * r.yaw,
+                                                 w.velocity[2] - r.velocity[1] - V * r.slope});
+  const Vector3 axle(-std::sin(pose.yaw), std::cos(pose.yaw) * std::cos(pose.roll),
+                     std::cos(pose.yaw) * std::sin(pose.roll));
+  const Vector3 rotation = rail_axes.from_track({w.velocity[3] - r.velocity[2], 0.0, w.velocity[5]}) +
+                           (w.velocity[4] - V / pair.nominal_radius()) * axle;
+
+  Vector3 force = Vector3::Zero();
+  Vector3 moment = Vector3::Zero();
+  double rail_moment = 0.0;
+  for (const ContactPatch& patch : patches) {
+    // To the wheel's own undeformed surface, the penetration below the rail's: rolling radii are those of the wheel.
+    const Vector3 arm = Vector3(patch.x, patch.y_rail - (pose.y - pair.rail_offset()),
+                                patch.z_rail - (pose.z - pair.nominal_radius())) +
+                        patch.penetration * ContactAxes(patch.angle).n;
+    // The rail's own roll rate moves its surface at the contact point.
+    const Vector3 surface_velocity = r.velocity[2] * Vector3(0.0, -patch.z_rail, patch.y_rail);
+    // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
+    const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
+    const PatchForce p = patch_force(model, patch, arm, velocity + centre_shift - surface_velocity, rotation);
+    force += p.force;
+    moment += p.moment;
+    const Vector3 spin_moment = p.moment - arm.cross(p.force);
+    rail_moment -= patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];
+  }
+
+  const Vector3 force_track = rail_axes.to_track(force);
+  const Vector3 moment_track = rail_axes.to_track(moment);
+  result.wheelset << force_track, moment_track[0], moment.dot(axle), moment_track[2];
+  result.rail << -force_track[1], -force_track[2], rail_moment;
+  result.rail_x = -force_track[0];
+  if (side == WheelSide::left) {
+    result.wheelset = reflected(result.wheelset);
+    result.rail = reflected_rail(result.rail);
+  }
+  return result;
+}
+
+ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatches& patches, const WheelsetPose& from,
+                             const WheelsetPose& to) noexcept {
+  ContactPatches moved = patches;
+  const WheelRailPair& pair = geometry.pair();
+  const PoseTrigonometry trig(to);
+  for (int i = 0; i < patches.count; ++i) {
+    const ContactPatch& p = patches.patch[static_cast<std::size_t>(i)];
+    ContactPatch& q = moved.patch[static_cast<std::size_t>(i)];
+    if (!geometry.is_paper()) {
+      const RefinedPair refined = refine_pair(pair, to, trig, p.s_wheel, p.s_rail, 4);
+      if (refined.status == PairStatus::converged) {
+        q = refined.patch;
+        continue;
+      }
+    }
+    // Frozen pair: the penetration changes by the displacement of the wheel's particle along the normal.
+    const double arm_y = p.y_rail - (from.y - pair.rail_offset());
+    const double arm_z = p.z_rail - (from.z - pair.nominal_radius());
+    const double roll = to.roll - from.roll;
+    q.penetration += -std::sin(p.angle) * (to.y - from.y - roll * arm_z) + std::cos(p.angle) * (to.z - from.z + roll * arm_y);
+  }
+  return moved;
+}
+
+Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                            const RailHeadMotion& rail, const ContactPatches& patches, const WheelForce& force,
+                            const Vector6& velocity_rate) noexcept {
+  Matrix9 tangent = Matrix9::Zero();
+  if (patches.count == 0) return tangent;
+  const WheelRailPair& pair = model.geometry->pair();
+  const WheelsetPose pose = relative_pose(pair, side, wheelset, rail);
+  // Steps well above the Newton tolerance of the pair and well below the penetration [m, rad].
+  const Vector6 step = (Vector6() << 1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7).finished();
+  for (int j = 0; j < 6; ++j) {
+    WheelsetMotion perturbed = wheelset;
+    perturbed.displacement[j] += step[j];
+    perturbed.velocity[j] += velocity_rate[j] * step[j];
+    const WheelsetPose to = relative_pose(pair, side, perturbed, rail);
+    const ContactPatches moved = moved_patches(*model.geometry, patches, pose, to);
+    const WheelForce f = wheel_force(model, side, perturbed, rail, moved);
+    tangent.col(j) << (f.wheelset - force.wheelset) / step[j], (f.rail - force.rail) / step[j];
+  }
+  // Moving the rail is moving the wheelset the other way; rolling the rail by +1 is rolling the wheelset by -1 about
+  // the rail head, which stands at (sign·rail_offset, R0) from the wheelset centre.
+  const double y_head = side == WheelSide::right ? pair.rail_offset() : -pair.rail_offset();
+  tangent.col(6) = -tangent.col(1);
+  tangent.col(7) = -tangent.col(2);
+  tangent.col(8) = -tangent.col(3) - pair.nominal_radius() * tangent.col(1) + y_head * tangent.col(2);
+  return tangent;
+}
+
+}  // namespace railtab

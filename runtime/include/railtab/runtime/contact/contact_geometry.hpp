@@ -1,0 +1,43 @@
+#pragma once
+
+#include <variant>
+
+#include "railtab/runtime/contact/contact_search.hpp"
+#include "railtab/runtime/contact/paper_search.hpp"
+#include "railtab/runtime/contact/table_contact.hpp"
+
+namespace railtab {
+
+/// Where the contact geometry of a run comes from: a geometry table (with its online fallback), the online search, or
+/// the published method. Constant after construction; queries are const, allocation-free and thread-safe.
+class ContactGeometry {
+ public:
+  using Source = std::variant<TableContact, ContactSearch, PaperSearch>;
+  explicit ContactGeometry(Source source) : source_(std::move(source)) {}
+
+  /// Patches of the right wheel at a pose, with penetration above zero. Left wheel: pose.mirrored().
+  [[nodiscard]] ContactPatches patches(const WheelsetPose& pose) const noexcept {
+    return std::visit([&](const auto& source) { return source.patches(pose); }, source_);
+  }
+
+  [[nodiscard]] const WheelRailPair& pair() const noexcept {
+    return std::visit(
+        [](const auto& source) -> const WheelRailPair& {
+          if constexpr (requires { source.search(); }) {
+            return source.search().pair();
+          } else {
+            return source.pair();
+          }
+        },
+        source_);
+  }
+
+  /// The published method returns discretised pairs, which the common-normal Newton must not improve.
+  [[nodiscard]] bool is_paper() const noexcept { return std::holds_alternative<PaperSearch>(source_); }
+  [[nodiscard]] bool is_table() const noexcept { return std::holds_alternative<TableContact>(source_); }
+
+ private:
+  Source source_;
+};
+
+}  // namespace railtab

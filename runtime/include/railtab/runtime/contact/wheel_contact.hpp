@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "railtab/runtime/contact/contact_geometry.hpp"
+#include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/contact/hertz.hpp"
+
+namespace railtab {
+
+using Vector3 = Eigen::Vector3d;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// Motion of a wheelset in the track frame, dof order x, y, z, roll, pitch, yaw. Displacement from the nominal position
+/// (centred, centre R0 above the rail-head tops); pitch rate is the deviation from the nominal rotation -V/R0 about y.
+struct WheelsetMotion {
+  Vector6 displacement = Vector6::Zero();
+  Vector6 velocity = Vector6::Zero();
+};
+
+/// Motion of a rail head where a wheel stands, structure and irregularity together, in the track frame.
+struct RailHeadMotion {
+  Vector3 displacement = Vector3::Zero();  ///< y, z [m], roll [rad]
+  Vector3 velocity = Vector3::Zero();      ///< of the rail's material: y, z [m/s], roll [rad/s]
+  double yaw = 0.0;                        ///< slope dy/dx of the rail head [-]
+  double slope = 0.0;                      ///< slope dz/dx of the rail head [-]
+};
+
+/// Parameters of the contact forces that every wheel shares.
+struct WheelContactModel {
+  const ContactGeometry* geometry = nullptr;
+  ElasticMaterial material;
+  CreepLaw creep_law = PolachCreep{};
+  double friction = 0.3;          ///< [-]
+  double damping = 0.0;           ///< F_n = K_h d^{3/2} (1 + damping·d') [s/m]
+  double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]; 1e-6 in the published method
+  double speed = 0.0;             ///< running speed V [m/s], > 0
+};
+
+/// Forces between one wheel and its rail, in the track frame.
+struct WheelForce {
+  Vector6 wheelset = Vector6::Zero();  ///< on the wheelset: force, and moment about its centre (pitch: about its axle)
+  Vector3 rail = Vector3::Zero();      ///< on the rail head: y, z [N], moment about x through the head's origin [N m]
+  double rail_x = 0.0;                 ///< on the rail, longitudinal [N]
+};
+
+enum class WheelSide { left, right };
+
+/// Forces of given patches. The patches are those of the pose that relative_pose() returns.
+/// Normal force by Hertz (Eq. 11) with the ellipse of the patch's curvatures, creep forces by the model's law from the
+/// relative velocity of the wheel's and the rail's particles at the contact point. Never pulls.
+[[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                                     const RailHeadMotion& rail, const ContactPatches& patches) noexcept;
+
+/// Normal force of one patch that approaches at `approach_velocity` [m/s] (positive: penetration grows) [N].
+[[nodiscard]] double normal_force(const WheelContactModel& model, const ContactPatch& patch,
+                                  double approach_velocity) noexcept;
+
+/// Pose of the wheelset against the rail head, as seen by a right wheel (mirrored on the left).
+[[nodiscard]] WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
+                                         const RailHeadMotion& rail) noexcept;
+
+/// The patches at a pose near the one that `patches` were found at: the same pairs moved along by the common-normal
+/// Newton (in the published method: frozen pairs, penetration to first order). For derivatives of the force.
+[[nodiscard]] ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatches& patches,
+                                           const WheelsetPose& from, const WheelsetPose& to) noexcept;
+
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+
+/// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
+/// velocities follow displacements with `velocity_rate` = dv/da per wheelset dof [1/s] (gamma/(beta dt) in a time step).
+/// By differences of the force itself along the six wheelset motions; the rail's columns follow from those, since only
+/// relative motion matters.
+[[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
+                                          const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                          const ContactPatches& patches, const WheelForce& force,
+                                          const Vector6& velocity_rate) noexcept;
+
+}  // namespace railtab

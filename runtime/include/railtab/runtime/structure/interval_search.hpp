@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace railtab {
+
+/// Index i of the interval nodes[i] <= x <= nodes[i + 1]. Constant time on evenly spaced nodes, O(log n) else.
+/// @pre nodes strictly increasing, at least two; nodes.front() <= x <= nodes.back()
+[[nodiscard]] size_t interval_at(std::span<const double> nodes, double x) noexcept;
+
+}  // namespace railtab

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace railtab {
+
+/// Motion of two bodies, or nodes, a and b: [u_a, θ_a, u_b, θ_b], each in the order x, y, z, roll, pitch, yaw.
+using PairMatrix = Eigen::Matrix<double, 12, 12>;
+using SpringKinematics = Eigen::Matrix<double, 6, 12>;
+
+/// Small motion of the attachment point on b relative to that on a: rows 0–2 relative displacement [m], rows 3–5
+/// relative rotation [rad]. With arm r from a reference point to the attachment, u_point = u + θ × r, so
+/// row block = [-I, [r_a]×, I, -[r_b]×] over [-, -I, -, I].
+/// @param arm_a, arm_b from the reference point of a, b to the attachment, axes x, y, z [m]
+[[nodiscard]] SpringKinematics spring_kinematics(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b);
+
+/// B^T·diag(along, about)·B: stiffness matrix of a spring, or damping matrix of a damper; symmetric, 12 × 12.
+/// @param along per translation x, y, z [N/m] or [N s/m]
+/// @param about per rotation x, y, z [N m/rad] or [N m s/rad]
+[[nodiscard]] PairMatrix spring_matrix(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b,
+                                       const Eigen::Vector3d& along, const Eigen::Vector3d& about);
+
+}  // namespace railtab

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/vehicle_response.hpp"
+
+namespace railtab {
+
+/// Contact unknowns of one wheelset: its six displacements, then y, z, roll of the left and of the right rail head.
+inline constexpr int wheelset_unknowns = 12;
+
+/// Compliance between two rail heads, (wheel i, wheel j) with wheel = 2·wheelset + side.
+struct RailCoupling {
+  int i, j;
+  Eigen::Matrix3d compliance;
+};
+
+/// The contact problem of one step, condensed to the contact unknowns q: the linear rest of the train and the structure
+/// answers q = q_free + C·f(q, v) with v = v_predicted + velocity_rate·(q − q_predicted). Derived in
+/// docs/theory/coupling.md from Eq. 16.
+struct ContactProblem {
+  int wheelsets_per_vehicle = 4;
+  /// dv/dq [1/s] of a wheelset and of a rail head: gamma/(beta·dt) in a time step. At rest 0, but for the wheelset's
+  /// pitch, whose unknown is then its deviation from the nominal rotation.
+  Vector6 velocity_rate = Vector6::Zero();
+  double rail_velocity_rate = 0.0;
+  Eigen::VectorXd free, predicted, predicted_velocity;  ///< 12 per wheelset
+  Eigen::MatrixXd vehicle_compliance;    ///< of one vehicle's wheelsets, 6w × 6w, times the load weight
+  std::vector<RailCoupling> rail;        ///< times the load weight; empty on rigid track
+  std::vector<std::array<RailHeadMotion, 2>> deviation;  ///< irregularity and the rails' slopes, per wheelset and side
+  double largest_move = 5e-3;            ///< bound on one Newton correction [m or rad]
+};
+
+/// Solution and last contact forces, kept from step to step.
+struct ContactSolution {
+  Eigen::VectorXd displacement;          ///< q, 12 per wheelset
+  Eigen::VectorXd force;                 ///< f, dual to q
+  std::vector<double> rail_x;            ///< longitudinal force on the rail per wheel [N]
+  std::vector<ContactPatches> patches;   ///< per wheel, of its own (mirrored on the left) side
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  double correction = 0.0;               ///< largest last correction [m or rad]
+  double seconds_contact = 0.0;
+  long queries = 0, table_queries = 0;
+};
+
+struct NewtonLimits {
+  double tolerance = 1e-11;              ///< of the correction [m, rad]
+  int max_iterations = 20;
+};
+
+[[nodiscard]] WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept;
+[[nodiscard]] RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset, int side) noexcept;
+
+/// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over vehicles (the
+/// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact).
+[[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
+                                         const NewtonLimits& limits, ContactSolution& solution);
+
+}  // namespace railtab

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+namespace railtab {
+
+/// What one time-step size needs, made once: the factor of the structure, the inverse of a vehicle, the compliance of
+/// the rails.
+struct StepOperators {
+  HhtScheme scheme;
+  Eigen::MatrixXd vehicle_damping;
+  VehicleResponse vehicle;
+  std::unique_ptr<StructureResponse> structure;  ///< null on rigid track
+
+  StepOperators(const VsiModel& model, const HhtScheme& hht);
+};
+
+struct StepLimits {
+  NewtonLimits newton;
+  double far_field_tolerance = 1e-9;  ///< largest rail displacement the contact solution may miss [m, rad]
+  int max_passes = 6;                 ///< contact solutions per step, each one back-substitution
+};
+
+struct StepReport {
+  bool converged = false;
+  int newton_iterations = 0, back_substitutions = 0;
+  long queries = 0, table_queries = 0;
+  double seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
+};
+
+/// Buffers of a step, reused.
+struct StepWorkspace {
+  std::vector<Prediction> vehicle_prediction;
+  Prediction structure_prediction;
+  std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
+  Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
+  ContactProblem problem;
+  ContactSolution solution;
+
+  explicit StepWorkspace(const VsiModel& model);
+};
+
+/// One HHT step of the coupled system (Eqs. 12-16). If it does not converge, `state` is as before.
+[[nodiscard]] StepReport advance(const VsiModel& model, const StepOperators& operators, const StepLimits& limits,
+                                 VsiState& state, StepWorkspace& workspace);
+
+}  // namespace railtab

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "railtab/runtime/structure/structure_model.hpp"
+#include "railtab/runtime/vsi/linear_motion.hpp"
+
+namespace railtab {
+
+/// Where one wheel stands on the structure's rail; `on_rail` is false beyond the modelled track, where rails are rigid.
+struct RailContact {
+  RailSide side = RailSide::left;
+  bool on_rail = false;
+  int element = 0;  ///< left node of the beam element
+  RailInterpolation rows{};
+};
+[[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
+
+/// Displacement (y, z, roll) of a rail head from a vector of structure dofs.
+[[nodiscard]] Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept;
+/// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
+void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
+
+/// The structure for one time-step size: the Cholesky factor of its effective matrix
+/// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K), made once.
+class StructureResponse {
+ public:
+  /// @throws ComputationError where the effective matrix is not positive definite.
+  StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
+  /// At rest: K̄ = K.
+  explicit StructureResponse(const StructureModel& structure);
+
+  /// Increment over the predictor without contact forces at the end of the step; one back-substitution.
+  void free_increment(const StructureModel& structure, const HhtScheme& scheme, const LinearMotion& motion,
+                      const Prediction& prediction, Eigen::VectorXd& increment) const;
+
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
+  [[nodiscard]] long factor_nonzeros() const;
+
+  /// Fill the node-by-node compliance of the rails within `window` [m] on either side (at least one element), from one
+  /// solve per rail dof.
+  void tabulate_compliance(const StructureModel& structure, double window);
+  /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
+  /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
+  [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
+
+  /// The same without tabulation, by solving for the columns of every contact (3n × 3n): exact, for few positions.
+  [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts) const;
+
+ private:
+  using Block = Eigen::Matrix<double, 6, 6>;
+  std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
+  Eigen::Index dofs_ = 0;
+  // compliance_[node column][window offset]; columns: left rail's nodes, then the right's; rows likewise in pairs.
+  struct Column {
+    std::array<int, 2> first{};              // first node of the window on each rail
+    std::array<std::vector<Block>, 2> rows;  // displacement of the window's nodes from unit loads on this node
+  };
+  std::array<std::vector<Column>, 2> column_;
+};
+
+}  // namespace railtab

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
+#include "railtab/runtime/track/irregularity.hpp"
+#include "railtab/runtime/vehicle/vehicle_model.hpp"
+#include "railtab/runtime/vsi/contact_newton.hpp"
+#include "railtab/runtime/vsi/linear_motion.hpp"
+
+namespace railtab {
+
+/// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
+struct VsiModel {
+  VehicleModel vehicle;
+  std::vector<double> vehicle_x;           ///< of the vehicles' centres at t = 0, front first [m]
+  std::optional<StructureModel> structure;
+  Irregularity irregularity;
+  std::shared_ptr<const ContactGeometry> geometry;
+  WheelContactModel contact;               ///< its geometry points to `geometry`
+
+  [[nodiscard]] int wheelsets_per_vehicle() const noexcept { return static_cast<int>(vehicle.wheelsets.size()); }
+  [[nodiscard]] int wheelsets() const noexcept { return wheelsets_per_vehicle() * static_cast<int>(vehicle_x.size()); }
+  /// Position of a wheelset along the track at time t, wheelsets counted from the front of the train [m].
+  [[nodiscard]] double wheelset_x(int wheelset, double time) const noexcept;
+  /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.
+  [[nodiscard]] Eigen::MatrixXd vehicle_damping() const { return vehicle.damping + contact.speed / vehicle.nominal_radius * vehicle.gyroscopic; }
+};
+
+/// Everything that changes from step to step.
+struct VsiState {
+  double time = 0.0;
+  std::vector<LinearMotion> vehicle;
+  LinearMotion structure;
+  ContactSolution contact;
+  /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m, rad].
+  Eigen::VectorXd far_field;
+
+  explicit VsiState(const VsiModel& model);
+};
+
+/// All numbers of a state that the next step depends on, in a fixed order, for checkpoints: a run continued from them is
+/// the uninterrupted run to the last bit.
+[[nodiscard]] std::vector<double> packed(const VsiState& state);
+/// The inverse. @throws InputError where the count is not that of the model.
+void unpack(std::span<const double> numbers, VsiState& state);
+
+/// Where the wheels stand on the structure, 2 per wheelset (left, right); empty on rigid track.
+[[nodiscard]] std::vector<RailContact> place_wheels(const VsiModel& model, double time);
+
+/// Irregularity under every wheel, with the slopes that the structure's displacement adds.
+void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
+                    const Eigen::VectorXd& structure_displacement,
+                    std::vector<std::array<RailHeadMotion, 2>>& deviation);
+
+/// Restriction of one vehicle's dof vector to its wheelset unknowns, written into a 12-per-wheelset vector.
+void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
+/// Its transpose: the contact forces of one vehicle's wheelsets as loads on the vehicle's dofs.
+void scatter_wheelset_forces(const VsiModel& model, int vehicle, const Eigen::VectorXd& force, Eigen::VectorXd& load) noexcept;
+/// Restriction of the structure's dofs to the rail heads, and its transpose.
+void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
+void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force, Eigen::VectorXd& load) noexcept;
+
+}  // namespace railtab

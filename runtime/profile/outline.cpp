@@ -1,0 +1,114 @@
+#include "outline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr std::size_t fewest_points = 4;
+// The limits that CONTACT sets to the chord of a profile: what lies outside was read in the wrong unit.
+constexpr double smallest_extent = 0.005;  // [m]
+constexpr double largest_extent = 0.5;     // [m]
+// Far below the rounding of any profile file (1e-9 m), far above that of the numbers in it.
+constexpr double repeated_distance = 1e-9;  // [m]
+// No profile has a corner sharper than a right angle; two swapped points turn by about 180 degrees.
+constexpr double cosine_of_turning_back = -0.5;
+
+std::string place(const std::string& file, const OutlinePoint& p) { return fmt::format("{}:{}", file, p.line); }
+
+std::string text(const OutlinePoint& p) { return fmt::format("({:.9g}, {:.9g}) m", p.y, p.z); }
+
+void check_extent(const std::string& file, const std::vector<OutlinePoint>& points) {
+  const auto [y0, y1] = std::minmax_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.y < b.y; });
+  const auto [z0, z1] = std::minmax_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.z < b.z; });
+  const double width = y1->y - y0->y;
+  const double height = z1->z - z0->z;
+  if (width >= smallest_extent && std::max(width, height) <= largest_extent) return;
+  throw input_error(
+      file, fmt::format("a profile {:.6g} m wide and {:.6g} m high", width, height),
+      fmt::format("a width from {} m and no extent above {} m; check the units", smallest_extent, largest_extent));
+}
+
+void check_steps(const std::string& file, const std::vector<OutlinePoint>& points) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const OutlinePoint& a = points[i - 1];
+    const OutlinePoint& b = points[i];
+    const double length = std::hypot(b.y - a.y, b.z - a.z);
+    if (length < repeated_distance) {
+      throw input_error(place(file, b), fmt::format("the point {} of line {} again", text(b), a.line),
+                        "points that differ");
+    }
+    if (i + 1 == points.size()) break;
+    const OutlinePoint& c = points[i + 1];
+    const double next = std::hypot(c.y - b.y, c.z - b.z);
+    const double cosine = ((b.y - a.y) * (c.y - b.y) + (b.z - a.z) * (c.z - b.z)) / (length * next);
+    if (next >= repeated_distance && cosine < cosine_of_turning_back) {
+      throw input_error(place(file, b),
+                        fmt::format("an outline that turns back by {:.0f} degrees at {}",
+                                    std::acos(std::max(cosine, -1.0)) * 57.29577951308232, text(b)),
+                        "points in order along the outline");
+    }
+  }
+}
+
+/// Side of c as seen along a to b: 1, -1, or 0 where rounding leaves it open. Extended precision with its error bound.
+int side(const OutlinePoint& a, const OutlinePoint& b, const OutlinePoint& c) {
+  using Wide = long double;
+  const Wide left = (static_cast<Wide>(a.y) - c.y) * (static_cast<Wide>(b.z) - c.z);
+  const Wide right = (static_cast<Wide>(a.z) - c.z) * (static_cast<Wide>(b.y) - c.y);
+  const Wide bound = 4 * std::numeric_limits<Wide>::epsilon() * (std::abs(left) + std::abs(right));
+  const Wide difference = left - right;
+  return difference > bound ? 1 : difference < -bound ? -1 : 0;
+}
+
+/// True where segments ab and cd have a point in common; an undecided side counts as touching, since an outline that
+/// comes within rounding of itself encloses no body. Their bounding boxes are known to overlap in y.
+bool meet(const OutlinePoint& a, const OutlinePoint& b, const OutlinePoint& c, const OutlinePoint& d) {
+  if (std::max(a.z, b.z) < std::min(c.z, d.z) || std::max(c.z, d.z) < std::min(a.z, b.z)) return false;
+  return side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
+}
+
+/// Segments sorted by their least y, each tested against those that begin before it ends.
+void check_crossing(const std::string& file, const std::vector<OutlinePoint>& points) {
+  std::vector<std::size_t> order(points.size() - 1);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto least_y = [&](std::size_t i) { return std::min(points[i].y, points[i + 1].y); };
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return least_y(i) < least_y(j); });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t i = order[k];
+    const double greatest_y = std::max(points[i].y, points[i + 1].y);
+    for (std::size_t m = k + 1; m < order.size() && least_y(order[m]) <= greatest_y; ++m) {
+      const std::size_t first = std::min(i, order[m]);
+      const std::size_t second = std::max(i, order[m]);
+      if (second - first < 2) continue;  // neighbours share a point
+      if (meet(points[first], points[first + 1], points[second], points[second + 1])) {
+        throw input_error(place(file, points[second + 1]),
+                          fmt::format("an outline that crosses its part of lines {} to {} near {}", points[first].line,
+                                      points[first + 1].line, text(points[second + 1])),
+                          "an outline that does not cross or touch itself");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void check_outline(const std::string& file, const std::vector<OutlinePoint>& points) {
+  if (points.size() < fewest_points) {
+    throw input_error(file, fmt::format("{} points", points.size()), fmt::format("at least {}", fewest_points));
+  }
+  check_extent(file, points);
+  check_steps(file, points);
+  check_crossing(file, points);
+}
+
+}  // namespace railtab

@@ -1,0 +1,59 @@
+#include "profile_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+constexpr std::string_view blanks = " \t\r\f\v";
+}
+
+std::optional<std::string> ProfileText::next() {
+  std::string text;
+  if (!std::getline(in, text)) return std::nullopt;
+  ++line;
+  return text;
+}
+
+std::string ProfileText::place() const { return fmt::format("{}:{}", file, line); }
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> fields(std::string_view text) {
+  std::vector<std::string_view> result;
+  text = trimmed(text);
+  while (!text.empty()) {
+    const std::size_t end = text.find_first_of(" \t\r\f\v,;");
+    result.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) break;
+    text = trimmed(text.substr(end));
+    if (!text.empty() && (text.front() == ',' || text.front() == ';')) {
+      text = trimmed(text.substr(1));
+      if (text.empty()) result.push_back(text);  // "1," has an empty second field
+    }
+  }
+  return result;
+}
+
+double number(std::string_view field, std::string_view place, std::string_view expected) {
+  const bool plus = field.size() > 1 && field[0] == '+' && field[1] != '-';
+  const std::string_view digits = plus ? field.substr(1) : field;  // from_chars knows no leading plus
+  double value = 0.0;
+  const char* const end = digits.data() + digits.size();
+  const std::from_chars_result r = std::from_chars(digits.data(), end, value);
+  if (r.ec != std::errc() || r.ptr != end || !std::isfinite(value)) {
+    throw input_error(place, fmt::format("\"{}\"", field), expected);
+  }
+  return value;
+}
+
+}  // namespace railtab

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <istream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace railtab {
+
+/// A text file of a profile, line by line, with the place for messages.
+struct ProfileText {
+  std::istream& in;
+  std::string file;
+  int line = 0;
+
+  /// The next line without its line end; nothing at the end of the file.
+  [[nodiscard]] std::optional<std::string> next();
+  /// "<file>:<line>" of the line read last.
+  [[nodiscard]] std::string place() const;
+};
+
+/// Text without blanks at both ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+/// Fields between blanks; one comma or semicolon between two fields counts as a blank.
+[[nodiscard]] std::vector<std::string_view> fields(std::string_view text);
+
+/// A finite decimal number, with optional sign and exponent, that fills the whole field.
+/// @throws InputError naming `place` and what was expected
+[[nodiscard]] double number(std::string_view field, std::string_view place, std::string_view expected);
+
+}  // namespace railtab

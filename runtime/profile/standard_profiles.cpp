@@ -1,0 +1,83 @@
+#include "railtab/runtime/profile/standard_profiles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <numbers>
+
+#include "profile_segments.hpp"
+#include "rail_60e1.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "s1002_wheel.hpp"
+
+namespace railtab {
+
+namespace {
+
+/// Cone z = -slope y over the width of a wheel: the radius grows towards the flange side, there is no flange.
+std::vector<ProfileSegment> cone_segments(double slope) {
+  constexpr double y_begin = -0.070;
+  constexpr double y_end = 0.060;
+  return {straight_segment({y_begin, -slope * y_begin}, {y_end, -slope * y_end})};
+}
+
+/// Half-circle of knife_edge_radius on top of an upright blade. Inclination would turn the circle in itself.
+std::vector<ProfileSegment> knife_edge_segments() {
+  constexpr double r = knife_edge_radius;
+  constexpr double blade_depth = 37.5e-3;
+  constexpr double pi = std::numbers::pi;
+  return {straight_segment({-r, blade_depth}, {-r, r}), arc_segment({0, r}, r, 1.5 * pi, 0.5 * pi),
+          straight_segment({r, r}, {r, blade_depth})};
+}
+
+struct Entry {
+  ProfileKind kind;
+  std::string_view name;   ///< the name that is written to tables
+  std::string_view alias;  ///< second name, or empty
+  std::vector<ProfileSegment> (*segments)(double rail_inclination);
+};
+
+constexpr std::array<Entry, 5> entries{{
+    {ProfileKind::wheel, "S1002", "", [](double) { return s1002_segments(); }},
+    {ProfileKind::wheel, "cone-1:20", "", [](double) { return cone_segments(1.0 / 20.0); }},
+    {ProfileKind::wheel, "cone-1:40", "", [](double) { return cone_segments(1.0 / 40.0); }},
+    {ProfileKind::rail, "60E1", "UIC60", [](double inclination) { return rail_60e1_segments(inclination); }},
+    {ProfileKind::rail, "knife-edge", "", [](double) { return knife_edge_segments(); }},
+}};
+
+bool same_ignoring_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace
+
+std::vector<std::string> standard_profile_names(ProfileKind kind) {
+  std::vector<std::string> names;
+  for (const Entry& e : entries) {
+    if (e.kind != kind) continue;
+    names.emplace_back(e.name);
+    if (!e.alias.empty()) names.emplace_back(e.alias);
+  }
+  return names;
+}
+
+ProfileKnots standard_profile(ProfileKind kind, std::string_view name, double rail_inclination) {
+  const bool wheel = kind == ProfileKind::wheel;
+  if (!wheel && !(rail_inclination >= 0.0 && rail_inclination <= 0.1)) {
+    throw input_error("rail inclination", fmt::format("{}", rail_inclination),
+                      "a tangent from 0 (upright) to 0.1, such as 0.025 for 1:40");
+  }
+  for (const Entry& e : entries) {
+    if (e.kind == kind &&
+        (same_ignoring_case(name, e.name) || (!e.alias.empty() && same_ignoring_case(name, e.alias)))) {
+      return spline_segments(kind, std::string(e.name), e.segments(rail_inclination));
+    }
+  }
+  throw input_error(wheel ? "wheel profile" : "rail profile", fmt::format("\"{}\"", name),
+                    fmt::format("one of {}", fmt::join(standard_profile_names(kind), ", ")));
+}
+
+}  // namespace railtab

@@ -1,0 +1,76 @@
+#include "railtab/runtime/profile/wheel_rail_pair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+void require(bool in_range, std::string_view member, double value, std::string_view range) {
+  if (!in_range) throw input_error(member, fmt::format("{} m", value), fmt::format("{} m", range));
+}
+
+void require_kind(const ProfileCurve& curve, ProfileKind kind, std::string_view word) {
+  if (curve.knots().kind != kind) {
+    throw input_error(fmt::format("profile {}", curve.knots().name),
+                      kind == ProfileKind::wheel ? "a rail profile" : "a wheel profile", word);
+  }
+}
+
+/// Arc length at which z passes `level` between a point below it and a point above it, by bisection.
+double s_at_level(const ProfileCurve& rail, double level, double s_below, double s_above) {
+  for (;;) {
+    const double middle = 0.5 * (s_below + s_above);
+    if (middle <= s_below || middle >= s_above) return middle;
+    (rail.at(middle).z >= level ? s_below : s_above) = middle;
+  }
+}
+
+/// y of the gauge point: the point of the gauge face nearest to the track centre, between the highest point and
+/// `height` below it [EN13848-1].
+double gauge_point(const ProfileCurve& rail, double height) {
+  const ProfileKnots& k = rail.knots();
+  const double s_top = rail.s_at_highest_point();
+  const CurvePoint top = rail.at(s_top);
+  const double level = top.z + height;
+  double y_least = top.y;
+  double s_above = s_top;
+  const auto below_top = static_cast<std::size_t>(std::lower_bound(k.s.begin(), k.s.end(), s_top) - k.s.begin());
+  for (std::size_t i = below_top; i-- > 0;) {
+    if (k.z[i] >= level) return std::min(y_least, rail.at(s_at_level(rail, level, k.s[i], s_above)).y);
+    y_least = std::min(y_least, k.y[i]);
+    s_above = k.s[i];
+  }
+  throw input_error(fmt::format("profile {}", k.name),
+                    fmt::format("a gauge side that ends {:.6g} m below the top", k.z.front() - top.z),
+                    fmt::format("one that reaches the gauge height {} m", height));
+}
+
+}  // namespace
+
+void PairDimensions::validate() const {
+  require(track_gauge > 0.5 && track_gauge < 2.0, "track gauge", track_gauge, "more than 0.5 and less than 2");
+  require(gauge_height >= 0.0 && gauge_height < 0.05, "gauge height", gauge_height, "from 0 to less than 0.05");
+  require(flange_back > 0.4 && flange_back < 2.0, "flange-back distance", flange_back, "more than 0.4 and less than 2");
+  require(nominal_radius > 0.1 && nominal_radius < 1.0, "nominal radius", nominal_radius,
+          "more than 0.1 and less than 1");
+}
+
+WheelRailPair::WheelRailPair(ProfileCurve wheel, ProfileCurve rail, PairDimensions dimensions)
+    : wheel_(std::move(wheel)), rail_(std::move(rail)), dimensions_(dimensions) {
+  dimensions_.validate();
+  require_kind(wheel_, ProfileKind::wheel, "a wheel profile");
+  require_kind(rail_, ProfileKind::rail, "a rail profile");
+  tape_circle_offset_ = 0.5 * dimensions_.flange_back + PairDimensions::tape_circle_to_flange_back;
+  rail_offset_ = 0.5 * dimensions_.track_gauge - gauge_point(rail_, dimensions_.gauge_height);
+}
+
+}  // namespace railtab

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+
+#include "railtab/runtime/results/step_record.hpp"
+
+namespace railtab::result_columns {
+
+/// What the results file holds and under which name: one list for the writer and the reader.
+inline constexpr const char* filetype = "railtab-results";
+inline constexpr int format_version = 1;
+
+template <typename Owner, typename Value>
+struct Column {
+  const char* path;
+  const char* unit;
+  const char* description;
+  Value Owner::*value;
+};
+
+using WheelColumn = Column<WheelRecord, double>;
+inline constexpr std::array wheel{
+    WheelColumn{"wheels/Q", "N", "vertical force on the rail, down", &WheelRecord::Q},
+    WheelColumn{"wheels/Y", "N", "lateral force on the rail, to the right", &WheelRecord::Y},
+    WheelColumn{"wheels/X", "N", "longitudinal force on the rail, forward", &WheelRecord::X},
+    WheelColumn{"wheels/y_rail", "m", "contact point on the rail, of the patch with the largest normal force",
+                &WheelRecord::y_rail},
+    WheelColumn{"wheels/y_wheel", "m", "contact point on the wheel, of that patch", &WheelRecord::y_wheel},
+    WheelColumn{"wheels/angle", "rad", "contact angle of that patch", &WheelRecord::angle},
+    WheelColumn{"wheels/rolling_radius", "m", "rolling radius of that patch", &WheelRecord::rolling_radius},
+    WheelColumn{"wheels/normal_force", "N", "normal force of that patch", &WheelRecord::normal_force},
+    WheelColumn{"wheels/penetration", "m", "penetration of that patch", &WheelRecord::penetration},
+    WheelColumn{"wheels/second_y_rail", "m", "contact point on the rail, of the next patch; 0 where there is none",
+                &WheelRecord::second_y_rail},
+    WheelColumn{"wheels/second_normal_force", "N", "normal force of the next patch; 0 where there is none",
+                &WheelRecord::second_normal_force}};
+/// Stored as floating-point numbers like all that grows.
+inline constexpr Column<WheelRecord, int> patches{"wheels/patches", "1", "patches in contact", &WheelRecord::patches};
+
+using StepColumn = Column<StepRecord, double>;
+inline constexpr std::array step{
+    StepColumn{"time", "s", "time", &StepRecord::time},
+    StepColumn{"position", "m", "position of the first wheelset along the track", &StepRecord::position}};
+inline constexpr Column<StepRecord, int> newton_iterations{"newton_iterations", "1", "Newton iterations of the step",
+                                                           &StepRecord::newton_iterations};
+
+using MotionColumn = Column<MotionRecord, double[6]>;
+inline constexpr std::array motion{
+    MotionColumn{"displacement", "m, rad", "x, y, z, roll, pitch, yaw", &MotionRecord::displacement},
+    MotionColumn{"velocity", "m/s, rad/s", "x, y, z, roll, pitch, yaw", &MotionRecord::velocity},
+    MotionColumn{"acceleration", "m/s^2, rad/s^2", "x, y, z, roll, pitch, yaw", &MotionRecord::acceleration}};
+
+/// Groups of motions: bodies and nodes.
+struct MotionGroup {
+  const char* name;
+  std::vector<MotionRecord> StepRecord::*motions;
+  std::vector<std::string> ResultHeader::*names;
+  const char* description;
+};
+inline constexpr std::array motion_groups{
+    MotionGroup{"bodies", &StepRecord::bodies, &ResultHeader::body_names, "bodies of all vehicles, front first"},
+    MotionGroup{"nodes", &StepRecord::nodes, &ResultHeader::node_names, "nodes of the structure"}};
+
+struct HeaderText {
+  const char* name;
+  std::string ResultHeader::*value;
+};
+inline constexpr std::array header_texts{
+    HeaderText{"scene_name", &ResultHeader::scene_name}, HeaderText{"program_version", &ResultHeader::program_version},
+    HeaderText{"wheel_profile", &ResultHeader::wheel_profile}, HeaderText{"rail_profile", &ResultHeader::rail_profile}};
+
+using HeaderColumn = Column<ResultHeader, std::vector<double>>;
+inline constexpr std::array header{
+    HeaderColumn{"header/wheel_x", "m", "offset of each wheel behind the first wheelset; left, right, front first",
+                 &ResultHeader::wheel_x},
+    HeaderColumn{"header/static_wheel_load", "N", "vertical force of each wheel at rest",
+                 &ResultHeader::static_wheel_load},
+    HeaderColumn{"header/node_x", "m", "position of the nodes along the track", &ResultHeader::node_x},
+    HeaderColumn{"header/wheel_y", "m", "outline of the wheel, lateral, to the field side", &ResultHeader::wheel_y},
+    HeaderColumn{"header/wheel_z", "m", "outline of the wheel, down", &ResultHeader::wheel_z},
+    HeaderColumn{"header/rail_y", "m", "outline of the rail, lateral, to the field side", &ResultHeader::rail_y},
+    HeaderColumn{"header/rail_z", "m", "outline of the rail, down", &ResultHeader::rail_z}};
+
+template <typename Value>
+struct SummaryEntry {
+  const char* name;
+  Value RunSummary::*value;
+};
+inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSummary::steps},
+                                           SummaryEntry<long>{"newton_iterations", &RunSummary::newton_iterations},
+                                           SummaryEntry<long>{"halved_steps", &RunSummary::halved_steps},
+                                           SummaryEntry<long>{"back_substitutions", &RunSummary::back_substitutions},
+                                           SummaryEntry<long>{"contact_queries", &RunSummary::contact_queries},
+                                           SummaryEntry<long>{"table_queries", &RunSummary::table_queries},
+                                           SummaryEntry<long>{"structure_dofs", &RunSummary::structure_dofs},
+                                           SummaryEntry<long>{"vehicle_dofs", &RunSummary::vehicle_dofs}};
+inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},
+                                            SummaryEntry<double>{"seconds_setup", &RunSummary::seconds_setup},
+                                            SummaryEntry<double>{"seconds_contact", &RunSummary::seconds_contact},
+                                            SummaryEntry<double>{"seconds_structure", &RunSummary::seconds_structure},
+                                            SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},
+                                            SummaryEntry<double>{"seconds_output", &RunSummary::seconds_output}};
+
+inline constexpr const char* summary_group = "summary";
+inline constexpr std::array checkpoint_slots{"checkpoint/a", "checkpoint/b"};
+
+}  // namespace railtab::result_columns

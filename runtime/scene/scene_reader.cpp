@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+#include "key_table.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+#include "toml_leaves.hpp"
+
+namespace railtab::scene {
+namespace {
+
+/// Writes one TOML value into the member that its key is bound to.
+struct Assign {
+  SceneDraft& draft;
+  const std::filesystem::path& file;
+  const Leaf& leaf;
+  std::string_view unit;
+
+  void operator()(const NumberKey& key) const { key.member(draft) = number_in(key.range); }
+  void operator()(const OptionalNumberKey& key) const { key.member(draft) = number_in(key.range); }
+  void operator()(const RatioKey& key) const { key.member(draft) = ratio(key.range); }
+  void operator()(const IntegerKey& key) const {
+    const toml::value<std::int64_t>* whole = leaf.node->as_integer();
+    if (!whole || whole->get() < key.low || whole->get() > key.high) {
+      throw error(fmt::format("an integer {} to {}", key.low, key.high));
+    }
+    key.member(draft) = static_cast<int>(whole->get());
+  }
+  void operator()(const TextKey& key) const { key.member(draft) = key.names ? one_of(key.names()) : text("a text"); }
+  void operator()(const FileKey& key) const {
+    const std::filesystem::path named = file.parent_path() / text("a file name");
+    if (!std::filesystem::is_regular_file(named)) {
+      throw leaf_error(file, leaf, "no file " + named.string(), "an existing file, relative to the scene");
+    }
+    key.member(draft) = named;
+  }
+  void operator()(const ProfileKey& key) const { key.member(draft) = profile(key.kind); }
+  void operator()(const ContactModeKey&) const {
+    const std::string name = one_of({"table", "online", "paper"});
+    draft.parameters.contact.mode = name == "table"    ? ContactMode::table
+                                    : name == "online" ? ContactMode::online
+                                                       : ContactMode::paper;
+  }
+  void operator()(const TrackKindKey&) const {
+    draft.parameters.track_kind = one_of({"rigid", "flexible"}) == "rigid" ? TrackKind::rigid : TrackKind::flexible;
+  }
+
+ private:
+  [[nodiscard]] InputError error(std::string_view expected) const {
+    return leaf_error(file, leaf, found_text(*leaf.node), expected);
+  }
+
+  [[nodiscard]] double number_in(const Range& range) const {
+    const std::optional<double> value = leaf.node->value<double>();
+    if (!leaf.node->is_number() || !value || !range.accepts(*value)) {
+      throw error(fmt::format("a number, {}{}{}", range.text(), unit == "1" ? "" : " ", unit == "1" ? "" : unit));
+    }
+    return *value;
+  }
+
+  [[nodiscard]] std::string text(std::string_view expected) const {
+    const toml::value<std::string>* value = leaf.node->as_string();
+    if (!value || value->get().empty()) throw error(expected);
+    return value->get();
+  }
+
+  [[nodiscard]] std::string one_of(const std::vector<std::string>& names) const {
+    const std::string expected = "one of " + joined(names);
+    std::string name = text(expected);
+    if (std::find(names.begin(), names.end(), name) == names.end()) throw error(expected);
+    return name;
+  }
+
+  [[nodiscard]] double ratio(const Range& range) const {
+    if (leaf.node->is_number()) return number_in(range);
+    const std::string expected = fmt::format("\"1:N\" or a number, {}", range.text());
+    const std::string written = text(expected);
+    const char* const end = written.data() + written.size();
+    double divisor = 0.0;
+    if (written.starts_with("1:")) {
+      const auto [stop, status] = std::from_chars(written.data() + 2, end, divisor);
+      if (status == std::errc() && stop == end && divisor > 0.0 && range.accepts(1.0 / divisor)) return 1.0 / divisor;
+    }
+    throw error(expected);
+  }
+
+  [[nodiscard]] std::string profile(ProfileKind kind) const {
+    const std::string expected =
+        fmt::format("a built-in profile ({}) or an existing profile file", joined(standard_profile_names(kind)));
+    const std::string name = text(expected);
+    const std::filesystem::path named = file.parent_path() / name;
+    if (std::filesystem::is_regular_file(named)) return named.string();
+    try {
+      static_cast<void>(standard_profile(kind, name, 0.0));  // knows other spellings of the names too
+    } catch (const InputError&) {
+      throw error(expected);
+    }
+    return name;
+  }
+};
+
+InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
+  const std::string place = fmt::format("{}:{}", file.string(), leaf.line);
+  const std::string nearest = nearest_key(leaf.path);
+  if (nearest.empty()) {
+    return InputError(
+        fmt::format("{}: unknown key '{}'; the sections are train, contact, track, bridge, "
+                    "irregularity, integration and output",
+                    place, leaf.path));
+  }
+  return InputError(fmt::format("{}: unknown key '{}'; did you mean '{}'?", place, leaf.path, nearest));
+}
+
+bool is_section(std::string_view path) {
+  const std::string prefix = std::string(path) + ".";
+  return std::any_of(all_keys().begin(), all_keys().end(),
+                     [&](const KeyBinding& key) { return key.path.starts_with(prefix); });
+}
+
+/// Copies of the span just read go into the scene; its end is the next [[bridge]] or the end of the file.
+void finish_span(SceneDraft& draft) {
+  draft.parameters.spans.insert(draft.parameters.spans.end(), static_cast<std::size_t>(draft.span_count), draft.span);
+  draft.span = BridgeParameters{};
+  draft.span_count = 1;
+}
+
+void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+  int span = -1;
+  for (const Leaf& leaf : leaves) {
+    if (leaf.span >= 0 && leaf.span != span) {
+      if (span >= 0) finish_span(draft);
+      span = leaf.span;
+    }
+    if (leaf.path == "bridge") continue;
+    const auto key = std::find_if(all_keys().begin(), all_keys().end(),
+                                  [&](const KeyBinding& candidate) { return candidate.path == leaf.path; });
+    if (key != all_keys().end()) {
+      std::visit(Assign{draft, file, leaf, key->unit}, key->value);
+    } else if (!is_section(leaf.path)) {
+      throw unknown_key(file, leaf);
+    } else if (!leaf.node->is_table()) {
+      throw leaf_error(file, leaf, found_text(*leaf.node), fmt::format("a section [{}]", leaf.path));
+    }
+  }
+  if (span >= 0) finish_span(draft);
+}
+
+/// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
+SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+  if (draft.speed_kmh) {
+    for (const Leaf& leaf : leaves) {
+      if (leaf.path == "train.speed") {
+        throw leaf_error(file, leaf, "train.speed_kmh too", "either train.speed or train.speed_kmh");
+      }
+    }
+    draft.parameters.train.speed = *draft.speed_kmh / 3.6;
+  }
+  if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
+  if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();
+  try {
+    draft.parameters.validate();
+  } catch (const InputError& wrong) {
+    throw InputError(fmt::format("{}: {}", file.string(), wrong.what()));
+  }
+  return std::move(draft.parameters);
+}
+
+std::string whole_file(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) throw input_error(file.string(), "no such file", "a TOML scene");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  if (!stream) throw input_error(file.string(), "a file that cannot be read", "a TOML scene");
+  return content.str();
+}
+
+}  // namespace
+}  // namespace railtab::scene
+
+namespace railtab {
+
+SceneParameters read_scene(const std::filesystem::path& file) {
+  scene::SceneDraft draft;
+  draft.parameters.text = scene::whole_file(file);
+  try {
+    const toml::table root = toml::parse(draft.parameters.text, file.string());
+    const std::vector<scene::Leaf> leaves = scene::leaves_of(root, file);
+    scene::assign(draft, file, leaves);
+    return scene::settle(std::move(draft), file, leaves);
+  } catch (const toml::parse_error& wrong) {
+    throw InputError(fmt::format("{}:{}: {}", file.string(), wrong.source().begin.line, wrong.description()));
+  }
+}
+
+}  // namespace railtab

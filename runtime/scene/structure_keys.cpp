@@ -1,0 +1,145 @@
+#include <array>
+#include <string_view>
+
+#include "key_table.hpp"
+
+namespace railtab::scene {
+namespace {
+
+/// The member reached from the draft's track by a chain of member pointers.
+template <auto... chain>
+auto& of_track(SceneDraft& draft) {
+  return (draft.parameters.track.*....*chain);
+}
+
+template <auto member>
+auto& of_span(SceneDraft& draft) {
+  return draft.span.*member;
+}
+
+std::vector<KeyBinding> track_keys() {
+  return {
+      {"track.kind", "", "rigid track is the lean alternative: no structure unknowns", TrackKindKey{}},
+      {"track.sleeper_spacing", "m", "distance of the sleepers",
+       NumberKey{of_track<&TrackParameters::sleeper_spacing>, {0.2, 5.0}}},
+      {"track.half_rail_distance", "m", "track centre to rail-head centre",
+       NumberKey{of_track<&TrackParameters::half_rail_distance>, positive}},
+      {"track.elements_per_bay", "1", "rail elements between sleepers",
+       IntegerKey{of_track<&TrackParameters::elements_per_bay>, 1, 20}},
+      {"track.length_before", "m", "track before x = 0, rounded up to whole bays",
+       NumberKey{of_track<&TrackParameters::length_before>, {0.0, 1e4, true}}},
+      {"track.length_after", "m", "track after the last span, or after x = 0 where there is none",
+       NumberKey{of_track<&TrackParameters::length_after>, {0.0, 1e4, true}}},
+      {"track.pad_roll_stiffness", "N m/rad", "of one pad about x",
+       NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, not_negative}},
+      {"track.pad_roll_damping", "N m s/rad", "of one pad about x",
+       NumberKey{of_track<&TrackParameters::pad_roll_damping>, not_negative}},
+      {"track.half_ballast_distance", "m", "track centre to the ballast spring under each sleeper half",
+       NumberKey{of_track<&TrackParameters::half_ballast_distance>, positive}},
+  };
+}
+
+std::vector<KeyBinding> rail_keys() {
+  return {
+      {"track.rail.E", "Pa", "Young's modulus",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::E>, positive}},
+      {"track.rail.A", "m²", "cross-section",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::A>, positive}},
+      {"track.rail.Iy", "m⁴", "second moment, vertical bending",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iy>, positive}},
+      {"track.rail.Iz", "m⁴", "second moment, lateral bending",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iz>, positive}},
+      {"track.rail.GJ", "N m²", "torsional stiffness",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::GJ>, positive}},
+      {"track.rail.mass", "kg/m", "mass per length",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass>, positive}},
+      {"track.rail.rotary_inertia", "kg m²/m", "about x, per length",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::rotary_inertia>, positive}},
+      {"track.rail.height", "m", "rail-head top to rail foot",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::height>, positive}},
+      {"track.rail.head_height", "m", "rail-head top above the centroid",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::head_height>, positive}},
+      {"track.rail.mass_damping", "1/s", "Rayleigh damping, times the mass",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass_damping>, not_negative}},
+      {"track.rail.stiffness_damping", "s", "Rayleigh damping, times the stiffness",
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::stiffness_damping>, not_negative}},
+  };
+}
+
+std::vector<KeyBinding> sleeper_keys() {
+  return {
+      {"track.sleeper.mass", "kg", "mass of a sleeper",
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::mass>, positive}},
+      {"track.sleeper.Jx", "kg m²", "inertia about x",
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jx>, positive}},
+      {"track.sleeper.Jy", "kg m²", "inertia about y",
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jy>, positive}},
+      {"track.sleeper.Jz", "kg m²", "inertia about z",
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jz>, positive}},
+      {"track.sleeper.height", "m", "height of a sleeper",
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::height>, positive}},
+  };
+}
+
+/// Six keys of one layer of springs and dampers.
+template <SupportParameters TrackParameters::*layer>
+std::vector<KeyBinding> support_keys(const std::array<std::string_view, 6>& paths) {
+  return {
+      {paths[0], "N/m", "longitudinal stiffness", NumberKey{of_track<layer, &SupportParameters::kx>, positive}},
+      {paths[1], "N/m", "lateral stiffness", NumberKey{of_track<layer, &SupportParameters::ky>, positive}},
+      {paths[2], "N/m", "vertical stiffness", NumberKey{of_track<layer, &SupportParameters::kz>, positive}},
+      {paths[3], "N s/m", "longitudinal damping", NumberKey{of_track<layer, &SupportParameters::cx>, not_negative}},
+      {paths[4], "N s/m", "lateral damping", NumberKey{of_track<layer, &SupportParameters::cy>, not_negative}},
+      {paths[5], "N s/m", "vertical damping", NumberKey{of_track<layer, &SupportParameters::cz>, not_negative}},
+  };
+}
+
+std::vector<KeyBinding> span_keys() {
+  return {
+      {"bridge.count", "1", "equal spans that this [[bridge]] stands for",
+       IntegerKey{[](SceneDraft& d) -> int& { return d.span_count; }, 1, 1000}},
+      {"bridge.length", "m", "span", NumberKey{of_span<&BridgeParameters::length>, {0.0, 1e3, true}}},
+      {"bridge.E", "Pa", "Young's modulus", NumberKey{of_span<&BridgeParameters::E>, positive}},
+      {"bridge.G", "Pa", "shear modulus", NumberKey{of_span<&BridgeParameters::G>, positive}},
+      {"bridge.A", "m²", "cross-section", NumberKey{of_span<&BridgeParameters::A>, positive}},
+      {"bridge.Iy", "m⁴", "second moment, vertical bending", NumberKey{of_span<&BridgeParameters::Iy>, positive}},
+      {"bridge.Iz", "m⁴", "second moment, lateral bending", NumberKey{of_span<&BridgeParameters::Iz>, positive}},
+      {"bridge.J", "m⁴", "torsion constant", NumberKey{of_span<&BridgeParameters::J>, positive}},
+      {"bridge.mass", "kg/m", "with ballast and superimposed load, without rails and sleepers",
+       NumberKey{of_span<&BridgeParameters::mass>, positive}},
+      {"bridge.rotary_inertia", "kg m²/m", "about x, per length",
+       NumberKey{of_span<&BridgeParameters::rotary_inertia>, positive}},
+      {"bridge.damping_ratio", "1", "of critical, at the first two vertical bending frequencies",
+       NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}}},
+      {"bridge.elements", "1", "beam elements of the span, even",
+       IntegerKey{of_span<&BridgeParameters::elements>, 2, 1000}},
+      {"bridge.axis_depth", "m", "rail-head top down to the beam axis",
+       NumberKey{of_span<&BridgeParameters::axis_depth>, not_negative}},
+      {"bridge.track_offset", "m", "track centre right of the beam axis",
+       NumberKey{of_span<&BridgeParameters::track_offset>, any_number}},
+  };
+}
+
+}  // namespace
+
+const std::vector<KeyBinding>& structure_keys() {
+  static const std::vector<KeyBinding> keys = [] {
+    std::vector<KeyBinding> all = track_keys();
+    for (const auto& part : {rail_keys(), sleeper_keys(),
+                             support_keys<&TrackParameters::pad>({"track.pad.kx", "track.pad.ky", "track.pad.kz",
+                                                                  "track.pad.cx", "track.pad.cy", "track.pad.cz"}),
+                             support_keys<&TrackParameters::ballast_ground>(
+                                 {"track.ballast_ground.kx", "track.ballast_ground.ky", "track.ballast_ground.kz",
+                                  "track.ballast_ground.cx", "track.ballast_ground.cy", "track.ballast_ground.cz"}),
+                             support_keys<&TrackParameters::ballast_deck>(
+                                 {"track.ballast_deck.kx", "track.ballast_deck.ky", "track.ballast_deck.kz",
+                                  "track.ballast_deck.cx", "track.ballast_deck.cy", "track.ballast_deck.cz"}),
+                             span_keys()}) {
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }();
+  return keys;
+}
+
+}  // namespace railtab::scene

@@ -1,0 +1,174 @@
+#include "railtab/runtime/vehicle/vehicle_model.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <utility>
+
+#include "railtab/runtime/vehicle/parameter_range.hpp"
+#include "railtab/runtime/vehicle/spring_damper.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr int z_dof = 2, roll_dof = 3, yaw_dof = 5;
+
+void check_bodies(const std::string& name, const std::vector<RigidBody>& bodies) {
+  for (const RigidBody& body : bodies) {
+    const std::string place = name + "." + body.name;
+    require_positive(place + ".mass", body.mass, "kg");
+    for (int axis = 0; axis < 3; ++axis) require_positive(place + ".inertia", body.inertia[axis], "kg m²");
+  }
+}
+
+void check_index(const std::string& place, int index, size_t count) {
+  if (index >= 0 && static_cast<size_t>(index) < count) return;
+  throw input_error(place, fmt::format("body {}", index), fmt::format("0 to {}", static_cast<long>(count) - 1));
+}
+
+void check_connections(const std::string& name, size_t bodies, const std::vector<Suspension>& suspension,
+                       const std::vector<int>& wheelsets) {
+  for (size_t s = 0; s < suspension.size(); ++s) {
+    const std::string place = fmt::format("{}.suspension[{}]", name, s);
+    check_index(place, suspension[s].body_a, bodies);
+    check_index(place, suspension[s].body_b, bodies);
+    if (suspension[s].body_a == suspension[s].body_b) {
+      throw input_error(place, fmt::format("body {} twice", suspension[s].body_a), "two different bodies");
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      require_not_negative(place + ".stiffness", suspension[s].stiffness[axis], "N/m");
+      require_not_negative(place + ".damping", suspension[s].damping[axis], "N s/m");
+      require_not_negative(place + ".rotational_stiffness", suspension[s].rotational_stiffness[axis], "N m/rad");
+    }
+  }
+  for (size_t w = 0; w < wheelsets.size(); ++w) {
+    check_index(fmt::format("{}.wheelsets[{}]", name, w), wheelsets[w], bodies);
+  }
+}
+
+/// Numbers the free dofs body by body; returns their count.
+int number_dofs(VehicleModel& vehicle, const std::vector<DofIndices>& held_dofs) {
+  if (!held_dofs.empty() && held_dofs.size() != vehicle.bodies.size()) {
+    throw input_error(vehicle.name + ".held_dofs", fmt::format("{} bodies", held_dofs.size()),
+                      fmt::format("{}", vehicle.bodies.size()));
+  }
+  int count = 0;
+  vehicle.dof.resize(vehicle.bodies.size());
+  for (size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    for (size_t i = 0; i < 6; ++i) {
+      const bool is_held = !held_dofs.empty() && held_dofs[b][i] == held;
+      vehicle.dof[b][i] = is_held ? held : count++;
+    }
+  }
+  return count;
+}
+
+void add_pair(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b, const PairMatrix& pair) {
+  for (int i = 0; i < 12; ++i) {
+    const int row = i < 6 ? a[i] : b[i - 6];
+    if (row == held) continue;
+    for (int j = 0; j < 12; ++j) {
+      const int column = j < 6 ? a[j] : b[j - 6];
+      if (column != held) matrix(row, column) += pair(i, j);
+    }
+  }
+}
+
+void add_inertia(VehicleModel& vehicle) {
+  for (size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    for (int i = 0; i < 6; ++i) {
+      const int row = vehicle.dof[b][i];
+      if (row != held) vehicle.mass(row, row) = i < 3 ? vehicle.bodies[b].mass : vehicle.bodies[b].inertia[i - 3];
+    }
+  }
+}
+
+void add_suspension(VehicleModel& vehicle, const std::vector<Suspension>& suspension) {
+  for (const Suspension& unit : suspension) {
+    const Eigen::Vector3d arm_a = unit.point - vehicle.bodies[unit.body_a].position;
+    const Eigen::Vector3d arm_b = unit.point - vehicle.bodies[unit.body_b].position;
+    const DofIndices& a = vehicle.dof[unit.body_a];
+    const DofIndices& b = vehicle.dof[unit.body_b];
+    add_pair(vehicle.stiffness, a, b, spring_matrix(arm_a, arm_b, unit.stiffness, unit.rotational_stiffness));
+    add_pair(vehicle.damping, a, b, spring_matrix(arm_a, arm_b, unit.damping, Eigen::Vector3d::Zero()));
+  }
+}
+
+/// Forward rolling at Ω > 0 turns a wheelset by ω_y = -Ω: with z down, the bottom at r = (0, 0, R) then moves by
+/// ω × r = (-ΩR, 0, 0) against the vehicle. The axle direction is e_y + θ × e_y = (-yaw, 1, roll), hence the angular
+/// momentum -J_y·Ω·(-yaw, 1, roll), and its rate enters the left-hand side of the moment balance:
+/// about x: +J_y·Ω·d(yaw)/dt, about z: -J_y·Ω·d(roll)/dt.
+void add_gyroscopic(VehicleModel& vehicle) {
+  for (const int w : vehicle.wheelsets) {
+    const int roll = vehicle.dof[w][roll_dof], yaw = vehicle.dof[w][yaw_dof];
+    if (roll == held || yaw == held) continue;
+    const double Jy = vehicle.bodies[w].inertia.y();
+    vehicle.gyroscopic(roll, yaw) += Jy;
+    vehicle.gyroscopic(yaw, roll) -= Jy;
+  }
+}
+
+/// Supports the wheelsets in z and roll and takes their reactions. The motions that stay free of stiffness (lateral,
+/// yaw, wheel rotation) carry no weight, so the minimum-norm solution of the singular system is an equilibrium; a
+/// residual means that something is not carried.
+Eigen::VectorXd static_load(const VehicleModel& vehicle, double gravity) {
+  const int n = static_cast<int>(vehicle.mass.rows());
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(n);
+  for (size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    const int z = vehicle.dof[b][z_dof];
+    if (z != held) weight[z] = vehicle.bodies[b].mass * gravity;
+  }
+  std::vector<bool> is_supported(n, false);
+  for (const int w : vehicle.wheelsets) {
+    for (const int i : {z_dof, roll_dof}) {
+      if (vehicle.dof[w][i] != held) is_supported[vehicle.dof[w][i]] = true;
+    }
+  }
+  std::vector<int> supported, carried;
+  for (int i = 0; i < n; ++i) (is_supported[i] ? supported : carried).push_back(i);
+
+  const Eigen::MatrixXd K = vehicle.stiffness(carried, carried);
+  const Eigen::VectorXd load = weight(carried);
+  const Eigen::VectorXd sag = K.completeOrthogonalDecomposition().solve(load);
+  const Eigen::VectorXd residual = K * sag - load;
+  if (!(residual.norm() <= 1e-6 * weight.norm())) {
+    throw input_error(vehicle.name, fmt::format("a weight of {:.3g} N that no spring carries", residual.norm()),
+                      "every body carried by the wheelsets through springs");
+  }
+  Eigen::VectorXd reaction = Eigen::VectorXd::Zero(n);
+  reaction(supported) = weight(supported) - vehicle.stiffness(supported, carried) * sag;
+  return reaction;
+}
+
+}  // namespace
+
+VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
+                              const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
+                              const std::vector<DofIndices>& held_dofs, double nominal_radius, double length,
+                              double gravity) {
+  check_bodies(name, bodies);
+  check_connections(name, bodies.size(), suspension, wheelsets);
+  require_positive(name + ".nominal_radius", nominal_radius, "m");
+  require_positive(name + ".length", length, "m");
+  require_not_negative(name + ".gravity", gravity, "m/s²");
+
+  VehicleModel vehicle;
+  vehicle.name = std::move(name);
+  vehicle.bodies = std::move(bodies);
+  vehicle.wheelsets = std::move(wheelsets);
+  vehicle.nominal_radius = nominal_radius;
+  vehicle.length = length;
+  const int n = number_dofs(vehicle, held_dofs);
+  for (Eigen::MatrixXd* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness, &vehicle.gyroscopic}) {
+    matrix->setZero(n, n);
+  }
+  add_inertia(vehicle);
+  add_suspension(vehicle, suspension);
+  add_gyroscopic(vehicle);
+  vehicle.static_load = static_load(vehicle, gravity);
+  return vehicle;
+}
+
+}  // namespace railtab

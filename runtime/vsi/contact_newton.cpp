@@ -1,0 +1,161 @@
+#include "railtab/runtime/vsi/contact_newton.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace railtab {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
+constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+// Contact forces at q, and with `tangents` their derivative per wheelset.
+void evaluate(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& s,
+              std::vector<Matrix12>* tangents, NewtonReport& report) {
+  const Clock::time_point begin = Clock::now();
+  const int wheelsets = static_cast<int>(s.displacement.size()) / wheelset_unknowns;
+  for (int w = 0; w < wheelsets; ++w) {
+    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
+    auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    force.setZero();
+    if (tangents) (*tangents)[index(w)].setZero();
+    for (int side = 0; side < 2; ++side) {
+      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
+      const WheelSide wheel_side = sides[index(side)];
+      ContactPatches& patches = s.patches[index(2 * w + side)];
+      patches = model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+      ++report.queries;
+      const bool from_table = std::all_of(patches.begin(), patches.end(),
+                                          [](const ContactPatch& p) { return p.source == PatchSource::table; });
+      if (from_table && model.geometry->is_table()) ++report.table_queries;
+      const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, patches);
+      const int r = 6 + 3 * side;
+      force.head<6>() += wheel.wheelset;
+      force.segment<3>(r) = wheel.rail;
+      s.rail_x[index(2 * w + side)] = wheel.rail_x;
+      if (!tangents) continue;
+      const Matrix9 t = wheel_force_tangent(model, wheel_side, motion, rail, patches, wheel, problem.velocity_rate);
+      Matrix12& tangent = (*tangents)[index(w)];
+      tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
+      tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
+      tangent.block<3, 6>(r, 0) += t.bottomLeftCorner<3, 6>();
+      tangent.block<3, 3>(r, r) += t.bottomRightCorner<3, 3>();
+    }
+  }
+  report.seconds_contact += std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// q_free + C f − q
+void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
+  r = problem.free - s.displacement;
+  const int wheelsets = static_cast<int>(s.displacement.size()) / wheelset_unknowns;
+  const int per_vehicle = problem.wheelsets_per_vehicle;
+  for (int w = 0; w < wheelsets; ++w) {
+    const int first = w - w % per_vehicle;
+    for (int v = first; v < first + per_vehicle; ++v) {
+      r.segment<6>(wheelset_unknowns * w) += problem.vehicle_compliance.block<6, 6>(6 * (w - first), 6 * (v - first)) *
+                                             s.force.segment<6>(wheelset_unknowns * v);
+    }
+  }
+  for (const RailCoupling& c : problem.rail) {
+    r.segment<3>(wheelset_unknowns * (c.i / 2) + 6 + 3 * (c.i % 2)) +=
+        c.compliance * s.force.segment<3>(wheelset_unknowns * (c.j / 2) + 6 + 3 * (c.j % 2));
+  }
+}
+
+// Correction of all vehicles: (I − C T) δ = r within each.
+void correction(const ContactProblem& problem, const std::vector<Matrix12>& tangents, const Eigen::VectorXd& r,
+                Eigen::VectorXd& delta) {
+  const int per_vehicle = problem.wheelsets_per_vehicle;
+  const int size = wheelset_unknowns * per_vehicle;
+  const int vehicles = static_cast<int>(r.size()) / size;
+  Eigen::MatrixXd compliance(size, size), jacobian(size, size);
+  for (int vehicle = 0; vehicle < vehicles; ++vehicle) {
+    compliance.setZero();
+    for (int i = 0; i < per_vehicle; ++i) {
+      for (int j = 0; j < per_vehicle; ++j) {
+        compliance.block<6, 6>(12 * i, 12 * j) = problem.vehicle_compliance.block<6, 6>(6 * i, 6 * j);
+      }
+    }
+    const int first_wheel = 2 * per_vehicle * vehicle;
+    for (const RailCoupling& c : problem.rail) {
+      const int i = c.i - first_wheel;
+      const int j = c.j - first_wheel;
+      if (i < 0 || j < 0 || i >= 2 * per_vehicle || j >= 2 * per_vehicle) continue;
+      compliance.block<3, 3>(12 * (i / 2) + 6 + 3 * (i % 2), 12 * (j / 2) + 6 + 3 * (j % 2)) = c.compliance;
+    }
+    jacobian.setIdentity();
+    for (int j = 0; j < per_vehicle; ++j) {
+      jacobian.middleCols<12>(12 * j).noalias() -=
+          compliance.middleCols<12>(12 * j) * tangents[index(vehicle * per_vehicle + j)];
+    }
+    delta.segment(size * vehicle, size) = jacobian.partialPivLu().solve(r.segment(size * vehicle, size));
+  }
+}
+
+}  // namespace
+
+WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept {
+  const int k = wheelset_unknowns * wheelset;
+  const Vector6 displacement = q.segment<6>(k);
+  return {displacement, problem.predicted_velocity.segment<6>(k) +
+                            problem.velocity_rate.cwiseProduct(displacement - problem.predicted.segment<6>(k))};
+}
+
+RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset, int side) noexcept {
+  const int k = wheelset_unknowns * wheelset + 6 + 3 * side;
+  RailHeadMotion motion = problem.deviation[index(wheelset)][index(side)];
+  const Vector3 displacement = q.segment<3>(k);
+  motion.displacement += displacement;
+  motion.velocity += problem.predicted_velocity.segment<3>(k) +
+                     problem.rail_velocity_rate * (displacement - problem.predicted.segment<3>(k));
+  return motion;
+}
+
+NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
+                           ContactSolution& solution) {
+  NewtonReport report;
+  const auto wheelsets = static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns);
+  std::vector<Matrix12> tangents(wheelsets);
+  Eigen::VectorXd r(solution.displacement.size()), delta(solution.displacement.size());
+  double previous = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd start = solution.displacement;
+  double shortened = 1.0;
+
+  while (report.iterations < limits.max_iterations) {
+    evaluate(model, problem, solution, &tangents, report);
+    residual(problem, solution, r);
+    ++report.iterations;
+    const double size = r.norm();
+    if (!std::isfinite(size)) return report;
+    if (size > 2.0 * previous && shortened > 1.0 / 32.0) {
+      // The last correction made it worse (a patch was gained or lost): go back half of it.
+      shortened *= 0.5;
+      solution.displacement = start + shortened * delta;
+      continue;
+    }
+    shortened = 1.0;
+    previous = size;
+    correction(problem, tangents, r, delta);
+    report.correction = delta.cwiseAbs().maxCoeff();
+    if (report.correction > problem.largest_move) delta *= problem.largest_move / report.correction;
+    start = solution.displacement;
+    solution.displacement += delta;
+    if (report.correction < limits.tolerance) {
+      report.converged = true;
+      break;
+    }
+  }
+  // Forces at the corrected displacement, so that motion and forces belong together.
+  evaluate(model, problem, solution, nullptr, report);
+  return report;
+}
+
+}  // namespace railtab

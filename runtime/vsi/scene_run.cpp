@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "railtab/runtime/profile/profile_file.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr int paper_points = 1000;          // of the published method's discretised profiles
+constexpr double paper_curvature_floor = 1e-6;  // 1/m [MontenegroCalcada2023, section 2.2]
+
+WheelRailPair scene_pair(const ContactParameters& contact) {
+  if (!contact.table.empty()) return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair();
+  return WheelRailPair(ProfileCurve(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination)),
+                       ProfileCurve(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination)),
+                       contact.dimensions);
+}
+
+ContactGeometry::Source geometry_source(const ContactParameters& contact) {
+  switch (contact.mode) {
+    case ContactMode::table: return TableContact(GeometryTable(read_geometry_table(contact.table)));
+    case ContactMode::online: return ContactSearch(scene_pair(contact));
+    case ContactMode::paper: return PaperSearch(scene_pair(contact), paper_points);
+  }
+  throw InputError("contact.mode: unknown");
+}
+
+double spans_length(const SceneParameters& scene) {
+  double length = 0.0;
+  for (const BridgeParameters& span : scene.spans) length += span.length;
+  return length;
+}
+
+std::string mode_name(ContactMode mode) {
+  return mode == ContactMode::table ? "table" : mode == ContactMode::online ? "online" : "paper";
+}
+
+// The first wheelset stands at `start`; coaches follow each other at their length over couplers.
+std::vector<double> vehicle_positions(const TrainParameters& train, const VehicleModel& vehicle) {
+  const double first_wheelset = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position[0];
+  std::vector<double> x;
+  for (int i = 0; i < train.count; ++i) x.push_back(train.start - first_wheelset - i * vehicle.length);
+  return x;
+}
+
+void check_on_track(const SceneParameters& scene, const VsiModel& model) {
+  if (!model.structure) return;
+  const RailLine& rail = model.structure->rail[0];
+  const double last = model.wheelset_x(model.wheelsets() - 1, 0.0);
+  if (last < rail.x.front() || scene.train.start > rail.x.back()) {
+    throw input_error("scene: train.start",
+                      fmt::format("wheelsets from x = {:.2f} m to {:.2f} m", last, scene.train.start),
+                      fmt::format("all on the modelled track, {:.2f} m to {:.2f} m (track.length_before)",
+                                  rail.x.front(), rail.x.back()));
+  }
+}
+
+ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) {
+  ResultHeader header;
+  header.scene_name = scene.name;
+  header.scene_text = scene.text;
+  header.program_version = RAILTAB_VERSION;
+  header.speed = scene.train.speed;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const auto body = static_cast<std::size_t>(model.vehicle.wheelsets[static_cast<std::size_t>(w % model.wheelsets_per_vehicle())]);
+    const double load = model.vehicle.static_load[model.vehicle.dof[body][2]];
+    for (int side = 0; side < 2; ++side) {
+      header.wheel_x.push_back(model.wheelset_x(w, 0.0) - model.wheelset_x(0, 0.0));
+      header.static_wheel_load.push_back(0.5 * load);
+    }
+  }
+  for (std::size_t v = 0; v < model.vehicle_x.size(); ++v) {
+    for (const RigidBody& body : model.vehicle.bodies) header.body_names.push_back(fmt::format("coach-{}/{}", v + 1, body.name));
+  }
+  if (model.structure) {
+    for (const StructureNode& node : model.structure->nodes) {
+      header.node_names.push_back(node.name);
+      header.node_x.push_back(node.x);
+    }
+  }
+  const WheelRailPair& pair = model.geometry->pair();
+  header.wheel_profile = pair.wheel().knots().name;
+  header.rail_profile = pair.rail().knots().name;
+  header.wheel_y = pair.wheel().knots().y;
+  header.wheel_z = pair.wheel().knots().z;
+  header.rail_y = pair.rail().knots().y;
+  header.rail_z = pair.rail().knots().z;
+  return header;
+}
+
+// Wheelsets (and with them their vehicle) displaced from the equilibrium, for hunting studies.
+void displace(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
+  for (LinearMotion& motion : state.vehicle) {
+    for (const DofIndices& dof : model.vehicle.dof) {
+      if (dof[1] != held) motion.displacement[dof[1]] += scene.train.initial_lateral_shift;
+    }
+    for (int body : model.vehicle.wheelsets) {
+      const int yaw = model.vehicle.dof[static_cast<std::size_t>(body)][5];
+      if (yaw != held) motion.displacement[yaw] += scene.train.initial_yaw;
+    }
+  }
+}
+
+}  // namespace
+
+VsiModel build_model(const SceneParameters& scene) {
+  scene.validate();
+  VsiModel model;
+  model.vehicle = build_coach(coach_parameters(scene.train.vehicle));
+  model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
+  model.geometry = std::make_shared<const ContactGeometry>(geometry_source(scene.contact));
+  model.contact = {.geometry = model.geometry.get(),
+                   .material = scene.contact.material,
+                   .creep_law = creep_law(scene.contact.creep_law, scene.contact.material.nu),
+                   .friction = scene.contact.friction,
+                   .damping = scene.contact.damping,
+                   .curvature_floor = scene.contact.mode == ContactMode::paper ? paper_curvature_floor : scene.contact.curvature_floor,
+                   .speed = scene.train.speed};
+  if (scene.track_kind == TrackKind::flexible) model.structure = build_track_bridge(scene.track, scene.spans);
+  if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
+  const double radius = model.geometry->pair().nominal_radius();
+  if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
+    throw input_error("scene: contact", fmt::format("wheels of nominal radius {} m", radius),
+                      fmt::format("{} m, the wheels of {}", model.vehicle.nominal_radius, scene.train.vehicle));
+  }
+  check_on_track(scene, model);
+  return model;
+}
+
+double run_duration(const SceneParameters& scene, const VsiModel& model) {
+  if (scene.integration.duration > 0.0) return scene.integration.duration;
+  if (scene.spans.empty()) {
+    throw input_error("scene: integration.duration", "none, and no bridge", "a duration in s, or a [[bridge]] to cross");
+  }
+  return (spans_length(scene) - model.wheelset_x(model.wheelsets() - 1, 0.0)) / scene.train.speed;
+}
+
+RunPlan plan_run(const SceneParameters& scene) {
+  const VsiModel model = build_model(scene);
+  RunPlan plan;
+  plan.structure_dofs = model.structure ? model.structure->dofs() : 0;
+  plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
+  plan.wheels = 2 * model.wheelsets();
+  plan.time_step = scene.integration.time_step;
+  plan.duration = run_duration(scene, model);
+  plan.steps = std::lround(plan.duration / plan.time_step);
+  plan.built.push_back(fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", mode_name(scene.contact.mode),
+                                   model.geometry->pair().wheel().knots().name, model.geometry->pair().rail().knots().name));
+  plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+  if (model.structure) {
+    plan.built.push_back(fmt::format("flexible track, {} rail nodes, {} span(s)", 2 * model.structure->rail[0].x.size(), scene.spans.size()));
+  } else {
+    plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
+  }
+  if (scene.spans.empty()) plan.left_out.emplace_back("bridge: the scene names none");
+  if (!scene.irregularity) plan.left_out.emplace_back("irregularity: the scene names none");
+  if (scene.contact.mode != ContactMode::table) plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
+  return plan;
+}
+
+RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
+                     const std::optional<RunCheckpoint>& resume) {
+  const auto begin = std::chrono::steady_clock::now();
+  const VsiModel model = build_model(scene);
+  const double duration = run_duration(scene, model);
+  VsiState state(model);
+  EquilibriumReport rest;
+  if (resume) {
+    unpack(resume->state, state);
+    rest.converged = true;
+  } else {
+    rest = quasi_static_start(model, scene.integration.time_step, state);
+  }
+  if (observer.start) observer.start(result_header(scene, model));
+  RunSummary summary;
+  if (!rest.converged) {
+    summary.message = fmt::format("no static equilibrium: after {} iterations the last change was {:.3g} m", rest.iterations, rest.change);
+    summary.contact_mode = mode_name(scene.contact.mode);
+    return summary;
+  }
+  if (!resume) displace(scene, model, state);
+  const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  summary = simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);
+  summary.seconds_setup += set_up;
+  summary.seconds_total += set_up;
+  summary.contact_mode = mode_name(scene.contact.mode);
+  return summary;
+}
+
+}  // namespace railtab

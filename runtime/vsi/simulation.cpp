@@ -1,0 +1,162 @@
+#include "railtab/runtime/vsi/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "railtab/runtime/vsi/step.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+// The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
+class Integrator {
+ public:
+  Integrator(const VsiModel& model, const IntegrationParameters& p)
+      : model_(model), parameters_(p), workspace_(model) {
+    // The tolerance counts relative to a contact displacement of 1 mm.
+    limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
+    static_cast<void>(operators(0));
+  }
+
+  bool step(VsiState& state, RunSummary& summary) { return step(0, state, summary); }
+
+ private:
+  const StepOperators& operators(int level) {
+    const auto found = operators_.find(level);
+    if (found != operators_.end()) return found->second;
+    const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
+    return operators_.emplace(level, StepOperators(model_, scheme)).first->second;
+  }
+
+  bool step(int level, VsiState& state, RunSummary& summary) {
+    const StepReport report = advance(model_, operators(level), limits_, state, workspace_);
+    summary.newton_iterations += report.newton_iterations;
+    summary.back_substitutions += report.back_substitutions;
+    summary.contact_queries += report.queries;
+    summary.table_queries += report.table_queries;
+    summary.seconds_contact += report.seconds_contact;
+    summary.seconds_structure += report.seconds_structure;
+    summary.seconds_vehicle += report.seconds_vehicle;
+    if (report.converged) return true;
+    if (level == parameters_.max_halvings) return false;
+    ++summary.halved_steps;
+    return step(level + 1, state, summary) && step(level + 1, state, summary);
+  }
+
+  const VsiModel& model_;
+  IntegrationParameters parameters_;
+  StepLimits limits_;
+  StepWorkspace workspace_;
+  std::map<int, StepOperators> operators_;
+};
+
+void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord& record) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    const bool free = dof[k] != held;
+    record.displacement[k] = free ? motion.displacement[dof[k]] : 0.0;
+    record.velocity[k] = free ? motion.velocity[dof[k]] : 0.0;
+    record.acceleration[k] = free ? motion.acceleration[dof[k]] : 0.0;
+  }
+}
+
+void fill_patches(const WheelContactModel& contact, const ContactPatches& patches, WheelRecord& wheel) {
+  wheel = {};
+  const ContactPatch* first = nullptr;
+  for (const ContactPatch& patch : patches) {
+    const double force = normal_force(contact, patch, 0.0);
+    if (force <= 0.0) continue;
+    ++wheel.patches;
+    if (!first || force > wheel.normal_force) {
+      wheel.second_normal_force = wheel.normal_force;
+      wheel.second_y_rail = wheel.y_rail;
+      wheel.normal_force = force;
+      first = &patch;
+      wheel.y_rail = patch.y_rail;
+      wheel.y_wheel = patch.y_wheel;
+      wheel.angle = patch.angle;
+      wheel.rolling_radius = patch.rolling_radius;
+      wheel.penetration = patch.penetration;
+    } else if (force > wheel.second_normal_force) {
+      wheel.second_normal_force = force;
+      wheel.second_y_rail = patch.y_rail;
+    }
+  }
+}
+
+}  // namespace
+
+void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record) {
+  record.time = state.time;
+  record.position = model.wheelset_x(0, state.time);
+  const auto wheels = static_cast<std::size_t>(2 * model.wheelsets());
+  record.wheels.resize(wheels);
+  for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
+    WheelRecord& w = record.wheels[wheel];
+    fill_patches(model.contact, state.contact.patches[wheel], w);
+    const auto unknown = static_cast<Eigen::Index>(wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2));
+    w.Y = state.contact.force[unknown];
+    w.Q = state.contact.force[unknown + 1];
+    w.X = state.contact.rail_x[wheel];
+  }
+  const std::size_t bodies = model.vehicle.bodies.size();
+  record.bodies.resize(bodies * state.vehicle.size());
+  for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
+    for (std::size_t b = 0; b < bodies; ++b) fill_motion(model.vehicle.dof[b], state.vehicle[v], record.bodies[v * bodies + b]);
+  }
+  if (!model.structure) return;
+  record.nodes.resize(model.structure->nodes.size());
+  for (std::size_t n = 0; n < record.nodes.size(); ++n) fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
+}
+
+RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration, int record_every,
+                    VsiState& state, const RunObserver& observer, long first_step) {
+  RunSummary summary;
+  const Clock::time_point begin = Clock::now();
+  Integrator integrator(model, integration);
+  summary.seconds_setup = seconds_since(begin);
+  const auto steps = std::lround(duration / integration.time_step);
+  StepRecord record;
+  const auto emit = [&] {
+    if (!observer.record) return;
+    const Clock::time_point output_begin = Clock::now();
+    fill_record(model, state, record);
+    observer.record(record);
+    summary.seconds_output += seconds_since(output_begin);
+  };
+
+  summary.steps = first_step;
+  if (first_step == 0) emit();
+  while (summary.steps < steps) {
+    const long iterations_before = summary.newton_iterations;
+    if (!integrator.step(state, summary)) {
+      summary.message = fmt::format("the step to t = {:.6f} s did not converge after {} halvings of {} s",
+                                    static_cast<double>(summary.steps + 1) * integration.time_step,
+                                    integration.max_halvings, integration.time_step);
+      break;
+    }
+    ++summary.steps;
+    state.time = static_cast<double>(summary.steps) * integration.time_step;  // no drift over long runs
+    record.newton_iterations = static_cast<int>(summary.newton_iterations - iterations_before);
+    if (summary.steps % record_every == 0) emit();
+    if (observer.checkpoint && summary.steps % observer.checkpoint_every == 0) {
+      observer.checkpoint(summary.steps, packed(state));
+    }
+    if (observer.progress) observer.progress(static_cast<double>(summary.steps) / static_cast<double>(steps));
+  }
+  summary.complete = summary.steps == steps;
+  summary.seconds_total = seconds_since(begin);
+  summary.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
+  summary.structure_dofs = model.structure ? model.structure->dofs() : 0;
+  return summary;
+}
+
+}  // namespace railtab

@@ -1,0 +1,175 @@
+#include "railtab/runtime/vsi/step.hpp"
+
+#include <chrono>
+
+namespace railtab {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Rail coupling beyond this distance is left to the far-field correction: rail bending waves within one step have died out.
+constexpr double compliance_window = 5.0;  // m
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), begin_(Clock::now()) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point begin_;
+};
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+int vehicles(const VsiModel& model) { return static_cast<int>(model.vehicle_x.size()); }
+int rail_unknown(int wheel) { return wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2); }
+
+// Vehicles: predictors and the increments that they would make without contact forces at the end of the step.
+void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiState& state, StepWorkspace& ws) {
+  for (int v = 0; v < vehicles(model); ++v) {
+    Prediction& p = ws.vehicle_prediction[index(v)];
+    const LinearMotion& motion = state.vehicle[index(v)];
+    predict(op.scheme, motion, p);
+    op.vehicle.free_increment(model.vehicle, op.vehicle_damping, op.scheme, motion, p, ws.vehicle_free[index(v)]);
+    // gather into q: predictor, its velocity, the free motion, and the start (constant acceleration)
+    const Eigen::VectorXd free = p.displacement + ws.vehicle_free[index(v)];
+    const Eigen::VectorXd start = p.displacement + motion.acceleration / op.scheme.acceleration_rate();
+    gather_wheelsets(model, v, p.displacement, ws.problem.predicted);
+    gather_wheelsets(model, v, p.velocity, ws.problem.predicted_velocity);
+    gather_wheelsets(model, v, free, ws.problem.free);
+    gather_wheelsets(model, v, start, ws.solution.displacement);
+  }
+}
+
+// The structure likewise; one back-substitution.
+void free_structure(const VsiModel& model, const StepOperators& op, const VsiState& state,
+                    const std::vector<RailContact>& contacts, StepWorkspace& ws) {
+  Prediction& p = ws.structure_prediction;
+  predict(op.scheme, state.structure, p);
+  op.structure->free_increment(*model.structure, op.scheme, state.structure, p, ws.structure_free);
+  gather_rails(contacts, p.displacement, ws.problem.predicted);
+  gather_rails(contacts, p.velocity, ws.problem.predicted_velocity);
+  gather_rails(contacts, p.displacement + ws.structure_free, ws.problem.free);
+  gather_rails(contacts, p.displacement + state.structure.acceleration / op.scheme.acceleration_rate(), ws.solution.displacement);
+}
+
+void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts, std::vector<RailCoupling>& rail) {
+  rail.clear();
+  const int wheels = static_cast<int>(contacts.size());
+  for (int j = 0; j < wheels; ++j) {
+    if (!contacts[index(j)].on_rail) continue;
+    // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is symmetric.
+    for (int i = j; i < wheels; ++i) {
+      const Eigen::Matrix3d c = op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
+      if (c.isZero(0.0)) break;
+      rail.push_back({i, j, c});
+      if (i != j) rail.push_back({j, i, c.transpose()});
+    }
+  }
+}
+
+// Full response of the structure to the contact forces; returns what the contact solution had missed of it.
+double full_structure(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
+  scatter_rail_forces(contacts, ws.solution.force, ws.structure_load);
+  ws.structure_increment = ws.structure_free + op.scheme.load_weight() * op.structure->solve(ws.structure_load);
+  double missed = 0.0;
+  const Eigen::VectorXd displacement = ws.structure_prediction.displacement + ws.structure_increment;
+  for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
+    const auto q = ws.solution.displacement.segment<3>(rail_unknown(wheel));
+    const Vector3 miss = rail_head(contacts[index(wheel)], displacement) - q;
+    missed = std::max(missed, miss.cwiseAbs().maxCoeff());
+    ws.problem.free.segment<3>(rail_unknown(wheel)) += miss;
+    ws.far_field.segment<3>(3 * wheel) += miss;
+  }
+  return missed;
+}
+
+}  // namespace
+
+StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
+    : scheme(hht), vehicle_damping(model.vehicle_damping()), vehicle(model.vehicle, vehicle_damping, hht) {
+  if (!model.structure) return;
+  structure = std::make_unique<StructureResponse>(*model.structure, hht);
+  structure->tabulate_compliance(*model.structure, compliance_window);
+}
+
+StepWorkspace::StepWorkspace(const VsiModel& model) {
+  const std::size_t n = model.vehicle_x.size();
+  vehicle_prediction.resize(n);
+  vehicle_free.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
+  vehicle_increment = vehicle_free;
+  structure_load = Eigen::VectorXd::Zero(model.structure ? model.structure->dofs() : 0);
+  const VsiState zero(model);
+  solution = zero.contact;
+  problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+  problem.free = problem.predicted = problem.predicted_velocity = solution.displacement;
+}
+
+StepReport advance(const VsiModel& model, const StepOperators& op, const StepLimits& limits, VsiState& state,
+                   StepWorkspace& ws) {
+  StepReport report;
+  const HhtScheme& hht = op.scheme;
+  const double time = state.time + hht.time_step;
+  const std::vector<RailContact> contacts = place_wheels(model, time);
+  ws.far_field = state.far_field;
+
+  // Right-hand side of Eq. 13 without the contact forces at t + dt.
+  {
+    const Stopwatch watch(report.seconds_vehicle);
+    free_vehicles(model, op, state, ws);
+  }
+  if (model.structure) {
+    const Stopwatch watch(report.seconds_structure);
+    free_structure(model, op, state, contacts, ws);
+    for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
+      ws.problem.free.segment<3>(rail_unknown(wheel)) += state.far_field.segment<3>(3 * wheel);
+    }
+    ++report.back_substitutions;
+    rail_couplings(op, contacts, ws.problem.rail);
+  }
+  rail_deviation(model, contacts, time, ws.structure_prediction.displacement, ws.problem.deviation);
+  ws.problem.velocity_rate = Vector6::Constant(hht.velocity_rate());
+  ws.problem.rail_velocity_rate = hht.velocity_rate();
+  ws.problem.vehicle_compliance = hht.load_weight() * op.vehicle.compliance();
+
+  // Eq. 16, condensed to the contacts; the structure's answer closes it.
+  for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
+    const NewtonReport newton = solve_contact(model.contact, ws.problem, limits.newton, ws.solution);
+    report.newton_iterations += newton.iterations;
+    report.queries += newton.queries;
+    report.table_queries += newton.table_queries;
+    report.seconds_contact += newton.seconds_contact;
+    if (!newton.converged) break;
+    if (!model.structure) {
+      report.converged = true;
+      break;
+    }
+    const Stopwatch watch(report.seconds_structure);
+    report.converged = full_structure(op, contacts, ws) < limits.far_field_tolerance;
+    ++report.back_substitutions;
+  }
+  if (!report.converged) return report;
+
+  // Motion and contact forces at t + dt.
+  for (int v = 0; v < vehicles(model); ++v) {
+    const Stopwatch watch(report.seconds_vehicle);
+    LinearMotion& motion = state.vehicle[index(v)];
+    scatter_wheelset_forces(model, v, ws.solution.force, motion.contact_load);
+    ws.vehicle_increment[index(v)] = ws.vehicle_free[index(v)] + hht.load_weight() * (op.vehicle.inverse() * motion.contact_load);
+    update(hht, ws.vehicle_prediction[index(v)], ws.vehicle_increment[index(v)], motion);
+  }
+  if (model.structure) {
+    const Stopwatch watch(report.seconds_structure);
+    state.structure.contact_load = ws.structure_load;
+    update(hht, ws.structure_prediction, ws.structure_increment, state.structure);
+  }
+  std::swap(state.contact, ws.solution);
+  state.far_field = ws.far_field;
+  state.time = time;
+  return report;
+}
+
+}  // namespace railtab

@@ -1,0 +1,154 @@
+#include "railtab/runtime/vsi/structure_response.hpp"
+
+#include <algorithm>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+std::unique_ptr<Eigen::SimplicialLDLT<Sparse>> factorise(const Sparse& effective) {
+  auto factor = std::make_unique<Eigen::SimplicialLDLT<Sparse>>(effective);
+  if (factor->info() != Eigen::Success || factor->vectorD().minCoeff() <= 0.0) {
+    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
+  }
+  return factor;
+}
+
+// The three rows of a contact over its element's 12 dofs.
+Eigen::Matrix<double, 3, 12> rows_of(const RailContact& contact) {
+  Eigen::Matrix<double, 3, 12> rows;
+  for (std::size_t k = 0; k < 12; ++k) rows.col(static_cast<Eigen::Index>(k)) << contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k];
+  return rows;
+}
+
+}  // namespace
+
+RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept {
+  RailContact contact;
+  contact.side = side;
+  const RailLine& rail = structure.rail[static_cast<std::size_t>(side)];
+  contact.on_rail = contains(rail, x);
+  if (!contact.on_rail) return contact;
+  const auto after = std::upper_bound(rail.x.begin(), rail.x.end(), x);
+  const auto last = static_cast<int>(rail.x.size()) - 2;
+  contact.element = std::clamp(static_cast<int>(after - rail.x.begin()) - 1, 0, last);
+  contact.rows = rail_interpolation(rail, x);
+  return contact;
+}
+
+Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  if (!contact.on_rail) return value;
+  for (std::size_t k = 0; k < 12; ++k) {
+    if (contact.rows.dof[k] == held) continue;
+    value += dofs[contact.rows.dof[k]] * Eigen::Vector3d(contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k]);
+  }
+  return value;
+}
+
+void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept {
+  if (!contact.on_rail) return;
+  for (std::size_t k = 0; k < 12; ++k) {
+    if (contact.rows.dof[k] == held) continue;
+    loads[contact.rows.dof[k]] += contact.rows.y[k] * load[0] + contact.rows.z[k] * load[1] + contact.rows.roll[k] * load[2];
+  }
+}
+
+StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme) : dofs_(structure.dofs()) {
+  const Sparse effective = scheme.acceleration_rate() * structure.mass +
+                           scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
+  factor_ = factorise(effective);
+}
+
+StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
+  factor_ = factorise(structure.stiffness);
+}
+
+long StructureResponse::factor_nonzeros() const { return static_cast<long>(factor_->matrixL().nestedExpression().nonZeros()); }
+
+void StructureResponse::free_increment(const StructureModel& structure, const HhtScheme& scheme,
+                                       const LinearMotion& motion, const Prediction& prediction,
+                                       Eigen::VectorXd& increment) const {
+  Eigen::VectorXd load = -scheme.alpha * motion.contact_load;
+  load.noalias() -= structure.damping.selfadjointView<Eigen::Lower>() * prediction.weighted_velocity;
+  load.noalias() -= structure.stiffness.selfadjointView<Eigen::Lower>() * prediction.weighted_displacement;
+  increment = factor_->solve(load);
+}
+
+void StructureResponse::tabulate_compliance(const StructureModel& structure, double window) {
+  // A wheel is always coupled to both nodes of its own element, however long that is.
+  for (const RailLine& rail : structure.rail) {
+    for (std::size_t i = 1; i < rail.x.size(); ++i) window = std::max(window, rail.x[i] - rail.x[i - 1]);
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    const RailLine& rail = structure.rail[side];
+    column_[side].assign(rail.x.size(), {});
+    for (std::size_t node = 0; node < rail.x.size(); ++node) {
+      Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(dofs_, 6);
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (rail.dof[node][k] != held) loads(rail.dof[node][k], static_cast<Eigen::Index>(k)) = 1.0;
+      }
+      const Eigen::MatrixXd response = factor_->solve(loads);
+      Column& column = column_[side][node];
+      for (std::size_t other = 0; other < 2; ++other) {
+        const RailLine& to = structure.rail[other];
+        const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window);
+        const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window);
+        column.first[other] = static_cast<int>(begin - to.x.begin());
+        for (auto n = begin - to.x.begin(); n < end - to.x.begin(); ++n) {
+          Block block = Block::Zero();
+          for (std::size_t k = 0; k < 6; ++k) {
+            const int dof = to.dof[static_cast<std::size_t>(n)][k];
+            if (dof != held) block.row(static_cast<Eigen::Index>(k)) = response.row(dof);
+          }
+          column.rows[other].push_back(block);
+        }
+      }
+    }
+  }
+}
+
+Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  if (!i.on_rail || !j.on_rail) return result;
+  const auto row_side = static_cast<std::size_t>(i.side);
+  const Eigen::Matrix<double, 3, 12> row = rows_of(i);
+  const Eigen::Matrix<double, 3, 12> column = rows_of(j);
+  for (int q = 0; q < 2; ++q) {
+    const Column& from = column_[static_cast<std::size_t>(j.side)][static_cast<std::size_t>(j.element + q)];
+    const auto count = static_cast<int>(from.rows[row_side].size());
+    for (int p = 0; p < 2; ++p) {
+      const int offset = i.element + p - from.first[row_side];
+      if (offset < 0 || offset >= count) continue;
+      const Block& block = from.rows[row_side][static_cast<std::size_t>(offset)];
+      result.noalias() += row.middleCols<6>(6 * p) * (block * column.middleCols<6>(6 * q).transpose());
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) const {
+  const auto n = static_cast<Eigen::Index>(contacts.size());
+  Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(dofs_, 3 * n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (int k = 0; k < 3; ++k) {
+      Eigen::VectorXd column = Eigen::VectorXd::Zero(dofs_);
+      add_rail_load(contacts[static_cast<std::size_t>(j)], Eigen::Vector3d::Unit(k), column);
+      loads.col(3 * j + k) = column;
+    }
+  }
+  const Eigen::MatrixXd response = factor_->solve(loads);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < 3 * n; ++j) {
+      result.block<3, 1>(3 * i, j) = rail_head(contacts[static_cast<std::size_t>(i)], response.col(j));
+    }
+  }
+  return result;
+}
+
+}  // namespace railtab

@@ -1,0 +1,44 @@
+#include "railtab/runtime/vsi/vehicle_response.hpp"
+
+#include <Eigen/LU>
+
+namespace railtab {
+
+VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme) {
+  const Eigen::MatrixXd effective =
+      scheme.acceleration_rate() * vehicle.mass +
+      scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
+  inverse_ = effective.partialPivLu().inverse();
+  restrict_to_wheelsets(vehicle);
+}
+
+VehicleResponse::VehicleResponse(const VehicleModel& vehicle, double regularisation) {
+  const Eigen::MatrixXd effective = vehicle.stiffness + regularisation * vehicle.mass;
+  inverse_ = effective.partialPivLu().inverse();
+  restrict_to_wheelsets(vehicle);
+}
+
+void VehicleResponse::restrict_to_wheelsets(const VehicleModel& vehicle) {
+  const auto wheelsets = static_cast<Eigen::Index>(vehicle.wheelsets.size());
+  compliance_ = Eigen::MatrixXd::Zero(6 * wheelsets, 6 * wheelsets);
+  const auto dof = [&](Eigen::Index k) {
+    return vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(k / 6)])][static_cast<std::size_t>(k % 6)];
+  };
+  for (Eigen::Index i = 0; i < 6 * wheelsets; ++i) {
+    for (Eigen::Index j = 0; j < 6 * wheelsets; ++j) {
+      if (dof(i) != held && dof(j) != held) compliance_(i, j) = inverse_(dof(i), dof(j));
+    }
+  }
+}
+
+void VehicleResponse::free_increment(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
+                                     const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
+                                     Eigen::VectorXd& increment) const {
+  // (1+α)F − αF with the constant static load leaves it once; the contact load of the last step enters by −α.
+  const Eigen::VectorXd load = vehicle.static_load - scheme.alpha * motion.contact_load -
+                               damping * prediction.weighted_velocity -
+                               vehicle.stiffness * prediction.weighted_displacement;
+  increment.noalias() = inverse_ * load;
+}
+
+}  // namespace railtab

@@ -1,0 +1,154 @@
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+// Offset of a wheel's rail-head unknowns; wheel = 2·wheelset + side.
+int rail_unknown(int wheel) { return wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2); }
+
+const DofIndices& wheelset_dofs(const VsiModel& model, int wheelset_of_vehicle) {
+  return model.vehicle.dof[index(model.vehicle.wheelsets[index(wheelset_of_vehicle)])];
+}
+
+}  // namespace
+
+double VsiModel::wheelset_x(int wheelset, double time) const noexcept {
+  const int per_vehicle = wheelsets_per_vehicle();
+  const int body = vehicle.wheelsets[index(wheelset % per_vehicle)];
+  return vehicle_x[index(wheelset / per_vehicle)] + vehicle.bodies[index(body)].position[0] + contact.speed * time;
+}
+
+VsiState::VsiState(const VsiModel& model)
+    : vehicle(model.vehicle_x.size(), LinearMotion(model.vehicle.dofs())),
+      structure(model.structure ? model.structure->dofs() : 0) {
+  const int wheelsets = model.wheelsets();
+  contact.displacement = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
+  contact.force = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
+  contact.rail_x.assign(index(2 * wheelsets), 0.0);
+  contact.patches.resize(index(2 * wheelsets));
+  far_field = Eigen::VectorXd::Zero(6 * wheelsets);
+}
+
+namespace {
+
+// Visits every number of a state in the order of a checkpoint.
+template <typename State, typename Visitor>
+void visit_numbers(State& state, Visitor&& visit) {
+  visit(&state.time, 1);
+  const auto visit_vector = [&](auto& v) { visit(v.data(), static_cast<std::size_t>(v.size())); };
+  const auto visit_motion = [&](auto& motion) {
+    visit_vector(motion.displacement);
+    visit_vector(motion.velocity);
+    visit_vector(motion.acceleration);
+    visit_vector(motion.contact_load);
+  };
+  for (auto& motion : state.vehicle) visit_motion(motion);
+  visit_motion(state.structure);
+  visit_vector(state.contact.displacement);
+  visit_vector(state.contact.force);
+  visit_vector(state.contact.rail_x);
+  visit_vector(state.far_field);
+}
+
+}  // namespace
+
+std::vector<double> packed(const VsiState& state) {
+  std::vector<double> numbers;
+  visit_numbers(state, [&](const double* data, std::size_t n) { numbers.insert(numbers.end(), data, data + n); });
+  return numbers;
+}
+
+void unpack(std::span<const double> numbers, VsiState& state) {
+  std::size_t expected = 0;
+  visit_numbers(state, [&](const double*, std::size_t n) { expected += n; });
+  if (numbers.size() != expected) {
+    throw input_error("checkpoint", fmt::format("{} numbers", numbers.size()),
+                      fmt::format("{}, the unknowns of this scene", expected));
+  }
+  visit_numbers(state, [&](double* data, std::size_t n) {
+    std::copy_n(numbers.begin(), n, data);
+    numbers = numbers.subspan(n);
+  });
+}
+
+std::vector<RailContact> place_wheels(const VsiModel& model, double time) {
+  std::vector<RailContact> contacts;
+  if (!model.structure) return contacts;
+  contacts.reserve(index(2 * model.wheelsets()));
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const double x = model.wheelset_x(w, time);
+    contacts.push_back(rail_contact(*model.structure, RailSide::left, x));
+    contacts.push_back(rail_contact(*model.structure, RailSide::right, x));
+  }
+  return contacts;
+}
+
+void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
+                    const Eigen::VectorXd& structure_displacement,
+                    std::vector<std::array<RailHeadMotion, 2>>& deviation) {
+  deviation.resize(index(model.wheelsets()));
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    for (int side = 0; side < 2; ++side) {
+      const RailDeviation d = model.irregularity.at(static_cast<RailSide>(side), model.wheelset_x(w, time));
+      RailHeadMotion& head = deviation[index(w)][index(side)];
+      head = RailHeadMotion{{d.y, d.z, 0.0}, Vector3::Zero(), d.dy_dx, d.dz_dx};
+      if (contacts.empty()) continue;
+      const RailContact& contact = contacts[index(2 * w + side)];
+      if (!contact.on_rail) continue;
+      for (std::size_t k = 0; k < 12; ++k) {
+        if (contact.rows.dof[k] == held) continue;
+        const double a = structure_displacement[contact.rows.dof[k]];
+        head.yaw += contact.rows.yaw[k] * a;
+        head.slope -= contact.rows.pitch[k] * a;
+      }
+    }
+  }
+}
+
+void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept {
+  const int per_vehicle = model.wheelsets_per_vehicle();
+  for (int w = 0; w < per_vehicle; ++w) {
+    const DofIndices& dof = wheelset_dofs(model, w);
+    for (int k = 0; k < 6; ++k) {
+      q[wheelset_unknowns * (vehicle * per_vehicle + w) + k] = dof[index(k)] == held ? 0.0 : dofs[dof[index(k)]];
+    }
+  }
+}
+
+void scatter_wheelset_forces(const VsiModel& model, int vehicle, const Eigen::VectorXd& force,
+                             Eigen::VectorXd& load) noexcept {
+  load.setZero();
+  const int per_vehicle = model.wheelsets_per_vehicle();
+  for (int w = 0; w < per_vehicle; ++w) {
+    const DofIndices& dof = wheelset_dofs(model, w);
+    for (int k = 0; k < 6; ++k) {
+      if (dof[index(k)] != held) load[dof[index(k)]] += force[wheelset_unknowns * (vehicle * per_vehicle + w) + k];
+    }
+  }
+}
+
+void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept {
+  for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
+    q.segment<3>(rail_unknown(wheel)) = rail_head(contacts[index(wheel)], dofs);
+  }
+}
+
+void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                         Eigen::VectorXd& load) noexcept {
+  load.setZero();
+  for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
+    add_rail_load(contacts[index(wheel)], force.segment<3>(rail_unknown(wheel)), load);
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+/// Cells that send at least some query to the online search.
+long limited_cells(const GeometryTableData& table) {
+  return std::count_if(table.trusted_lowering.begin(), table.trusted_lowering.end(),
+                       [](double height) { return std::isfinite(height); });
+}
+
+double statistic(const GeometryTableData& table, std::string_view name) {
+  for (const auto& [key, value] : table.statistics) {
+    if (key == name) return value;
+  }
+  return std::nan("");
+}
+
+}  // namespace
+
+nlohmann::ordered_json table_description(const GeometryTableData& table, const std::string& file) {
+  const auto axis = [](const std::vector<double>& nodes) {
+    return nlohmann::ordered_json{{"low", nodes.front()}, {"high", nodes.back()}, {"nodes", nodes.size()}};
+  };
+  nlohmann::ordered_json j;
+  j["kind"] = "geometry";
+  j["file"] = file;
+  j["wheel"] = table.wheel.name;
+  j["rail"] = table.rail.name;
+  j["track_gauge"] = table.track_gauge;
+  j["gauge_height"] = table.gauge_height;
+  j["flange_back"] = table.flange_back;
+  j["nominal_radius"] = table.nominal_radius;
+  j["axes"] = {{"lateral", axis(table.lateral)}, {"yaw_squared", axis(table.yaw_squared)}, {"roll", axis(table.roll)}};
+  j["branches"] = table.branches.size();
+  j["cells"] = table.trusted_lowering.size();
+  j["cells_limited"] = limited_cells(table);
+  j["bytes"] = GeometryTable(table).bytes();
+  j["file_bytes"] = std::filesystem::file_size(file);
+  j["tolerance"] = table.tolerance;
+  for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
+  j["provenance"] = {{"program_version", table.provenance.program_version},
+                     {"command_line", table.provenance.command_line},
+                     {"created", table.provenance.created}};
+  return j;
+}
+
+std::string table_text(const GeometryTableData& table, const std::string& file) {
+  const auto milliradians = [&](double square) { return 1e3 * std::sqrt(square); };
+  std::string text = fmt::format("{}: contact geometry of {} on {}\n", file, table.wheel.name, table.rail.name);
+  text += fmt::format("  pair         gauge {:.4f} m at {:.1f} mm, flange backs {:.4f} m, nominal radius {:.4f} m\n",
+                      table.track_gauge, 1e3 * table.gauge_height, table.flange_back, table.nominal_radius);
+  text += fmt::format("  lateral      {:.3f} .. {:.3f} mm, {} nodes (y - R0 roll)\n", 1e3 * table.lateral.front(),
+                      1e3 * table.lateral.back(), table.lateral.size());
+  text += fmt::format("  yaw          +-{:.3f} .. +-{:.3f} mrad, {} nodes (even in yaw)\n",
+                      milliradians(table.yaw_squared.front()), milliradians(table.yaw_squared.back()),
+                      table.yaw_squared.size());
+  text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} nodes\n", 1e3 * table.roll.front(),
+                      1e3 * table.roll.back(), table.roll.size());
+  text += fmt::format("  branches     {}, in {} cells, of which {} are limited (a branch begins or ends nearby)\n",
+                      table.branches.size(), table.trusted_lowering.size(), limited_cells(table));
+  text += fmt::format("  size         {:.2f} MiB on disk, {:.2f} MiB in memory\n",
+                      static_cast<double>(std::filesystem::file_size(file)) / 1048576.0,
+                      static_cast<double>(GeometryTable(table).bytes()) / 1048576.0);
+  text += fmt::format(
+      "  certified    on {:.0f} queries: fallback {:.2f} %, patches missed or invented {:.3f} %,\n"
+      "               penetration error {:.2g} m (99.9 %), {:.2g} m (largest); asked for {:.2g} m\n",
+      statistic(table, "certified.samples"), 100 * statistic(table, "certified.fallback_share"),
+      100 * statistic(table, "certified.patch_mismatch_share"), statistic(table, "certified.error.penetration.p999"),
+      statistic(table, "certified.error.penetration.max"), table.tolerance);
+  text += fmt::format("  made         {} by version {}: {}\n", table.provenance.created,
+                      table.provenance.program_version, table.provenance.command_line);
+  return text;
+}
+
+void info_command(const std::vector<std::string>& arguments) {
+  boost::program_options::options_description own("Arguments");
+  own.add_options()("file", boost::program_options::value<std::string>()->value_name("FILE.h5"), "a table");
+  const CommandLine line("tablegen info FILE.h5 [--json]", own, {"file"}, arguments);
+  if (line.help_printed()) return;
+  const std::string file = line.required("file");
+  const GeometryTableData table = read_geometry_table(file);
+  if (line.json()) {
+    fmt::print("{}\n", table_description(table, file).dump(2));
+  } else {
+    fmt::print("{}", table_text(table, file));
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <map>
+
+#include "commands.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace {
+
+constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
+
+  geometry   make a contact geometry table of a wheel and a rail profile
+  info       tell what a table holds
+  verify     hold a table against the online search: errors, share of fallback, time per query
+
+tablegen COMMAND --help tells the options; tablegen --version the version.
+Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
+)";
+
+int run(const std::vector<std::string>& arguments) {
+  using namespace railtab;
+  const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
+      {"geometry", geometry_command}, {"info", info_command}, {"verify", verify_command}};
+  if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
+  if (arguments[0] == "--help" || arguments[0] == "-h") {
+    fmt::print("{}", usage);
+    return 0;
+  }
+  if (arguments[0] == "--version") {
+    fmt::print("railtab {}\n", RAILTAB_VERSION);
+    return 0;
+  }
+  const auto command = commands.find(arguments[0]);
+  if (command == commands.end()) {
+    throw input_error("command", fmt::format("\"{}\"", arguments[0]), "geometry, info or verify");
+  }
+  command->second({arguments.begin() + 1, arguments.end()});
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (const railtab::InputError& e) {
+    fmt::print(stderr, "tablegen: {}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "tablegen: {}\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "progress_bar.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+nlohmann::ordered_json description(const GeometryVerification& v) {
+  nlohmann::ordered_json j;
+  j["kind"] = "geometry";
+  j["samples"] = v.samples;
+  j["answered_by_table"] = v.answered_by_table;
+  j["never_touching"] = v.never_touching;
+  j["patches_compared"] = v.patches_compared;
+  j["fallback_share"] = v.fallback_share;
+  j["patch_mismatch_share"] = v.patch_mismatch_share;
+  for (const auto& [quantity, errors] : v.errors()) {
+    for (const auto& [name, value] : errors->named()) j["error"][std::string(quantity)][std::string(name)] = value;
+  }
+  j["time_ns"] = {
+      {"table", v.time_table_ns}, {"online", v.time_online_ns}, {"table_with_fallback", v.time_with_fallback_ns}};
+  j["bytes"] = v.bytes;
+  return j;
+}
+
+std::string text(const GeometryVerification& v) {
+  std::string out = fmt::format(
+      "{} random queries, {} answered by the table (fallback {:.3f} %), {} patches compared with the online search\n"
+      "patches missed or invented at {:.4f} % of the queries answered\n\n",
+      v.samples, v.answered_by_table, 100 * v.fallback_share, v.patches_compared, 100 * v.patch_mismatch_share);
+  out +=
+      fmt::format("{:24}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "error", "mean", "p50", "p95", "p99", "p99.9", "max");
+  for (const auto& [quantity, errors] : v.errors()) {
+    out += fmt::format("{:24}", quantity);
+    for (const auto& [name, value] : errors->named()) out += fmt::format("{:11.2e}", value);
+    out += '\n';
+  }
+  out += fmt::format("\ntime per query: table {:.0f} ns, online {:.0f} ns, table with fallback {:.0f} ns\n",
+                     v.time_table_ns, v.time_online_ns, v.time_with_fallback_ns);
+  return out;
+}
+
+}  // namespace
+
+void verify_command(const std::vector<std::string>& arguments) {
+  namespace po = boost::program_options;
+  po::options_description own("Options");
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")           //
+      ("samples", text_value("10000")->value_name("N"), "random queries over the table's range")  //
+      ("seed", text_value("1")->value_name("N"), "of the random numbers")                         //
+      ("dz", text_value("0:3e-4")->value_name("LO:HI"), "lowering of the wheelset below first touch [m]");
+  const CommandLine line("tablegen verify FILE.h5 [options]", own, {"file"}, arguments);
+  if (line.help_printed()) return;
+  const std::string file = line.required("file");
+  const long long samples = line.whole_number("samples", 1, 100'000'000);
+  const long long seed = line.whole_number("seed", 0, 1LL << 53);
+  const Interval lowering = line.interval("dz");
+
+  const TableContact contact{GeometryTable(read_geometry_table(file))};
+  VerificationOptions options = verification_options(contact.table().data());
+  options.samples = static_cast<int>(samples);
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.lowering = lowering;
+  ProgressBar bar("verify", !line.quiet());
+  const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
+  if (line.json()) {
+    fmt::print("{}\n", description(result).dump(2));
+  } else {
+    fmt::print("{}", text(result));
+  }
+}
+
+}  // namespace railtab

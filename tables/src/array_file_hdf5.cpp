@@ -1,0 +1,184 @@
+#include "array_file_hdf5.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "array_file_seal.hpp"
+
+namespace railtab::hdf5 {
+namespace {
+
+// Files are little-endian; the checksum and the superblock are read as the bytes stand.
+static_assert(std::endian::native == std::endian::little);
+
+std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
+  if (error->desc != nullptr && *error->desc != '\0') *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+Section::Section() : lock_(library_mutex()) {
+  H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Section::~Section() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
+
+InputError failure(const std::string& place, std::string_view expected) {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
+  return input_error(place, text.empty() ? "an error of HDF5" : fmt::format("\"{}\"", text), expected);
+}
+
+std::string place(const std::filesystem::path& file, std::string_view path) {
+  return path.empty() ? file.string() : fmt::format("{}: {}", file.string(), path);
+}
+
+std::string place(const std::filesystem::path& file, std::string_view path, std::string_view attribute) {
+  return fmt::format("{}, attribute {}", place(file, path), attribute);
+}
+
+Properties file_access() {
+  Properties access(H5Pcreate(H5P_FILE_ACCESS));
+  const bool done = access.valid() && H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0 &&
+                    H5Pset_file_locking(access.get(), false, true) >= 0;
+  require(done, "HDF5 file access", "its properties");
+  return access;
+}
+
+void set_page_alignment(const Properties& access, const std::filesystem::path& file) {
+  constexpr hsize_t page = 4096;
+  require(H5Pset_alignment(access.get(), 1, page) >= 0, file.string(), "HDF5 objects in pages of their own");
+}
+
+bool contains(hid_t file, std::string_view path) {
+  for (std::size_t end = 0; end != std::string_view::npos;) {
+    end = path.find('/', end + 1);
+    const std::string prefix(path.substr(0, end));
+    if (H5Lexists(file, prefix.c_str(), H5P_DEFAULT) <= 0) return false;
+  }
+  return H5Oexists_by_name(file, std::string(path).c_str(), H5P_DEFAULT) > 0;
+}
+
+Object open_object(hid_t file, const std::filesystem::path& name, std::string_view path) {
+  if (!path.empty() && !contains(file, path)) {
+    throw input_error(place(name, path), "no such dataset or group", "one of that name");
+  }
+  Object object(H5Oopen(file, path.empty() ? "/" : std::string(path).c_str(), H5P_DEFAULT));
+  require(object.valid(), place(name, path), "a readable dataset or group");
+  return object;
+}
+
+namespace {
+
+Attribute open_attribute(hid_t object, const std::string& at, const char* name) {
+  if (H5Aexists(object, name) <= 0) throw input_error(at, "no such attribute", "one of that name");
+  Attribute attribute(H5Aopen(object, name, H5P_DEFAULT));
+  require(attribute.valid(), at, "a readable attribute");
+  const Space space(H5Aget_space(attribute.get()));
+  if (!space.valid() || H5Sget_simple_extent_npoints(space.get()) != 1) {
+    throw input_error(at, "an array", "a single value");
+  }
+  return attribute;
+}
+
+}  // namespace
+
+std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name) {
+  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
+  const Type type(H5Aget_type(attribute.get()));
+  if (!type.valid() || H5Tget_class(type.get()) != H5T_INTEGER) throw input_error(at, "no integer", "an integer");
+  std::int64_t value = 0;
+  require(H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) >= 0, at, "a readable integer");
+  return value;
+}
+
+double number_attribute(hid_t object, const std::string& at, std::string_view name) {
+  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
+  const Type type(H5Aget_type(attribute.get()));
+  const H5T_class_t found = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
+  if (found != H5T_INTEGER && found != H5T_FLOAT) throw input_error(at, "no number", "a number");
+  double value = 0;
+  require(H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0, at, "a readable number");
+  return value;
+}
+
+std::string text_attribute(hid_t object, const std::string& at, std::string_view name) {
+  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
+  const Type type(H5Aget_type(attribute.get()));
+  if (!type.valid() || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) {
+    throw input_error(at, "no text of fixed length", "a text of fixed length");
+  }
+  std::string value(H5Tget_size(type.get()), '\0');
+  require(H5Aread(attribute.get(), type.get(), value.data()) >= 0, at, "a readable text");
+  value.resize(value.find_last_not_of('\0') + 1);
+  return value;
+}
+
+FileState inspect_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw input_error(file.string(), "no such file", "an HDF5 file");
+  if (!std::filesystem::is_regular_file(status)) throw input_error(file.string(), "no regular file", "an HDF5 file");
+  FileState state;
+  state.bytes = std::filesystem::file_size(file, error);
+
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw input_error(file.string(), std::strerror(errno), "a readable file");
+  if (is_sealed(file)) {
+    check_seal(file);
+    stream.seekg(seal_bytes);
+  }
+  std::array<char, 36> head{};
+  stream.read(head.data(), head.size());
+  constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
+  if (std::string_view(head.data(), signature.size()) != signature) {
+    throw input_error(file.string(), state.bytes == 0 ? "an empty file" : "no HDF5 signature", "an HDF5 file");
+  }
+  constexpr unsigned char written_format = 3, eight_byte_offsets = 8;
+  if (static_cast<unsigned char>(head[8]) != written_format || head[9] != eight_byte_offsets) {
+    throw input_error(file.string(),
+                      fmt::format("an HDF5 superblock of version {}", static_cast<unsigned char>(head[8])),
+                      fmt::format("version {} with 8-byte offsets, as railtab writes it", written_format));
+  }
+  constexpr unsigned open_for_writing = 1;
+  state.being_written = (static_cast<unsigned char>(head[11]) & open_for_writing) != 0;
+  std::uint64_t end_of_file = 0;
+  std::memcpy(&end_of_file, head.data() + 28, sizeof end_of_file);
+  // While a file is written, its end runs ahead of the superblock or behind it; reading then checks dataset by dataset.
+  if (!state.being_written && state.bytes < end_of_file) {
+    throw input_error(file.string(), fmt::format("{} bytes", state.bytes),
+                      fmt::format("{} bytes: the file is cut short", end_of_file));
+  }
+  return state;
+}
+
+void check_type(hid_t file, const std::filesystem::path& name, std::string_view filetype, int format_version) {
+  const Object root = open_object(file, name, "");
+  if (H5Aexists(root.get(), "filetype") <= 0) {
+    throw input_error(name.string(), "no attribute filetype", fmt::format("a file of type {}", filetype));
+  }
+  const std::string found = text_attribute(root.get(), place(name, "", "filetype"), "filetype");
+  if (found != filetype) {
+    throw input_error(name.string(), fmt::format("a file of type {}", found), fmt::format("type {}", filetype));
+  }
+  const std::int64_t version = integer_attribute(root.get(), place(name, "", "format_version"), "format_version");
+  if (version != format_version) {
+    throw input_error(name.string(), fmt::format("format version {} of {}", version, filetype),
+                      fmt::format("version {}, the one that this program reads", format_version));
+  }
+}
+
+}  // namespace railtab::hdf5

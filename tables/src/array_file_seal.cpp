@@ -1,0 +1,77 @@
+#include "array_file_seal.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr std::string_view mark = "railtab\n";
+
+/// The whole block, so that damage to any of its bytes shows: mark, length of the rest, checksum of the rest, zeros.
+std::string seal_of(std::uint64_t length, std::uint64_t sum) {
+  std::string block =
+      fmt::format("{}{} bytes follow this block of {}, FNV-1a {:016x}\n", mark, length, seal_bytes, sum);
+  block.resize(seal_bytes, '\0');
+  return block;
+}
+
+/// Of everything after the block; the last bytes are filled up with zeros to a whole number.
+std::string expected_seal(std::istream& stream) {
+  stream.seekg(seal_bytes);
+  std::vector<double> buffer(8192);
+  std::uint64_t sum = checksum({});
+  std::uint64_t length = 0;
+  while (stream) {
+    stream.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size() * sizeof(double)));
+    const std::size_t bytes = static_cast<std::size_t>(stream.gcount());
+    std::memset(reinterpret_cast<char*>(buffer.data()) + bytes, 0, buffer.size() * sizeof(double) - bytes);
+    sum = checksum(std::span(buffer).first((bytes + sizeof(double) - 1) / sizeof(double)), sum);
+    length += bytes;
+  }
+  return seal_of(length, sum);
+}
+
+}  // namespace
+
+void seal_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string block = expected_seal(in);
+  std::fstream out(file, std::ios::binary | std::ios::in | std::ios::out);
+  out.write(block.data(), static_cast<std::streamsize>(block.size()));
+  out.close();
+  if (!out) throw input_error(file.string(), std::strerror(errno), "a file that can be written to its end");
+}
+
+bool is_sealed(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, mark.size()> head{};
+  stream.read(head.data(), head.size());
+  return std::string_view(head.data(), head.size()) == mark;
+}
+
+void check_seal(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string found(seal_bytes, '\0');
+  stream.read(found.data(), static_cast<std::streamsize>(found.size()));
+  stream.clear();
+  const std::string expected = expected_seal(stream);
+  if (found == expected) return;
+  const auto words = [](const std::string& block) {
+    const std::size_t end = std::min(block.find('\n', mark.size()), std::size_t{100});
+    return block.substr(mark.size(), end - mark.size());
+  };
+  throw input_error(file.string(), fmt::format("contents of which {}", words(expected)),
+                    fmt::format("{}: the file is damaged or cut short", words(found)));
+}
+
+}  // namespace railtab

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "array_file_hdf5.hpp"
+#include "array_file_lock.hpp"
+#include "railtab/tables/array_file.hpp"
+
+namespace railtab {
+
+/// State of a file being written. Its members call HDF5 without taking a Section: the public functions do.
+struct ArrayFileWriter::Impl {
+  std::filesystem::path file;       ///< the name at the end
+  std::filesystem::path temporary;  ///< the name now; empty once the file has its own
+  Mode mode = Mode::whole_or_nothing;
+  WriterLock lock;
+  hdf5::File handle;
+
+  struct Growing {
+    hdf5::Dataset dataset;
+    std::vector<hsize_t> extent;  ///< rows that there is room for, then the shape of a row
+    std::size_t rows = 0;         ///< rows that are written
+    std::size_t row_size = 1;
+  };
+  std::map<std::string, Growing, std::less<>> growing;
+  hdf5::Dataset records_dataset;
+  std::size_t records = 0;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
+
+  void create(std::string_view filetype, int format_version);
+  void create_groups_of(std::string_view path);
+  void create_group(const std::string& path);
+  hdf5::Dataset create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
+  void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
+                     const std::vector<std::size_t>& shape, std::string_view unit, std::string_view description);
+  hdf5::Dataset create_extendible(std::string_view path, const std::vector<hsize_t>& extent, std::string_view unit,
+                                  std::string_view description);
+  void write_attribute(std::string_view path, std::string_view name, hid_t file_type, hid_t memory_type,
+                       const void* value);
+  void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity);
+
+  /// Gives a growing file its name and opens it for single-writer-multiple-reader writing.
+  void begin_records();
+  void open_records();
+  /// Also of a file whose writer was killed.
+  void open_for_writing();
+  /// Never less than there is: a chunk given back could be used again before the file stops naming its old place, and
+  /// a process that ends in between leaves two owners of one place.
+  void make_room(const std::string& path, Growing& dataset, std::size_t rows) const;
+  /// Gives back what a shorter history left over; only before closing, when nothing more is allocated.
+  void cut_to_rows();
+  void commit();
+  void publish();
+};
+
+}  // namespace railtab

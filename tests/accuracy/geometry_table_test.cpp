@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <random>
+
+#include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/tablegen/table_verification.hpp"
+
+namespace {
+thread_local long allocations = 0;
+}
+
+// Counts every allocation of this program, so that a look-up can be shown to make none.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace railtab {
+namespace {
+
+ContactSearch s1002_on_60e1() {
+  return ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 1.0 / 40)),
+                                     ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40)),
+                                     PairDimensions{}));
+}
+
+GeometryVerification verify(const TableContact& contact, int samples) {
+  VerificationOptions options = verification_options(contact.table().data());
+  options.samples = samples;
+  options.seed = 7;
+  options.timing = false;
+  return verify_geometry_table(contact, options);
+}
+
+/// The table polishes its start on the same profiles as the search, so what remains is rounding and the stopping step
+/// of Newton's iteration: 1e-8 m in arc length at most, and its square over the relative radius in penetration.
+void expect_exact(const GeometryVerification& v) {
+  EXPECT_EQ(v.patch_mismatch_share, 0.0);
+  EXPECT_GT(v.patches_compared, v.answered_by_table / 2);
+  EXPECT_LT(v.penetration.max, 1e-12);
+  EXPECT_LT(v.position_rail.max, 2e-8);
+  EXPECT_LT(v.position_wheel.max, 2e-8);
+  EXPECT_LT(v.contact_angle.max, 2e-6);  // 2e-8 m over the smallest radius in contact, 13 mm
+  EXPECT_LT(v.normal_force_relative.max, 1e-4);
+}
+
+TEST(GeometryTableAccuracy, EqualsTheOnlineSearchWithoutRoll) {
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), GeometrySweepOptions{}))};
+  const GeometryVerification v = verify(contact, 20000);
+  expect_exact(v);
+  EXPECT_LT(v.fallback_share, 0.03);
+  EXPECT_EQ(v.never_touching, 0);
+}
+
+TEST(GeometryTableAccuracy, EqualsTheOnlineSearchWithRoll) {
+  GeometrySweepOptions options;
+  options.roll = {-4e-3, 4e-3};
+  options.lateral = {-3e-3, 8e-3};
+  options.yaw_nodes = 5;
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), options))};
+  const GeometryVerification v = verify(contact, 5000);
+  expect_exact(v);
+  EXPECT_LT(v.fallback_share, 0.15);  // coarse cells: this table is about exactness
+}
+
+TEST(GeometryTableAccuracy, ACoarseTableFallsBackMoreButIsNotWrong) {
+  GeometrySweepOptions options;
+  options.lateral_step = 0.4e-3;
+  options.yaw_nodes = 3;
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), options))};
+  const GeometryVerification v = verify(contact, 5000);
+  expect_exact(v);
+  EXPECT_GT(v.fallback_share, 0.05);
+  EXPECT_LT(v.fallback_share, 0.5);
+}
+
+TEST(GeometryTableAccuracy, OutsideTheTableTheOnlineSearchAnswers) {
+  GeometrySweepOptions options;
+  options.lateral = {-1e-3, 1e-3};
+  options.yaw = {0.0, 0.0};
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), options))};
+  for (const WheelsetPose& beside :
+       {WheelsetPose{3e-3, 0, 0, 0}, WheelsetPose{0, 0, 0, 1e-3}, WheelsetPose{0, 0, 1e-3, 0}}) {
+    WheelsetPose pose = beside;
+    pose.z = contact.search().touch_height(pose.y, pose.roll, pose.yaw) + 1e-4;
+    const ContactPatches table = contact.patches(pose);
+    const ContactPatches online = contact.search().patches(pose);
+    ASSERT_EQ(table.count, online.count);
+    ASSERT_GT(table.count, 0);
+    for (int n = 0; n < table.count; ++n) {
+      EXPECT_NE(table.patch[n].source, PatchSource::table);
+      EXPECT_EQ(table.patch[n].penetration, online.patch[n].penetration);
+    }
+  }
+}
+
+// A near miss asked for must be reported whether or not anything is in contact.
+TEST(GeometryTableAccuracy, NearMissesAreThoseOfTheOnlineSearch) {
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), GeometrySweepOptions{}))};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> y(-0.011, 0.011), yaw(-0.03, 0.03), dz(-3e-4, 3e-4);
+  const double near_miss = 1e-4;
+  int gaps = 0;
+  for (int n = 0; n < 3000; ++n) {
+    WheelsetPose pose{y(random), 0, 0, yaw(random)};
+    pose.z = contact.search().touch_height(pose.y, pose.roll, pose.yaw) + dz(random);
+    const ContactPatches table = contact.patches(pose, near_miss);
+    const ContactPatches online = contact.search().patches(pose, near_miss);
+    ASSERT_EQ(table.count, online.count) << pose.y << " " << pose.yaw << " " << pose.z;
+    for (int p = 0; p < table.count; ++p) {
+      EXPECT_NEAR(table.patch[p].penetration, online.patch[p].penetration, 1e-12);
+      gaps += table.patch[p].penetration < 0;
+    }
+  }
+  EXPECT_GT(gaps, 300);
+}
+
+TEST(GeometryTableAccuracy, ALookUpDoesNotAllocate) {
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), GeometrySweepOptions{}))};
+  const double touch = contact.search().touch_height(0.002, 0, 0.01);
+  const long before = allocations;
+  int patches = 0;
+  for (double y = -0.013; y < 0.013; y += 1e-5) patches += contact.patches({y, touch + 1e-4, 0, 0.01}).count;
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(patches, 0);
+}
+
+TEST(ErrorStatistics, QuantilesAreThoseOfTheSample) {
+  std::vector<double> values;
+  for (int n = 1000; n >= 1; --n) values.push_back(n);
+  const ErrorStatistics s = error_statistics(values);
+  EXPECT_EQ(s.mean, 500.5);
+  EXPECT_EQ(s.p50, 500);
+  EXPECT_EQ(s.p95, 950);
+  EXPECT_EQ(s.p99, 990);
+  EXPECT_EQ(s.p999, 999);
+  EXPECT_EQ(s.max, 1000);
+  EXPECT_EQ(error_statistics({}).max, 0);
+}
+
+}  // namespace
+}  // namespace railtab

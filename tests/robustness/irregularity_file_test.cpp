@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "railtab/runtime/track/irregularity.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+const std::string header = "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n";
+
+class IrregularityFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::temp_directory_path() / ("railtab-irregularity-" + name);
+    std::filesystem::create_directories(folder_);
+    file_ = folder_ / "track.csv";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Irregularity read(const std::string& text) {
+    std::ofstream(file_, std::ios::binary) << text;
+    return read_irregularity(file_);
+  }
+
+  /// Message without the folder, "no InputError" where the text was accepted.
+  std::string message_of(const std::string& text) {
+    try {
+      (void)read(text);
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      const size_t folder = message.find(folder_.string() + "/");
+      EXPECT_EQ(folder, 0u) << message;
+      return message.substr(folder_.string().size() + 1);
+    }
+    return "no InputError";
+  }
+
+  std::filesystem::path folder_, file_;
+};
+
+TEST_F(IrregularityFile, ReadsEachColumnInItsUnit) {
+  const Irregularity irregularity = read(
+      "# measured with a chord of 10 m\r\n"
+      "\n"
+      " x [m] , y_left[m],z_left[mm],y_right[mm], z_right[m]\r\n"
+      "-1.5, 0, 0, 0, 0\r\n"
+      "# a remark\n"
+      "0.5, 1e-3, 2, -3.5, 4.0e-3\n"
+      "2, 0, 0, 0, 0");
+  const RailDeviation left = irregularity.at(RailSide::left, 0.5), right = irregularity.at(RailSide::right, 0.5);
+  EXPECT_DOUBLE_EQ(left.y, 1e-3);
+  EXPECT_DOUBLE_EQ(left.z, 2e-3);
+  EXPECT_DOUBLE_EQ(right.y, -3.5e-3);
+  EXPECT_DOUBLE_EQ(right.z, 4e-3);
+  EXPECT_EQ(irregularity.at(RailSide::left, -1.51).y, 0.0);
+}
+
+TEST_F(IrregularityFile, ReadsPositionsInMillimetres) {
+  const Irregularity irregularity =
+      read("x[mm],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n250,1,0,0,0\n500,0,0,0,0\n");
+  EXPECT_DOUBLE_EQ(irregularity.at(RailSide::left, 0.25).y, 1e-3);
+}
+
+TEST_F(IrregularityFile, RefusesAHeaderWithoutUnits) {
+  EXPECT_EQ(message_of("x[m],y_left,z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n"),
+            "track.csv:1: found header 'y_left', expected 'y_left[m]' or 'y_left[mm]'");
+  EXPECT_EQ(message_of("# comment\nx[km],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n"),
+            "track.csv:2: found header 'x[km]', expected 'x[m]' or 'x[mm]'");
+  EXPECT_EQ(message_of("0,0,0,0,0\n1,0,0,0,0\n"), "track.csv:1: found header '0', expected 'x[m]' or 'x[mm]'");
+  EXPECT_EQ(message_of("x[m],z_left[mm],y_left[mm],y_right[mm],z_right[mm]\n"),
+            "track.csv:1: found header 'z_left[mm]', expected 'y_left[m]' or 'y_left[mm]'");
+}
+
+TEST_F(IrregularityFile, RefusesAWrongNumberOfColumns) {
+  const std::string expected = "expected 5: x, y_left, z_left, y_right, z_right";
+  EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0,0,0\n"), "track.csv:3: found 4 columns, " + expected);
+  EXPECT_EQ(message_of(header + "0,0,0,0,0,\n"), "track.csv:2: found 6 columns, " + expected);
+  EXPECT_EQ(message_of(header + "0;0;0;0;0\n"), "track.csv:2: found 1 columns, " + expected);
+}
+
+TEST_F(IrregularityFile, RefusesWhatIsNoFiniteNumber) {
+  for (const std::string cell : {"nan", "inf", "-inf", "1.0.0", "", "1e", "one", "1e999"}) {
+    EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0," + cell + ",0,0\n"),
+              "track.csv:3: found '" + cell + "' in column z_left, expected a finite number");
+  }
+}
+
+TEST_F(IrregularityFile, RefusesPositionsThatDoNotIncrease) {
+  EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0,0,0,0\n1,0,0,0,0\n"),
+            "track.csv:4: found x = 1 m, expected more than 1 m of the point before");
+  EXPECT_EQ(message_of(header + "0,0,0,0,0\n2,0,0,0,0\n1.5,0,0,0,0\n"),
+            "track.csv:4: found x = 1.5 m, expected more than 2 m of the point before");
+}
+
+TEST_F(IrregularityFile, RefusesAFileWithoutPoints) {
+  const std::string expected = "expected a header row and at least 2 points";
+  EXPECT_EQ(message_of(""), "track.csv: found 0 points, " + expected);
+  EXPECT_EQ(message_of(header), "track.csv: found 0 points, " + expected);
+  EXPECT_EQ(message_of(header + "0,0,0,0,0\n"), "track.csv: found 1 points, " + expected);
+}
+
+TEST_F(IrregularityFile, RefusesBinaryAndMissingFiles) {
+  EXPECT_NE(message_of(std::string("\x89HDF\r\n\x1a\n\0\0\0", 11)).find("track.csv:1: found"), std::string::npos);
+  for (const std::filesystem::path& place : {folder_ / "absent.csv", folder_}) {
+    try {
+      (void)read_irregularity(place);
+      FAIL() << place << " was accepted";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(place.string() + ": found "), 0u) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,204 @@
+// Damaged geometry tables: every one is refused with a message that names the file, or read as it was written.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "../unit/small_geometry_table.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr std::string_view filetype = "railtab-geometry-table";
+
+class TableFile : public ::testing::Test {
+ protected:
+  TableFile() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    write_geometry_table(file_, table_);
+    std::ifstream stream(file_, std::ios::binary);
+    bytes_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  }
+  ~TableFile() override { std::filesystem::remove_all(folder_); }
+
+  void write_bytes(std::string_view bytes) const {
+    std::ofstream stream(file_, std::ios::binary | std::ios::trunc);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+
+  /// The message of the InputError, or "" where the file was read; then it is the table that was written.
+  [[nodiscard]] std::string outcome() const {
+    try {
+      const GeometryTableData read = read_geometry_table(file_);
+      EXPECT_TRUE(same_table(read, table_)) << "a damaged file was read as another table";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("railtab_table_file_" + std::to_string(::getpid()));
+  std::filesystem::path file_ = folder_ / "table.h5";
+  GeometryTableData table_ = small_geometry_table();
+  std::string bytes_;
+};
+
+TEST_F(TableFile, CutAnywhereIsRefused) {
+  for (std::size_t length = 0; length < bytes_.size(); length += length < 1200 ? 1 : 97) {
+    write_bytes(std::string_view(bytes_).substr(0, length));
+    EXPECT_NE(outcome(), "") << "cut to " << length << " of " << bytes_.size() << " bytes";
+  }
+  write_bytes(std::string_view(bytes_).substr(0, bytes_.size() - 1));
+  EXPECT_NE(outcome().find("cut short"), std::string::npos);
+  write_bytes(bytes_);
+  EXPECT_EQ(outcome(), "") << "the whole file is still a good one";
+}
+
+TEST_F(TableFile, EveryFlippedByteIsRefused) {
+  std::mt19937 random(20240131);
+  std::uniform_int_distribution<int> mask(1, 255);
+  for (std::size_t i = 0; i < bytes_.size(); i += i < 1200 ? 1 : 7) {
+    std::string damaged = bytes_;
+    damaged[i] ^= static_cast<char>(mask(random));
+    write_bytes(damaged);
+    EXPECT_NE(outcome(), "") << "byte " << i;
+  }
+}
+
+TEST_F(TableFile, ManyFlippedBytesAreRefused) {
+  std::mt19937 random(20240131);
+  std::uniform_int_distribution<std::size_t> position(0, bytes_.size() - 1);
+  std::uniform_int_distribution<int> byte(0, 255), count(2, 40);
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::string damaged = bytes_;
+    for (int n = count(random); n > 0; --n) damaged[position(random)] = static_cast<char>(byte(random));
+    if (damaged == bytes_) continue;
+    write_bytes(damaged);
+    EXPECT_NE(outcome(), "") << "trial " << trial;
+  }
+}
+
+TEST_F(TableFile, OtherTypesAndVersionsAreNamed) {
+  ArrayFileWriter results(file_, "railtab-results", 1);
+  results.close();
+  EXPECT_NE(outcome().find("found a file of type railtab-results, expected type railtab-geometry-table"),
+            std::string::npos);
+  ArrayFileWriter newer(file_, filetype, 7);
+  newer.close();
+  EXPECT_NE(outcome().find("found format version 7 of railtab-geometry-table, expected version 1"), std::string::npos);
+  write_bytes("s y z\n0 0 0\n");
+  EXPECT_NE(outcome().find("no HDF5 signature"), std::string::npos);
+  std::filesystem::remove(file_);
+  EXPECT_NE(outcome().find("no such file"), std::string::npos);
+}
+
+/// What to make wrong in a copy of a table file, by the path of a dataset.
+struct Fault {
+  std::string left_out{}, wrong_shape{}, not_finite{}, last_bit{};
+};
+
+/// A copy of the file with a fault; it is whole and sealed, and keeps the checksum of the original.
+void copy_with_fault(const std::filesystem::path& from, const std::filesystem::path& to, const Fault& fault) {
+  const ArrayFileReader in(from, filetype, 1);
+  ArrayFileWriter out(to, filetype, 1);
+  const auto copy = [&](const std::string& path) {
+    if (path == fault.left_out) return;
+    auto [shape, values] = in.read(path);
+    if (path == fault.wrong_shape) {
+      values.resize(values.size() / shape.front() * (shape.front() + 1), 0.5);
+      ++shape.front();
+    }
+    if (path == fault.not_finite) values.back() = -std::numeric_limits<double>::infinity();
+    if (path == fault.last_bit) values.front() = std::nextafter(values.front(), 10.0);
+    out.write(path, values, shape, "m", "values");
+  };
+  for (const char* profile : {"profiles/wheel", "profiles/rail"}) {
+    for (const char* column : {"s", "y", "z", "dy", "dz"}) copy(std::string(profile) + "/" + column);
+    out.attribute(profile, "name", in.text(profile, "name"));
+  }
+  for (const char* axis : {"lateral", "yaw_squared", "roll"}) copy(std::string("axes/") + axis);
+  for (const char* name : {"track_gauge", "gauge_height", "flange_back", "nominal_radius", "tolerance"}) {
+    copy(std::string("dimensions/") + name);
+  }
+  const int branches = static_cast<int>(in.number("branches", "count"));
+  out.attribute("branches", "count", std::int64_t{branches});
+  for (int n = 0; n < branches; ++n) {
+    const std::string branch = "branches/" + std::to_string(n) + "/";
+    out.write(branch + "first_node", in.read_integers(branch + "first_node"), {3}, "1", "first node");
+    for (const char* column : {"z_touch", "s_wheel", "s_rail", "z_touch_dy", "s_wheel_dy", "s_rail_dy"}) {
+      copy(branch + column);
+    }
+  }
+  copy("cells/trusted_lowering");
+  for (const std::string& name : in.attribute_names("statistics")) {
+    out.attribute("statistics", name, in.number("statistics", name));
+  }
+  for (const char* name : {"program_version", "command_line", "created"}) {
+    out.attribute("provenance", name, in.text("provenance", name));
+  }
+  out.attribute("", "checksum", in.text("", "checksum"));
+  out.close();
+}
+
+TEST_F(TableFile, MissingMisshapenInfiniteOrChangedDatasetsAreNamed) {
+  const std::filesystem::path original = folder_ / "original.h5";
+  std::filesystem::copy_file(file_, original);
+  const auto outcome_of = [&](const Fault& fault) {
+    copy_with_fault(original, file_, fault);
+    return outcome();
+  };
+  const auto expect = [](const std::string& message, const std::string& words) {
+    EXPECT_NE(message.find(words), std::string::npos) << "\"" << words << "\" is missing in: " << message;
+  };
+  EXPECT_EQ(outcome_of({}), "") << "the copy without a fault is a good table";
+  for (const std::string path : {"profiles/wheel/s", "profiles/rail/dz", "axes/lateral", "axes/roll",
+                                 "branches/0/z_touch", "branches/1/s_rail_dy", "cells/trusted_lowering"}) {
+    expect(outcome_of({.left_out = path}), path + ": found no such dataset");
+    expect(outcome_of({.not_finite = path}), path + ": found -inf");
+    expect(outcome_of({.last_bit = path}), "with checksum");
+  }
+  expect(outcome_of({.last_bit = "dimensions/track_gauge"}), "with checksum");
+  for (const std::string path : {"profiles/wheel/dy", "branches/0/s_wheel", "cells/trusted_lowering"}) {
+    expect(outcome_of({.wrong_shape = path}), path + ": found the shape");
+  }
+  expect(outcome_of({.wrong_shape = "branches/0/z_touch"}),
+         "3 nodes of axis roll from node 0, expected a box in its 2 nodes");
+}
+
+TEST_F(TableFile, AFullDiskIsAnInputErrorAndKeepsTheOldTable) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{8192, 8192};  // stands for the full disk: no file may grow beyond
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int code = 1;
+    try {
+      write_geometry_table(file_, table_);
+    } catch (const InputError&) {
+      code = 0;
+    }
+    ::_exit(code);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
+  EXPECT_EQ(outcome(), "");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "a temporary file was left";
+}
+
+}  // namespace
+}  // namespace railtab

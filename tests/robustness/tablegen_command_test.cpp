@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+struct Outcome {
+  int exit_code;  // 128 + signal where the program was killed
+  std::string out, err;
+};
+
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Runs the built tablegen in a folder of its own.
+class TablegenCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("tablegen_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] Outcome tablegen(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" TABLEGEN_COMMAND "' " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
+            contents(folder_ / "stderr.txt")};
+  }
+
+  /// Exit code 2, nothing on stdout, one message on stderr with this text in it, and no file out.h5.
+  void expect_refused(const std::string& arguments, const std::string& text) const {
+    expect_refused_with_table(arguments, text);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5"));
+  }
+
+  /// As expect_refused(), where a table has been made before.
+  void expect_refused_with_table(const std::string& arguments, const std::string& text) const {
+    const Outcome outcome = tablegen(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_TRUE(outcome.err.starts_with("tablegen: ")) << outcome.err;
+    EXPECT_NE(outcome.err.find(text), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+
+  std::filesystem::path folder_;
+};
+
+constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
+
+TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
+  for (const std::string command : {"", "geometry ", "info ", "verify "}) {
+    const Outcome help = tablegen(command + "--help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("Usage: tablegen " + command), std::string::npos) << help.out;
+    const Outcome version = tablegen(command + "--version");
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_TRUE(version.out.starts_with("railtab ")) << version.out;
+  }
+}
+
+TEST_F(TablegenCommand, WrongCommandLines) {
+  expect_refused("", "no command");
+  expect_refused("geomtry", "\"geomtry\"");
+  expect_refused("geometry --wheel S1002 --rail 60E1", "output is missing");
+  expect_refused("geometry --rail 60E1 -o out.h5", "wheel is missing");
+  expect_refused(std::string(small) + "--tollerance 1e-8", "--tollerance");
+  expect_refused(std::string(small) + "--tol 1e-8", "--tol");
+  expect_refused(std::string(small) + "--roll 0.01", "LO:HI");
+  expect_refused(std::string(small) + "--roll 0.01:-0.01", "LO:HI");
+  expect_refused(std::string(small) + "--tolerance 0", "tolerance");
+  expect_refused(std::string(small) + "--tolerance nan", "--tolerance");
+  expect_refused(std::string(small) + "--gauge 1435", "gauge");
+  expect_refused(std::string(small) + "--rail-inclination 1:zero", "--rail-inclination");
+  expect_refused(std::string(small) + "--threads 0", "--threads");
+  expect_refused("geometry --wheel S1003 --rail 60E1 -o out.h5", "S1003");
+  expect_refused("geometry --wheel missing.prw --rail 60E1 -o out.h5", "missing.prw");
+  expect_refused("geometry --wheel S1002 --rail 60E1 --lateral 0.002:0.002 -o out.h5", "lateral");
+  expect_refused("geometry --wheel S1002 --rail 60E1 -o none/out.h5", "none");
+  expect_refused("info", "file is missing");
+  expect_refused("info none.h5", "none.h5");
+  expect_refused("verify none.h5", "none.h5");
+}
+
+TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
+  std::ofstream(folder_ / "text.h5") << "not a table";
+  expect_refused("info text.h5", "text.h5");
+  expect_refused("verify text.h5 --json", "text.h5");
+}
+
+TEST_F(TablegenCommand, GeometryInfoVerify) {
+  const Outcome made = tablegen(std::string(small) + "--json");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Outcome info = tablegen("info out.h5 --json");
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_EQ(made.out, info.out);
+  const nlohmann::json table = nlohmann::json::parse(info.out);
+  EXPECT_EQ(table["kind"], "geometry");
+  EXPECT_EQ(table["wheel"], "S1002");
+  EXPECT_EQ(table["axes"]["roll"]["nodes"], 1);
+  EXPECT_GT(table["branches"], 0);
+  EXPECT_EQ(table["statistics"]["certified.patch_mismatch_share"], 0.0);
+
+  const Outcome verified = tablegen("verify out.h5 --samples 3000 --seed 5 --json");
+  ASSERT_EQ(verified.exit_code, 0) << verified.err;
+  const nlohmann::json v = nlohmann::json::parse(verified.out);
+  EXPECT_EQ(v["kind"], "geometry");
+  EXPECT_EQ(v["samples"], 3000);
+  EXPECT_GE(v["fallback_share"], 0.0);
+  EXPECT_EQ(v["patch_mismatch_share"], 0.0);
+  for (const char* quantity :
+       {"penetration", "position_rail", "position_wheel", "contact_angle", "rolling_radius", "normal_force_relative"}) {
+    for (const char* statistic : {"mean", "p50", "p95", "p99", "p999", "max"}) {
+      EXPECT_TRUE(v["error"][quantity][statistic].is_number()) << quantity << "." << statistic;
+    }
+  }
+  EXPECT_GT(v["time_ns"]["table"], 0.0);
+  EXPECT_GT(v["time_ns"]["online"], 0.0);
+  EXPECT_GT(v["bytes"], 0);
+
+  // Another seed draws other queries, the same seed the same ones.
+  const auto penetration = [&](const std::string& seed) {
+    return nlohmann::json::parse(
+        tablegen("verify out.h5 --samples 500 --threads 1 --seed " + seed + " --json").out)["error"]["penetration"];
+  };
+  EXPECT_EQ(penetration("3"), penetration("3"));
+  EXPECT_NE(penetration("3"), penetration("4"));
+
+  expect_refused_with_table("verify out.h5 --samples 0", "--samples");
+  expect_refused_with_table("verify out.h5 --samples 1.5", "--samples");
+  expect_refused_with_table("verify out.h5 --dz -1e-4:1e-4", "dz");
+}
+
+TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
+  ASSERT_EQ(tablegen(std::string(small) + "--quiet").exit_code, 0);
+  std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
+  expect_refused_with_table("info out.h5", "out.h5");
+}
+
+TEST_F(TablegenCommand, QuietPrintsNothing) {
+  const Outcome made = tablegen(std::string(small) + "--quiet");
+  EXPECT_EQ(made.exit_code, 0);
+  EXPECT_EQ(made.out + made.err, "");
+}
+
+}  // namespace

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+struct Outcome {
+  int exit_code;  // 128 + signal where the program was killed
+  std::string output;
+};
+
+/// Runs the built vsi in a folder of its own; stdout and stderr together.
+class VsiCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("vsi_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+
+  [[nodiscard]] Outcome vsi(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" VSI_COMMAND "' " + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    if (!pipe) return {-1, "no shell"};
+    Outcome outcome{0, ""};
+    std::array<char, 4096> buffer;
+    for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+      outcome.output.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return outcome;
+  }
+
+  /// Exit code 2, one message that begins with "vsi: " and has this text in it, and no output file.
+  void expect_refused(const std::string& arguments, const std::string& text) const {
+    const Outcome outcome = vsi(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
+    EXPECT_TRUE(outcome.output.starts_with("vsi: ")) << outcome.output;
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << arguments << "\n" << outcome.output;
+    EXPECT_EQ(outcome.output.find("vsi: ", 1), std::string::npos) << outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(VsiCommand, HelpAndVersionOfEveryCommand) {
+  for (const char* command : {"", "contact ", "creep ", "run ", "report "}) {
+    const Outcome help = vsi(std::string(command) + "--help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.output.find("vsi " + std::string(command)), std::string::npos) << help.output;
+    const Outcome version = vsi(std::string(command) + "--version");
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_TRUE(version.output.starts_with("railtab ")) << version.output;
+  }
+}
+
+TEST_F(VsiCommand, WrongCommandLines) {
+  expect_refused("", "no command");
+  expect_refused("rnu", "unknown command 'rnu'");
+  expect_refused("run", "the argument scene is missing");
+  expect_refused("run scene.toml --contcat table", "--contcat");
+  expect_refused("run scene.toml --threads -1", "threads");
+  expect_refused("run scene.toml --threads many", "threads");
+  expect_refused("report results.h5", "output");
+  expect_refused("contact pair.h5 -o out", "query");
+  expect_refused("contact pair.h5 --query q.csv -o none/out", "no folder none");
+}
+
+TEST_F(VsiCommand, MissingFiles) {
+  expect_refused("run absent.toml -o out", "absent.toml: found no such file");
+  expect_refused("report absent.h5 -o out", "absent.h5");
+  expect_refused("contact absent.h5 --query q.csv -o out", "absent.h5");
+  expect_refused("creep --law polach --query absent.csv -o out", "absent.csv: found no such file");
+}
+
+TEST_F(VsiCommand, FilesThatAreNotWhatTheyShouldBe) {
+  write("text.h5", "not HDF5");
+  write("empty.h5", "");
+  write("q.csv", "y,yaw,roll,dz\n0,0,0,1e-5\n");
+  for (const char* file : {"text.h5", "empty.h5", "q.csv"}) {
+    expect_refused(std::string("report ") + file + " -o out", file);
+    expect_refused(std::string("contact ") + file + " --query q.csv -o out", file);
+  }
+}
+
+TEST_F(VsiCommand, WrongScenes) {
+  write("key.toml", "[contact]\nmode = \"online\"\n\n[tran]\nsped = 3\n");
+  expect_refused("run key.toml -o out", "key.toml:5: unknown key 'tran.sped'; did you mean 'train.speed'?");
+  write("toml.toml", "[contact\nmode = \"online\"\n");
+  expect_refused("run toml.toml -o out", "toml.toml:1: ");
+  write("table.toml", "[train]\n");
+  expect_refused("run table.toml -o out", "without contact.table");
+  write("online.toml", "[contact]\nmode = \"online\"\n");
+  expect_refused("run online.toml --contact table -o out", "without contact.table");
+  expect_refused("run online.toml --contact tabel -o out", "--contact: found tabel, expected table, online or paper");
+  expect_refused("run online.toml -o none/out", "no folder none");
+  write("junk.h5", "junk");
+  write("junk.toml", "[contact]\ntable = \"junk.h5\"\n[[bridge]]\n");
+  expect_refused("run junk.toml -o out", "junk.h5");
+  expect_refused("run junk.toml -o junk.h5", "the scene's own geometry table");
+}
+
+TEST_F(VsiCommand, CreepTableIsNotPartOfThisVersion) {
+  write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
+  expect_refused("creep --query q.csv -o out", "no creep table");
+  expect_refused("creep creep.h5 --query q.csv -o out --law table", "no creep table");
+  expect_refused("creep --query q.csv -o out --law kalker", "kalker");
+  expect_refused("creep --query q.csv -o out --law polach --poisson 0.7", "--poisson");
+}
+
+TEST_F(VsiCommand, WrongQueriesNameTheirLine) {
+  const auto refuse = [&](const std::string& text, const std::string& message) {
+    write("q.csv", text);
+    expect_refused("creep --law polach --query q.csv -o out", message);
+  };
+  refuse("", "q.csv: found no row of numbers");
+  refuse("ratio,ux,uy,phi\n", "q.csv: found no row of numbers");
+  refuse("ratio,ux,uy\n1,2,3\n", "q.csv:1: found 3 columns");
+  refuse("ratio,ux,uy,spin\n1,2,3,4\n", "q.csv:1: found column 'spin'");
+  refuse("ratio,ux,uy,ux\n1,2,3,4\n", "q.csv:1: found column 'ux' twice");
+  refuse("ratio,ux,uy,phi\n1,0,0,0\n1,0,0\n", "q.csv:3: found 3 fields");
+  refuse("ratio,ux,uy,phi\n1,0,zero,0\n", "q.csv:2: found 'zero' in column uy");
+  refuse("ratio,ux,uy,phi\n1,0,nan,0\n", "q.csv:2: found 'nan' in column uy");
+  refuse("ratio,ux,uy,phi\n1,,0,0\n", "q.csv:2: found '' in column ux");
+  refuse("# a comment\nratio,ux,uy,phi\n\n0,0,0,0\n", "q.csv:4: found ratio = 0, expected a/b > 0");
+}
+
+TEST_F(VsiCommand, CreepForcesOfEveryLawInTheColumnsOfTheContract) {
+  write("q.csv", "phi, ux, uy, ratio\n0,1e-3,0,1\n0,1e3,0,1\n");
+  for (const char* law : {"linear", "polach", "fastsim"}) {
+    const Outcome outcome = vsi(std::string("creep --query q.csv -o r.csv --json --law ") + law);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_EQ(outcome.output, "{\"queries\": 2, \"law\": \"" + std::string(law) + "\", \"output\": \"r.csv\"}\n");
+    std::ifstream result(folder_ / "r.csv");
+    std::string header, small;
+    std::getline(result, header);
+    std::getline(result, small);
+    EXPECT_EQ(header, "fx,fy,mz,source");
+    // c11 of a circular patch is near 4.2: a creepage of 1e-3 along x pulls back by about 4.2e-3
+    EXPECT_NEAR(std::atof(small.c_str()), -4.2e-3, 0.4e-3) << law;
+    EXPECT_TRUE(small.ends_with(law)) << small;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,77 @@
+#include "railtab/tables/geometry_table_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "small_geometry_table.hpp"
+
+namespace railtab {
+namespace {
+
+class GeometryTableFile : public ::testing::Test {
+ protected:
+  ~GeometryTableFile() override { std::filesystem::remove(file_); }
+
+  std::filesystem::path file_ =
+      std::filesystem::temp_directory_path() / ("railtab_geometry_table_" + std::to_string(::getpid()) + ".h5");
+};
+
+TEST_F(GeometryTableFile, ReturnsTheTableToTheLastBit) {
+  const GeometryTableData table = small_geometry_table();
+  write_geometry_table(file_, table);
+  const GeometryTableData read = read_geometry_table(file_);
+  EXPECT_TRUE(same_table(read, table));
+  EXPECT_EQ(read.statistics, table.statistics) << "order included";
+  EXPECT_NO_THROW(GeometryTable{read});
+}
+
+TEST_F(GeometryTableFile, TellsATableFromAnotherOne) {
+  // The comparison itself: a difference in the last bit of any part must show.
+  const GeometryTableData table = small_geometry_table();
+  const auto differs = [&](const auto& change) {
+    GeometryTableData other = table;
+    change(other);
+    return !same_table(other, table);
+  };
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.rail.dz[3] = std::nextafter(t.rail.dz[3], 1.0); }));
+  EXPECT_TRUE(
+      differs([](GeometryTableData& t) { t.branches[1].s_rail[0] = std::nextafter(t.branches[1].s_rail[0], 1.0); }));
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.branches.pop_back(); }));
+}
+
+TEST_F(GeometryTableFile, KeepsATableWithoutBranchesAndStatistics) {
+  GeometryTableData table = small_geometry_table();
+  table.branches.clear();
+  table.statistics.clear();
+  table.yaw_squared = {0.0};
+  table.roll = {0.0};
+  table.trusted_lowering.assign(4, 0.0);
+  write_geometry_table(file_, table);
+  EXPECT_TRUE(same_table(read_geometry_table(file_), table));
+}
+
+TEST_F(GeometryTableFile, NamesUnitAndMeaningOfEveryDataset) {
+  write_geometry_table(file_, small_geometry_table());
+  const ArrayFileReader in(file_, "railtab-geometry-table", 1);
+  const std::vector<std::pair<std::string, std::string>> units{
+      {"profiles/wheel/s", "m"},       {"profiles/rail/dz", "1"},      {"axes/lateral", "m"},
+      {"axes/yaw_squared", "rad^2"},   {"axes/roll", "rad"},           {"branches/0/z_touch", "m"},
+      {"branches/1/s_rail_dy", "1"},   {"branches/1/first_node", "1"}, {"cells/trusted_lowering", "m"},
+      {"dimensions/track_gauge", "m"}, {"dimensions/tolerance", "m"}};
+  for (const auto& [path, unit] : units) {
+    EXPECT_EQ(in.text(path, "unit"), unit) << path;
+    EXPECT_GT(in.text(path, "description").size(), 5U) << path;
+  }
+  EXPECT_EQ(in.read("branches/1/z_touch").shape, (std::vector<std::size_t>{2, 1, 3})) << "roll, yaw squared, lateral";
+  EXPECT_EQ(in.read("cells/trusted_lowering").shape, (std::vector<std::size_t>{1, 2, 4}));
+}
+
+TEST_F(GeometryTableFile, AFolderThatDoesNotExistIsAnInputError) {
+  EXPECT_THROW(write_geometry_table(file_ / "no" / "t.h5", small_geometry_table()), InputError);
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "axis_ticks.hpp"
+#include "chart.hpp"
+#include "headline.hpp"
+#include "html_text.hpp"
+#include "polyline.hpp"
+#include "report_page.hpp"
+
+namespace railtab::report {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(AxisTicks, StandAtRoundNumbersAndEncloseTheData) {
+  const Axis axis = rounded_axis(-0.37, 4.1, 5);
+  EXPECT_DOUBLE_EQ(axis.low, -1.0);
+  EXPECT_DOUBLE_EQ(axis.high, 5.0);
+  ASSERT_EQ(axis.ticks.size(), 7u);
+  EXPECT_EQ(axis.ticks[0].label, "−1");
+  EXPECT_EQ(axis.ticks[1].label, "0");
+  EXPECT_EQ(axis.ticks[6].label, "5");
+}
+
+TEST(AxisTicks, TightAxisEndsWithTheData) {
+  const Axis axis = tight_axis(0.03, 0.47, 5);
+  EXPECT_EQ(axis.low, 0.03);
+  EXPECT_EQ(axis.high, 0.47);
+  ASSERT_EQ(axis.ticks.size(), 4u);
+  EXPECT_EQ(axis.ticks.front().label, "0.1");
+  EXPECT_EQ(axis.ticks.back().label, "0.4");
+}
+
+TEST(AxisTicks, ConstantDataGetAnAxis) {
+  for (const double value : {0.0, 5.0, -3e-7, 1e9}) {
+    const Axis axis = rounded_axis(value, value, 5);
+    EXPECT_LT(axis.low, axis.high);
+    EXPECT_LE(axis.low, value);
+    EXPECT_GE(axis.high, value);
+    EXPECT_GE(axis.ticks.size(), 2u);
+    EXPECT_LE(axis.ticks.size(), 12u);
+  }
+}
+
+TEST(Polyline, KeepsEveryPeakOfALongSignal) {
+  const int n = 100000;
+  std::vector<double> x(n), y(n, 0.0);
+  for (int i = 0; i < n; ++i) x[i] = i;
+  y[12345] = 7.0;
+  y[12346] = -9.0;
+  const std::vector<Point> points = decimated(x, y, tight_axis(0, n - 1, 5), 500);
+  EXPECT_LE(points.size(), 2004u);
+  EXPECT_NE(std::find_if(points.begin(), points.end(), [](Point p) { return p.x == 12345 && p.y == 7.0; }),
+            points.end());
+  EXPECT_NE(std::find_if(points.begin(), points.end(), [](Point p) { return p.x == 12346 && p.y == -9.0; }),
+            points.end());
+  EXPECT_TRUE(std::is_sorted(points.begin(), points.end(), [](Point a, Point b) { return a.x < b.x; }));
+}
+
+TEST(Polyline, ShortSignalIsKeptAsItIs) {
+  const std::vector<double> x{0, 1, 2, 3}, y{4, 1, 3, 2};
+  const std::vector<Point> points = decimated(x, y, tight_axis(0, 3, 5), 500);
+  ASSERT_EQ(points.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(points[i].y, y[i]);
+}
+
+TEST(Polyline, GapStartsANewLine) {
+  const std::vector<double> x{0, 1, 2, 3, 4}, y{0, 1, nan, nan, 1};
+  const Axis axis{0, 4, {}}, up{0, 1, {}};
+  EXPECT_EQ(path_data(decimated(x, y, axis, 100), axis, up), "M0.0 1000.0L250.0 0.0M1000.0 0.0");
+}
+
+TEST(HtmlText, EscapesAndRounds) {
+  EXPECT_EQ(escaped("a<b & \"c\" 'd'>"), "a&lt;b &amp; &quot;c&quot; &#39;d&#39;&gt;");
+  EXPECT_EQ(shown(1234.56), "1235");
+  EXPECT_EQ(shown(0.012345), "0.0123");
+  EXPECT_EQ(shown(-2.0), "−2.00");
+  EXPECT_EQ(shown(0.0), "0");
+  EXPECT_EQ(shown(nan), "–");
+}
+
+TEST(Chart, LimitIsInsideTheAxisAndNamed) {
+  const std::string html = chart_html({"T", "", "x", "y", {{"line", {0, 1}, {0.0, 0.1}}}, {}, {{0.8, "0.8 – limit"}}});
+  EXPECT_NE(html.find("0.8 – limit"), std::string::npos);
+  EXPECT_NE(html.find("data-y=\"0,1\""), std::string::npos);
+  EXPECT_EQ(chart_html({"T", "", "x", "y", {{"line", {0, 1}, {nan, nan}}}, {}, {}}), "");
+}
+
+/// Two records of one wheelset, one coach and one deck node, with values that are told apart by their size.
+RunResults small_run() {
+  RunResults run;
+  run.header.scene_name = "small <run>";
+  run.header.scene_text = "[train]\nspeed = 50 # </pre><script>\n";
+  run.header.program_version = "9.8.7";
+  run.header.speed = 50.0;
+  run.header.wheel_x = {0.0, 0.0};
+  run.header.static_wheel_load = {50e3, 50e3};
+  run.header.body_names = {"coach-1/car-body", "coach-1/bogie-1"};
+  run.header.node_names = {"deck-midspan-1", "rail-left-midspan-1"};
+  run.header.node_x = {16.0, 16.0};
+  run.header.wheel_y = {-0.03, 0.0, 0.06};
+  run.header.wheel_z = {0.028, 0.0, -0.002};
+  run.header.rail_y = {-0.035, -0.03, 0.0, 0.035};
+  run.header.rail_z = {0.03, 0.008, 0.0, 0.02};
+  for (int i = 0; i < 2; ++i) {
+    StepRecord step;
+    step.time = 0.1 * i;
+    step.position = 5.0 * i;
+    step.wheels.resize(2);
+    step.wheels[0] = {.Q = i == 0 ? 50e3 : 40e3, .Y = -8e3, .patches = 1, .y_rail = 0.002, .y_wheel = 0.001};
+    step.wheels[1] = {.Q = i == 0 ? 50e3 : 60e3, .Y = 3e3, .patches = 1, .y_rail = -0.004, .y_wheel = -0.003};
+    step.bodies.resize(2);
+    step.bodies[0].acceleration[2] = -0.5 * i;
+    step.bodies[0].acceleration[1] = 0.25 * i;
+    step.bodies[1].acceleration[2] = 99.0;  // a bogie: no car body
+    step.nodes.resize(2);
+    step.nodes[0].acceleration[2] = -3.0 * i;
+    step.nodes[0].displacement[2] = 0.004 * i;
+    step.nodes[1].acceleration[2] = 77.0;  // a rail: no deck
+    run.steps.push_back(step);
+  }
+  run.summary.complete = true;
+  run.summary.contact_queries = 200;
+  run.summary.table_queries = 150;
+  run.summary.seconds_total = 0.05;
+  run.summary.seconds_contact = 0.02;
+  return run;
+}
+
+Headline headline_of(const RunResults& run) {
+  HeadlineCollector collector(run.header);
+  for (const StepRecord& step : run.steps) collector.add(step);
+  return collector.result(run.summary);
+}
+
+TEST(Headline, TakesTheExtremesOfTheRightBodiesAndWheels) {
+  const Headline headline = headline_of(small_run());
+  EXPECT_EQ(headline.deck_acceleration.value, 3.0);
+  EXPECT_EQ(headline.deck_acceleration.where, "deck-midspan-1");
+  EXPECT_EQ(headline.deck_acceleration.time, 0.1);
+  EXPECT_EQ(headline.deck_displacement.value, 0.004);
+  EXPECT_EQ(headline.car_body_vertical.value, 0.5);
+  EXPECT_EQ(headline.car_body_lateral.value, 0.25);
+  EXPECT_EQ(headline.car_body_lateral.where, "coach-1");
+  EXPECT_DOUBLE_EQ(headline.derailment.value, 0.2);
+  EXPECT_EQ(headline.derailment.where, "wheelset 1 left");
+  EXPECT_DOUBLE_EQ(headline.unloading.value, 0.2);
+  EXPECT_EQ(headline.largest_Q.value, 60e3);
+  EXPECT_EQ(headline.smallest_Q.value, 40e3);
+  EXPECT_EQ(headline.distance, 5.0);
+  EXPECT_EQ(headline.table_share, 0.75);
+  EXPECT_DOUBLE_EQ(headline.real_time_factor, 2.0);
+}
+
+TEST(Headline, LiftOffIsNoDerailmentCoefficientButWholeUnloading) {
+  RunResults run = small_run();
+  run.steps[1].wheels[0].Q = 0.0;
+  run.steps[1].wheels[0].Y = 0.0;
+  const Headline headline = headline_of(run);
+  EXPECT_EQ(headline.unloading.value, 1.0);
+  EXPECT_DOUBLE_EQ(headline.derailment.value, 0.16);  // of the first record
+}
+
+TEST(ReportPage, IsOneFileWithEverySection) {
+  const std::string page = report_page(small_run());
+  for (const char* part : {"Running safety", "Wheel forces", "Wheel and rail", "Car bodies", "Bridge and track",
+                           "Where the time went", "Scene", "railtab 9.8.7", "0.8 – EN 14363", "0.6 – EN 14363"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  for (const char* outside : {"http:", "https:", "src=", "href=", "@import", "url("}) {
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  }
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(ReportPage, EscapesTheScene) {
+  const std::string page = report_page(small_run());
+  EXPECT_NE(page.find("small &lt;run&gt;"), std::string::npos);
+  EXPECT_EQ(page.find("</pre><script>\n"), std::string::npos);
+}
+
+TEST(ReportPage, SaysWhenARunIsNotComplete) {
+  RunResults run = small_run();
+  EXPECT_EQ(report_page(run).find("not complete"), std::string::npos);
+  run.summary.complete = false;
+  run.summary.message = "the step at t = 0.3 s did not converge";
+  EXPECT_NE(report_page(run).find("not complete.</b> the step at t = 0.3 s"), std::string::npos);
+}
+
+TEST(ReportPage, RunWithoutRecordsBridgeOrOutlinesIsStillAPage) {
+  RunResults run;
+  run.header.scene_name = "empty";
+  const std::string page = report_page(run);
+  EXPECT_NE(page.find("not complete"), std::string::npos);
+  EXPECT_EQ(page.find("Bridge and track"), std::string::npos);
+  EXPECT_EQ(page.find("<figure"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace railtab::report

@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+/// A scene in a folder of its own, with a file that may stand for a table.
+class Scene : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("scene_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "pair.h5") << "stands for a table";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] SceneParameters read(const std::string& text) const {
+    std::ofstream(folder_ / "scene.toml") << text;
+    return read_scene(folder_ / "scene.toml");
+  }
+
+  /// The message of the error that this scene gives, without the folder's name.
+  [[nodiscard]] std::string message(const std::string& text) const {
+    try {
+      static_cast<void>(read(text));
+    } catch (const InputError& wrong) {
+      std::string what = wrong.what();
+      for (std::size_t at; (at = what.find(folder_.string() + "/")) != std::string::npos;) {
+        what.erase(at, folder_.string().size() + 1);
+      }
+      return what;
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+};
+
+constexpr const char* online = "[contact]\nmode = \"online\"\n";
+
+TEST_F(Scene, EverySectionReachesItsMember) {
+  const SceneParameters scene = read(R"(name = "all sections"
+[train]
+count = 3
+speed_kmh = 180
+start = -12.5
+initial_lateral_shift = 0.002
+[contact]
+mode = "table"
+table = "pair.h5"
+rail_inclination = "1:20"
+creep_law = "fastsim"
+friction = 0.4
+dimensions.track_gauge = 1.437
+material = { E = 206e9, nu = 0.3 }
+[track]
+kind = "flexible"
+elements_per_bay = 4
+rail.mass = 54
+pad.kz = 80e6
+ballast_deck.cx = 0
+[[bridge]]
+length = 20
+count = 2
+[[bridge]]
+[integration]
+time_step = 1e-3
+alpha = 0
+max_halvings = 3
+[output]
+every = 5
+)");
+  EXPECT_EQ(scene.name, "all sections");
+  EXPECT_EQ(scene.train.count, 3);
+  EXPECT_DOUBLE_EQ(scene.train.speed, 50.0);
+  EXPECT_EQ(scene.train.start, -12.5);
+  EXPECT_EQ(scene.train.initial_lateral_shift, 0.002);
+  EXPECT_EQ(scene.contact.mode, ContactMode::table);
+  EXPECT_EQ(scene.contact.table, folder_ / "pair.h5");
+  EXPECT_DOUBLE_EQ(scene.contact.rail_inclination, 0.05);
+  EXPECT_EQ(scene.contact.creep_law, "fastsim");
+  EXPECT_EQ(scene.contact.friction, 0.4);
+  EXPECT_EQ(scene.contact.dimensions.track_gauge, 1.437);
+  EXPECT_EQ(scene.contact.material.E, 206e9);
+  EXPECT_EQ(scene.contact.material.nu, 0.3);
+  EXPECT_EQ(scene.track_kind, TrackKind::flexible);
+  EXPECT_EQ(scene.track.elements_per_bay, 4);
+  EXPECT_EQ(scene.track.rail.mass, 54.0);
+  EXPECT_EQ(scene.track.pad.kz, 80e6);
+  EXPECT_EQ(scene.track.ballast_deck.cx, 0.0);
+  ASSERT_EQ(scene.spans.size(), 3u);
+  EXPECT_EQ(scene.spans[0].length, 20.0);
+  EXPECT_EQ(scene.spans[1].length, 20.0);
+  EXPECT_EQ(scene.spans[2].length, BridgeParameters{}.length);
+  EXPECT_EQ(scene.integration.time_step, 1e-3);
+  EXPECT_EQ(scene.integration.alpha, 0.0);
+  EXPECT_EQ(scene.integration.max_halvings, 3);
+  EXPECT_EQ(scene.output.every, 5);
+  EXPECT_FALSE(scene.irregularity.has_value());
+}
+
+TEST_F(Scene, KeepsItsTextAndTakesItsNameFromTheFile) {
+  const SceneParameters scene = read(online);
+  EXPECT_EQ(scene.text, online);
+  EXPECT_EQ(scene.name, "scene");
+  EXPECT_TRUE(scene.spans.empty());
+}
+
+TEST_F(Scene, UnknownKeyNamesItsLineAndTheNearestKey) {
+  EXPECT_EQ(message(std::string(online) + "\n[tran]\nsped = 3\n"),
+            "scene.toml:5: unknown key 'tran.sped'; did you mean 'train.speed'?");
+  EXPECT_EQ(message(std::string(online) + "frction = 0.2\n"),
+            "scene.toml:3: unknown key 'contact.frction'; did you mean 'contact.friction'?");
+  EXPECT_EQ(message("speed_kmh = 200\n"), "scene.toml:1: unknown key 'speed_kmh'; did you mean 'train.speed_kmh'?");
+  EXPECT_EQ(message("[[bridge]]\nlenght = 200\n"),
+            "scene.toml:2: unknown key 'bridge.lenght'; did you mean 'bridge.length'?");
+  EXPECT_EQ(message("[track.pad]\nstiffness_in_the_vertical_direction = 1\n").substr(0, 70),
+            "scene.toml:2: unknown key 'track.pad.stiffness_in_the_vertical_directi");
+  EXPECT_EQ(message("[weather]\n"),
+            "scene.toml:1: unknown key 'weather'; the sections are train, contact, track, "
+            "bridge, irregularity, integration and output");
+}
+
+TEST_F(Scene, FirstWrongLineOfTheFileIsNamed) {
+  EXPECT_TRUE(message("[train]\nzzz = 1\n[contact]\naaa = 2\n").starts_with("scene.toml:2: unknown key 'train.zzz'"));
+}
+
+TEST_F(Scene, WrongTypesSayWhatWasFoundAndExpected) {
+  EXPECT_EQ(message("[train]\nspeed = \"fast\"\n"),
+            "scene.toml:2: train.speed: found the text \"fast\", expected a number, > 0, <= 200 m/s");
+  EXPECT_EQ(message("[train]\ncount = 2.5\n"), "scene.toml:2: train.count: found 2.5, expected an integer 1 to 100");
+  EXPECT_EQ(message("[train]\ncount = 101\n"), "scene.toml:2: train.count: found 101, expected an integer 1 to 100");
+  EXPECT_EQ(message("[contact]\nmode = true\n"),
+            "scene.toml:2: contact.mode: found true, expected one of table, online, paper");
+  EXPECT_EQ(message("train = 3\n"), "scene.toml:1: train: found 3, expected a section [train]");
+  EXPECT_EQ(message("[bridge]\nlength = 3\n"),
+            "scene.toml:1: bridge: found [bridge], expected one [[bridge]] per span");
+  EXPECT_EQ(message("[contact]\nfriction = [0.1, 0.2]\n"),
+            "scene.toml:2: contact.friction: found a value of type array, expected a number, 0 to 2");
+}
+
+TEST_F(Scene, NumbersOutOfRangeAreRefused) {
+  for (const char* number : {"-1", "0", "nan", "inf", "201"}) {
+    EXPECT_TRUE(
+        message(std::string("[train]\nspeed = ") + number + "\n").starts_with("scene.toml:2: train.speed: found"))
+        << number;
+  }
+  EXPECT_TRUE(message("[integration]\nalpha = -0.4\n").starts_with("scene.toml:2: integration.alpha: found -0.4"));
+  EXPECT_EQ(read(std::string(online) + "[integration]\nalpha = -0.3333333333333333\n").integration.alpha,
+            -0.3333333333333333);
+}
+
+TEST_F(Scene, RailInclinationAsRatioOrNumber) {
+  EXPECT_DOUBLE_EQ(read(std::string(online) + "rail_inclination = \"1:40\"\n").contact.rail_inclination, 0.025);
+  EXPECT_EQ(read(std::string(online) + "rail_inclination = 0.05\n").contact.rail_inclination, 0.05);
+  for (const char* wrong : {"\"1:0\"", "\"1:\"", "\"2:40\"", "\"1:40x\"", "\"1:2\"", "0.5", "\"\""}) {
+    EXPECT_TRUE(message(std::string(online) + "rail_inclination = " + wrong + "\n")
+                    .starts_with("scene.toml:3: contact.rail_inclination: found"))
+        << wrong;
+  }
+}
+
+TEST_F(Scene, SpeedIsGivenOnce) {
+  EXPECT_EQ(message(std::string(online) + "[train]\nspeed_kmh = 200\nspeed = 50\n"),
+            "scene.toml:5: train.speed: found train.speed_kmh too, expected either train.speed or train.speed_kmh");
+}
+
+TEST_F(Scene, MissingFilesAreNamed) {
+  EXPECT_EQ(message("[contact]\ntable = \"none.h5\"\n"),
+            "scene.toml:2: contact.table: found no file none.h5, expected an existing file, relative to the scene");
+  EXPECT_EQ(message(std::string(online) + "[irregularity]\nfile = \"bumps.csv\"\n").substr(0, 58),
+            "scene.toml:4: irregularity.file: found no file bumps.csv, ");
+  EXPECT_TRUE(message(std::string(online) + "wheel = \"S1003\"\n")
+                  .starts_with("scene.toml:3: contact.wheel: found the "
+                               "text \"S1003\", expected a built-in"));
+  EXPECT_THROW(static_cast<void>(read_scene(folder_ / "absent.toml")), InputError);
+}
+
+TEST_F(Scene, PartsThatDoNotFitTogetherAreRefused) {
+  EXPECT_TRUE(message("[train]\n").starts_with("scene.toml: scene: found contact.mode = \"table\" without"));
+  EXPECT_TRUE(message(std::string(online) + "[track]\nkind = \"rigid\"\n[[bridge]]\n")
+                  .starts_with("scene.toml: scene: found a [[bridge]] on track.kind = \"rigid\""));
+}
+
+TEST_F(Scene, TomlErrorsNameTheLine) {
+  EXPECT_TRUE(message("[train]\nspeed = = 3\n").starts_with("scene.toml:2: "));
+  EXPECT_TRUE(message("[train]\nspeed = 3\nspeed = 4\n").starts_with("scene.toml:3: "));
+}
+
+/// The guide's key list is written from the reader's own table; a key, range or default that changes must change there.
+TEST(SceneGuide, ListsEveryKeyAsTheReaderKnowsIt) {
+  std::ifstream stream(RAILTAB_SOURCE_DIR "/docs/guide/scene.md");
+  const std::string guide((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string missing;
+  for (const SceneKey& key : scene_keys()) {
+    const std::string row = "| `" + key.path + "` | " + key.type + " | " + key.unit + " | " + key.range + " | " +
+                            key.standard + " | " + key.meaning + " |\n";
+    if (guide.find(row) == std::string::npos) missing += row;
+  }
+  EXPECT_EQ(missing, "") << "rows that docs/guide/scene.md should have";
+  EXPECT_GT(scene_keys().size(), 60u);
+}
+
+TEST(SceneExamples, TheDemoSceneNamesOnlyTheTableThatTheDemoMakes) {
+  try {
+    const SceneParameters scene = read_scene(RAILTAB_SOURCE_DIR "/docs/examples/demo.toml");
+    EXPECT_EQ(scene.spans.size(), 1u);
+  } catch (const InputError& wrong) {
+    EXPECT_NE(std::string(wrong.what()).find("contact.table: found no file"), std::string::npos) << wrong.what();
+  }
+}
+
+}  // namespace
+}  // namespace railtab

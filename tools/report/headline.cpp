@@ -1,0 +1,76 @@
+#include "headline.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace railtab::report {
+namespace {
+
+constexpr int lateral = 1, vertical = 2;  // of MotionRecord's six
+
+void raise(Extreme& extreme, double value, double time, const std::string& where) {
+  if (!extreme.found() || value > extreme.value) extreme = {value, time, where};
+}
+
+void lower(Extreme& extreme, double value, double time, const std::string& where) {
+  if (!extreme.found() || value < extreme.value) extreme = {value, time, where};
+}
+
+}  // namespace
+
+std::string wheel_name(std::size_t wheel) {
+  return fmt::format("wheelset {} {}", wheel / 2 + 1, wheel % 2 == 0 ? "left" : "right");
+}
+
+bool is_deck(const std::string& node_name) { return node_name.starts_with("deck"); }
+
+bool is_car_body(const std::string& body_name) { return body_name == "car-body" || body_name.ends_with("/car-body"); }
+
+std::string vehicle_of(const std::string& body_name) { return body_name.substr(0, body_name.find('/')); }
+
+HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(header) {
+  for (std::size_t i = 0; i < header.static_wheel_load.size(); ++i) wheel_names_.push_back(wheel_name(i));
+}
+
+void HeadlineCollector::add(const StepRecord& step) {
+  if (!any_) first_position_ = step.position;
+  any_ = true;
+  last_position_ = step.position;
+  headline_.simulated_time = step.time;
+  for (std::size_t i = 0; i < step.wheels.size(); ++i) {
+    const WheelRecord& wheel = step.wheels[i];
+    const double static_load = header_.static_wheel_load[i];
+    raise(headline_.largest_Q, wheel.Q, step.time, wheel_names_[i]);
+    lower(headline_.smallest_Q, wheel.Q, step.time, wheel_names_[i]);
+    if (wheel.Q > 0.0) raise(headline_.derailment, std::abs(wheel.Y) / wheel.Q, step.time, wheel_names_[i]);
+    if (static_load > 0.0) raise(headline_.unloading, 1.0 - wheel.Q / static_load, step.time, wheel_names_[i]);
+  }
+  for (std::size_t i = 0; i < step.bodies.size(); ++i) {
+    if (!is_car_body(header_.body_names[i])) continue;
+    const std::string vehicle = vehicle_of(header_.body_names[i]);
+    raise(headline_.car_body_vertical, std::abs(step.bodies[i].acceleration[vertical]), step.time, vehicle);
+    raise(headline_.car_body_lateral, std::abs(step.bodies[i].acceleration[lateral]), step.time, vehicle);
+  }
+  for (std::size_t i = 0; i < step.nodes.size(); ++i) {
+    if (!is_deck(header_.node_names[i])) continue;
+    raise(headline_.deck_acceleration, std::abs(step.nodes[i].acceleration[vertical]), step.time,
+          header_.node_names[i]);
+    raise(headline_.deck_displacement, std::abs(step.nodes[i].displacement[vertical]), step.time,
+          header_.node_names[i]);
+  }
+}
+
+Headline HeadlineCollector::result(const RunSummary& summary) const {
+  Headline result = headline_;
+  result.distance = last_position_ - first_position_;
+  if (summary.contact_queries > 0) {
+    result.table_share = static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries);
+  }
+  if (summary.complete && summary.message.empty() && summary.seconds_total > 0.0) {
+    result.real_time_factor = result.simulated_time / summary.seconds_total;
+  }
+  return result;
+}
+
+}  // namespace railtab::report

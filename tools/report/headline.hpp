@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/results/step_record.hpp"
+
+namespace railtab::report {
+
+/// The largest (or smallest) value of a quantity over a run, and where it stood.
+struct Extreme {
+  double value = 0.0;
+  double time = 0.0;  ///< [s]
+  std::string where;  ///< "coach-1", "wheelset 2 left", node name; empty: the run has no such quantity
+  [[nodiscard]] bool found() const noexcept { return !where.empty(); }
+};
+
+/// Headline numbers of a run. Raw maxima over the recorded steps: no filter, no sliding mean, no percentile.
+struct Headline {
+  Extreme deck_acceleration;      ///< |vertical| of nodes named deck… [m/s²]
+  Extreme deck_displacement;      ///< |vertical| of nodes named deck… [m]
+  Extreme car_body_vertical;      ///< |vertical acceleration| at a car body's centre of gravity [m/s²]
+  Extreme car_body_lateral;       ///< |lateral acceleration| there [m/s²]
+  Extreme derailment;             ///< |Y|/Q of a wheel while Q > 0 [-]
+  Extreme unloading;              ///< (Q0 - Q)/Q0 of a wheel; 1 is lift-off [-]
+  Extreme largest_Q, smallest_Q;  ///< [N]
+  double simulated_time = 0.0;    ///< of the last record [s]
+  double distance = 0.0;          ///< run by the train [m]
+  /// Share of contact queries that the table alone answered [-]; 0 where there was no query.
+  double table_share = 0.0;
+  /// Simulated time over wall time, above 1 faster than the train; 0 where a run was resumed or is not complete, since
+  /// its wall time is then not known.
+  double real_time_factor = 0.0;
+};
+
+/// Gathers the headline while a run goes, or from its results.
+class HeadlineCollector {
+ public:
+  explicit HeadlineCollector(const ResultHeader& header);
+  void add(const StepRecord& step);
+  [[nodiscard]] Headline result(const RunSummary& summary) const;
+
+ private:
+  ResultHeader header_;
+  std::vector<std::string> wheel_names_;
+  Headline headline_;
+  double first_position_ = 0.0;
+  double last_position_ = 0.0;
+  bool any_ = false;
+};
+
+/// "wheelset 3 left" for a wheel's index in StepRecord::wheels.
+[[nodiscard]] std::string wheel_name(std::size_t wheel);
+/// Nodes of the bridge deck are named deck….
+[[nodiscard]] bool is_deck(const std::string& node_name);
+/// Car bodies are named "<vehicle>/car-body".
+[[nodiscard]] bool is_car_body(const std::string& body_name);
+/// "coach-1" of "coach-1/car-body".
+[[nodiscard]] std::string vehicle_of(const std::string& body_name);
+
+}  // namespace railtab::report

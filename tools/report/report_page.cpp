@@ -1,0 +1,172 @@
+#include "report_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "contact_figure.hpp"
+#include "headline.hpp"
+#include "html_text.hpp"
+#include "page_assets.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "run_charts.hpp"
+
+namespace railtab::report {
+namespace {
+
+std::string tile(std::string_view name, const std::string& value, std::string_view unit, const std::string& where) {
+  return fmt::format("<div><dt>{}</dt><dd class=\"value\">{} <small>{}</small></dd><dd class=\"where\">{}</dd></div>",
+                     name, value, unit, escaped(where));
+}
+
+std::string tile(std::string_view name, const Extreme& extreme, double factor, std::string_view unit) {
+  if (!extreme.found()) return "";
+  return tile(name, shown(factor * extreme.value), unit,
+              fmt::format("{}, t\u00a0=\u00a0{}\u00a0s", extreme.where, shown(extreme.time)));
+}
+
+std::string tiles(const Headline& headline, const RunSummary& summary) {
+  std::string html = "<dl class=\"tiles\">";
+  html += tile("Deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
+  html += tile("Deck displacement", headline.deck_displacement, 1e3, "mm");
+  html += tile("Car body, vertical", headline.car_body_vertical, 1.0, "m/s²");
+  html += tile("Car body, lateral", headline.car_body_lateral, 1.0, "m/s²");
+  html += tile("Largest Y/Q", headline.derailment, 1.0, "");
+  html += tile("Wheel unloading ΔQ/Q0", headline.unloading, 100.0, "%");
+  html += tile("Largest Q", headline.largest_Q, 1e-3, "kN");
+  html += tile("Smallest Q", headline.smallest_Q, 1e-3, "kN");
+  if (summary.contact_queries > 0) {
+    html += tile("Served by the table", shown(100.0 * headline.table_share, 4), "%",
+                 fmt::format("of {} contact queries", summary.contact_queries));
+  }
+  html += tile("Contact time", shown(summary.seconds_contact), "s",
+               fmt::format("of {} s in all", shown(summary.seconds_total)));
+  if (headline.real_time_factor > 0.0) {
+    html += tile("Real-time factor", shown(headline.real_time_factor), "×", "simulated time over run time");
+  }
+  return html + "</dl><p class=\"lead\">Largest values of the recorded steps, unfiltered.</p>";
+}
+
+struct Share {
+  const char* name;
+  double seconds;
+  const char* colour;
+};
+
+/// Where the run's wall time went: a stacked bar and its table.
+std::string time_figure(const RunSummary& summary) {
+  std::array<Share, 6> shares{{{"set-up", summary.seconds_setup, "#8795a6"},
+                               {"contact", summary.seconds_contact, "#c8442f"},
+                               {"structure", summary.seconds_structure, "#0b6aa2"},
+                               {"vehicle", summary.seconds_vehicle, "#2e7d52"},
+                               {"output", summary.seconds_output, "#d98e04"},
+                               {"other", summary.seconds_total, "#d5dbe2"}}};
+  double named = 0.0;
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i) named += shares[i].seconds;
+  shares.back().seconds = std::max(0.0, summary.seconds_total - named);
+  const double total = std::max(named, summary.seconds_total);
+  if (!(total > 0.0)) return "";
+  std::string bar, rows;
+  double from = 0.0;
+  for (const Share& share : shares) {
+    const double width = 1000.0 * share.seconds / total;
+    bar += fmt::format("<rect x=\"{:.2f}\" width=\"{:.2f}\" height=\"10\" fill=\"{}\"><title>{}: {} s</title></rect>",
+                       from, width, share.colour, share.name, shown(share.seconds));
+    rows += fmt::format(
+        "<tr><th><i style=\"background:{}\"></i>{}</th><td class=\"n\">{} s</td><td class=\"n\">{} %</td></tr>",
+        share.colour, share.name, shown(share.seconds), shown(0.1 * width));
+    from += width;
+  }
+  return fmt::format(
+      "<div class=\"share\"><svg viewBox=\"0 0 1000 10\" preserveAspectRatio=\"none\" role=\"img\" "
+      "aria-label=\"where the time went\">{}</svg></div><div class=\"columns\"><table>{}</table>",
+      bar, rows);
+}
+
+std::string run_table(const RunResults& results) {
+  const RunSummary& summary = results.summary;
+  std::string rows;
+  const auto row = [&](std::string_view name, const std::string& value) {
+    rows += fmt::format("<tr><th>{}</th><td>{}</td></tr>", name, escaped(value));
+  };
+  row("contact", summary.contact_mode);
+  if (summary.complete && !summary.message.empty()) row("note", summary.message);
+  row("recorded steps", std::to_string(results.steps.size()));
+  row("steps, halved steps", fmt::format("{}, {}", summary.steps, summary.halved_steps));
+  row("Newton iterations", std::to_string(summary.newton_iterations));
+  row("contact queries", std::to_string(summary.contact_queries));
+  row("of these from the table", std::to_string(summary.table_queries));
+  row("unknowns of the structure", std::to_string(summary.structure_dofs));
+  row("unknowns of the vehicles", std::to_string(summary.vehicle_dofs));
+  return "<table>" + rows + "</table></div>";
+}
+
+std::string section(std::string_view title, const std::string& content) {
+  return content.empty() ? "" : fmt::format("<section><h2>{}</h2>{}</section>", title, content);
+}
+
+Headline headline_of(const RunResults& results) {
+  HeadlineCollector collector(results.header);
+  for (const StepRecord& step : results.steps) collector.add(step);
+  return collector.result(results.summary);
+}
+
+std::string heading(const RunResults& results, const Headline& headline) {
+  const ResultHeader& header = results.header;
+  std::string html = fmt::format(
+      "<h1>{}</h1><p class=\"lead\">{} km/h, {} wheelsets, {} m of track in {} s; wheel {} on rail {}</p>",
+      escaped(header.scene_name), shown(3.6 * header.speed), header.wheel_x.size() / 2, shown(headline.distance),
+      shown(headline.simulated_time), escaped(header.wheel_profile), escaped(header.rail_profile));
+  if (!results.summary.complete) {
+    html += fmt::format("<p class=\"warning\"><b>The run is not complete.</b> {}</p>",
+                        escaped(results.summary.message.empty() ? "It was stopped; this page shows what was written."
+                                                                : results.summary.message));
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string report_page(const RunResults& results) {
+  const Headline headline = headline_of(results);
+  const std::string time = time_figure(results.summary);
+  std::string page = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><title>{} – "
+      "railtab</title><style>{}</style></head>\n<body><main>",
+      escaped(results.header.scene_name), page_style());
+  page += heading(results, headline) + tiles(headline, results.summary);
+  page += section("Running safety", running_safety_charts(results));
+  page += section("Wheel forces", wheel_force_charts(results));
+  page += section("Wheel and rail", contact_figure(results));
+  page += section("Car bodies", car_body_charts(results));
+  page += section("Bridge and track", structure_charts(results));
+  page += section("Where the time went", time.empty() ? "" : time + run_table(results));
+  page += section("Scene", fmt::format("<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
+                                       escaped(results.header.scene_text)));
+  page += fmt::format("<footer>railtab {}</footer></main><script>{}</script></body></html>\n",
+                      escaped(results.header.program_version), page_script());
+  return page;
+}
+
+void write_report(const std::filesystem::path& file, const RunResults& results) {
+  const std::string page = report_page(results);
+  std::filesystem::path unfinished = file;
+  unfinished += ".part";
+  std::ofstream stream(unfinished, std::ios::binary);
+  stream << page;
+  stream.close();
+  std::error_code failed;
+  if (stream) std::filesystem::rename(unfinished, file, failed);
+  if (!stream || failed) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
+  }
+}
+
+}  // namespace railtab::report

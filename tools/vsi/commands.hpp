@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace railtab::vsi {
+
+/// The subcommands of vsi. `arguments` are those after the subcommand's name.
+/// @return exit code 0 (done) or 1 (the computation failed, reason on stderr). @throws InputError for exit code 2,
+/// ComputationError for exit code 1.
+using Arguments = std::vector<std::string>;
+int contact_command(const Arguments& arguments);
+int creep_command(const Arguments& arguments);
+int run_command(const Arguments& arguments);
+int report_command(const Arguments& arguments);
+
+}  // namespace railtab::vsi

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "csv_table.hpp"
+#include "json_object.hpp"
+#include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+constexpr const char* result_header =
+    "query,patch,y_rail,z_rail,y_wheel,z_wheel,x_contact,angle,rolling_radius,penetration,curv_wheel,curv_rail,"
+    "concave,source\n";
+
+struct Counts {
+  long queries = 0, patches = 0, table = 0;
+};
+
+void append_patches(const ContactPatches& patches, std::size_t query, std::string& text, Counts& counts) {
+  int number = 0;
+  for (const ContactPatch& p : patches) {
+    // x + 0.0 turns -0 into 0
+    const bool from_table = p.source == PatchSource::table;
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", query, number++, p.y_rail,
+                   p.z_rail, p.y_wheel, p.z_wheel, p.x + 0.0, p.angle, p.rolling_radius, p.penetration, p.curv_wheel,
+                   p.curv_rail, p.concave ? 1 : 0, from_table ? "table" : "online");
+    ++counts.patches;
+    counts.table += from_table ? 1 : 0;
+  }
+}
+
+/// One row per patch of every query. dz is measured from the first touch, which the online search gives exactly.
+std::string answer(const TableContact& contact, const CsvTable& queries, const std::string& file, bool online,
+                   Counts& counts) {
+  std::string text = result_header;
+  for (std::size_t i = 0; i < queries.rows.size(); ++i) {
+    const std::vector<double>& q = queries.rows[i];
+    const std::string place = fmt::format("{}:{}", file, queries.line[i]);
+    if (q[3] < 0.0) throw input_error(place, fmt::format("dz = {}", q[3]), "dz >= 0 m below first touch");
+    WheelsetPose pose{q[0], 0.0, q[2], q[1]};
+    const double touch = contact.search().touch_height(pose.y, pose.roll, pose.yaw);
+    if (!std::isfinite(touch)) {
+      throw input_error(place,
+                        fmt::format("y = {}, yaw = {}, roll = {}, where wheel and rail never meet", q[0], q[1], q[2]),
+                        "a position on the rail");
+    }
+    pose.z = touch + q[3];
+    append_patches(online ? contact.search().patches(pose) : contact.patches(pose), i, text, counts);
+    ++counts.queries;
+  }
+  return text;
+}
+
+}  // namespace
+
+int contact_command(const Arguments& arguments) {
+  CommandSyntax syntax{"vsi contact TABLE.h5 --query Q.csv -o R.csv [--online]", "table", true, {}};
+  syntax.options.add_options()(
+      "query", po::value<std::string>()->required()->value_name("Q.csv"),
+      "columns y,yaw,roll,dz [m, rad, rad, m]: pose of the wheelset against the right rail, dz "
+      "below first touch")("output,o", po::value<std::string>()->required()->value_name("R.csv"),
+                           "one row per contact patch")("online", "answer by the online search on the table's pair");
+  const auto values = parse_command_line(syntax, arguments);
+  if (!values) return 0;
+  const std::string query_file = (*values)["query"].as<std::string>();
+  const std::string output = (*values)["output"].as<std::string>();
+  require_writable_place(output, "-o");
+  const TableContact contact(GeometryTable(read_geometry_table((*values)["table"].as<std::string>())));
+  const CsvTable queries = read_csv(query_file, {"y", "yaw", "roll", "dz"});
+  Counts counts;
+  write_csv(output, answer(contact, queries, query_file, values->contains("online"), counts));
+  if (values->contains("json")) {
+    JsonObject json;
+    json.add("queries", counts.queries).add("patches", counts.patches).add("patches_from_table", counts.table);
+    fmt::print("{}\n", json.add("output", output).text());
+  } else if (!values->contains("quiet")) {
+    fmt::print("{} queries, {} patches, {} of them from the table: {}\n", counts.queries, counts.patches, counts.table,
+               output);
+  }
+  return 0;
+}
+
+}  // namespace railtab::vsi

@@ -1,0 +1,46 @@
+#include "json_object.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace railtab::vsi {
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+}  // namespace
+
+JsonObject& JsonObject::add_raw(std::string_view name, std::string_view value) {
+  if (!members_.empty()) members_ += ", ";
+  members_ += quoted(name) + ": " + std::string(value);
+  return *this;
+}
+
+JsonObject& JsonObject::add(std::string_view name, double value) {
+  return add_raw(name, std::isfinite(value) ? fmt::format("{}", value) : "null");
+}
+JsonObject& JsonObject::add(std::string_view name, long value) { return add_raw(name, std::to_string(value)); }
+JsonObject& JsonObject::add(std::string_view name, bool value) { return add_raw(name, value ? "true" : "false"); }
+JsonObject& JsonObject::add(std::string_view name, std::string_view value) { return add_raw(name, quoted(value)); }
+JsonObject& JsonObject::add(std::string_view name, const JsonObject& value) { return add_raw(name, value.text()); }
+JsonObject& JsonObject::add(std::string_view name, const std::vector<std::string>& values) {
+  std::string list;
+  for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);
+  return add_raw(name, "[" + list + "]");
+}
+
+}  // namespace railtab::vsi

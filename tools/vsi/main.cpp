@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string_view>
+
+#include "commands.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab::vsi {
+namespace {
+
+constexpr int done = 0, failed = 1, wrong_input = 2;
+
+constexpr const char* usage =
+    "usage: vsi COMMAND [OPTIONS]; vsi COMMAND --help says more\n"
+    "  contact TABLE.h5 --query Q.csv -o R.csv [--online]     contact patches of a wheelset's positions\n"
+    "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
+    "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
+    "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n";
+
+int dispatch(const Arguments& arguments) {
+  if (arguments.empty()) throw InputError(fmt::format("no command\n{}", usage));
+  const std::string_view name = arguments.front();
+  const Arguments rest(arguments.begin() + 1, arguments.end());
+  if (name == "contact") return contact_command(rest);
+  if (name == "creep") return creep_command(rest);
+  if (name == "run") return run_command(rest);
+  if (name == "report") return report_command(rest);
+  if (name == "--help" || name == "-h") {
+    fmt::print("{}", usage);
+    return done;
+  }
+  if (name == "--version") {
+    fmt::print("railtab {}\n", RAILTAB_VERSION);
+    return done;
+  }
+  throw InputError(fmt::format("unknown command '{}'\n{}", name, usage));
+}
+
+int exit_code(const Arguments& arguments) {
+  try {
+    return dispatch(arguments);
+  } catch (const InputError& wrong) {
+    fmt::print(stderr, "vsi: {}\n", wrong.what());
+    return wrong_input;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "vsi: not enough memory\n");
+    return failed;
+  } catch (const std::exception& failure) {
+    fmt::print(stderr, "vsi: {}\n", failure.what());
+    return failed;
+  }
+}
+
+}  // namespace
+}  // namespace railtab::vsi
+
+int main(int argc, char** argv) { return railtab::vsi::exit_code({argv + 1, argv + argc}); }

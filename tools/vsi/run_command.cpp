@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "headline.hpp"
+#include "headline_text.hpp"
+#include "progress_bar.hpp"
+#include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+struct RunOptions {
+  std::string output;
+  bool json = false, quiet = false, resume = false;
+};
+
+ContactMode contact_mode(const std::string& name) {
+  if (name == "table") return ContactMode::table;
+  if (name == "online") return ContactMode::online;
+  if (name == "paper") return ContactMode::paper;
+  throw input_error("--contact", name, "table, online or paper");
+}
+
+std::string_view contact_mode_name(ContactMode mode) {
+  return mode == ContactMode::table ? "table" : mode == ContactMode::online ? "online" : "paper";
+}
+
+int print_plan(const SceneParameters& scene, const RunOptions& options) {
+  const RunPlan plan = plan_run(scene);
+  if (options.json) {
+    JsonObject json;
+    json.add("scene", scene.name).add("structure_dofs", plan.structure_dofs).add("vehicle_dofs", plan.vehicle_dofs);
+    json.add("wheels", static_cast<long>(plan.wheels)).add("steps", plan.steps).add("time_step", plan.time_step);
+    json.add("duration", plan.duration).add("built", plan.built).add("left_out", plan.left_out);
+    fmt::print("{}\n", json.text());
+    return 0;
+  }
+  fmt::print("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
+  fmt::print("  {} unknowns of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs, plan.vehicle_dofs,
+             plan.wheels);
+  for (const std::string& part : plan.built) fmt::print("  built:    {}\n", part);
+  for (const std::string& part : plan.left_out) fmt::print("  left out: {}\n", part);
+  return 0;
+}
+
+/// What a run that has ended says, and its exit code.
+int conclude(const report::Headline& headline, const RunSummary& summary, const RunOptions& options) {
+  if (options.json) {
+    fmt::print("{}\n", headline_json(headline, summary).add("results", options.output).text());
+  } else if (!options.quiet && headline.largest_Q.found()) {
+    fmt::print("{}Results: {}\n", headline_text(headline, summary), options.output);
+  }
+  if (summary.complete) return 0;
+  fmt::print(stderr, "vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
+             headline.simulated_time, summary.message, options.output);
+  return 1;
+}
+
+/// Results, headline and progress of a run, from its first record or from a checkpoint of its results file.
+class RunRecorder {
+ public:
+  explicit RunRecorder(const RunOptions& options) : options_(options), progress_(options.quiet || options.json) {}
+
+  /// Take up what the file holds up to its last checkpoint, if it has one.
+  [[nodiscard]] std::optional<RunCheckpoint> take_up(const RunResults& before) {
+    const std::optional<Checkpoint> checkpoint = ResultWriter::read_checkpoint(options_.output);
+    if (!checkpoint) return std::nullopt;
+    collector_.emplace(before.header);
+    for (std::size_t i = 0; i < checkpoint->records; ++i) collector_->add(before.steps[i]);
+    resumed_at_ = checkpoint->records > 0 ? before.steps[checkpoint->records - 1].time : 0.0;
+    writer_.emplace(ResultWriter::resume(options_.output, *checkpoint));
+    return RunCheckpoint{checkpoint->step, checkpoint->state};
+  }
+
+  [[nodiscard]] RunObserver observer() {
+    RunObserver observer;
+    observer.start = [this](const ResultHeader& header) {
+      if (writer_) return;  // taken up
+      writer_.emplace(options_.output, header);
+      collector_.emplace(header);
+    };
+    observer.record = [this](const StepRecord& step) {
+      writer_->append(step);
+      collector_->add(step);
+    };
+    observer.checkpoint = [this](long step, std::span<const double> state) { writer_->checkpoint(state, step); };
+    observer.progress = [this](double fraction) { progress_.show(fraction); };
+    return observer;
+  }
+
+  /// @return exit code
+  [[nodiscard]] int finish(RunSummary summary) {
+    progress_.wipe();
+    if (resumed_at_ && summary.complete) {
+      summary.message =
+          fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then", *resumed_at_);
+    }
+    writer_->finish(summary);
+    return conclude(collector_->result(summary), summary, options_);
+  }
+
+ private:
+  const RunOptions& options_;
+  ProgressBar progress_;
+  std::optional<ResultWriter> writer_;
+  std::optional<report::HeadlineCollector> collector_;
+  std::optional<double> resumed_at_;
+};
+
+/// Results in the way of a resumed run must be its own. @throws InputError
+void check_same_run(const RunResults& before, const SceneParameters& scene, const std::string& file) {
+  if (before.header.scene_text != scene.text) {
+    throw input_error(file, "results of another scene", "results of this scene to resume, or another -o");
+  }
+  if (before.header.program_version != RAILTAB_VERSION) {
+    throw input_error(file, "results of railtab " + before.header.program_version,
+                      "results of railtab " RAILTAB_VERSION);
+  }
+  const std::string& mode = before.summary.contact_mode;  // not known of a run that was killed
+  if (!mode.empty() && mode != contact_mode_name(scene.contact.mode)) {
+    throw input_error(file, fmt::format("results of --contact {}", mode), "results of the same contact mode to resume");
+  }
+}
+
+int run(const SceneParameters& scene, const RunOptions& options) {
+  RunRecorder recorder(options);
+  std::optional<RunCheckpoint> from;
+  if (options.resume && std::filesystem::exists(options.output)) {
+    const RunResults before = read_results(options.output);
+    check_same_run(before, scene, options.output);
+    if (before.summary.complete) {
+      report::HeadlineCollector collector(before.header);
+      for (const StepRecord& step : before.steps) collector.add(step);
+      return conclude(collector.result(before.summary), before.summary, options);
+    }
+    from = recorder.take_up(before);
+  }
+  return recorder.finish(run_scene(scene, recorder.observer(), from));
+}
+
+/// Results must not overwrite what the run reads.
+void check_output(const SceneParameters& scene, const std::string& output) {
+  require_writable_place(output, "-o");
+  std::error_code ignored;
+  if (!scene.contact.table.empty() && std::filesystem::equivalent(output, scene.contact.table, ignored)) {
+    throw input_error("-o", "the scene's own geometry table " + output, "another file for the results");
+  }
+}
+
+}  // namespace
+
+int run_command(const Arguments& arguments) {
+  CommandSyntax syntax{
+      "vsi run SCENE.toml [-o RESULTS.h5] [--resume] [--plan] [--contact table|online|paper]", "scene", true, {}};
+  syntax.options.add_options()("output,o", po::value<std::string>()->value_name("RESULTS.h5"),
+                               "results; default: <scene>.results.h5 in this folder")(
+      "resume", "go on from the last checkpoint in RESULTS.h5; nothing is run where it is complete")(
+      "plan", "say what will be built and what is left out, and do not run")(
+      "contact", po::value<std::string>()->value_name("MODE"), "table, online or paper, instead of the scene's");
+  const auto values = parse_command_line(syntax, arguments);
+  if (!values) return 0;
+  const std::filesystem::path file = (*values)["scene"].as<std::string>();
+  SceneParameters scene = read_scene(file);
+  if (values->contains("contact")) {
+    scene.contact.mode = contact_mode((*values)["contact"].as<std::string>());
+    scene.validate();
+  }
+  RunOptions options{file.stem().string() + ".results.h5", values->contains("json"), values->contains("quiet"),
+                     values->contains("resume")};
+  if (values->contains("output")) options.output = (*values)["output"].as<std::string>();
+  if (values->contains("plan")) return print_plan(scene, options);
+  check_output(scene, options.output);
+  return run(scene, options);
+}
+
+}  // namespace railtab::vsi
