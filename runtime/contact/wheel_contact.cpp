@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/contact/creepage.hpp"
+
 namespace railtab {
 
 namespace {
@@ -64,23 +66,22 @@ double bounded_normal_force(const WheelContactModel& model, const HertzContact& 
 PatchForce patch_force(const WheelContactModel& model, const ContactPatch& patch, const Vector3& arm,
                        const Vector3& velocity, const Vector3& rotation) {
   const ContactAxes axes(patch.angle);
-  const Vector3 slip = velocity + rotation.cross(arm);
   const HertzContact hertz = hertz_of(model, patch);
-  const double N = bounded_normal_force(model, hertz, patch.penetration, slip.dot(axes.n));
+  const double approach = (velocity + rotation.cross(arm)).dot(axes.n);
+  const double N = bounded_normal_force(model, hertz, patch.penetration, approach);
   if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero()};
 
-  const double cube_root = std::cbrt(N);
-  const double ab = hertz.a1 * hertz.b1 * cube_root * cube_root;
-  const double bound = model.friction * N;
   Vector3 force = -N * axes.n;
   Vector3 moment = Vector3::Zero();
+  const double bound = model.friction * N;
   if (bound > 0.0) {
-    const double c = std::sqrt(ab);
-    const double scale = model.material.shear_modulus() * ab / (bound * model.speed);
-    const Creepage creepage{slip[0] * scale, slip.dot(axes.t) * scale, rotation.dot(axes.n) * scale * c};
-    const CreepForce creep = creep_force(model.creep_law, hertz.ratio, creepage);
-    force += bound * (creep.x * Vector3::UnitX() + creep.y * axes.t);
-    moment = bound * c * creep.moment * axes.n;
+    const double a = hertz.a1 * std::cbrt(N);
+    const double b = hertz.b1 * std::cbrt(N);
+    const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, patch.angle, model.speed);
+    const Creepage creepage = normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.material.shear_modulus(), bound);
+    const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, hertz.ratio, creepage), a, b, bound);
+    force += creep.x * Vector3::UnitX() + creep.y * axes.t;
+    moment = creep.moment * axes.n;
   }
   return {force, moment + arm.cross(force)};
 }
@@ -136,7 +137,8 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
 
   const Vector3 force_track = rail_axes.to_track(force);
   const Vector3 moment_track = rail_axes.to_track(moment);
-  result.wheelset << force_track, moment_track[0], moment.dot(axle), moment_track[2];
+  result.wheelset.head<3>() = force_track;
+  result.wheelset.tail<3>() = Vector3(moment_track[0], moment.dot(axle), moment_track[2]);
   result.rail << -force_track[1], -force_track[2], rail_moment;
   result.rail_x = -force_track[0];
   if (side == WheelSide::left) {

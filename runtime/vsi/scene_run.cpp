@@ -177,7 +177,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     unpack(resume->state, state);
     rest.converged = true;
   } else {
-    rest = quasi_static_start(model, scene.integration.time_step, state);
+    rest = steady_start(model, scene.integration.time_step, state);
   }
   if (observer.start) observer.start(result_header(scene, model));
   RunSummary summary;

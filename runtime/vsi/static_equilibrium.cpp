@@ -57,15 +57,24 @@ ContactProblem rest_problem(const VsiModel& model, const VehicleResponse& vehicl
   return problem;
 }
 
-}  // namespace
-
-EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
-  EquilibriumReport report;
-  const VehicleResponse vehicle(model.vehicle, regularisation);
-  const std::vector<RailContact> contacts = place_wheels(model, state.time);
+// The linear parts at rest, made once.
+struct RestOperators {
+  VehicleResponse vehicle;
   std::unique_ptr<StructureResponse> structure;
-  if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
-  ContactProblem problem = rest_problem(model, vehicle, structure.get(), contacts);
+  explicit RestOperators(const VsiModel& model) : vehicle(model.vehicle, regularisation) {
+    if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
+  }
+};
+
+// Equilibrium at state.time with `structure_load` on the structure besides the wheels.
+EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
+                              VsiState& state) {
+  EquilibriumReport report;
+  const VehicleResponse& vehicle = rest.vehicle;
+  const StructureResponse* structure = rest.structure.get();
+  const std::vector<RailContact> contacts = place_wheels(model, state.time);
+  ContactProblem problem = rest_problem(model, vehicle, structure, contacts);
+  if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
   const NewtonLimits limits{.tolerance = 1e-12, .max_iterations = 100};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
 
@@ -97,7 +106,7 @@ EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
     }
     if (structure) {
       scatter_rail_forces(contacts, state.contact.force, state.structure.contact_load);
-      const Eigen::VectorXd next = structure->solve(state.structure.contact_load);
+      const Eigen::VectorXd next = structure->solve(state.structure.contact_load + structure_load);
       report.change = std::max(report.change, (next - state.structure.displacement).cwiseAbs().maxCoeff());
       state.structure.displacement = next;
     }
@@ -115,27 +124,40 @@ EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
   return report;
 }
 
-EquilibriumReport quasi_static_start(const VsiModel& model, double time_step, VsiState& state) {
-  VsiState before = state;
-  before.time -= time_step;
-  VsiState after = state;
-  after.time += time_step;
-  EquilibriumReport report = static_equilibrium(model, state);
-  if (!report.converged) return report;
-  before.contact = after.contact = state.contact;
-  for (VsiState* neighbour : {&before, &after}) {
-    for (std::size_t v = 0; v < state.vehicle.size(); ++v) neighbour->vehicle[v].displacement = state.vehicle[v].displacement;
-    neighbour->structure.displacement = state.structure.displacement;
-    const EquilibriumReport r = static_equilibrium(model, *neighbour);
+}  // namespace
+
+EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
+  return equilibrium(model, RestOperators(model), Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
+}
+
+EquilibriumReport steady_start(const VsiModel& model, double time_step, VsiState& state) {
+  const RestOperators rest(model);
+  Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
+  EquilibriumReport report = equilibrium(model, rest, inertia, state);
+  if (!model.structure) return report;
+
+  // The load that the moving deflection's inertia and damping exert is found from the deflection, and the deflection under
+  // it again: each pass gains a factor of (V / critical speed)².
+  LinearMotion& structure = state.structure;
+  constexpr int passes = 4;
+  for (int pass = 0; pass < passes && report.converged; ++pass) {
+    VsiState before = state;
+    VsiState after = state;
+    before.time -= time_step;
+    after.time += time_step;
+    for (VsiState* neighbour : {&before, &after}) {
+      const EquilibriumReport r = equilibrium(model, rest, inertia, *neighbour);
+      report.iterations += r.iterations;
+      report.converged = report.converged && r.converged;
+    }
+    structure.velocity = (after.structure.displacement - before.structure.displacement) / (2.0 * time_step);
+    structure.acceleration = (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /
+                             (time_step * time_step);
+    inertia = -(model.structure->mass * structure.acceleration) - model.structure->damping * structure.velocity;
+    const EquilibriumReport r = equilibrium(model, rest, inertia, state);
     report.iterations += r.iterations;
     report.converged = report.converged && r.converged;
   }
-  const auto follow = [time_step](const LinearMotion& a, const LinearMotion& b, LinearMotion& motion) {
-    motion.velocity += (b.displacement - a.displacement) / (2.0 * time_step);
-    motion.acceleration = (b.displacement - 2.0 * motion.displacement + a.displacement) / (time_step * time_step);
-  };
-  for (std::size_t v = 0; v < state.vehicle.size(); ++v) follow(before.vehicle[v], after.vehicle[v], state.vehicle[v]);
-  if (model.structure) follow(before.structure, after.structure, state.structure);
   return report;
 }
 
