@@ -185,9 +185,11 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
     WheelsetMotion perturbed = wheelset;
     perturbed.displacement[j] += step[j];
     perturbed.velocity[j] += velocity_rate[j] * step[j];
-    const WheelsetPose to = relative_pose(pair, side, perturbed, rail);
-    const ContactPatches moved = moved_patches(*model.geometry, patches, pose, to);
-    const WheelForce f = wheel_force(model, side, perturbed, rail, moved);
+    const bool moves_pose = j != 0 && j != 4;  // x and pitch leave the profiles where they are
+    const WheelForce f =
+        moves_pose ? wheel_force(model, side, perturbed, rail,
+                                 moved_patches(*model.geometry, patches, pose, relative_pose(pair, side, perturbed, rail)))
+                   : wheel_force(model, side, perturbed, rail, patches);
     tangent.col(j) << (f.wheelset - force.wheelset) / step[j], (f.rail - force.rail) / step[j];
   }
   // Moving the rail is moving the wheelset the other way; rolling the rail by +1 is rolling the wheelset by -1 about

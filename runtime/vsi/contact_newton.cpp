@@ -1,16 +1,16 @@
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace railtab {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Matrix12 = Eigen::Matrix<double, 12, 12>;
+using Matrix12 = NewtonWorkspace::Matrix12;
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
@@ -70,18 +70,17 @@ void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::Ve
   }
 }
 
-// Correction of all vehicles: (I − C T) δ = r within each.
-void correction(const ContactProblem& problem, const std::vector<Matrix12>& tangents, const Eigen::VectorXd& r,
-                Eigen::VectorXd& delta) {
+// I − C T of every vehicle, factorised.
+void factorise(const ContactProblem& problem, NewtonWorkspace& ws) {
   const int per_vehicle = problem.wheelsets_per_vehicle;
   const int size = wheelset_unknowns * per_vehicle;
-  const int vehicles = static_cast<int>(r.size()) / size;
-  Eigen::MatrixXd compliance(size, size), jacobian(size, size);
+  const int vehicles = static_cast<int>(ws.tangent.size()) / per_vehicle;
+  ws.factor.resize(index(vehicles));
   for (int vehicle = 0; vehicle < vehicles; ++vehicle) {
-    compliance.setZero();
+    ws.compliance.setZero(size, size);
     for (int i = 0; i < per_vehicle; ++i) {
       for (int j = 0; j < per_vehicle; ++j) {
-        compliance.block<6, 6>(12 * i, 12 * j) = problem.vehicle_compliance.block<6, 6>(6 * i, 6 * j);
+        ws.compliance.block<6, 6>(12 * i, 12 * j) = problem.vehicle_compliance.block<6, 6>(6 * i, 6 * j);
       }
     }
     const int first_wheel = 2 * per_vehicle * vehicle;
@@ -89,14 +88,23 @@ void correction(const ContactProblem& problem, const std::vector<Matrix12>& tang
       const int i = c.i - first_wheel;
       const int j = c.j - first_wheel;
       if (i < 0 || j < 0 || i >= 2 * per_vehicle || j >= 2 * per_vehicle) continue;
-      compliance.block<3, 3>(12 * (i / 2) + 6 + 3 * (i % 2), 12 * (j / 2) + 6 + 3 * (j % 2)) = c.compliance;
+      ws.compliance.block<3, 3>(12 * (i / 2) + 6 + 3 * (i % 2), 12 * (j / 2) + 6 + 3 * (j % 2)) = c.compliance;
     }
-    jacobian.setIdentity();
+    ws.jacobian.setIdentity(size, size);
     for (int j = 0; j < per_vehicle; ++j) {
-      jacobian.middleCols<12>(12 * j).noalias() -=
-          compliance.middleCols<12>(12 * j) * tangents[index(vehicle * per_vehicle + j)];
+      ws.jacobian.middleCols<12>(12 * j).noalias() -=
+          ws.compliance.middleCols<12>(12 * j) * ws.tangent[index(vehicle * per_vehicle + j)];
     }
-    delta.segment(size * vehicle, size) = jacobian.partialPivLu().solve(r.segment(size * vehicle, size));
+    ws.factor[index(vehicle)].compute(ws.jacobian);
+  }
+}
+
+// Correction of all vehicles: (I − C T) δ = r within each.
+void correct(const ContactProblem& problem, NewtonWorkspace& ws) {
+  const int size = wheelset_unknowns * problem.wheelsets_per_vehicle;
+  ws.correction.resize(ws.residual.size());
+  for (int vehicle = 0; vehicle < static_cast<int>(ws.factor.size()); ++vehicle) {
+    ws.correction.segment(size * vehicle, size) = ws.factor[index(vehicle)].solve(ws.residual.segment(size * vehicle, size));
   }
 }
 
@@ -120,34 +128,48 @@ RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd&
 }
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
-                           ContactSolution& solution) {
+                           ContactSolution& solution, NewtonWorkspace& ws) {
+  constexpr double fast_enough = 0.2;      // of the residual, per iteration with a kept tangent
+  constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
   NewtonReport report;
-  const auto wheelsets = static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns);
-  std::vector<Matrix12> tangents(wheelsets);
-  Eigen::VectorXd r(solution.displacement.size()), delta(solution.displacement.size());
+  ws.tangent.resize(static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns));
   double previous = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd start = solution.displacement;
-  double shortened = 1.0;
+  bool new_tangent = true;
+  double part = 1.0;
 
   while (report.iterations < limits.max_iterations) {
-    evaluate(model, problem, solution, &tangents, report);
-    residual(problem, solution, r);
-    ++report.iterations;
-    const double size = r.norm();
+    evaluate(model, problem, solution, new_tangent ? &ws.tangent : nullptr, report);
+    residual(problem, solution, ws.residual);
+    const double size = ws.residual.cwiseAbs().maxCoeff();
     if (!std::isfinite(size)) return report;
-    if (size > 2.0 * previous && shortened > 1.0 / 32.0) {
-      // The last correction made it worse (a patch was gained or lost): go back half of it.
-      shortened *= 0.5;
-      solution.displacement = start + shortened * delta;
+    if (size < limits.tolerance) {
+      report.converged = true;
+      return report;
+    }
+    if (size > 2.0 * previous && part > shortest_part) {
+      // The last correction made it worse (a patch gained or lost, an old tangent): take half of it back.
+      part *= 0.5;
+      solution.displacement = ws.start + part * ws.correction;
+      ++report.iterations;
       continue;
     }
-    shortened = 1.0;
+    if (!new_tangent && size > fast_enough * previous) {
+      new_tangent = true;
+      continue;
+    }
+    if (new_tangent) {
+      factorise(problem, ws);
+      ++report.tangents;
+      new_tangent = false;
+    }
     previous = size;
-    correction(problem, tangents, r, delta);
-    report.correction = delta.cwiseAbs().maxCoeff();
-    if (report.correction > problem.largest_move) delta *= problem.largest_move / report.correction;
-    start = solution.displacement;
-    solution.displacement += delta;
+    part = 1.0;
+    correct(problem, ws);
+    ++report.iterations;
+    report.correction = ws.correction.cwiseAbs().maxCoeff();
+    if (report.correction > problem.largest_move) ws.correction *= problem.largest_move / report.correction;
+    ws.start = solution.displacement;
+    solution.displacement += ws.correction;
     if (report.correction < limits.tolerance) {
       report.converged = true;
       break;

@@ -75,6 +75,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   ContactProblem problem = rest_problem(model, vehicle, structure, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
+  NewtonWorkspace workspace;
   const NewtonLimits limits{.tolerance = 1e-12, .max_iterations = 100};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
 
@@ -90,7 +91,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;
-    const NewtonReport newton = solve_contact(model.contact, problem, limits, state.contact);
+    const NewtonReport newton = solve_contact(model.contact, problem, limits, state.contact, workspace);
     if (!newton.converged) return report;
 
     report.change = 0.0;

@@ -137,7 +137,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
 
   // Eq. 16, condensed to the contacts; the structure's answer closes it.
   for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
-    const NewtonReport newton = solve_contact(model.contact, ws.problem, limits.newton, ws.solution);
+    const NewtonReport newton = solve_contact(model.contact, ws.problem, limits.newton, ws.solution, ws.newton);
     report.newton_iterations += newton.iterations;
     report.queries += newton.queries;
     report.table_queries += newton.table_queries;

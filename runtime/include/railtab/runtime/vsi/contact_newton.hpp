@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <array>
 #include <vector>
 
@@ -45,7 +46,8 @@ struct ContactSolution {
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;
+  int iterations = 0;                    ///< corrections made
+  int tangents = 0;                      ///< of them with a new tangent
   double correction = 0.0;               ///< largest last correction [m or rad]
   double seconds_contact = 0.0;
   long queries = 0, table_queries = 0;
@@ -56,12 +58,24 @@ struct NewtonLimits {
   int max_iterations = 20;
 };
 
+/// Tangents and factors, reused from step to step so that Newton allocates nothing.
+struct NewtonWorkspace {
+  using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
+  std::vector<Matrix12> tangent;                             ///< per wheelset, df/dq
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per vehicle, of I − C df/dq
+  Eigen::MatrixXd compliance, jacobian;                      ///< of one vehicle
+  Eigen::VectorXd residual, correction, start;
+};
+
 [[nodiscard]] WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept;
 [[nodiscard]] RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset, int side) noexcept;
 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over vehicles (the
-/// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact).
+/// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact) and kept while
+/// it makes the residual five times smaller per iteration: within a time step one tangent normally suffices.
+/// Converged: the residual or the last correction is below the tolerance; the forces are those at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
-                                         const NewtonLimits& limits, ContactSolution& solution);
+                                         const NewtonLimits& limits, ContactSolution& solution,
+                                         NewtonWorkspace& workspace);
 
 }  // namespace railtab

@@ -38,6 +38,7 @@ struct StepWorkspace {
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
   ContactSolution solution;
+  NewtonWorkspace newton;
 
   explicit StepWorkspace(const VsiModel& model);
 };
