@@ -42,55 +42,42 @@ WheelsetPose pose_on_right(const WheelRailPair& pair, const WheelsetMotion& w, c
 // Contact axes of a right wheel's patch, in rail-head axes: x forward, t across, n into the rail.
 struct ContactAxes {
   Vector3 t, n;
-  explicit ContactAxes(double angle) : t(0.0, std::cos(angle), std::sin(angle)), n(0.0, -std::sin(angle), std::cos(angle)) {}
+  explicit ContactAxes(double angle)
+      : t(0.0, std::cos(angle), std::sin(angle)), n(0.0, -std::sin(angle), std::cos(angle)) {}
 };
 
 struct PatchForce {
   Vector3 force, moment;  // on the wheel, in rail-head axes, moment about the wheelset centre
+  double normal;          // [N]
 };
 
-HertzContact hertz_of(const WheelContactModel& model, const ContactPatch& p) {
-  const double A = 0.5 * p.curv_rolling;
-  const double B = std::max(0.5 * (p.curv_wheel + p.curv_rail), model.curvature_floor);
-  return hertz_contact(A, B, model.material);
-}
-
-double bounded_normal_force(const WheelContactModel& model, const HertzContact& hertz, double penetration,
-                            double approach_velocity) {
-  if (penetration <= 0.0) return 0.0;
-  const double elastic = hertz.stiffness * penetration * std::sqrt(penetration);
-  return std::max(0.0, elastic * (1.0 + model.damping * approach_velocity));
-}
-
-// velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact point.
-PatchForce patch_force(const WheelContactModel& model, const ContactPatch& patch, const Vector3& arm,
-                       const Vector3& velocity, const Vector3& rotation) {
+// velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact
+// point.
+PatchForce patch_force(const WheelContactModel& model, const ContactPatch& patch, const PatchLoad& load,
+                       const Vector3& arm, const Vector3& velocity, const Vector3& rotation) {
   const ContactAxes axes(patch.angle);
-  const HertzContact hertz = hertz_of(model, patch);
   const double approach = (velocity + rotation.cross(arm)).dot(axes.n);
-  const double N = bounded_normal_force(model, hertz, patch.penetration, approach);
-  if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero()};
+  const double N = std::max(0.0, load.elastic_force * (1.0 + model.damping * approach));
+  if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero(), 0.0};
 
   Vector3 force = -N * axes.n;
   Vector3 moment = Vector3::Zero();
   const double bound = model.friction * N;
   if (bound > 0.0) {
-    const double a = hertz.a1 * std::cbrt(N);
-    const double b = hertz.b1 * std::cbrt(N);
+    const double a = load.hertz.a1 * std::cbrt(N);
+    const double b = load.hertz.b1 * std::cbrt(N);
     const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, patch.angle, model.speed);
-    const Creepage creepage = normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.material.shear_modulus(), bound);
-    const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, hertz.ratio, creepage), a, b, bound);
+    const Creepage creepage =
+        normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.normal.material.shear_modulus(), bound);
+    const PatchCreepForce creep =
+        dimensional_creep_force(creep_force(model.creep_law, load.hertz.ratio, creepage), a, b, bound);
     force += creep.x * Vector3::UnitX() + creep.y * axes.t;
     moment = creep.moment * axes.n;
   }
-  return {force, moment + arm.cross(force)};
+  return {force, moment + arm.cross(force), N};
 }
 
 }  // namespace
-
-double normal_force(const WheelContactModel& model, const ContactPatch& patch, double approach_velocity) noexcept {
-  return bounded_normal_force(model, hertz_of(model, patch), patch.penetration, approach_velocity);
-}
 
 WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
                            const RailHeadMotion& rail) noexcept {
@@ -109,8 +96,8 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
 
   // Velocity of the wheelset centre against the rail's material, along the rail's tangent (1, yaw, slope).
   const double V = model.speed;
-  const Vector3 velocity = rail_axes.from_track({V + w.velocity[0], w.velocity[1] - r.velocity[0] - V * r.yaw,
-                                                 w.velocity[2] - r.velocity[1] - V * r.slope});
+  const Vector3 velocity = rail_axes.from_track(
+      {V + w.velocity[0], w.velocity[1] - r.velocity[0] - V * r.yaw, w.velocity[2] - r.velocity[1] - V * r.slope});
   const Vector3 axle(-std::sin(pose.yaw), std::cos(pose.yaw) * std::cos(pose.roll),
                      std::cos(pose.yaw) * std::sin(pose.roll));
   const Vector3 rotation = rail_axes.from_track({w.velocity[3] - r.velocity[2], 0.0, w.velocity[5]}) +
@@ -119,7 +106,9 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
   Vector3 force = Vector3::Zero();
   Vector3 moment = Vector3::Zero();
   double rail_moment = 0.0;
-  for (const ContactPatch& patch : patches) {
+  const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+    const ContactPatch& patch = patches.patch[i];
     // To the wheel's own undeformed surface, the penetration below the rail's: rolling radii are those of the wheel.
     const Vector3 arm = Vector3(patch.x, patch.y_rail - (pose.y - pair.rail_offset()),
                                 patch.z_rail - (pose.z - pair.nominal_radius())) +
@@ -128,9 +117,10 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     const Vector3 surface_velocity = r.velocity[2] * Vector3(0.0, -patch.z_rail, patch.y_rail);
     // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
     const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
-    const PatchForce p = patch_force(model, patch, arm, velocity + centre_shift - surface_velocity, rotation);
+    const PatchForce p = patch_force(model, patch, loads[i], arm, velocity + centre_shift - surface_velocity, rotation);
     force += p.force;
     moment += p.moment;
+    result.normal[i] = p.normal;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
     rail_moment -= patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];
   }
@@ -167,7 +157,8 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
     const double arm_y = p.y_rail - (from.y - pair.rail_offset());
     const double arm_z = p.z_rail - (from.z - pair.nominal_radius());
     const double roll = to.roll - from.roll;
-    q.penetration += -std::sin(p.angle) * (to.y - from.y - roll * arm_z) + std::cos(p.angle) * (to.z - from.z + roll * arm_y);
+    q.penetration +=
+        -std::sin(p.angle) * (to.y - from.y - roll * arm_z) + std::cos(p.angle) * (to.z - from.z + roll * arm_y);
   }
   return moved;
 }
@@ -187,9 +178,10 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
     perturbed.velocity[j] += velocity_rate[j] * step[j];
     const bool moves_pose = j != 0 && j != 4;  // x and pitch leave the profiles where they are
     const WheelForce f =
-        moves_pose ? wheel_force(model, side, perturbed, rail,
-                                 moved_patches(*model.geometry, patches, pose, relative_pose(pair, side, perturbed, rail)))
-                   : wheel_force(model, side, perturbed, rail, patches);
+        moves_pose
+            ? wheel_force(model, side, perturbed, rail,
+                          moved_patches(*model.geometry, patches, pose, relative_pose(pair, side, perturbed, rail)))
+            : wheel_force(model, side, perturbed, rail, patches);
     tangent.col(j) << (f.wheelset - force.wheelset) / step[j], (f.rail - force.rail) / step[j];
   }
   // Moving the rail is moving the wheelset the other way; rolling the rail by +1 is rolling the wheelset by -1 about

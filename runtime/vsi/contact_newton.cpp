@@ -40,6 +40,7 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Con
       force.head<6>() += wheel.wheelset;
       force.segment<3>(r) = wheel.rail;
       s.rail_x[index(2 * w + side)] = wheel.rail_x;
+      s.normal[index(2 * w + side)] = wheel.normal;
       if (!tangents) continue;
       const Matrix9 t = wheel_force_tangent(model, wheel_side, motion, rail, patches, wheel, problem.velocity_rate);
       Matrix12& tangent = (*tangents)[index(w)];
@@ -104,7 +105,8 @@ void correct(const ContactProblem& problem, NewtonWorkspace& ws) {
   const int size = wheelset_unknowns * problem.wheelsets_per_vehicle;
   ws.correction.resize(ws.residual.size());
   for (int vehicle = 0; vehicle < static_cast<int>(ws.factor.size()); ++vehicle) {
-    ws.correction.segment(size * vehicle, size) = ws.factor[index(vehicle)].solve(ws.residual.segment(size * vehicle, size));
+    ws.correction.segment(size * vehicle, size) =
+        ws.factor[index(vehicle)].solve(ws.residual.segment(size * vehicle, size));
   }
 }
 
@@ -129,7 +131,7 @@ RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd&
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
                            ContactSolution& solution, NewtonWorkspace& ws) {
-  constexpr double fast_enough = 0.2;      // of the residual, per iteration with a kept tangent
+  constexpr double fast_enough = 0.2;           // of the residual, per iteration with a kept tangent
   constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
   NewtonReport report;
   ws.tangent.resize(static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns));

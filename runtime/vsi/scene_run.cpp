@@ -13,7 +13,7 @@ namespace railtab {
 
 namespace {
 
-constexpr int paper_points = 1000;          // of the published method's discretised profiles
+constexpr int paper_points = 1000;              // of the published method's discretised profiles
 constexpr double paper_curvature_floor = 1e-6;  // 1/m [MontenegroCalcada2023, section 2.2]
 
 WheelRailPair scene_pair(const ContactParameters& contact) {
@@ -25,9 +25,12 @@ WheelRailPair scene_pair(const ContactParameters& contact) {
 
 ContactGeometry::Source geometry_source(const ContactParameters& contact) {
   switch (contact.mode) {
-    case ContactMode::table: return TableContact(GeometryTable(read_geometry_table(contact.table)));
-    case ContactMode::online: return ContactSearch(scene_pair(contact));
-    case ContactMode::paper: return PaperSearch(scene_pair(contact), paper_points);
+    case ContactMode::table:
+      return TableContact(GeometryTable(read_geometry_table(contact.table)));
+    case ContactMode::online:
+      return ContactSearch(scene_pair(contact));
+    case ContactMode::paper:
+      return PaperSearch(scene_pair(contact), paper_points);
   }
   throw InputError("contact.mode: unknown");
 }
@@ -69,7 +72,8 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
   header.program_version = RAILTAB_VERSION;
   header.speed = scene.train.speed;
   for (int w = 0; w < model.wheelsets(); ++w) {
-    const auto body = static_cast<std::size_t>(model.vehicle.wheelsets[static_cast<std::size_t>(w % model.wheelsets_per_vehicle())]);
+    const auto body =
+        static_cast<std::size_t>(model.vehicle.wheelsets[static_cast<std::size_t>(w % model.wheelsets_per_vehicle())]);
     const double load = model.vehicle.static_load[model.vehicle.dof[body][2]];
     for (int side = 0; side < 2; ++side) {
       header.wheel_x.push_back(model.wheelset_x(w, 0.0) - model.wheelset_x(0, 0.0));
@@ -77,7 +81,8 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
     }
   }
   for (std::size_t v = 0; v < model.vehicle_x.size(); ++v) {
-    for (const RigidBody& body : model.vehicle.bodies) header.body_names.push_back(fmt::format("coach-{}/{}", v + 1, body.name));
+    for (const RigidBody& body : model.vehicle.bodies)
+      header.body_names.push_back(fmt::format("coach-{}/{}", v + 1, body.name));
   }
   if (model.structure) {
     for (const StructureNode& node : model.structure->nodes) {
@@ -116,13 +121,14 @@ VsiModel build_model(const SceneParameters& scene) {
   model.vehicle = build_coach(coach_parameters(scene.train.vehicle));
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.geometry = std::make_shared<const ContactGeometry>(geometry_source(scene.contact));
-  model.contact = {.geometry = model.geometry.get(),
-                   .material = scene.contact.material,
-                   .creep_law = creep_law(scene.contact.creep_law, scene.contact.material.nu),
-                   .friction = scene.contact.friction,
-                   .damping = scene.contact.damping,
-                   .curvature_floor = scene.contact.mode == ContactMode::paper ? paper_curvature_floor : scene.contact.curvature_floor,
-                   .speed = scene.train.speed};
+  model.contact.geometry = model.geometry.get();
+  model.contact.normal.material = scene.contact.material;
+  model.contact.normal.curvature_floor =
+      scene.contact.mode == ContactMode::paper ? paper_curvature_floor : scene.contact.curvature_floor;
+  model.contact.creep_law = creep_law(scene.contact.creep_law, scene.contact.material.nu);
+  model.contact.friction = scene.contact.friction;
+  model.contact.damping = scene.contact.damping;
+  model.contact.speed = scene.train.speed;
   if (scene.track_kind == TrackKind::flexible) model.structure = build_track_bridge(scene.track, scene.spans);
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   const double radius = model.geometry->pair().nominal_radius();
@@ -137,7 +143,8 @@ VsiModel build_model(const SceneParameters& scene) {
 double run_duration(const SceneParameters& scene, const VsiModel& model) {
   if (scene.integration.duration > 0.0) return scene.integration.duration;
   if (scene.spans.empty()) {
-    throw input_error("scene: integration.duration", "none, and no bridge", "a duration in s, or a [[bridge]] to cross");
+    throw input_error("scene: integration.duration", "none, and no bridge",
+                      "a duration in s, or a [[bridge]] to cross");
   }
   return (spans_length(scene) - model.wheelset_x(model.wheelsets() - 1, 0.0)) / scene.train.speed;
 }
@@ -151,18 +158,22 @@ RunPlan plan_run(const SceneParameters& scene) {
   plan.time_step = scene.integration.time_step;
   plan.duration = run_duration(scene, model);
   plan.steps = std::lround(plan.duration / plan.time_step);
-  plan.built.push_back(fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  plan.built.push_back(
+      fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
   plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", mode_name(scene.contact.mode),
-                                   model.geometry->pair().wheel().knots().name, model.geometry->pair().rail().knots().name));
+                                   model.geometry->pair().wheel().knots().name,
+                                   model.geometry->pair().rail().knots().name));
   plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
   if (model.structure) {
-    plan.built.push_back(fmt::format("flexible track, {} rail nodes, {} span(s)", 2 * model.structure->rail[0].x.size(), scene.spans.size()));
+    plan.built.push_back(fmt::format("flexible track, {} rail nodes, {} span(s)", 2 * model.structure->rail[0].x.size(),
+                                     scene.spans.size()));
   } else {
     plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
   }
   if (scene.spans.empty()) plan.left_out.emplace_back("bridge: the scene names none");
   if (!scene.irregularity) plan.left_out.emplace_back("irregularity: the scene names none");
-  if (scene.contact.mode != ContactMode::table) plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
+  if (scene.contact.mode != ContactMode::table)
+    plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
   return plan;
 }
 
@@ -182,13 +193,15 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   if (observer.start) observer.start(result_header(scene, model));
   RunSummary summary;
   if (!rest.converged) {
-    summary.message = fmt::format("no static equilibrium: after {} iterations the last change was {:.3g} m", rest.iterations, rest.change);
+    summary.message = fmt::format("no static equilibrium: after {} iterations the last change was {:.3g} m",
+                                  rest.iterations, rest.change);
     summary.contact_mode = mode_name(scene.contact.mode);
     return summary;
   }
   if (!resume) displace(scene, model, state);
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  summary = simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);
+  summary =
+      simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;
   summary.contact_mode = mode_name(scene.contact.mode);

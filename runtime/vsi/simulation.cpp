@@ -20,8 +20,7 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 // The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
 class Integrator {
  public:
-  Integrator(const VsiModel& model, const IntegrationParameters& p)
-      : model_(model), parameters_(p), workspace_(model) {
+  Integrator(const VsiModel& model, const IntegrationParameters& p) : model_(model), parameters_(p), workspace_(model) {
     // The tolerance counts relative to a contact displacement of 1 mm.
     limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
     static_cast<void>(operators(0));
@@ -68,11 +67,12 @@ void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord
   }
 }
 
-void fill_patches(const WheelContactModel& contact, const ContactPatches& patches, WheelRecord& wheel) {
+void fill_patches(const ContactSolution& contact, std::size_t index, WheelRecord& wheel) {
   wheel = {};
   const ContactPatch* first = nullptr;
-  for (const ContactPatch& patch : patches) {
-    const double force = normal_force(contact, patch, 0.0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.patches[index].count); ++i) {
+    const ContactPatch& patch = contact.patches[index].patch[i];
+    const double force = contact.normal[index][i];
     if (force <= 0.0) continue;
     ++wheel.patches;
     if (!first || force > wheel.normal_force) {
@@ -101,7 +101,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   record.wheels.resize(wheels);
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
-    fill_patches(model.contact, state.contact.patches[wheel], w);
+    fill_patches(state.contact, wheel, w);
     const auto unknown = static_cast<Eigen::Index>(wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2));
     w.Y = state.contact.force[unknown];
     w.Q = state.contact.force[unknown + 1];
@@ -110,11 +110,13 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   const std::size_t bodies = model.vehicle.bodies.size();
   record.bodies.resize(bodies * state.vehicle.size());
   for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
-    for (std::size_t b = 0; b < bodies; ++b) fill_motion(model.vehicle.dof[b], state.vehicle[v], record.bodies[v * bodies + b]);
+    for (std::size_t b = 0; b < bodies; ++b)
+      fill_motion(model.vehicle.dof[b], state.vehicle[v], record.bodies[v * bodies + b]);
   }
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
-  for (std::size_t n = 0; n < record.nodes.size(); ++n) fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
+  for (std::size_t n = 0; n < record.nodes.size(); ++n)
+    fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
 }
 
 RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration, int record_every,

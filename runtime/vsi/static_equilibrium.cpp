@@ -12,7 +12,8 @@ constexpr int max_iterations = 60;
 constexpr double contact_tolerance = 1e-10;  // m, rad: of the contact unknowns
 // Of the dofs: what rounding leaves of the wheel loads, over the weak eps M, moves them by some nm.
 constexpr double dof_tolerance = 1e-7;  // m, rad
-constexpr double pitch_rate_compliance = 1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
+constexpr double pitch_rate_compliance =
+    1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -98,9 +99,8 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
-      Eigen::VectorXd next =
-          vehicle.inverse() * (model.vehicle.static_load + motion.contact_load +
-                               regularisation * (model.vehicle.mass * motion.displacement));
+      Eigen::VectorXd next = vehicle.inverse() * (model.vehicle.static_load + motion.contact_load +
+                                                  regularisation * (model.vehicle.mass * motion.displacement));
       clear_pitch(model, next);
       report.change = std::max(report.change, (next - motion.displacement).cwiseAbs().maxCoeff());
       motion.displacement = next;
@@ -137,8 +137,8 @@ EquilibriumReport steady_start(const VsiModel& model, double time_step, VsiState
   EquilibriumReport report = equilibrium(model, rest, inertia, state);
   if (!model.structure) return report;
 
-  // The load that the moving deflection's inertia and damping exert is found from the deflection, and the deflection under
-  // it again: each pass gains a factor of (V / critical speed)².
+  // The load that the moving deflection's inertia and damping exert is found from the deflection, and the deflection
+  // under it again: each pass gains a factor of (V / critical speed)².
   LinearMotion& structure = state.structure;
   constexpr int passes = 4;
   for (int pass = 0; pass < passes && report.converged; ++pass) {
@@ -152,8 +152,9 @@ EquilibriumReport steady_start(const VsiModel& model, double time_step, VsiState
       report.converged = report.converged && r.converged;
     }
     structure.velocity = (after.structure.displacement - before.structure.displacement) / (2.0 * time_step);
-    structure.acceleration = (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /
-                             (time_step * time_step);
+    structure.acceleration =
+        (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /
+        (time_step * time_step);
     inertia = -(model.structure->mass * structure.acceleration) - model.structure->damping * structure.velocity;
     const EquilibriumReport r = equilibrium(model, rest, inertia, state);
     report.iterations += r.iterations;

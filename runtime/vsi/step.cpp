@@ -8,7 +8,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Rail coupling beyond this distance is left to the far-field correction: rail bending waves within one step have died out.
+// Rail coupling beyond this distance is left to the far-field correction: rail bending waves within one step have died
+// out.
 constexpr double compliance_window = 5.0;  // m
 
 class Stopwatch {
@@ -53,17 +54,21 @@ void free_structure(const VsiModel& model, const StepOperators& op, const VsiSta
   gather_rails(contacts, p.displacement, ws.problem.predicted);
   gather_rails(contacts, p.velocity, ws.problem.predicted_velocity);
   gather_rails(contacts, p.displacement + ws.structure_free, ws.problem.free);
-  gather_rails(contacts, p.displacement + state.structure.acceleration / op.scheme.acceleration_rate(), ws.solution.displacement);
+  gather_rails(contacts, p.displacement + state.structure.acceleration / op.scheme.acceleration_rate(),
+               ws.solution.displacement);
 }
 
-void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts, std::vector<RailCoupling>& rail) {
+void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts,
+                    std::vector<RailCoupling>& rail) {
   rail.clear();
   const int wheels = static_cast<int>(contacts.size());
   for (int j = 0; j < wheels; ++j) {
     if (!contacts[index(j)].on_rail) continue;
-    // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is symmetric.
+    // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
+    // symmetric.
     for (int i = j; i < wheels; ++i) {
-      const Eigen::Matrix3d c = op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
+      const Eigen::Matrix3d c =
+          op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
       if (c.isZero(0.0)) break;
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
@@ -158,7 +163,8 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     const Stopwatch watch(report.seconds_vehicle);
     LinearMotion& motion = state.vehicle[index(v)];
     scatter_wheelset_forces(model, v, ws.solution.force, motion.contact_load);
-    ws.vehicle_increment[index(v)] = ws.vehicle_free[index(v)] + hht.load_weight() * (op.vehicle.inverse() * motion.contact_load);
+    ws.vehicle_increment[index(v)] =
+        ws.vehicle_free[index(v)] + hht.load_weight() * (op.vehicle.inverse() * motion.contact_load);
     update(hht, ws.vehicle_prediction[index(v)], ws.vehicle_increment[index(v)], motion);
   }
   if (model.structure) {

@@ -21,7 +21,8 @@ std::unique_ptr<Eigen::SimplicialLDLT<Sparse>> factorise(const Sparse& effective
 // The three rows of a contact over its element's 12 dofs.
 Eigen::Matrix<double, 3, 12> rows_of(const RailContact& contact) {
   Eigen::Matrix<double, 3, 12> rows;
-  for (std::size_t k = 0; k < 12; ++k) rows.col(static_cast<Eigen::Index>(k)) << contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k];
+  for (std::size_t k = 0; k < 12; ++k)
+    rows.col(static_cast<Eigen::Index>(k)) << contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k];
   return rows;
 }
 
@@ -54,11 +55,13 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
   if (!contact.on_rail) return;
   for (std::size_t k = 0; k < 12; ++k) {
     if (contact.rows.dof[k] == held) continue;
-    loads[contact.rows.dof[k]] += contact.rows.y[k] * load[0] + contact.rows.z[k] * load[1] + contact.rows.roll[k] * load[2];
+    loads[contact.rows.dof[k]] +=
+        contact.rows.y[k] * load[0] + contact.rows.z[k] * load[1] + contact.rows.roll[k] * load[2];
   }
 }
 
-StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme) : dofs_(structure.dofs()) {
+StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
+    : dofs_(structure.dofs()) {
   const Sparse effective = scheme.acceleration_rate() * structure.mass +
                            scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
   factor_ = factorise(effective);
@@ -68,7 +71,9 @@ StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(st
   factor_ = factorise(structure.stiffness);
 }
 
-long StructureResponse::factor_nonzeros() const { return static_cast<long>(factor_->matrixL().nestedExpression().nonZeros()); }
+long StructureResponse::factor_nonzeros() const {
+  return static_cast<long>(factor_->matrixL().nestedExpression().nonZeros());
+}
 
 void StructureResponse::free_increment(const StructureModel& structure, const HhtScheme& scheme,
                                        const LinearMotion& motion, const Prediction& prediction,

@@ -5,9 +5,8 @@
 namespace railtab {
 
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme) {
-  const Eigen::MatrixXd effective =
-      scheme.acceleration_rate() * vehicle.mass +
-      scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
+  const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
+                                    scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
   inverse_ = effective.partialPivLu().inverse();
   restrict_to_wheelsets(vehicle);
 }
@@ -22,7 +21,8 @@ void VehicleResponse::restrict_to_wheelsets(const VehicleModel& vehicle) {
   const auto wheelsets = static_cast<Eigen::Index>(vehicle.wheelsets.size());
   compliance_ = Eigen::MatrixXd::Zero(6 * wheelsets, 6 * wheelsets);
   const auto dof = [&](Eigen::Index k) {
-    return vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(k / 6)])][static_cast<std::size_t>(k % 6)];
+    return vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(k / 6)])]
+                      [static_cast<std::size_t>(k % 6)];
   };
   for (Eigen::Index i = 0; i < 6 * wheelsets; ++i) {
     for (Eigen::Index j = 0; j < 6 * wheelsets; ++j) {

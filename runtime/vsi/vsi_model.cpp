@@ -36,6 +36,7 @@ VsiState::VsiState(const VsiModel& model)
   contact.force = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
   contact.rail_x.assign(index(2 * wheelsets), 0.0);
   contact.patches.resize(index(2 * wheelsets));
+  contact.normal.resize(index(2 * wheelsets));
   far_field = Eigen::VectorXd::Zero(6 * wheelsets);
 }
 

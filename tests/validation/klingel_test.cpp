@@ -14,7 +14,7 @@
 namespace railtab {
 namespace {
 
-constexpr double speed = 0.5;   // m/s: inertia does not matter
+constexpr double speed = 0.5;       // m/s: inertia does not matter
 constexpr double amplitude = 1e-5;  // m
 
 enum class Roll { held, free };
@@ -96,17 +96,19 @@ ConeContact contact_at_rest(const VsiModel& model) {
   VsiState state(model);
   EXPECT_TRUE(static_equilibrium(model, state).converged);
   const ContactPatch& patch = state.contact.patches.at(1).patch[0];
-  return {std::tan(-patch.angle), model.geometry->pair().rail_offset() + patch.y_rail, patch.rolling_radius, 1.0 / patch.curv_rail};
+  return {std::tan(-patch.angle), model.geometry->pair().rail_offset() + patch.y_rail, patch.rolling_radius,
+          1.0 / patch.curv_rail};
 }
 
-// |s|² of the linear kinematic equations is gamma_e/(r0 L), whatever lateral stiffness the contact normals add: Klingel's
-// wavelength is 2π/|s|.
+// |s|² of the linear kinematic equations is gamma_e/(r0 L), whatever lateral stiffness the contact normals add:
+// Klingel's wavelength is 2π/|s|.
 TEST(Klingel, WavelengthWithRollHeld) {
   const VsiModel model = wheelset_on_cones(Roll::held);
   const ConeContact c = contact_at_rest(model);
   const double klingel = 2.0 * std::numbers::pi * std::sqrt(c.r0 * c.L / c.gamma);
   const double measured = measured_wavelength(model);
-  std::printf("roll held: %.5f m, Klingel %.5f m, difference %.4f %%\n", measured, klingel, 100 * (measured / klingel - 1));
+  std::printf("roll held: %.5f m, Klingel %.5f m, difference %.4f %%\n", measured, klingel,
+              100 * (measured / klingel - 1));
   EXPECT_NEAR(measured / klingel, 1.0, 1e-3);
 }
 
@@ -122,8 +124,8 @@ TEST(Klingel, WavelengthWithRollFree) {
   const double with_roll_rate = klingel * std::sqrt(roll_rate);
   const double measured = measured_wavelength(model);
   std::printf("roll free: %.5f m, equivalent conicity %.6f\n", measured, equivalent);
-  std::printf("  Klingel %.5f m, difference %.4f %%; with the roll rate's part of lateral creepage %.5f m, %.4f %%\n", klingel,
-              100 * (measured / klingel - 1), with_roll_rate, 100 * (measured / with_roll_rate - 1));
+  std::printf("  Klingel %.5f m, difference %.4f %%; with the roll rate's part of lateral creepage %.5f m, %.4f %%\n",
+              klingel, 100 * (measured / klingel - 1), with_roll_rate, 100 * (measured / with_roll_rate - 1));
   EXPECT_NEAR(measured / with_roll_rate, 1.0, 2e-3);
 }
 

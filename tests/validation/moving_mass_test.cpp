@@ -25,8 +25,8 @@ struct Idealisation {
 // A wheelset that is light (1 kg against 5750 kg) on a contact so stiff that its compression varies by less than 1e-8 m
 // stands for the reference's massless rigid wheel.
 constexpr Idealisation as_reference{50, 1.0, 2.1e13};
-// For the order in the time step: few elements, a heavier wheelset and a softer contact, so that the steps resolve every
-// frequency of the model (what a step does not resolve does not converge with its order yet).
+// For the order in the time step: few elements, a heavier wheelset and a softer contact, so that the steps resolve
+// every frequency of the model (what a step does not resolve does not converge with its order yet).
 constexpr Idealisation resolvable{2, 200.0, 2.1e10};
 
 // One sprung mass on a wheelset that is held in all but z.
@@ -38,14 +38,15 @@ VsiModel sprung_mass_on_beam(const Idealisation& ideal) {
   const DofIndices all_but_z{held, held, 0, held, held, held};
   model.vehicle = assemble_vehicle("sprung mass", bodies, suspension, {1}, {all_but_z, all_but_z}, 0.46, 10.0);
   model.vehicle_x = {0.0};
-  model.structure = build_simple_beam({.length = beam_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements});
+  model.structure =
+      build_simple_beam({.length = beam_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements});
   model.geometry = std::make_shared<const ContactGeometry>(
       ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "cone-1:40", 0.0)),
                                   ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));
   model.contact.geometry = model.geometry.get();
   model.contact.friction = 0.0;
   model.contact.speed = speed;
-  model.contact.material.E = ideal.E;
+  model.contact.normal.material.E = ideal.E;
   return model;
 }
 
@@ -90,7 +91,8 @@ TEST(SprungMassOnBeam, FollowsTheSemiAnalyticSolution) {
   const History h = cross(sprung_mass_on_beam(as_reference), 5e-4, 8);
   const double u = largest_difference(h.u_mid, reference["u_mid"]) / largest(reference["u_mid"]);
   const double a = largest_difference(h.a_sprung, reference["a_sprung"]) / largest(reference["a_sprung"]);
-  std::printf("midspan displacement: %.4f %% of the peak; sprung-mass acceleration: %.4f %% of the peak\n", 100 * u, 100 * a);
+  std::printf("midspan displacement: %.4f %% of the peak; sprung-mass acceleration: %.4f %% of the peak\n", 100 * u,
+              100 * a);
   EXPECT_LT(u, 1e-3);
   EXPECT_LT(a, 5e-3);
 }
@@ -100,8 +102,10 @@ TEST(SprungMassOnBeam, ConvergesWithSecondOrderInTheTimeStep) {
   const History coarse = cross(model, 1e-4, 10);
   const History medium = cross(model, 5e-5, 20);
   const History fine = cross(model, 2.5e-5, 40);
-  const double order_u = std::log2(largest_difference(coarse.u_mid, medium.u_mid) / largest_difference(medium.u_mid, fine.u_mid));
-  const double order_a = std::log2(largest_difference(coarse.a_sprung, medium.a_sprung) / largest_difference(medium.a_sprung, fine.a_sprung));
+  const double order_u =
+      std::log2(largest_difference(coarse.u_mid, medium.u_mid) / largest_difference(medium.u_mid, fine.u_mid));
+  const double order_a = std::log2(largest_difference(coarse.a_sprung, medium.a_sprung) /
+                                   largest_difference(medium.a_sprung, fine.a_sprung));
   std::printf("observed order: displacement %.3f, acceleration of the sprung mass %.3f\n", order_u, order_a);
   EXPECT_NEAR(order_u, 2.0, 0.05);
   EXPECT_NEAR(order_a, 2.0, 0.05);

@@ -33,14 +33,16 @@ struct ContactPatch {
   double s_rail = 0.0;   ///< arc length on the rail profile [m]
   double y_rail = 0.0, z_rail = 0.0;
   double y_wheel = 0.0, z_wheel = 0.0;
-  double x = 0.0;               ///< of the wheel's contact point, relative to the wheelset centre, forward [m]
-  double angle = 0.0;           ///< contact angle: rotation about x from z to the normal into the rail; negative on the right wheel [rad]
+  double x = 0.0;  ///< of the wheel's contact point, relative to the wheelset centre, forward [m]
+  double angle =
+      0.0;  ///< contact angle: rotation about x from z to the normal into the rail; negative on the right wheel [rad]
   double rolling_radius = 0.0;  ///< nominal radius + z_wheel: distance to the axle [m]
   double penetration = 0.0;     ///< common-normal distance of the deepest pair (Eq. 4), positive in contact [m]
   double curv_wheel = 0.0;      ///< lateral curvature of the wheel, convex positive [1/m]
   double curv_rail = 0.0;       ///< lateral curvature of the rail, convex positive [1/m]
-  double curv_rolling = 0.0;    ///< curvature of the wheel in the rolling direction, cos(angle to the axle's normal)/radius [1/m]
-  bool concave = false;         ///< the wheel profile is concave there
+  double curv_rolling =
+      0.0;  ///< curvature of the wheel in the rolling direction, cos(angle to the axle's normal)/radius [1/m]
+  bool concave = false;  ///< the wheel profile is concave there
   PatchSource source = PatchSource::online_convex;
 };
 

@@ -4,7 +4,7 @@
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
-#include "railtab/runtime/contact/hertz.hpp"
+#include "railtab/runtime/contact/patch_loads.hpp"
 
 namespace railtab {
 
@@ -29,12 +29,11 @@ struct RailHeadMotion {
 /// Parameters of the contact forces that every wheel shares.
 struct WheelContactModel {
   const ContactGeometry* geometry = nullptr;
-  ElasticMaterial material;
+  NormalContactModel normal;
   CreepLaw creep_law = PolachCreep{};
-  double friction = 0.3;          ///< [-]
-  double damping = 0.0;           ///< F_n = K_h d^{3/2} (1 + damping·d') [s/m]
-  double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]; 1e-6 in the published method
-  double speed = 0.0;             ///< running speed V [m/s], > 0
+  double friction = 0.3;  ///< [-]
+  double damping = 0.0;   ///< F_n = K_h d^{3/2} (1 + damping·d') [s/m]
+  double speed = 0.0;     ///< running speed V [m/s], > 0
 };
 
 /// Forces between one wheel and its rail, in the track frame.
@@ -42,6 +41,7 @@ struct WheelForce {
   Vector6 wheelset = Vector6::Zero();  ///< on the wheelset: force, and moment about its centre (pitch: about its axle)
   Vector3 rail = Vector3::Zero();      ///< on the rail head: y, z [N], moment about x through the head's origin [N m]
   double rail_x = 0.0;                 ///< on the rail, longitudinal [N]
+  std::array<double, ContactPatches::capacity> normal{};  ///< normal force of each patch [N]
 };
 
 enum class WheelSide { left, right };
@@ -51,10 +51,6 @@ enum class WheelSide { left, right };
 /// relative velocity of the wheel's and the rail's particles at the contact point. Never pulls.
 [[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                      const RailHeadMotion& rail, const ContactPatches& patches) noexcept;
-
-/// Normal force of one patch that approaches at `approach_velocity` [m/s] (positive: penetration grows) [N].
-[[nodiscard]] double normal_force(const WheelContactModel& model, const ContactPatch& patch,
-                                  double approach_velocity) noexcept;
 
 /// Pose of the wheelset against the rail head, as seen by a right wheel (mirrored on the left).
 [[nodiscard]] WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
@@ -69,9 +65,9 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 /// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
-/// velocities follow displacements with `velocity_rate` = dv/da per wheelset dof [1/s] (gamma/(beta dt) in a time step).
-/// By differences of the force itself along the six wheelset motions; the rail's columns follow from those, since only
-/// relative motion matters.
+/// velocities follow displacements with `velocity_rate` = dv/da per wheelset dof [1/s] (gamma/(beta dt) in a time
+/// step). By differences of the force itself along the six wheelset motions; the rail's columns follow from those,
+/// since only relative motion matters.
 [[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                           const ContactPatches& patches, const WheelForce& force,

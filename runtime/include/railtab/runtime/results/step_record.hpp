@@ -10,12 +10,12 @@ namespace railtab {
 /// positive Y pushes the rail to the right, positive X pushes the rail forward [N].
 struct WheelRecord {
   double Q = 0, Y = 0, X = 0;
-  int patches = 0;            ///< patches in contact
+  int patches = 0;                 ///< patches in contact
   double y_rail = 0, y_wheel = 0;  ///< of the patch with the largest normal force, own-side profile frames [m]
-  double angle = 0;           ///< contact angle of that patch [rad]
-  double rolling_radius = 0;  ///< of that patch [m]
-  double normal_force = 0;    ///< of that patch [N]
-  double penetration = 0;     ///< of that patch [m]
+  double angle = 0;                ///< contact angle of that patch [rad]
+  double rolling_radius = 0;       ///< of that patch [m]
+  double normal_force = 0;         ///< of that patch [N]
+  double penetration = 0;          ///< of that patch [m]
   double second_y_rail = 0, second_normal_force = 0;  ///< of the next patch; 0 where there is none
 };
 
@@ -28,8 +28,8 @@ struct MotionRecord {
 
 /// Everything that one instant offers to the results.
 struct StepRecord {
-  double time = 0;      ///< [s]
-  double position = 0;  ///< of the first wheelset along the track [m]
+  double time = 0;                   ///< [s]
+  double position = 0;               ///< of the first wheelset along the track [m]
   std::vector<WheelRecord> wheels;   ///< 2 per wheelset: left, right; wheelsets front first
   std::vector<MotionRecord> bodies;  ///< all vehicles, front first
   std::vector<MotionRecord> nodes;   ///< structure nodes of interest
@@ -39,28 +39,29 @@ struct StepRecord {
 /// Names and constants that do not change during a run.
 struct ResultHeader {
   std::string scene_name;
-  std::string scene_text;             ///< the TOML that was run
+  std::string scene_text;  ///< the TOML that was run
   std::string program_version;
-  double speed = 0;                   ///< [m/s]
-  std::vector<double> wheel_x;        ///< offset of each wheel behind the first wheelset (<= 0) [m]
+  double speed = 0;                       ///< [m/s]
+  std::vector<double> wheel_x;            ///< offset of each wheel behind the first wheelset (<= 0) [m]
   std::vector<double> static_wheel_load;  ///< [N] per wheel
   std::vector<std::string> body_names;    ///< "coach-1/car-body", ...
   std::vector<std::string> node_names;
-  std::vector<double> node_x;             ///< [m]
-  std::string wheel_profile, rail_profile;          ///< names
+  std::vector<double> node_x;                            ///< [m]
+  std::string wheel_profile, rail_profile;               ///< names
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]
 };
 
 /// How the run ended and where its time went.
 struct RunSummary {
   bool complete = false;
-  std::string message;                ///< empty, or why the run ended early
+  std::string message;  ///< empty, or why the run ended early
   long steps = 0, newton_iterations = 0, halved_steps = 0;
-  long back_substitutions = 0;        ///< of the structure's factor
+  long back_substitutions = 0;                  ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
-  double seconds_total = 0, seconds_setup = 0, seconds_contact = 0, seconds_structure = 0, seconds_vehicle = 0, seconds_output = 0;
+  double seconds_total = 0, seconds_setup = 0, seconds_contact = 0, seconds_structure = 0, seconds_vehicle = 0,
+         seconds_output = 0;
   long structure_dofs = 0, vehicle_dofs = 0;
-  std::string contact_mode;           ///< table, online, paper
+  std::string contact_mode;  ///< table, online, paper
 };
 
 }  // namespace railtab

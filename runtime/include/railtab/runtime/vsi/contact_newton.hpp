@@ -30,31 +30,32 @@ struct ContactProblem {
   Vector6 velocity_rate = Vector6::Zero();
   double rail_velocity_rate = 0.0;
   Eigen::VectorXd free, predicted, predicted_velocity;  ///< 12 per wheelset
-  Eigen::MatrixXd vehicle_compliance;    ///< of one vehicle's wheelsets, 6w × 6w, times the load weight
-  std::vector<RailCoupling> rail;        ///< times the load weight; empty on rigid track
+  Eigen::MatrixXd vehicle_compliance;                   ///< of one vehicle's wheelsets, 6w × 6w, times the load weight
+  std::vector<RailCoupling> rail;                       ///< times the load weight; empty on rigid track
   std::vector<std::array<RailHeadMotion, 2>> deviation;  ///< irregularity and the rails' slopes, per wheelset and side
-  double largest_move = 5e-3;            ///< bound on one Newton correction [m or rad]
+  double largest_move = 5e-3;                            ///< bound on one Newton correction [m or rad]
 };
 
 /// Solution and last contact forces, kept from step to step.
 struct ContactSolution {
-  Eigen::VectorXd displacement;          ///< q, 12 per wheelset
-  Eigen::VectorXd force;                 ///< f, dual to q
-  std::vector<double> rail_x;            ///< longitudinal force on the rail per wheel [N]
-  std::vector<ContactPatches> patches;   ///< per wheel, of its own (mirrored on the left) side
+  Eigen::VectorXd displacement;                                      ///< q, 12 per wheelset
+  Eigen::VectorXd force;                                             ///< f, dual to q
+  std::vector<double> rail_x;                                        ///< longitudinal force on the rail per wheel [N]
+  std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
+  std::vector<ContactPatches> patches;  ///< per wheel, of its own (mirrored on the left) side
 };
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;                    ///< corrections made
-  int tangents = 0;                      ///< of them with a new tangent
-  double correction = 0.0;               ///< largest last correction [m or rad]
+  int iterations = 0;       ///< corrections made
+  int tangents = 0;         ///< of them with a new tangent
+  double correction = 0.0;  ///< largest last correction [m or rad]
   double seconds_contact = 0.0;
   long queries = 0, table_queries = 0;
 };
 
 struct NewtonLimits {
-  double tolerance = 1e-11;              ///< of the correction [m, rad]
+  double tolerance = 1e-11;  ///< of the correction [m, rad]
   int max_iterations = 20;
 };
 
@@ -67,12 +68,14 @@ struct NewtonWorkspace {
   Eigen::VectorXd residual, correction, start;
 };
 
-[[nodiscard]] WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept;
-[[nodiscard]] RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset, int side) noexcept;
+[[nodiscard]] WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q,
+                                             int wheelset) noexcept;
+[[nodiscard]] RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset,
+                                         int side) noexcept;
 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over vehicles (the
-/// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact) and kept while
-/// it makes the residual five times smaller per iteration: within a time step one tangent normally suffices.
+/// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact) and kept
+/// while it makes the residual five times smaller per iteration: within a time step one tangent normally suffices.
 /// Converged: the residual or the last correction is below the tolerance; the forces are those at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,

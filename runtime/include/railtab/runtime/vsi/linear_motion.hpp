@@ -20,7 +20,7 @@ struct LinearMotion {
 
 /// Predictors of one HHT step, caller-owned so that a step allocates nothing.
 struct Prediction {
-  Eigen::VectorXd displacement, velocity;  ///< ã, ṽ
+  Eigen::VectorXd displacement, velocity;                    ///< ã, ṽ
   Eigen::VectorXd weighted_displacement, weighted_velocity;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
 };
 
@@ -33,7 +33,8 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Predict
 }
 
 /// Close the step with the increment Δ over the predictor.
-inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment, LinearMotion& motion) {
+inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
+                   LinearMotion& motion) {
   motion.displacement = p.displacement + increment;
   motion.velocity = p.velocity + scheme.velocity_rate() * increment;
   motion.acceleration = scheme.acceleration_rate() * increment;

@@ -23,9 +23,9 @@ struct RunPlan {
 
 /// Who listens to a run. Every member may be empty.
 struct RunObserver {
-  std::function<void(const ResultHeader&)> start;         ///< once, before the first record
-  std::function<void(const StepRecord&)> record;          ///< the initial state, then every output.every steps
-  std::function<void(double fraction)> progress;          ///< 0..1
+  std::function<void(const ResultHeader&)> start;  ///< once, before the first record
+  std::function<void(const StepRecord&)> record;   ///< the initial state, then every output.every steps
+  std::function<void(double fraction)> progress;   ///< 0..1
   std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
   long checkpoint_every = 2000;
 };

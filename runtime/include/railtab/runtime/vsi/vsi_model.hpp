@@ -17,18 +17,20 @@ namespace railtab {
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
-  std::vector<double> vehicle_x;           ///< of the vehicles' centres at t = 0, front first [m]
+  std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
   std::optional<StructureModel> structure;
   Irregularity irregularity;
   std::shared_ptr<const ContactGeometry> geometry;
-  WheelContactModel contact;               ///< its geometry points to `geometry`
+  WheelContactModel contact;  ///< its geometry points to `geometry`
 
   [[nodiscard]] int wheelsets_per_vehicle() const noexcept { return static_cast<int>(vehicle.wheelsets.size()); }
   [[nodiscard]] int wheelsets() const noexcept { return wheelsets_per_vehicle() * static_cast<int>(vehicle_x.size()); }
   /// Position of a wheelset along the track at time t, wheelsets counted from the front of the train [m].
   [[nodiscard]] double wheelset_x(int wheelset, double time) const noexcept;
   /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.
-  [[nodiscard]] Eigen::MatrixXd vehicle_damping() const { return vehicle.damping + contact.speed / vehicle.nominal_radius * vehicle.gyroscopic; }
+  [[nodiscard]] Eigen::MatrixXd vehicle_damping() const {
+    return vehicle.damping + contact.speed / vehicle.nominal_radius * vehicle.gyroscopic;
+  }
 };
 
 /// Everything that changes from step to step.
@@ -37,14 +39,15 @@ struct VsiState {
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
   ContactSolution contact;
-  /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m, rad].
+  /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
+  /// rad].
   Eigen::VectorXd far_field;
 
   explicit VsiState(const VsiModel& model);
 };
 
-/// All numbers of a state that the next step depends on, in a fixed order, for checkpoints: a run continued from them is
-/// the uninterrupted run to the last bit.
+/// All numbers of a state that the next step depends on, in a fixed order, for checkpoints: a run continued from them
+/// is the uninterrupted run to the last bit.
 [[nodiscard]] std::vector<double> packed(const VsiState& state);
 /// The inverse. @throws InputError where the count is not that of the model.
 void unpack(std::span<const double> numbers, VsiState& state);
@@ -60,9 +63,11 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
 /// Restriction of one vehicle's dof vector to its wheelset unknowns, written into a 12-per-wheelset vector.
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
 /// Its transpose: the contact forces of one vehicle's wheelsets as loads on the vehicle's dofs.
-void scatter_wheelset_forces(const VsiModel& model, int vehicle, const Eigen::VectorXd& force, Eigen::VectorXd& load) noexcept;
+void scatter_wheelset_forces(const VsiModel& model, int vehicle, const Eigen::VectorXd& force,
+                             Eigen::VectorXd& load) noexcept;
 /// Restriction of the structure's dofs to the rail heads, and its transpose.
 void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
-void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force, Eigen::VectorXd& load) noexcept;
+void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                         Eigen::VectorXd& load) noexcept;
 
 }  // namespace railtab
