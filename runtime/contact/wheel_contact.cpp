@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "railtab/runtime/contact/creepage.hpp"
@@ -165,31 +166,38 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
 
 Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                             const RailHeadMotion& rail, const ContactPatches& patches, const WheelForce& force,
-                            const Vector6& velocity_rate) noexcept {
+                            const Vector6& velocity_rate, double rail_velocity_rate) noexcept {
   Matrix9 tangent = Matrix9::Zero();
   if (patches.count == 0) return tangent;
   const WheelRailPair& pair = model.geometry->pair();
   const WheelsetPose pose = relative_pose(pair, side, wheelset, rail);
+  const auto difference = [&](const WheelsetMotion& w, const RailHeadMotion& r, bool moves_pose, double step) {
+    const ContactPatches& moved =
+        moves_pose ? moved_patches(*model.geometry, patches, pose, relative_pose(pair, side, w, r)) : patches;
+    const WheelForce f = wheel_force(model, side, w, r, moved);
+    Vector9 column;
+    column.head<6>() = (f.wheelset - force.wheelset) / step;
+    column.tail<3>() = (f.rail - force.rail) / step;
+    return column;
+  };
   // Steps well above the Newton tolerance of the pair and well below the penetration [m, rad].
-  const Vector6 step = (Vector6() << 1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7).finished();
+  constexpr std::array<double, 6> steps{1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7};
   for (int j = 0; j < 6; ++j) {
+    const double step = steps[static_cast<std::size_t>(j)];
     WheelsetMotion perturbed = wheelset;
-    perturbed.displacement[j] += step[j];
-    perturbed.velocity[j] += velocity_rate[j] * step[j];
+    perturbed.displacement[j] += step;
+    perturbed.velocity[j] += velocity_rate[j] * step;
     const bool moves_pose = j != 0 && j != 4;  // x and pitch leave the profiles where they are
-    const WheelForce f =
-        moves_pose
-            ? wheel_force(model, side, perturbed, rail,
-                          moved_patches(*model.geometry, patches, pose, relative_pose(pair, side, perturbed, rail)))
-            : wheel_force(model, side, perturbed, rail, patches);
-    tangent.col(j) << (f.wheelset - force.wheelset) / step[j], (f.rail - force.rail) / step[j];
+    tangent.col(j) = difference(perturbed, rail, moves_pose, step);
   }
-  // Moving the rail is moving the wheelset the other way; rolling the rail by +1 is rolling the wheelset by -1 about
-  // the rail head, which stands at (sign·rail_offset, R0) from the wheelset centre.
-  const double y_head = side == WheelSide::right ? pair.rail_offset() : -pair.rail_offset();
+  // Moving the rail is moving the wheelset the other way; rolling it is a motion of its own about the rail head.
   tangent.col(6) = -tangent.col(1);
   tangent.col(7) = -tangent.col(2);
-  tangent.col(8) = -tangent.col(3) - pair.nominal_radius() * tangent.col(1) + y_head * tangent.col(2);
+  constexpr double roll_step = 1e-7;
+  RailHeadMotion rolled = rail;
+  rolled.displacement[2] += roll_step;
+  rolled.velocity[2] += rail_velocity_rate * roll_step;
+  tangent.col(8) = difference(wheelset, rolled, true, roll_step);
   return tangent;
 }
 

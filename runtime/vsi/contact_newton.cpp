@@ -42,7 +42,8 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Con
       s.rail_x[index(2 * w + side)] = wheel.rail_x;
       s.normal[index(2 * w + side)] = wheel.normal;
       if (!tangents) continue;
-      const Matrix9 t = wheel_force_tangent(model, wheel_side, motion, rail, patches, wheel, problem.velocity_rate);
+      const Matrix9 t = wheel_force_tangent(model, wheel_side, motion, rail, patches, wheel, problem.velocity_rate,
+                                            problem.rail_velocity_rate);
       Matrix12& tangent = (*tangents)[index(w)];
       tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
       tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();

@@ -39,16 +39,16 @@ TEST(ProfileIntersection, CircularSegmentsHaveTheirKnownAreaAndWidth) {
 TEST(ProfileIntersection, RegionsAndPatchesOfTheSearchBelongTogether) {
   const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
                                            ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {}));
-  constexpr double spacing = 0.1e-3;
-  constexpr double chord = 2e-7;  // spacing² times the sharpest curvature of the pair (1/12 mm + 1/13 mm), over 8
+  constexpr double spacing = 0.05e-3;
+  constexpr double chord = 5e-8;  // spacing² times the sharpest curvature of the pair (1/12 mm + 1/13 mm), over 8
   std::mt19937_64 random(11);
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   int regions_seen = 0, patches_seen = 0, several = 0;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 400; ++i) {
     WheelsetPose pose{uniform(-0.01, 0.01), 0.0, uniform(-0.01, 0.01), uniform(-0.03, 0.03)};
-    pose.z = search.touch_height(pose.y, pose.roll, pose.yaw) + uniform(2e-5, 3e-4);
+    pose.z = search.touch_height(pose.y, pose.roll, pose.yaw) + std::exp(uniform(std::log(1e-6), std::log(3e-4)));
     const auto regions = overlap_regions(search.pair(), pose, spacing);
     const ContactPatches patches = search.patches(pose);
     regions_seen += static_cast<int>(regions.size());

@@ -65,12 +65,12 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 /// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
-/// velocities follow displacements with `velocity_rate` = dv/da per wheelset dof [1/s] (gamma/(beta dt) in a time
-/// step). By differences of the force itself along the six wheelset motions; the rail's columns follow from those,
-/// since only relative motion matters.
+/// velocities follow displacements with dv/da: `velocity_rate` per wheelset dof and `rail_velocity_rate` [1/s]
+/// (gamma/(beta dt) in a time step). By differences of the force itself along the wheelset's motions and the rail's
+/// roll; the rail's translations follow, since only relative motion matters.
 [[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                           const ContactPatches& patches, const WheelForce& force,
-                                          const Vector6& velocity_rate) noexcept;
+                                          const Vector6& velocity_rate, double rail_velocity_rate) noexcept;
 
 }  // namespace railtab

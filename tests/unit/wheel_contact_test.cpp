@@ -1,0 +1,149 @@
+#include "railtab/runtime/contact/wheel_contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "railtab/runtime/profile/standard_profiles.hpp"
+
+namespace railtab {
+namespace {
+
+std::shared_ptr<const ContactGeometry> s1002_on_60e1() {
+  return std::make_shared<const ContactGeometry>(
+      ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                  ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));
+}
+
+WheelContactModel contact_model(const ContactGeometry& geometry) {
+  WheelContactModel model;
+  model.geometry = &geometry;
+  model.speed = 30.0;
+  return model;
+}
+
+double total_force(const ContactGeometry& geometry, const WheelsetPose& pose) {
+  const ContactPatches patches = geometry.patches(pose);
+  const PatchLoads loads = patch_loads({}, geometry, pose, patches);
+  return std::accumulate(loads.begin(), loads.begin() + patches.count, 0.0,
+                         [](double sum, const PatchLoad& load) { return sum + load.elastic_force; });
+}
+
+// Largest change of the normal force between neighbouring lateral shifts of a wheel held at one height.
+double largest_change(const ContactGeometry& geometry, double step) {
+  double largest = 0.0;
+  double previous = total_force(geometry, {.y = -4e-3, .z = 0.35e-3});
+  const int steps = static_cast<int>(std::lround(8e-3 / step));
+  for (int i = 1; i <= steps; ++i) {
+    const double force = total_force(geometry, {.y = -4e-3 + i * step, .z = 0.35e-3});
+    largest = std::max(largest, std::abs(force - previous));
+    previous = force;
+  }
+  return largest;
+}
+
+// A force that jumped (where a patch ends in another, or where arcs of a profile join) would change as much however
+// small the step.
+TEST(PatchLoads, NormalForceIsContinuousWherePatchesMergeAndArcsJoin) {
+  const auto geometry = s1002_on_60e1();
+  const double coarse = largest_change(*geometry, 20e-6);
+  const double fine = largest_change(*geometry, 1e-6);
+  std::printf("largest change per 20 um %.0f N, per 1 um %.0f N\n", coarse, fine);
+  EXPECT_GT(coarse, 100.0);
+  EXPECT_LT(fine, 0.25 * coarse);
+}
+
+TEST(PatchLoads, SeparatePatchesCarryTheirFullHertzForce) {
+  const auto geometry = s1002_on_60e1();
+  const ContactSearch search(geometry->pair());
+  int separate = 0;
+  for (double y = 5e-3; y < 8e-3; y += 1e-5) {  // from the root to the flange: there both touch
+    const WheelsetPose pose{.y = y, .z = search.touch_height(y, 0.0, 0.0) + 1e-4};
+    const ContactPatches patches = geometry->patches(pose);
+    if (patches.count != 2) continue;
+    if (saddle_penetration(geometry->pair(), pose, patches.patch[0], patches.patch[1]) > 0.0) continue;
+    ++separate;
+    const PatchLoads loads = patch_loads({}, *geometry, pose, patches);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double d = patches.patch[i].penetration;
+      EXPECT_DOUBLE_EQ(loads[i].elastic_force, loads[i].hertz.stiffness * (d * std::sqrt(d)));
+    }
+  }
+  EXPECT_GT(separate, 3);
+}
+
+TEST(WheelForce, RailCarriesTheOppositeForceAndTheLeftWheelMirrorsTheRight) {
+  const auto geometry = s1002_on_60e1();
+  const WheelContactModel model = contact_model(*geometry);
+  WheelsetMotion right;
+  right.displacement << 0.0, 3e-3, 0.28e-3, 2e-4, 0.0, 3e-3;
+  right.velocity << 0.01, 0.02, -0.01, 0.003, 0.05, 0.02;
+  RailHeadMotion rail;
+  rail.displacement << 2e-4, 1e-4, 1e-3;
+  const auto force = [&](WheelSide side, const WheelsetMotion& w, const RailHeadMotion& r) {
+    return wheel_force(model, side, w, r, geometry->patches(relative_pose(geometry->pair(), side, w, r)));
+  };
+  const WheelForce a = force(WheelSide::right, right, rail);
+  ASSERT_GT(a.rail[1], 1e4);
+  EXPECT_NEAR(a.rail[0], -a.wheelset[1], 1e-9 * a.rail[1]);
+  EXPECT_NEAR(a.rail[1], -a.wheelset[2], 1e-9 * a.rail[1]);
+  EXPECT_NEAR(a.rail_x, -a.wheelset[0], 1e-9 * a.rail[1]);
+
+  WheelsetMotion left = right;
+  RailHeadMotion left_rail = rail;
+  for (int k : {1, 3, 5}) {
+    left.displacement[k] *= -1.0;
+    left.velocity[k] *= -1.0;
+  }
+  left_rail.displacement[0] *= -1.0;
+  left_rail.displacement[2] *= -1.0;
+  const WheelForce b = force(WheelSide::left, left, left_rail);
+  for (int k = 0; k < 6; ++k) EXPECT_DOUBLE_EQ(b.wheelset[k], (k % 2 == 1 ? -1.0 : 1.0) * a.wheelset[k]) << k;
+}
+
+// The tangent against differences of the whole chain, patches searched anew, in displacements that carry velocities.
+TEST(WheelForce, TangentIsThatOfTheForce) {
+  const auto geometry = s1002_on_60e1();
+  const WheelContactModel model = contact_model(*geometry);
+  const Vector6 rate = Vector6::Constant(4000.0);
+  for (const double y : {0.0, 2e-3, 5.5e-3}) {
+    WheelsetMotion wheelset;
+    wheelset.displacement << 0.0, y, 0.30e-3, 0.0, 0.0, 1e-3;
+    RailHeadMotion rail;
+    const auto force = [&](const WheelsetMotion& w, const RailHeadMotion& r) {
+      return wheel_force(model, WheelSide::right, w, r,
+                         geometry->patches(relative_pose(geometry->pair(), WheelSide::right, w, r)));
+    };
+    const WheelForce at = force(wheelset, rail);
+    const ContactPatches patches = geometry->patches(relative_pose(geometry->pair(), WheelSide::right, wheelset, rail));
+    const Matrix9 tangent = wheel_force_tangent(model, WheelSide::right, wheelset, rail, patches, at, rate, rate[0]);
+    for (int j = 0; j < 9; ++j) {
+      const double step = 1e-8;
+      const auto moved = [&](double h) {
+        WheelsetMotion w = wheelset;
+        RailHeadMotion r = rail;
+        if (j < 6) {
+          w.displacement[j] += h;
+          w.velocity[j] += rate[j] * h;
+        } else {
+          r.displacement[j - 6] += h;
+          r.velocity[j - 6] += rate[j - 6] * h;
+        }
+        return force(w, r);
+      };
+      const WheelForce plus = moved(step);
+      const WheelForce minus = moved(-step);
+      Vector9 difference;
+      difference << (plus.wheelset - minus.wheelset) / (2 * step), (plus.rail - minus.rail) / (2 * step);
+      const double tolerance = 2e-3 * difference.cwiseAbs().maxCoeff();
+      for (int i = 0; i < 9; ++i)
+        EXPECT_NEAR(tangent(i, j), difference[i], tolerance) << "y " << y << ", " << i << " by " << j;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace railtab
