@@ -60,7 +60,7 @@ TEST(PatchLoads, SeparatePatchesCarryTheirFullHertzForce) {
   const auto geometry = s1002_on_60e1();
   const ContactSearch search(geometry->pair());
   int separate = 0;
-  for (double y = 5e-3; y < 8e-3; y += 2e-6) {  // from the root to the flange: there both touch
+  for (double y = 4e-3; y < 5e-3; y += 2e-6) {  // the contact jumps from tread to root: there both touch
     const WheelsetPose pose{.y = y, .z = search.touch_height(y, 0.0, 0.0) + 1e-4};
     const ContactPatches patches = geometry->patches(pose);
     if (patches.count != 2) continue;
@@ -72,7 +72,7 @@ TEST(PatchLoads, SeparatePatchesCarryTheirFullHertzForce) {
       EXPECT_DOUBLE_EQ(loads[i].elastic_force, loads[i].hertz.stiffness * (d * std::sqrt(d)));
     }
   }
-  EXPECT_GT(separate, 3);
+  EXPECT_GT(separate, 10);
 }
 
 TEST(WheelForce, RailCarriesTheOppositeForceAndTheLeftWheelMirrorsTheRight) {
