@@ -32,8 +32,9 @@ void insert(ContactPatches& patches, const ContactPatch& patch) noexcept {
   ContactPatch* const begin = patches.patch.data();
   ContactPatch* end = begin + patches.count;
   for (ContactPatch* p = begin; p != end; ++p) {
-    // Two neighbouring brackets that share their common end point can both end there.
-    if (std::abs(p->s_wheel - patch.s_wheel) < 1e-9) return;
+    // Two neighbouring brackets that share their common end point can both end there; a table's patch is that near to
+    // the search's.
+    if (std::abs(p->s_wheel - patch.s_wheel) < 1e-7) return;
   }
   if (patches.count == ContactPatches::capacity) {
     patches.overflow = true;
@@ -79,11 +80,16 @@ void add_patch(const WheelRailPair& pair, const WheelsetPose& pose, const PoseTr
   if (patch.penetration > -near_miss) insert(patches, patch);
 }
 
-// Calls found(bracket) for every minimum of the gap in the intervals j that `wanted(gaps, j)` names, of the blocks that
-// `near(block)` names.
+struct ScanRange {
+  int begin, end;  ///< intervals
+};
+
+// Calls found(bracket) for every minimum of the gap in the intervals of a range that `wanted(gaps, j)` names, of the
+// blocks that `near(block)` names; j counts in the block.
 template <class Near, class Wanted, class Found>
-void for_each_minimum(const ContactScan& scan, const WheelsetCentre& centre, const PoseTrigonometry& trig,
-                      const GapWalk& walk, double dilation, Near near, Wanted wanted, Found found) noexcept {
+void for_each_minimum(const ContactScan& scan, ScanRange range, const WheelsetCentre& centre,
+                      const PoseTrigonometry& trig, const GapWalk& walk, double dilation, Near near, Wanted wanted,
+                      Found found) noexcept {
   ContactScan::BlockGaps gap;
   GapSlope last;
   int last_point = -1;
@@ -96,12 +102,13 @@ void for_each_minimum(const ContactScan& scan, const WheelsetCentre& centre, con
     last_point = k;
     return last;
   };
-  for (int block = 0; block < scan.blocks(); ++block) {
+  constexpr int size = ContactScan::block_size;
+  for (int block = range.begin / size; block * size < range.end; ++block) {
     if (!near(block)) continue;
     scan.gaps(block, centre, trig, dilation, gap);
-    for (int j = 0; j < ContactScan::block_size; ++j) {
-      if (!wanted(gap, j)) continue;
-      const int k = block * ContactScan::block_size + j;
+    const int first = block * size;
+    for (int k = std::max(first, range.begin); k < std::min(first + size, range.end); ++k) {
+      if (!wanted(gap, k - first)) continue;
       const GapSlope left = slope_at(k);
       const GapSlope right = slope_at(k + 1);
       const GapBracket bracket = walk.bracket(left, right);
@@ -114,19 +121,37 @@ void for_each_minimum(const ContactScan& scan, const WheelsetCentre& centre, con
 
 ContactSearch::ContactSearch(WheelRailPair pair, double spacing) : pair_(std::move(pair)), scan_(pair_, spacing) {}
 
-ContactPatches ContactSearch::patches(const WheelsetPose& pose, double near_miss) const noexcept {
-  const PoseTrigonometry trig(pose);
-  const WheelsetCentre centre = wheelset_centre(pair_, pose);
-  const GapWalk walk(pair_, pose, trig, Opposite::nearest);
+namespace {
+
+void add_patches(const WheelRailPair& pair, const ContactScan& scan, ScanRange range, const WheelsetPose& pose,
+                 const PoseTrigonometry& trig, double near_miss, ContactPatches& result) noexcept {
+  const WheelsetCentre centre = wheelset_centre(pair, pose);
+  const GapWalk walk(pair, pose, trig, Opposite::nearest);
   // A minimum at zero distance stands at most half a spacing from a scan point; 75 degrees make four of the distance.
-  const double margin = 2.0 * scan_.spacing();
-  ContactPatches result;
+  const double margin = 2.0 * scan.spacing();
   for_each_minimum(
-      scan_, centre, trig, walk, near_miss,
-      [&](int block) { return scan_.gap_bound(block, centre, trig, near_miss) < margin; },
+      scan, range, centre, trig, walk, near_miss,
+      [&](int block) { return scan.gap_bound(block, centre, trig, near_miss) < margin; },
       [&](const ContactScan::BlockGaps& gap, int j) { return may_touch(gap, j, margin); },
-      [&](const GapBracket& bracket) { add_patch(pair_, pose, trig, walk, bracket, near_miss, result); });
+      [&](const GapBracket& bracket) { add_patch(pair, pose, trig, walk, bracket, near_miss, result); });
+}
+
+}  // namespace
+
+ContactPatches ContactSearch::patches(const WheelsetPose& pose, double near_miss) const noexcept {
+  ContactPatches result;
+  add_patches(pair_, scan_, {0, scan_.blocks() * ContactScan::block_size}, pose, PoseTrigonometry(pose), near_miss,
+              result);
   return result;
+}
+
+void ContactSearch::add_patches_between(double s_low, double s_high, const WheelsetPose& pose,
+                                        const PoseTrigonometry& trig, double near_miss,
+                                        ContactPatches& result) const noexcept {
+  const double most = static_cast<double>(scan_.blocks() * ContactScan::block_size);
+  const auto point = [&](double s) { return std::clamp((s - scan_.s_wheel(0)) / scan_.spacing(), 0.0, most); };
+  const ScanRange range{static_cast<int>(point(s_low)), static_cast<int>(std::ceil(point(s_high)))};
+  add_patches(pair_, scan_, range, pose, trig, near_miss, result);
 }
 
 namespace {
@@ -164,7 +189,7 @@ void for_each_touch(const WheelRailPair& pair, const ContactScan& scan, const Wh
   if (least == infinity) return;
   const GapWalk walk(pair, pose, trig, Opposite::vertical);
   for_each_minimum(
-      scan, centre, trig, walk, 0.0,
+      scan, {0, scan.blocks() * ContactScan::block_size}, centre, trig, walk, 0.0,
       [&](int block) { return block_least[static_cast<std::size_t>(block)] < least + height + block_reserve; },
       [&](const ContactScan::BlockGaps& g, int j) { return lowest_possible(g, j) < least + height; },
       [&](const GapBracket& bracket) {

@@ -45,20 +45,46 @@ TableContact::TableContact(GeometryTable table)
 
 ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss) const noexcept {
   ContactPatches result;
-  if (patches_from_table(pose, near_miss, result)) return result;
-  return search_.patches(pose, near_miss);
+  if (!patches_from_table(pose, near_miss, result)) result = search_.patches(pose, near_miss);
+  return result;
+}
+
+TableContact::Route TableContact::route(const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
+                                        double near_miss) const noexcept {
+  if (lookup.status == GeometryTable::Status::outside || lookup.count == 0) return Route::online;
+  double first_touch = lookup.branch[0].z_touch;
+  for (int n = 1; n < lookup.count; ++n) first_touch = std::min(first_touch, lookup.branch[n].z_touch);
+  const double lowering = pose.z + near_miss * steepest_ - first_touch;
+  // A limit of 0 is a branch that may touch before all of these: it is to be searched at any height.
+  if (lookup.trusted_lowering > 0 && lowering <= lookup.trusted_lowering) return Route::branches;
+  const bool windows = !lookup.windows.empty() && lowering <= table_.data().searched_lowering;
+  return windows ? Route::windows : Route::online;
+}
+
+bool TableContact::searches_windows(const WheelsetPose& pose, double near_miss) const noexcept {
+  return route(table_.lookup(pose.y, pose.yaw, pose.roll), pose, near_miss) == Route::windows;
 }
 
 bool TableContact::patches_from_table(const WheelsetPose& pose, double near_miss,
                                       ContactPatches& result) const noexcept {
   const GeometryTable::Lookup lookup = table_.lookup(pose.y, pose.yaw, pose.roll);
-  if (lookup.status == GeometryTable::Status::outside || lookup.count == 0 || lookup.trusted_lowering == 0)
-    return false;
-  double first_touch = lookup.branch[0].z_touch;
-  for (int n = 1; n < lookup.count; ++n) first_touch = std::min(first_touch, lookup.branch[n].z_touch);
-  if (!(pose.z + near_miss * steepest_ - first_touch <= lookup.trusted_lowering)) return false;
-
+  const Route way = route(lookup, pose, near_miss);
+  if (way == Route::online) return false;
   const PoseTrigonometry trigonometry(pose);
+  if (!add_branch_patches(lookup, pose, trigonometry, near_miss, result)) return false;
+  if (way == Route::windows) {
+    for (const SearchWindow& window : lookup.windows) {
+      search_.add_patches_between(window.s_low, window.s_high, pose, trigonometry, near_miss, result);
+    }
+    for (int n = 0; n < result.count; ++n) result.patch[n].source = PatchSource::table;
+  }
+  result.from_table = !result.overflow;
+  return result.from_table;
+}
+
+bool TableContact::add_branch_patches(const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
+                                      const PoseTrigonometry& trigonometry, double near_miss,
+                                      ContactPatches& result) const noexcept {
   for (int n = 0; n < lookup.count; ++n) {
     const BranchValue& branch = lookup.branch[n];
     // Distance from (y, z) to the branch's touch curve, seen as a straight line: the normal is (-z', 1) cos(angle).

@@ -9,6 +9,7 @@
 #include "railtab/tablegen/branch_tracking.hpp"
 #include "railtab/tablegen/cell_check.hpp"
 #include "railtab/tablegen/cell_trust.hpp"
+#include "railtab/tablegen/search_windows.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -96,6 +97,7 @@ void GeometrySweepOptions::validate() const {
   check_range("yaw nodes", yaw_nodes, 2, 1000);
   check_range("roll step [rad]", roll_step, 1e-5, 0.05);
   check_range("branch height [m]", branch_height, 1e-6, 0.1);
+  check_range("searched lowering [m]", searched_lowering, 1e-6, branch_height);
   check_range("tolerance [m]", tolerance, 1e-12, 1e-3);
 }
 
@@ -123,12 +125,18 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
   }
   table.trusted_lowering = trusted_lowering(grid, table.branches);
   limit_wrong_cells(search, options.branch_height, table);
-  table.statistics = {
-      {"option.lateral_low", options.lateral.low},   {"option.lateral_high", options.lateral.high},
-      {"option.yaw_low", options.yaw.low},           {"option.yaw_high", options.yaw.high},
-      {"option.roll_low", options.roll.low},         {"option.roll_high", options.roll.high},
-      {"option.lateral_step", options.lateral_step}, {"option.yaw_nodes", static_cast<double>(options.yaw_nodes)},
-      {"option.roll_step", options.roll_step},       {"option.branch_height", options.branch_height}};
+  set_search_windows(options.searched_lowering, table);
+  table.statistics = {{"option.lateral_low", options.lateral.low},
+                      {"option.lateral_high", options.lateral.high},
+                      {"option.yaw_low", options.yaw.low},
+                      {"option.yaw_high", options.yaw.high},
+                      {"option.roll_low", options.roll.low},
+                      {"option.roll_high", options.roll.high},
+                      {"option.lateral_step", options.lateral_step},
+                      {"option.yaw_nodes", static_cast<double>(options.yaw_nodes)},
+                      {"option.roll_step", options.roll_step},
+                      {"option.branch_height", options.branch_height},
+                      {"option.searched_lowering", options.searched_lowering}};
   return table;
 }
 

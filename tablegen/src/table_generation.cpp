@@ -16,6 +16,8 @@ void store_statistics(const GeometryVerification& v, GeometryTableData& table) {
   table.statistics.emplace_back("certified.samples", v.samples);
   table.statistics.emplace_back("certified.answered_by_table", v.answered_by_table);
   table.statistics.emplace_back("certified.fallback_share", v.fallback_share);
+  table.statistics.emplace_back("certified.searched_share", v.searched_share);
+  table.statistics.emplace_back("certified.finer_mismatch_share", v.finer_mismatch_share);
   table.statistics.emplace_back("certified.patch_mismatch_share", v.patch_mismatch_share);
   for (const auto& [quantity, errors] : v.errors()) {
     for (const auto& [name, value] : errors->named()) {
@@ -38,7 +40,7 @@ GeometryTableData generate_geometry_table(const ContactSearch& search, const Geo
     check.seed = certification_seed;
     check.timing = false;
     verification = verify_geometry_table(contact, check);
-    if (verification.penetration.p999 <= options.tolerance && verification.patch_mismatch_share == 0) {
+    if (verification.penetration.p999 <= options.tolerance && verification.finer_mismatch_share == 0) {
       store_statistics(verification, table);
       return table;
     }
@@ -48,7 +50,7 @@ GeometryTableData generate_geometry_table(const ContactSearch& search, const Geo
       "geometry table: with {} mm between lateral nodes the penetration error is {} m (99.9 %) and patches are missed "
       "or "
       "invented at {} of the queries; asked for were {} m and none",
-      2e3 * current.lateral_step, verification.penetration.p999, verification.patch_mismatch_share, options.tolerance));
+      2e3 * current.lateral_step, verification.penetration.p999, verification.finer_mismatch_share, options.tolerance));
 }
 
 }  // namespace railtab

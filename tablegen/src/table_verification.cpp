@@ -32,6 +32,7 @@ struct Query {
   WheelsetPose pose;
   bool touches = false;
   bool answered = false;
+  bool searched = false;
 };
 
 /// Draws poses and lowers each wheel below its first touch; the latter in parallel.
@@ -54,10 +55,14 @@ std::vector<Query> draw_queries(const ContactSearch& search, const VerificationO
   return queries;
 }
 
+/// NaN where the profiles' own curvatures make no ellipse: with yaw a pair can be a minimum of the distance while they
+/// nearly conform.
 double normal_force(const ContactPatch& patch) {
   const double d = std::max(0.0, patch.penetration);
-  const HertzContact hertz =
-      hertz_contact(0.5 * patch.curv_rolling, 0.5 * (patch.curv_wheel + patch.curv_rail), ElasticMaterial{});
+  const double A = 0.5 * patch.curv_rolling;
+  const double B = 0.5 * (patch.curv_wheel + patch.curv_rail);
+  if (!(A > 0 && B > 0)) return std::numeric_limits<double>::quiet_NaN();
+  const HertzContact hertz = hertz_contact(A, B, ElasticMaterial{});
   return hertz.stiffness * d * std::sqrt(d);
 }
 
@@ -102,25 +107,38 @@ bool compare_patches(const ContactPatches& table, const ContactPatches& online, 
   return mismatch;
 }
 
+/// Scan of the search that judges where table and online search differ [m].
+constexpr double finer_spacing = 0.02e-3;
+
+struct Mismatches {
+  int online = 0;  ///< queries at which the table differs from the online search
+  int finer = 0;   ///< of these, from the search with the finer scan as well
+};
+
 /// Answers the queries by table and online search, in parallel.
-void compare_queries(const TableContact& contact, double deep, std::vector<Query>& queries,
-                     std::vector<PatchError>& errors, int& mismatched) {
+void compare_queries(const TableContact& contact, const ContactSearch& finer, double deep, std::vector<Query>& queries,
+                     std::vector<PatchError>& errors, Mismatches& mismatched) {
 #pragma omp parallel
   {
     std::vector<PatchError> own;
-    int own_mismatched = 0;
+    Mismatches own_mismatched;
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t n = 0; n < queries.size(); ++n) {
       Query& q = queries[n];
       if (!q.touches) continue;
       ContactPatches answer;
       q.answered = contact.patches_from_table(q.pose, 0.0, answer);
-      if (q.answered) own_mismatched += compare_patches(answer, contact.search().patches(q.pose), deep, own);
+      q.searched = q.answered && contact.searches_windows(q.pose, 0.0);
+      if (!q.answered || !compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
+      ++own_mismatched.online;
+      std::vector<PatchError> unused;
+      own_mismatched.finer += compare_patches(answer, finer.patches(q.pose), deep, unused);
     }
 #pragma omp critical(verification_errors)
     {
       errors.insert(errors.end(), own.begin(), own.end());
-      mismatched += own_mismatched;
+      mismatched.online += own_mismatched.online;
+      mismatched.finer += own_mismatched.finer;
     }
   }
 }
@@ -158,7 +176,10 @@ void set_errors(const std::vector<PatchError>& errors, GeometryVerification& res
   const auto column = [&](double PatchError::*member) {
     std::vector<double> values;
     values.reserve(errors.size());
-    for (const PatchError& e : errors) values.push_back(e.*member);
+    for (const PatchError& e : errors) {
+      // Only a force can be NaN, see normal_force().
+      if (!std::isnan(e.*member)) values.push_back(e.*member);
+    }
     return error_statistics(std::move(values));
   };
   result.patches_compared = static_cast<int>(errors.size());
@@ -222,18 +243,21 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   GeometryVerification result;
   result.bytes = contact.table().bytes();
   std::vector<PatchError> errors;
-  int mismatched = 0;
+  Mismatches mismatched;
+  const ContactSearch finer(search.pair(), finer_spacing);
+  int searched = 0;
   // In portions, so that progress can be told and positions where the wheel does not touch are drawn again.
   const int portion = std::min(options.samples, 5000);
   std::vector<Query> timed;
   while (result.samples < options.samples) {
     std::vector<Query> queries =
         draw_queries(search, options, std::min(portion, options.samples - result.samples), generator);
-    compare_queries(contact, 10 * options.tolerance, queries, errors, mismatched);
+    compare_queries(contact, finer, 10 * options.tolerance, queries, errors, mismatched);
     for (const Query& q : queries) {
       result.samples += q.touches;
       result.never_touching += !q.touches;
       result.answered_by_table += q.answered;
+      searched += q.searched;
     }
     if (result.never_touching > 20 * (result.samples + portion)) {
       throw ComputationError("verification: the wheel does not meet the rail in more than 95 % of the range");
@@ -242,8 +266,10 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
     timed = std::move(queries);
   }
   result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;
+  result.searched_share = static_cast<double>(searched) / result.samples;
   if (result.answered_by_table > 0) {
-    result.patch_mismatch_share = static_cast<double>(mismatched) / result.answered_by_table;
+    result.patch_mismatch_share = static_cast<double>(mismatched.online) / result.answered_by_table;
+    result.finer_mismatch_share = static_cast<double>(mismatched.finer) / result.answered_by_table;
   }
   set_errors(errors, result);
   if (options.timing) measure_time(contact, timed, result);

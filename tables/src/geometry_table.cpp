@@ -50,6 +50,31 @@ void check_branch(const GeometryBranch& b, std::size_t number, const std::array<
   }
 }
 
+/// In the order of their cells, each a stretch, no two of a cell in touch.
+void check_windows(const GeometryTableData& data) {
+  if (!(data.searched_lowering >= 0 && std::isfinite(data.searched_lowering))) {
+    throw input_error("searched_lowering", fmt::format("{}", data.searched_lowering), "a height");
+  }
+  for (std::size_t n = 0; n < data.windows.size(); ++n) {
+    const SearchWindow& w = data.windows[n];
+    const std::string place = fmt::format("search window {}", n);
+    if (w.cell < 0 || w.cell >= static_cast<std::int64_t>(data.trusted_lowering.size())) {
+      throw input_error(place, fmt::format("cell {}", w.cell),
+                        fmt::format("a cell in 0..{}", data.trusted_lowering.size() - 1));
+    }
+    if (!(std::isfinite(w.s_low) && std::isfinite(w.s_high) && w.s_low < w.s_high)) {
+      throw input_error(place, fmt::format("s from {} to {}", w.s_low, w.s_high), "a stretch of the wheel profile");
+    }
+    if (n == 0) continue;
+    const SearchWindow& before = data.windows[n - 1];
+    if (w.cell < before.cell || (w.cell == before.cell && w.s_low <= before.s_high)) {
+      throw input_error(
+          place, fmt::format("cell {}, s from {} after cell {}, s to {}", w.cell, w.s_low, before.cell, before.s_high),
+          "windows in the order of their cells, apart from each other");
+    }
+  }
+}
+
 /// Slope at x[i] of the parabola through the node and its existing neighbours: two to the sides, else the two next on
 /// the existing side, else the straight line, else 0. `value(k)` is NaN where there is none; n nodes.
 template <typename Value>
@@ -97,8 +122,10 @@ GeometryTable::GeometryTable(GeometryTableData data)
   }
   const std::array<int, 3> grid{lateral_.size(), yaw_squared_.size(), roll_.size()};
   for (std::size_t n = 0; n < data_.branches.size(); ++n) check_branch(data_.branches[n], n, grid);
+  check_windows(data_);
   pack_branches();
   index_cells();
+  index_windows();
 }
 
 /// Puts the six quantities of a node side by side, together with their slopes across yaw² and roll.
@@ -224,14 +251,25 @@ void GeometryTable::index_cells() {
   for (std::size_t c = 0; c < found.size(); ++c) {
     std::sort(found[c].begin(), found[c].end(), [](const Found& a, const Found& b) { return a.lowest < b.lowest; });
     double trusted = data_.trusted_lowering[c];
-    if (found[c].size() > max_branches) {
+    const bool overflow = found[c].size() > max_branches;
+    if (overflow) {
       // Which of the branches left out comes first is known at the corners only, so the cell is not trusted at all.
       trusted = 0.0;
       found[c].resize(max_branches);
     }
-    cell_.push_back(
-        {static_cast<std::uint32_t>(cell_branch_.size()), static_cast<std::uint32_t>(found[c].size()), trusted});
+    cell_.push_back({static_cast<std::uint32_t>(cell_branch_.size()), static_cast<std::uint32_t>(found[c].size()), 0, 0,
+                     overflow, trusted});
     for (const Found& f : found[c]) cell_branch_.push_back(f.cell);
+  }
+}
+
+/// A cell whose branches are cut off at max_branches keeps no window: only the whole search can answer there.
+void GeometryTable::index_windows() {
+  for (std::size_t n = 0; n < data_.windows.size(); ++n) {
+    CellEntry& entry = cell_[static_cast<std::size_t>(data_.windows[n].cell)];
+    if (entry.overflow) continue;
+    if (entry.windows == 0) entry.first_window = static_cast<std::uint32_t>(n);
+    ++entry.windows;
   }
 }
 
@@ -271,6 +309,7 @@ GeometryTable::Lookup GeometryTable::lookup(double y, double yaw, double roll) c
       (roll_cell.index * yaw_squared_.cells() + yaw_cell.index) * lateral_.cells() + lateral.index)];
   result.trusted_lowering = entry.trusted_lowering;
   result.count = static_cast<int>(entry.count);
+  result.windows = std::span(data_.windows).subspan(entry.first_window, entry.windows);
 
   // Weights of the corners and derivative combinations across yaw² and roll, in the order of the packed values.
   const bool yaw_axis = yaw_squared_.size() > 1;

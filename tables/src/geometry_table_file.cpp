@@ -11,7 +11,7 @@ namespace railtab {
 namespace {
 
 constexpr std::string_view filetype = "railtab-geometry-table";
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.
 struct Column {
@@ -60,6 +60,8 @@ constexpr std::array dimension_columns{
                     &GeometryTableData::gauge_height},
     DimensionColumn{{"flange_back", "m", "distance of the flange backs"}, &GeometryTableData::flange_back},
     DimensionColumn{{"nominal_radius", "m", "nominal rolling radius"}, &GeometryTableData::nominal_radius},
+    DimensionColumn{{"searched_lowering", "m", "height above first touch up to which the search windows are complete"},
+                    &GeometryTableData::searched_lowering},
     DimensionColumn{{"tolerance", "m", "error of penetration that the table was made for"},
                     &GeometryTableData::tolerance}};
 
@@ -97,6 +99,10 @@ std::string content_checksum(const GeometryTableData& table) {
     for (const BranchColumn& column : branch_columns) add(branch.*column.values);
   }
   add(table.trusted_lowering);
+  for (const SearchWindow& w : table.windows) {
+    const std::array<double, 3> window{static_cast<double>(w.cell), w.s_low, w.s_high};
+    add(window);
+  }
   for (const DimensionColumn& column : dimension_columns) add({&(table.*column.value), 1});
   for (const auto& [name, value] : table.statistics) add({&value, 1});
   return fmt::format("{:016x}", sum);
@@ -122,6 +128,23 @@ void write_branch(ArrayFileWriter& file, std::size_t n, const GeometryBranch& br
   }
 }
 
+void write_windows(ArrayFileWriter& file, const std::vector<SearchWindow>& windows) {
+  file.attribute("windows", "count", static_cast<std::int64_t>(windows.size()));
+  if (windows.empty()) return;
+  std::vector<std::int64_t> cell;
+  std::vector<double> low, high;
+  for (const SearchWindow& w : windows) {
+    cell.push_back(w.cell);
+    low.push_back(w.s_low);
+    high.push_back(w.s_high);
+  }
+  file.write("windows/cell", cell, {cell.size()}, "1",
+             "number of the cell (roll, yaw_squared, lateral; lateral fastest), not decreasing");
+  file.write("windows/s_low", low, {low.size()}, "m",
+             "begin of the stretch of the wheel profile that is searched in this cell");
+  file.write("windows/s_high", high, {high.size()}, "m", "end of the stretch");
+}
+
 /// One table file being read; every error names the file and the dataset.
 class Reading {
  public:
@@ -145,6 +168,7 @@ class Reading {
     table.trusted_lowering = file_.read("cells/trusted_lowering", {cells.begin(), cells.end()});
     check(
         "cells/trusted_lowering", table.trusted_lowering, [](double v) { return v >= 0; }, "a height or infinity");
+    table.windows = windows();
     if (file_.contains("statistics")) {
       for (const std::string& name : file_.attribute_names("statistics")) {
         table.statistics.emplace_back(name, file_.number("statistics", name));
@@ -177,6 +201,21 @@ class Reading {
     check(
         path, values, [](double v) { return std::isfinite(v); }, "a finite number");
     return values;
+  }
+
+  [[nodiscard]] std::vector<SearchWindow> windows() const {
+    std::vector<SearchWindow> windows;
+    const double count = file_.number("windows", "count");
+    if (count == 0) return windows;
+    const std::vector<std::int64_t> cell = file_.read_integers("windows/cell");
+    const long n = static_cast<long>(cell.size());
+    const std::vector<double> low = numbers("windows/s_low", {n});
+    const std::vector<double> high = numbers("windows/s_high", {n});
+    if (count != static_cast<double>(n)) {
+      throw input_error(place("windows/cell"), fmt::format("{} values", n), fmt::format("{}, as counted", count));
+    }
+    for (std::size_t i = 0; i < cell.size(); ++i) windows.push_back({cell[i], low[i], high[i]});
+    return windows;
   }
 
   [[nodiscard]] ProfileKnots profile(const std::string& group, ProfileKind kind) const {
@@ -247,6 +286,7 @@ void write_geometry_table(const std::filesystem::path& file, const GeometryTable
   out.write("cells/trusted_lowering", table.trusted_lowering, {cells.begin(), cells.end()}, "m",
             "per cell (roll, yaw_squared, lateral): height above first touch from which the table cannot be trusted; "
             "infinity where it always can");
+  write_windows(out, table.windows);
   out.attribute("provenance", "program_version", table.provenance.program_version);
   out.attribute("provenance", "command_line", table.provenance.command_line);
   out.attribute("provenance", "created", table.provenance.created);

@@ -98,7 +98,9 @@ TEST_F(TableFile, OtherTypesAndVersionsAreNamed) {
             std::string::npos);
   ArrayFileWriter newer(file_, filetype, 7);
   newer.close();
-  EXPECT_NE(outcome().find("found format version 7 of railtab-geometry-table, expected version 1"), std::string::npos);
+  EXPECT_NE(outcome().find("found format version 7 of railtab-geometry-table, expected version " +
+                           std::to_string(geometry_table_version)),
+            std::string::npos);
   write_bytes("s y z\n0 0 0\n");
   EXPECT_NE(outcome().find("no HDF5 signature"), std::string::npos);
   std::filesystem::remove(file_);
@@ -112,8 +114,8 @@ struct Fault {
 
 /// A copy of the file with a fault; it is whole and sealed, and keeps the checksum of the original.
 void copy_with_fault(const std::filesystem::path& from, const std::filesystem::path& to, const Fault& fault) {
-  const ArrayFileReader in(from, filetype, 1);
-  ArrayFileWriter out(to, filetype, 1);
+  const ArrayFileReader in(from, filetype, geometry_table_version);
+  ArrayFileWriter out(to, filetype, geometry_table_version);
   const auto copy = [&](const std::string& path) {
     if (path == fault.left_out) return;
     auto [shape, values] = in.read(path);
@@ -130,7 +132,8 @@ void copy_with_fault(const std::filesystem::path& from, const std::filesystem::p
     out.attribute(profile, "name", in.text(profile, "name"));
   }
   for (const char* axis : {"lateral", "yaw_squared", "roll"}) copy(std::string("axes/") + axis);
-  for (const char* name : {"track_gauge", "gauge_height", "flange_back", "nominal_radius", "tolerance"}) {
+  for (const char* name :
+       {"track_gauge", "gauge_height", "flange_back", "nominal_radius", "searched_lowering", "tolerance"}) {
     copy(std::string("dimensions/") + name);
   }
   const int branches = static_cast<int>(in.number("branches", "count"));
@@ -143,6 +146,11 @@ void copy_with_fault(const std::filesystem::path& from, const std::filesystem::p
     }
   }
   copy("cells/trusted_lowering");
+  out.attribute("windows", "count", static_cast<std::int64_t>(in.number("windows", "count")));
+  const std::vector<std::int64_t> window_cells = in.read_integers("windows/cell");
+  out.write("windows/cell", window_cells, {window_cells.size()}, "1", "cell");
+  copy("windows/s_low");
+  copy("windows/s_high");
   for (const std::string& name : in.attribute_names("statistics")) {
     out.attribute("statistics", name, in.number("statistics", name));
   }
@@ -164,14 +172,16 @@ TEST_F(TableFile, MissingMisshapenInfiniteOrChangedDatasetsAreNamed) {
     EXPECT_NE(message.find(words), std::string::npos) << "\"" << words << "\" is missing in: " << message;
   };
   EXPECT_EQ(outcome_of({}), "") << "the copy without a fault is a good table";
-  for (const std::string path : {"profiles/wheel/s", "profiles/rail/dz", "axes/lateral", "axes/roll",
-                                 "branches/0/z_touch", "branches/1/s_rail_dy", "cells/trusted_lowering"}) {
+  for (const std::string path :
+       {"profiles/wheel/s", "profiles/rail/dz", "axes/lateral", "axes/roll", "branches/0/z_touch",
+        "branches/1/s_rail_dy", "cells/trusted_lowering", "windows/s_high"}) {
     expect(outcome_of({.left_out = path}), path + ": found no such dataset");
     expect(outcome_of({.not_finite = path}), path + ": found -inf");
     expect(outcome_of({.last_bit = path}), "with checksum");
   }
   expect(outcome_of({.last_bit = "dimensions/track_gauge"}), "with checksum");
-  for (const std::string path : {"profiles/wheel/dy", "branches/0/s_wheel", "cells/trusted_lowering"}) {
+  for (const std::string path :
+       {"profiles/wheel/dy", "branches/0/s_wheel", "cells/trusted_lowering", "windows/s_low"}) {
     expect(outcome_of({.wrong_shape = path}), path + ": found the shape");
   }
   expect(outcome_of({.wrong_shape = "branches/0/z_touch"}),

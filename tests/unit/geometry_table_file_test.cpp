@@ -40,11 +40,13 @@ TEST_F(GeometryTableFile, TellsATableFromAnotherOne) {
   EXPECT_TRUE(
       differs([](GeometryTableData& t) { t.branches[1].s_rail[0] = std::nextafter(t.branches[1].s_rail[0], 1.0); }));
   EXPECT_TRUE(differs([](GeometryTableData& t) { t.branches.pop_back(); }));
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.windows[1].s_high = std::nextafter(t.windows[1].s_high, 1.0); }));
 }
 
-TEST_F(GeometryTableFile, KeepsATableWithoutBranchesAndStatistics) {
+TEST_F(GeometryTableFile, KeepsATableWithoutBranchesWindowsAndStatistics) {
   GeometryTableData table = small_geometry_table();
   table.branches.clear();
+  table.windows.clear();
   table.statistics.clear();
   table.yaw_squared = {0.0};
   table.roll = {0.0};
@@ -55,12 +57,13 @@ TEST_F(GeometryTableFile, KeepsATableWithoutBranchesAndStatistics) {
 
 TEST_F(GeometryTableFile, NamesUnitAndMeaningOfEveryDataset) {
   write_geometry_table(file_, small_geometry_table());
-  const ArrayFileReader in(file_, "railtab-geometry-table", 1);
+  const ArrayFileReader in(file_, "railtab-geometry-table", geometry_table_version);
   const std::vector<std::pair<std::string, std::string>> units{
       {"profiles/wheel/s", "m"},       {"profiles/rail/dz", "1"},      {"axes/lateral", "m"},
       {"axes/yaw_squared", "rad^2"},   {"axes/roll", "rad"},           {"branches/0/z_touch", "m"},
       {"branches/1/s_rail_dy", "1"},   {"branches/1/first_node", "1"}, {"cells/trusted_lowering", "m"},
-      {"dimensions/track_gauge", "m"}, {"dimensions/tolerance", "m"}};
+      {"dimensions/track_gauge", "m"}, {"dimensions/tolerance", "m"},  {"windows/cell", "1"},
+      {"windows/s_low", "m"}};
   for (const auto& [path, unit] : units) {
     EXPECT_EQ(in.text(path, "unit"), unit) << path;
     EXPECT_GT(in.text(path, "description").size(), 5U) << path;

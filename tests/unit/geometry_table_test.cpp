@@ -199,6 +199,37 @@ TEST(GeometryTable, MoreBranchesThanALookUpHoldsAreNotTrusted) {
   EXPECT_EQ(lookup.branch[0].z_touch, 2.0);  // the lowest are kept
 }
 
+TEST(GeometryTable, ALookUpReturnsTheWindowsOfItsCell) {
+  GeometryTableData data = empty_table({0, 1, 2, 3}, {0.0}, {0.0});
+  data.trusted_lowering = {0.0, 1e-4, 0.0};
+  data.windows = {{0, 0.01, 0.02}, {0, 0.03, 0.04}, {2, 0.05, 0.06}};
+  data.searched_lowering = 1e-3;
+  const GeometryTable table(data);
+  const GeometryTable::Lookup first = table.lookup(0.5, 0, 0);
+  ASSERT_EQ(first.windows.size(), 2u);
+  EXPECT_EQ(first.windows[1].s_low, 0.03);
+  EXPECT_TRUE(table.lookup(1.5, 0, 0).windows.empty());
+  ASSERT_EQ(table.lookup(2.5, 0, 0).windows.size(), 1u);
+  EXPECT_EQ(table.lookup(2.5, 0, 0).windows[0].s_high, 0.06);
+}
+
+TEST(GeometryTable, RefusesWindowsOutOfOrder) {
+  GeometryTableData good = empty_table({0, 1, 2}, {0.0}, {0.0});
+  good.windows = {{0, 0.01, 0.02}, {1, 0.01, 0.02}};
+  EXPECT_NO_THROW(GeometryTable{good});
+  const auto refused = [&](const std::vector<SearchWindow>& windows) {
+    GeometryTableData bad = good;
+    bad.windows = windows;
+    EXPECT_THROW(GeometryTable{bad}, InputError);
+  };
+  refused({{1, 0.01, 0.02}, {0, 0.01, 0.02}});
+  refused({{0, 0.01, 0.02}, {0, 0.015, 0.03}});
+  refused({{2, 0.01, 0.02}});
+  refused({{-1, 0.01, 0.02}});
+  refused({{0, 0.02, 0.01}});
+  refused({{0, 0.01, nan}});
+}
+
 TEST(GeometryTable, RefusesWrongShapesAndNumbers) {
   const auto f = [](double t, double, double) { return t; };
   const auto df = [](double, double, double) { return 1.0; };

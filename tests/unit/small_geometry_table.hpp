@@ -9,8 +9,11 @@
 
 namespace railtab {
 
+/// Of the geometry table's file format; docs/file_formats/geometry_table.md.
+inline constexpr int geometry_table_version = 2;
+
 /// A geometry table with made-up numbers that use every part of the format: three axes, a branch over the whole grid, a
-/// partial one with a hole, cells that cannot be trusted, statistics.
+/// partial one with a hole, cells that cannot be trusted, windows, statistics.
 inline GeometryTableData small_geometry_table() {
   GeometryTableData table;
   const auto profile = [](ProfileKind kind, const char* name, int knots) {
@@ -51,6 +54,8 @@ inline GeometryTableData small_geometry_table() {
   }
   table.trusted_lowering.assign(4 * 2 * 1, 1e-4);
   table.trusted_lowering[3] = std::numeric_limits<double>::infinity();
+  table.windows = {{0, 0.001, 0.002}, {0, 0.004, 0.0055}, {6, 0.003, 0.007}};
+  table.searched_lowering = 1e-3;
   table.statistics = {{"samples", 2000}, {"error.penetration.max", 3.25e-9}, {"a.first", 1.0 / 3.0}};
   table.provenance = {"0.1.0", "tablegen geometry --wheel \"made-up wheel\"", "2024-01-31T12:00:00Z"};
   return table;
@@ -72,15 +77,20 @@ inline bool same_table(const GeometryTableData& a, const GeometryTableData& b) {
            same_bits(p.s_wheel_dy, q.s_wheel_dy) && same_bits(p.s_rail_dy, q.s_rail_dy);
   };
   const auto dimensions = [](const GeometryTableData& t) {
-    return std::vector<double>{t.track_gauge, t.gauge_height, t.flange_back, t.nominal_radius, t.tolerance};
+    return std::vector<double>{t.track_gauge,    t.gauge_height, t.flange_back,
+                               t.nominal_radius, t.tolerance,    t.searched_lowering};
+  };
+  const auto same_window = [](const SearchWindow& p, const SearchWindow& q) {
+    return p.cell == q.cell && p.s_low == q.s_low && p.s_high == q.s_high;
   };
   const TableProvenance& from = a.provenance;
   return same_profile(a.wheel, b.wheel) && same_profile(a.rail, b.rail) && same_bits(dimensions(a), dimensions(b)) &&
          same_bits(a.lateral, b.lateral) && same_bits(a.yaw_squared, b.yaw_squared) && same_bits(a.roll, b.roll) &&
          std::equal(a.branches.begin(), a.branches.end(), b.branches.begin(), b.branches.end(), same_branch) &&
-         same_bits(a.trusted_lowering, b.trusted_lowering) && a.statistics == b.statistics &&
-         from.program_version == b.provenance.program_version && from.command_line == b.provenance.command_line &&
-         from.created == b.provenance.created;
+         same_bits(a.trusted_lowering, b.trusted_lowering) &&
+         std::equal(a.windows.begin(), a.windows.end(), b.windows.begin(), b.windows.end(), same_window) &&
+         a.statistics == b.statistics && from.program_version == b.provenance.program_version &&
+         from.command_line == b.provenance.command_line && from.created == b.provenance.created;
 }
 
 }  // namespace railtab

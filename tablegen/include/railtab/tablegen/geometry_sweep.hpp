@@ -22,6 +22,8 @@ struct GeometrySweepOptions {
   int yaw_nodes = 9;                ///< uniform in yaw², at least 2 where yaw is an interval
   double roll_step = 1e-3;          ///< largest node spacing of the roll axis, 1e-5..0.05 [rad]
   double branch_height = 3e-3;      ///< branches are followed up to this height above first touch, > 0 [m]
+  double searched_lowering = 0.4e-3;  ///< height above first touch up to which search windows are made,
+                                      ///< 1e-6..branch_height [m]
   double tolerance = 1e-8;          ///< penetration error asked for, 1e-12..1e-3 [m]
 
   /// @throws InputError naming the first member out of its range.
@@ -40,7 +42,8 @@ using Progress = std::function<void(double)>;
 
 /// sweep_geometry() at `options.lateral_step`, halved until the table keeps its word: on 2000 random queries
 /// (verify_geometry_table()) the penetration error is within `options.tolerance` at the 99.9 % point and no patch is
-/// missed or invented. Statistics and options are stored in the table.
+/// missed or invented, a search with a finer scan judging where it differs from the online search. Statistics and options
+/// are stored in the table.
 /// @throws ComputationError where three halvings do not reach the tolerance; the message says what was reached.
 [[nodiscard]] GeometryTableData generate_geometry_table(const ContactSearch& search,
                                                         const GeometrySweepOptions& options,

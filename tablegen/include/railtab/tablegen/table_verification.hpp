@@ -38,10 +38,14 @@ struct GeometryVerification {
   int answered_by_table = 0;
   int never_touching = 0;  ///< draws thrown away because the wheel does not meet the rail there
   int patches_compared = 0;
-  double fallback_share = 0;        ///< of the samples
+  double fallback_share = 0;        ///< of the samples: the whole profile searched
+  double searched_share = 0;        ///< of the samples: answered by the table with a search in its windows
   double patch_mismatch_share = 0;  ///< queries with a patch missed or invented, of those answered by the table
+  /// The same against a search with a scan of 0.02 mm: the online search, too, can miss a minimum just born.
+  double finer_mismatch_share = 0;
   ErrorStatistics penetration, position_rail, position_wheel, contact_angle, rolling_radius;
-  ErrorStatistics normal_force_relative;  ///< Hertz, |F_table - F_online| / max(F_online, 1 kN), steel of hertz.hpp
+  ErrorStatistics normal_force_relative;  ///< Hertz, |F_table - F_online| / max(F_online, 1 kN), steel of hertz.hpp;
+                                          ///< of patches that have a Hertzian ellipse
   double time_table_ns = 0;               ///< per query that the table answered, the best of several passes [ns]
   double time_online_ns = 0;              ///< online search on the same queries
   double time_with_fallback_ns = 0;       ///< per query, fallback included

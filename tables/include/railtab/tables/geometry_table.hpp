@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,12 @@ struct GeometryBranch {
       s_rail_dy;  ///< derivative along the lateral axis, exact from the geometry
 };
 
+/// A stretch of the wheel profile that a cell leaves to the search: there a minimum is born, dies or folds in the cell.
+struct SearchWindow {
+  std::int64_t cell = 0;         ///< lateral fastest, then yaw², roll
+  double s_low = 0, s_high = 0;  ///< arc length on the wheel profile [m]
+};
+
 /// What the offline side stored beside the numbers.
 struct TableProvenance {
   std::string program_version;
@@ -66,11 +73,14 @@ struct GeometryTableData {
   double track_gauge = 0, gauge_height = 0, flange_back = 0, nominal_radius = 0;  ///< [m]
   std::vector<double> lateral, yaw_squared, roll;                                 ///< nodes of the axes
   std::vector<GeometryBranch> branches;
-  /// Per cell (lateral fastest): a query that lowers the wheel this far [m] below first touch on the lowest branch that
-  /// the table holds for the cell must go to the online search: there a branch begins, ends or folds. 0 where such a
-  /// branch may lie lower than all that the table holds: no query of the cell is answered. Infinity where it can be
-  /// trusted.
+  /// Per cell (lateral fastest): if a query lowers the wheel this far [m] below first touch on the lowest branch that
+  /// the table holds for the cell, the branches are not enough: there one begins, ends or folds. 0 where such a branch
+  /// may lie lower than all that the table holds. Infinity where the branches always suffice.
   std::vector<double> trusted_lowering;
+  /// In the order of their cells, apart from each other. Up to searched_lowering [m] below that first touch the
+  /// branches of the cell and the minima inside its windows are all that can be in contact.
+  std::vector<SearchWindow> windows;
+  double searched_lowering = 0;
   double tolerance = 0;  ///< penetration error the table was made for [m]
   /// Measured error statistics and options, name -> value; written as attributes.
   std::vector<std::pair<std::string, double>> statistics;
@@ -102,6 +112,7 @@ class GeometryTable {
     /// Of the cell [m]: largest height of the wheel below first touch on the lowest of `branch` at which these are all
     /// that can be in contact. 0: not to be trusted at any height; so where the cell has more than max_branches.
     double trusted_lowering = 0;
+    std::span<const SearchWindow> windows;  ///< of the cell; none where the whole profile has to be searched
     Status status = Status::outside;
   };
 
@@ -120,6 +131,9 @@ class GeometryTable {
   struct CellEntry {
     std::uint32_t first;
     std::uint32_t count;
+    std::uint32_t first_window;
+    std::uint16_t windows;
+    bool overflow;  ///< more than max_branches
     double trusted_lowering;
   };
   /// A branch in one cell: offset of its first corner in packed_ and strides to the neighbours.
@@ -130,6 +144,7 @@ class GeometryTable {
 
   void pack_branches();
   void index_cells();
+  void index_windows();
 
   GeometryTableData data_;
   GridAxis lateral_, yaw_squared_, roll_;

@@ -21,7 +21,7 @@ struct WheelsetPose {
 
 /// Which route gave a contact patch.
 enum class PatchSource : std::uint8_t {
-  table,           ///< geometry table, polished on the stored profiles
+  table,           ///< a branch or a search window of the geometry table, polished on the stored profiles
   online_convex,   ///< online search, common-normal Newton (Eqs. 1-4)
   online_concave,  ///< online search, overlap of the discretised profiles (Eqs. 5-10)
 };
@@ -51,7 +51,8 @@ struct ContactPatches {
   static constexpr int capacity = 8;
   std::array<ContactPatch, capacity> patch;
   int count = 0;
-  bool overflow = false;  ///< more than `capacity` candidates: the deepest were kept
+  bool from_table = false;  ///< the geometry table answered, also where it answers that nothing touches
+  bool overflow = false;    ///< more than `capacity` candidates: the deepest were kept
 
   [[nodiscard]] const ContactPatch* begin() const noexcept { return patch.data(); }
   [[nodiscard]] const ContactPatch* end() const noexcept { return patch.data() + count; }

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "railtab/tablegen/rolling_contact.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+namespace po = boost::program_options;
+
+/// "X,Y,PHI". @throws InputError
+Creepage parse_creepage(const std::string& text) {
+  std::vector<double> values;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at != end) {
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc{} || !std::isfinite(value) || (stop != end && (*stop != ',' || stop + 1 == end))) break;
+    values.push_back(value);
+    at = stop == end ? stop : stop + 1;
+  }
+  if (at != end || values.size() != 3) {
+    throw input_error("--creepage", fmt::format("\"{}\"", text), "X,Y,PHI, three normalised creepages");
+  }
+  return {values[0], values[1], values[2]};
+}
+
+nlohmann::ordered_json grid_description(const RollingContactSolution& s, int elements) {
+  return {{"elements", elements},         {"fx", s.force.x},         {"fy", s.force.y},
+          {"mz", s.force.moment},         {"residual", s.residual},  {"bound_excess", s.bound_excess},
+          {"adhesion", s.adhesion},       {"slip", s.slip},          {"iterations", s.iterations},
+          {"safe_method", s.safe_method}, {"converged", s.converged}};
+}
+
+std::string grid_text(const RollingContactSolution& s, int elements) {
+  return fmt::format("  {:3} x {:3}    {:12.8f} {:12.8f} {:12.8f}   {} stick, {} slip, residual {:.1e}{}\n", elements,
+                     elements, s.force.x, s.force.y, s.force.moment, s.adhesion, s.slip, s.residual,
+                     s.safe_method ? ", safe method" : "");
+}
+
+}  // namespace
+
+void contact_command(const std::vector<std::string>& arguments) {
+  po::options_description own("Options (normalised: G = 1, mu F_n = 1, sqrt(ab) = 1)");
+  own.add_options()("ratio", po::value<std::string>()->value_name("A/B"), "ratio of the semi-axes, a along x")  //
+      ("creepage", po::value<std::string>()->value_name("X,Y,PHI"), "longitudinal, lateral and spin creepage")  //
+      ("poisson", text_value("0.28")->value_name("NU"), "Poisson's ratio")                                      //
+      ("elements", text_value("40")->value_name("N"),
+       "along each axis, even; the result is extrapolated from N/2 and N");
+  const CommandLine line("tablegen contact --ratio A/B --creepage X,Y,PHI [options]", own, {}, arguments);
+  if (line.help_printed()) return;
+  RollingContactOptions options;
+  options.elements = static_cast<int>(line.whole_number("elements", 8, 240));
+  const std::string creepage_text = line.required("creepage");
+  static_cast<void>(line.required("ratio"));
+  const double ratio = line.number("ratio");
+  const Creepage creepage = parse_creepage(creepage_text);
+  ExtrapolatedRollingContact contact(ratio, line.number("poisson"), options);
+  const ExtrapolatedContactSolution s = contact.solve(creepage);
+  if (!s.coarse.converged || !s.fine.converged) {
+    throw std::runtime_error(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; asked for {:.2g}",
+                                         s.coarse.residual, options.elements / 2, s.fine.residual, options.elements,
+                                         options.tolerance));
+  }
+  if (line.json()) {
+    const nlohmann::ordered_json j{{"ratio", ratio},
+                                   {"creepage", {creepage.x, creepage.y, creepage.spin}},
+                                   {"poisson", line.number("poisson")},
+                                   {"fx", s.force.x},
+                                   {"fy", s.force.y},
+                                   {"mz", s.force.moment},
+                                   {"fine", grid_description(s.fine, options.elements)},
+                                   {"coarse", grid_description(s.coarse, options.elements / 2)}};
+    fmt::print("{}\n", j.dump(2));
+  } else if (!line.quiet()) {
+    fmt::print("               F_x/(mu F_n)  F_y/(mu F_n)  M_z/(mu F_n sqrt(ab)), on the wheel\n");
+    fmt::print("  limit        {:12.8f} {:12.8f} {:12.8f}\n", s.force.x, s.force.y, s.force.moment);
+    fmt::print("{}{}", grid_text(s.fine, options.elements), grid_text(s.coarse, options.elements / 2));
+  }
+}
+
+}  // namespace railtab

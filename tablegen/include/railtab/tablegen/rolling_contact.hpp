@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "railtab/runtime/contact/creep_law.hpp"
+
+namespace railtab {
+
+/// How the exact solution is discretised and when it is done.
+struct RollingContactOptions {
+  int elements = 40;        ///< n along each axis of the ellipse, 4..240
+  double tolerance = 1e-6;  ///< on the residual of a solution, 1e-12..1e-2
+  int max_iterations = 50;  ///< Newton steps before the safe method takes over, 0..1000
+  /// Where the rigid slip of a step is taken, in elements ahead of the observed element's centre, 0..1. One half is the
+  /// middle of the step; one sixth halves the error of coarse grids and is what CONTACT does.
+  double slip_ahead = 1.0 / 6.0;
+  /// Elements of the ellipse's rectangle (2a/n, 2b/n), as CONTACT; or scaled so that those with their centre inside the
+  /// ellipse have its area together, so that the error is smooth in 1/n.
+  enum class ElementSize { rectangle, equal_area } size = ElementSize::rectangle;
+
+  /// @throws InputError
+  void validate() const;
+};
+
+/// One solution of exact rolling contact and what proves it.
+struct RollingContactSolution {
+  CreepForce force;  ///< on the wheel, normalised
+  /// p_x of all n×n elements, then p_y; rows across (y, rightward), each forward (x); zero outside the ellipse.
+  std::vector<double> traction;
+  /// Σ|p − P(p − s/b0)| over that of p = 0: P the projection on the friction circle, b0 an element's own influence.
+  double residual = 0.0;
+  double bound_excess = 0.0;  ///< largest |p|/(μ p_n) − 1, zero (to rounding) where friction is not exceeded
+  int iterations = 0;         ///< of Newton's method, or steps rolled by the safe one
+  int products = 0;           ///< with the influence matrix
+  int adhesion = 0;           ///< elements that stick
+  int slip = 0;               ///< elements that slip
+  bool safe_method = false;   ///< Newton's method failed, the slow one was used
+  bool converged = false;     ///< the residual is below the tolerance
+};
+
+/// Kalker's exact theory of steady rolling [Kalker1990, Ch. 4]: two half-spaces of the same material, a Hertzian
+/// ellipse with elliptic pressure, Coulomb friction. Normalised: G = 1, μF_n = 1, a = √(a/b), b = 1/a.
+///
+/// Tractions p are constant on each of n×n elements over the ellipse's rectangle. With the slip per step of one element
+/// s = B p + w dx, w = (υx − φ y, υy + φ x): |p| ≤ μ p_n, s = 0 where |p| < μ p_n, else s against p. The error is of
+/// first order in 1/n. The object is the work space for one ellipse: one thread at a time.
+class RollingContact {
+ public:
+  /// @param ratio a/b, 1e-4..1e4; @param nu Poisson's ratio 0..0.5. @throws InputError
+  RollingContact(double ratio, double nu, const RollingContactOptions& options = {});
+  ~RollingContact();
+  RollingContact(RollingContact&&) noexcept;
+  RollingContact& operator=(RollingContact&&) noexcept;
+
+  /// @param creepage finite
+  /// @param start tractions to begin with, laid out as RollingContactSolution::traction (those of a neighbouring case);
+  /// nullptr for none. What exceeds friction is cut back to it.
+  [[nodiscard]] RollingContactSolution solve(const Creepage& creepage, const std::vector<double>* start = nullptr);
+  /// Start for solve() from a solution of the same ellipse with half as many elements along each axis.
+  [[nodiscard]] std::vector<double> refined(const std::vector<double>& half_traction) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A solution without the first-order error of the elements.
+struct ExtrapolatedContactSolution {
+  CreepForce force;  ///< 2 fine − coarse; may exceed friction by what is left of the error
+  RollingContactSolution coarse, fine;
+};
+
+/// Exact rolling contact on n/2 and n elements of equal area, extrapolated to elements of size zero; the coarse
+/// solution starts the fine one.
+class ExtrapolatedRollingContact {
+ public:
+  /// As RollingContact; options.elements is the fine grid's, even and at least 8, options.size is not used.
+  ExtrapolatedRollingContact(double ratio, double nu, const RollingContactOptions& options = {});
+  [[nodiscard]] ExtrapolatedContactSolution solve(const Creepage& creepage);
+
+ private:
+  RollingContact coarse_, fine_;
+};
+
+}  // namespace railtab
