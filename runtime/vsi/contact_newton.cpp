@@ -1,6 +1,5 @@
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -32,9 +31,7 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Con
       ContactPatches& patches = s.patches[index(2 * w + side)];
       patches = model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
       ++report.queries;
-      const bool from_table = std::all_of(patches.begin(), patches.end(),
-                                          [](const ContactPatch& p) { return p.source == PatchSource::table; });
-      if (from_table && model.geometry->is_table()) ++report.table_queries;
+      if (patches.from_table) ++report.table_queries;
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, patches);
       const int r = 6 + 3 * side;
       force.head<6>() += wheel.wheelset;

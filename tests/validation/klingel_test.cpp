@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -71,21 +72,32 @@ double pole_modulus(const std::vector<double>& y, double dx) {
   return std::sqrt(std::abs(s1 * s2));
 }
 
-double measured_wavelength(const VsiModel& model) {
+struct Oscillation {
+  double wavelength;  // m
+  double conicity;    // half the rolling radius difference over the lateral shift
+};
+
+Oscillation measured_oscillation(const VsiModel& model) {
   VsiState state(model);
   EXPECT_TRUE(static_equilibrium(model, state).converged);
   state.vehicle[0].displacement[model.vehicle.dof[0][1]] += amplitude;
-  std::vector<double> y;
+  std::vector<double> y, difference;
   RunObserver observer;
-  observer.record = [&](const StepRecord& record) { y.push_back(record.bodies.at(0).displacement[1]); };
+  observer.record = [&](const StepRecord& record) {
+    y.push_back(record.bodies.at(0).displacement[1]);
+    difference.push_back(record.wheels.at(1).rolling_radius - record.wheels.at(0).rolling_radius);
+  };
   IntegrationParameters integration;
   integration.time_step = 0.02;
   integration.alpha = 0.0;
   integration.tolerance = 1e-9;
   const RunSummary summary = simulate(model, integration, 60.0, 25, state, observer);
   EXPECT_TRUE(summary.complete) << summary.message;
-  y.erase(y.begin(), y.begin() + 2);  // the start: yaw and lateral motion find each other
-  return 2.0 * std::numbers::pi / pole_modulus(y, 25 * 0.02 * speed);
+  // The start is left out: there yaw, roll and lateral motion find each other.
+  y.erase(y.begin(), y.begin() + 2);
+  difference.erase(difference.begin(), difference.begin() + 2);
+  const auto at = static_cast<std::size_t>(std::max_element(y.begin() + 10, y.end()) - y.begin());
+  return {2.0 * std::numbers::pi / pole_modulus(y, 25 * 0.02 * speed), difference[at] / (2.0 * y[at])};
 }
 
 struct ConeContact {
@@ -106,7 +118,7 @@ TEST(Klingel, WavelengthWithRollHeld) {
   const VsiModel model = wheelset_on_cones(Roll::held);
   const ConeContact c = contact_at_rest(model);
   const double klingel = 2.0 * std::numbers::pi * std::sqrt(c.r0 * c.L / c.gamma);
-  const double measured = measured_wavelength(model);
+  const double measured = measured_oscillation(model).wavelength;
   std::printf("roll held: %.5f m, Klingel %.5f m, difference %.4f %%\n", measured, klingel,
               100 * (measured / klingel - 1));
   EXPECT_NEAR(measured / klingel, 1.0, 1e-3);
@@ -122,10 +134,12 @@ TEST(Klingel, WavelengthWithRollFree) {
   const double klingel = 2.0 * std::numbers::pi * std::sqrt(c.r0 * c.L / equivalent);
   const double roll_rate = 1.0 + c.r0 * c.gamma / (c.L - c.r0 * c.gamma);
   const double with_roll_rate = klingel * std::sqrt(roll_rate);
-  const double measured = measured_wavelength(model);
-  std::printf("roll free: %.5f m, equivalent conicity %.6f\n", measured, equivalent);
+  const auto [measured, conicity] = measured_oscillation(model);
+  std::printf("roll free: %.5f m, conicity %.6f, formula %.6f, difference %.4f %%\n", measured, conicity, equivalent,
+              100 * (conicity / equivalent - 1));
   std::printf("  Klingel %.5f m, difference %.4f %%; with the roll rate's part of lateral creepage %.5f m, %.4f %%\n",
               klingel, 100 * (measured / klingel - 1), with_roll_rate, 100 * (measured / with_roll_rate - 1));
+  EXPECT_NEAR(conicity / equivalent, 1.0, 2e-3);
   EXPECT_NEAR(measured / with_roll_rate, 1.0, 2e-3);
 }
 

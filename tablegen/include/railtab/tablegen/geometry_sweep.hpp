@@ -15,16 +15,16 @@ struct Interval {
 
 /// What a geometry table covers, and how finely.
 struct GeometrySweepOptions {
-  Interval lateral{-0.012, 0.012};  ///< wheelset lateral shift y, low < high, within ±0.1 [m]
-  Interval yaw{-0.030, 0.030};      ///< within ±0.2 [rad]; the table is even in yaw
-  Interval roll{0.0, 0.0};          ///< of the wheelset against the rail head, within ±0.1 [rad]
-  double lateral_step = 0.05e-3;    ///< largest node spacing of the sheared lateral axis, 1e-6..1e-3 [m]
-  int yaw_nodes = 9;                ///< uniform in yaw², at least 2 where yaw is an interval
-  double roll_step = 1e-3;          ///< largest node spacing of the roll axis, 1e-5..0.05 [rad]
-  double branch_height = 3e-3;      ///< branches are followed up to this height above first touch, > 0 [m]
+  Interval lateral{-0.012, 0.012};    ///< wheelset lateral shift y, low < high, within ±0.1 [m]
+  Interval yaw{-0.030, 0.030};        ///< within ±0.2 [rad]; the table is even in yaw
+  Interval roll{0.0, 0.0};            ///< of the wheelset against the rail head, within ±0.1 [rad]
+  double lateral_step = 0.05e-3;      ///< largest node spacing of the sheared lateral axis, 1e-6..1e-3 [m]
+  int yaw_nodes = 9;                  ///< uniform in yaw², at least 2 where yaw is an interval
+  double roll_step = 1e-3;            ///< largest node spacing of the roll axis, 1e-5..0.05 [rad]
+  double branch_height = 3e-3;        ///< branches are followed up to this height above first touch, > 0 [m]
   double searched_lowering = 0.4e-3;  ///< height above first touch up to which search windows are made,
                                       ///< 1e-6..branch_height [m]
-  double tolerance = 1e-8;          ///< penetration error asked for, 1e-12..1e-3 [m]
+  double tolerance = 1e-8;            ///< penetration error asked for, 1e-12..1e-3 [m]
 
   /// @throws InputError naming the first member out of its range.
   void validate() const;
@@ -42,8 +42,8 @@ using Progress = std::function<void(double)>;
 
 /// sweep_geometry() at `options.lateral_step`, halved until the table keeps its word: on 2000 random queries
 /// (verify_geometry_table()) the penetration error is within `options.tolerance` at the 99.9 % point and no patch is
-/// missed or invented, a search with a finer scan judging where it differs from the online search. Statistics and options
-/// are stored in the table.
+/// missed or invented, a search with a finer scan judging where it differs from the online search. Statistics and
+/// options are stored in the table.
 /// @throws ComputationError where three halvings do not reach the tolerance; the message says what was reached.
 [[nodiscard]] GeometryTableData generate_geometry_table(const ContactSearch& search,
                                                         const GeometrySweepOptions& options,
