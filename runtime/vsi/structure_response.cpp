@@ -1,6 +1,10 @@
 #include "railtab/runtime/vsi/structure_response.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -10,9 +14,27 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
+void require_finite(const Sparse& matrix, std::string_view name) {
+  for (int column = 0; column < matrix.outerSize(); ++column) {
+    for (Sparse::InnerIterator entry(matrix, column); entry; ++entry) {
+      if (!std::isfinite(entry.value())) {
+        throw input_error(
+            fmt::format("{} matrix of the structure, row {}, column {}", name, entry.row() + 1, column + 1),
+            fmt::format("{}", entry.value()), "a finite number");
+      }
+    }
+  }
+}
+
+void require_finite(const StructureModel& structure) {
+  require_finite(structure.mass, "mass");
+  require_finite(structure.damping, "damping");
+  require_finite(structure.stiffness, "stiffness");
+}
+
 std::unique_ptr<Eigen::SimplicialLDLT<Sparse>> factorise(const Sparse& effective) {
   auto factor = std::make_unique<Eigen::SimplicialLDLT<Sparse>>(effective);
-  if (factor->info() != Eigen::Success || factor->vectorD().minCoeff() <= 0.0) {
+  if (factor->info() != Eigen::Success || !(factor->vectorD().minCoeff() > 0.0)) {
     throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
   }
   return factor;
@@ -62,12 +84,14 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : dofs_(structure.dofs()) {
+  require_finite(structure);
   const Sparse effective = scheme.acceleration_rate() * structure.mass +
                            scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
   factor_ = factorise(effective);
 }
 
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
+  require_finite(structure);
   factor_ = factorise(structure.stiffness);
 }
 

@@ -28,7 +28,8 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
 /// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K), made once.
 class StructureResponse {
  public:
-  /// @throws ComputationError where the effective matrix is not positive definite.
+  /// @throws InputError naming the matrix and the entry that is not finite; ComputationError where the effective matrix
+  ///         is not positive definite.
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
   /// At rest: K̄ = K.
   explicit StructureResponse(const StructureModel& structure);
