@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iterator>
-#include <system_error>
 
 #include "contact_figure.hpp"
 #include "headline.hpp"
 #include "html_text.hpp"
 #include "page_assets.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 #include "run_charts.hpp"
 
 namespace railtab::report {
@@ -154,19 +152,7 @@ std::string report_page(const RunResults& results) {
 }
 
 void write_report(const std::filesystem::path& file, const RunResults& results) {
-  const std::string page = report_page(results);
-  std::filesystem::path unfinished = file;
-  unfinished += ".part";
-  std::ofstream stream(unfinished, std::ios::binary);
-  stream << page;
-  stream.close();
-  std::error_code failed;
-  if (stream) std::filesystem::rename(unfinished, file, failed);
-  if (!stream || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
-  }
+  write_text_file(file, report_page(results));
 }
 
 }  // namespace railtab::report

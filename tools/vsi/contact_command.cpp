@@ -10,6 +10,7 @@
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -75,7 +76,7 @@ int contact_command(const Arguments& arguments) {
   const TableContact contact(GeometryTable(read_geometry_table((*values)["table"].as<std::string>())));
   const CsvTable queries = read_csv(query_file, {"y", "yaw", "roll", "dz"});
   Counts counts;
-  write_csv(output, answer(contact, queries, query_file, values->contains("online"), counts));
+  write_text_file(output, answer(contact, queries, query_file, values->contains("online"), counts));
   if (values->contains("json")) {
     JsonObject json;
     json.add("queries", counts.queries).add("patches", counts.patches).add("patches_from_table", counts.table);

@@ -8,6 +8,7 @@
 #include "json_object.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -49,7 +50,7 @@ int creep_command(const Arguments& arguments) {
   require_writable_place(output, "-o");
   const CreepLaw law = creep_law(name, nu);
   const CsvTable queries = read_csv(query_file, {"ratio", "ux", "uy", "phi"});
-  write_csv(output, answer(law, name, queries, query_file));
+  write_text_file(output, answer(law, name, queries, query_file));
   const auto count = static_cast<long>(queries.rows.size());
   if (values->contains("json")) {
     fmt::print("{}\n", JsonObject().add("queries", count).add("law", name).add("output", output).text());

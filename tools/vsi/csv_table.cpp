@@ -90,19 +90,4 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
   return table;
 }
 
-void write_csv(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::path unfinished = file;
-  unfinished += ".part";
-  std::ofstream stream(unfinished, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code failed;
-  if (stream) std::filesystem::rename(unfinished, file, failed);
-  if (!stream || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
-  }
-}
-
 }  // namespace railtab::vsi

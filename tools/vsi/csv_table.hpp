@@ -17,7 +17,4 @@ struct CsvTable {
 /// number of fields, a field that is no finite number, no row.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
-/// Write text to a file, whole or not at all. @throws InputError where it cannot be written.
-void write_csv(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace railtab::vsi

@@ -1,0 +1,25 @@
+#include "railtab/tables/text_file.hpp"
+
+#include <fstream>
+#include <system_error>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+  std::filesystem::path unfinished = file;
+  unfinished += ".part";
+  std::ofstream stream(unfinished, std::ios::binary);
+  stream << text;
+  stream.close();
+  std::error_code failed;
+  if (stream) std::filesystem::rename(unfinished, file, failed);
+  if (!stream || failed) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
+  }
+}
+
+}  // namespace railtab
