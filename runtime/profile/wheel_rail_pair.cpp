@@ -25,6 +25,16 @@ void require_kind(const ProfileCurve& curve, ProfileKind kind, std::string_view 
   }
 }
 
+/// A wheel profile whose origin is not on the tape circle would give all its radii a wrong nominal value.
+void require_origin(const ProfileCurve& wheel) {
+  constexpr double most = 1e-3;  // m
+  const double z = wheel.at(wheel.s_at_y(0.0)).z;
+  if (!(std::abs(z) <= most)) {
+    throw input_error(fmt::format("profile {}", wheel.knots().name), fmt::format("z = {:.6g} m at y = 0", z),
+                      "z = 0 at the tape circle, within 1 mm");
+  }
+}
+
 /// Arc length at which z passes `level` between a point below it and a point above it, by bisection.
 double s_at_level(const ProfileCurve& rail, double level, double s_below, double s_above) {
   for (;;) {
@@ -69,6 +79,7 @@ WheelRailPair::WheelRailPair(ProfileCurve wheel, ProfileCurve rail, PairDimensio
   dimensions_.validate();
   require_kind(wheel_, ProfileKind::wheel, "a wheel profile");
   require_kind(rail_, ProfileKind::rail, "a rail profile");
+  require_origin(wheel_);
   tape_circle_offset_ = 0.5 * dimensions_.flange_back + PairDimensions::tape_circle_to_flange_back;
   rail_offset_ = 0.5 * dimensions_.track_gauge - gauge_point(rail_, dimensions_.gauge_height);
 }

@@ -57,12 +57,42 @@ void check_on_track(const SceneParameters& scene, const VsiModel& model) {
   if (!model.structure) return;
   const RailLine& rail = model.structure->rail[0];
   const double last = model.wheelset_x(model.wheelsets() - 1, 0.0);
+  const double end = model.wheelset_x(0, run_duration(scene, model));
+  const auto where = [&] { return fmt::format("{:.2f} m to {:.2f} m", rail.x.front(), rail.x.back()); };
   if (last < rail.x.front() || scene.train.start > rail.x.back()) {
     throw input_error("scene: train.start",
                       fmt::format("wheelsets from x = {:.2f} m to {:.2f} m", last, scene.train.start),
-                      fmt::format("all on the modelled track, {:.2f} m to {:.2f} m (track.length_before)",
-                                  rail.x.front(), rail.x.back()));
+                      fmt::format("all on the modelled track, {} (track.length_before)", where()));
   }
+  if (end > rail.x.back()) {
+    throw input_error(
+        "scene: track.length_after", fmt::format("a run that ends with the first wheelset at x = {:.2f} m", end),
+        fmt::format("one that ends on the modelled track, {} (a longer track or a shorter duration)", where()));
+  }
+}
+
+// Steps of a run. @throws InputError where nobody could wait for them.
+long step_count(const SceneParameters& scene, double duration) {
+  constexpr double most = 1e9;
+  const double steps = duration / scene.integration.time_step;
+  if (!(steps >= 0.5 && steps <= most)) {
+    throw input_error("scene: integration.time_step",
+                      fmt::format("{:.3g} steps of {} s in {:.3g} s", steps, scene.integration.time_step, duration),
+                      fmt::format("1 to {:.0e} steps", most));
+  }
+  return std::lround(steps);
+}
+
+std::string no_equilibrium(const SceneParameters& scene, const EquilibriumReport& rest) {
+  if (scene.contact.mode == ContactMode::paper) {
+    return "no static equilibrium: the discretised pairs of the published contact search jump as the wheelset moves, "
+           "which "
+           "Newton cannot follow on this pair; use --contact table or online";
+  }
+  return fmt::format(
+      "no static equilibrium after {} iterations (last change {:.3g} m): do the wheels fit on the rails "
+      "(track gauge, flange-back distance, profiles' origins)?",
+      rest.iterations, rest.change);
 }
 
 ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) {
@@ -157,7 +187,7 @@ RunPlan plan_run(const SceneParameters& scene) {
   plan.wheels = 2 * model.wheelsets();
   plan.time_step = scene.integration.time_step;
   plan.duration = run_duration(scene, model);
-  plan.steps = std::lround(plan.duration / plan.time_step);
+  plan.steps = step_count(scene, plan.duration);
   plan.built.push_back(
       fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
   plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", mode_name(scene.contact.mode),
@@ -182,19 +212,19 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   const auto begin = std::chrono::steady_clock::now();
   const VsiModel model = build_model(scene);
   const double duration = run_duration(scene, model);
+  static_cast<void>(step_count(scene, duration));
   VsiState state(model);
   EquilibriumReport rest;
   if (resume) {
     unpack(resume->state, state);
     rest.converged = true;
   } else {
-    rest = steady_start(model, scene.integration.time_step, state);
+    rest = steady_start(model, state);
   }
   if (observer.start) observer.start(result_header(scene, model));
   RunSummary summary;
   if (!rest.converged) {
-    summary.message = fmt::format("no static equilibrium: after {} iterations the last change was {:.3g} m",
-                                  rest.iterations, rest.change);
+    summary.message = no_equilibrium(scene, rest);
     summary.contact_mode = mode_name(scene.contact.mode);
     return summary;
   }

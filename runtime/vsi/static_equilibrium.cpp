@@ -8,6 +8,7 @@ namespace railtab {
 namespace {
 
 constexpr double regularisation = 0.05;  // eps [1/s²]: far below the square of any suspended mode (2π·0.5 Hz)² = 10
+constexpr double travel_between = 0.025;  // m: between the equilibria that velocity and acceleration are taken from
 constexpr int max_iterations = 60;
 constexpr double contact_tolerance = 1e-10;  // m, rad: of the contact unknowns
 // Of the dofs: what rounding leaves of the wheel loads, over the weak eps M, moves them by some nm.
@@ -131,7 +132,8 @@ EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
   return equilibrium(model, RestOperators(model), Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
 }
 
-EquilibriumReport steady_start(const VsiModel& model, double time_step, VsiState& state) {
+EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
+  const double time_step = travel_between / model.contact.speed;
   const RestOperators rest(model);
   Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
   EquilibriumReport report = equilibrium(model, rest, inertia, state);

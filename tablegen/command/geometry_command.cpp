@@ -12,6 +12,7 @@
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab {
 
@@ -62,6 +63,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
   const std::string wheel_name = line.required("wheel");
   const std::string rail_name = line.required("rail");
   check_folder(file);
+  require_no_input(file, {wheel_name, rail_name});
   GeometrySweepOptions options;
   options.lateral = line.interval("lateral");
   options.yaw = line.interval("yaw");

@@ -22,4 +22,13 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   }
 }
 
+void require_no_input(const std::filesystem::path& output, std::initializer_list<std::filesystem::path> inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code no_file;
+    if (std::filesystem::equivalent(output, input, no_file)) {
+      throw input_error("-o " + output.string(), "a file that this command reads", "another file");
+    }
+  }
+}
+
 }  // namespace railtab

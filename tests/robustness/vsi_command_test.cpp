@@ -108,7 +108,36 @@ TEST_F(VsiCommand, WrongScenes) {
   write("junk.h5", "junk");
   write("junk.toml", "[contact]\ntable = \"junk.h5\"\n[[bridge]]\n");
   expect_refused("run junk.toml -o out", "junk.h5");
-  expect_refused("run junk.toml -o junk.h5", "the scene's own geometry table");
+  expect_refused("run junk.toml -o junk.h5", "-o junk.h5: found a file that this command reads");
+}
+
+TEST_F(VsiCommand, NoOutputDestroysAnInput) {
+  write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
+  write("wheel.txt", "# units: mm\n-70 0\n0 0\n30 0\n60 0\n");
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\nwheel = \"wheel.txt\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = "
+        "1.0\n");
+  const std::string refusal = "found a file that this command reads";
+  const auto refuse = [&](const std::string& arguments) {
+    const Outcome outcome = vsi(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.output.find(refusal), std::string::npos) << arguments << '\n' << outcome.output;
+  };
+  refuse("creep --law polach --query q.csv -o q.csv");
+  refuse("run scene.toml -o scene.toml");
+  refuse("run scene.toml -o ./wheel.txt");
+  refuse("report scene.toml -o scene.toml");
+  refuse("contact table.h5 --query q.csv -o q.csv");
+}
+
+// Rails end where the modelled track does: a run must not go on beyond.
+TEST_F(VsiCommand, ARunThatLeavesTheTrackIsRefused) {
+  write("long.toml", "[contact]\nmode = \"online\"\n[track]\nlength_after = 12.0\n[[bridge]]\nlength = 20.0\n");
+  expect_refused("run long.toml -o out", "track.length_after");
+  expect_refused("run long.toml --plan -o out", "track.length_after");
+  write("steps.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1.0\ntime_step = 1e-300\n");
+  expect_refused("run steps.toml --plan -o out", "integration.time_step");
 }
 
 TEST_F(VsiCommand, CreepTableIsNotPartOfThisVersion) {

@@ -73,6 +73,7 @@ int contact_command(const Arguments& arguments) {
   const std::string query_file = (*values)["query"].as<std::string>();
   const std::string output = (*values)["output"].as<std::string>();
   require_writable_place(output, "-o");
+  require_no_input(output, {query_file, (*values)["table"].as<std::string>()});
   const TableContact contact(GeometryTable(read_geometry_table((*values)["table"].as<std::string>())));
   const CsvTable queries = read_csv(query_file, {"y", "yaw", "roll", "dz"});
   Counts counts;

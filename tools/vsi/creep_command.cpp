@@ -48,6 +48,7 @@ int creep_command(const Arguments& arguments) {
   const std::string query_file = (*values)["query"].as<std::string>();
   const std::string output = (*values)["output"].as<std::string>();
   require_writable_place(output, "-o");
+  require_no_input(output, {query_file});
   const CreepLaw law = creep_law(name, nu);
   const CsvTable queries = read_csv(query_file, {"ratio", "ux", "uy", "phi"});
   write_text_file(output, answer(law, name, queries, query_file));

@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "json_object.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/tables/text_file.hpp"
 #include "report_page.hpp"
 
 namespace railtab::vsi {
@@ -17,6 +18,7 @@ int report_command(const Arguments& arguments) {
   if (!values) return 0;
   const std::string output = (*values)["output"].as<std::string>();
   require_writable_place(output, "-o");
+  require_no_input(output, {(*values)["results"].as<std::string>()});
   report::write_report(output, read_results((*values)["results"].as<std::string>()));
   if (values->contains("json")) {
     fmt::print("{}\n", JsonObject().add("report", output).text());

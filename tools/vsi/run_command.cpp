@@ -15,6 +15,7 @@
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -150,12 +151,10 @@ int run(const SceneParameters& scene, const RunOptions& options) {
 }
 
 /// Results must not overwrite what the run reads.
-void check_output(const SceneParameters& scene, const std::string& output) {
+void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const std::string& output) {
   require_writable_place(output, "-o");
-  std::error_code ignored;
-  if (!scene.contact.table.empty() && std::filesystem::equivalent(output, scene.contact.table, ignored)) {
-    throw input_error("-o", "the scene's own geometry table " + output, "another file for the results");
-  }
+  require_no_input(output, {scene_file, scene.contact.table, scene.contact.wheel, scene.contact.rail,
+                            scene.irregularity.value_or(std::filesystem::path())});
 }
 
 }  // namespace
@@ -180,7 +179,7 @@ int run_command(const Arguments& arguments) {
                      values->contains("resume")};
   if (values->contains("output")) options.output = (*values)["output"].as<std::string>();
   if (values->contains("plan")) return print_plan(scene, options);
-  check_output(scene, options.output);
+  check_output(scene, file, options.output);
   return run(scene, options);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string_view>
 
 namespace railtab {
@@ -8,5 +9,9 @@ namespace railtab {
 /// Write a text file whole or not at all: to a temporary name beside `file`, then renamed.
 /// @throws InputError where the folder cannot be written.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// An output must not destroy what is read. @throws InputError where `output` is one of the files `inputs` (names that
+/// are no files do not count).
+void require_no_input(const std::filesystem::path& output, std::initializer_list<std::filesystem::path> inputs);
 
 }  // namespace railtab

@@ -19,9 +19,9 @@ struct EquilibriumReport {
 [[nodiscard]] EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state);
 
 /// The start of a run at constant speed: static equilibrium, with the structure moving as a deflection that travels
-/// with the train does. Velocity and acceleration come from equilibria one `time_step` before and after, and their
+/// with the train does. Velocity and acceleration come from equilibria some centimetres before and after, and their
 /// inertia and damping forces load the structure, so that the first step finds it in balance. Vehicles start without
 /// vibration.
-[[nodiscard]] EquilibriumReport steady_start(const VsiModel& model, double time_step, VsiState& state);
+[[nodiscard]] EquilibriumReport steady_start(const VsiModel& model, VsiState& state);
 
 }  // namespace railtab
