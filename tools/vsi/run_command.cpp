@@ -55,6 +55,16 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   return 0;
 }
 
+/// A table that does not cover what the run does makes it slow, not wrong: say so.
+void warn_of_uncovered_queries(const RunSummary& summary) {
+  if (summary.contact_mode != "table" || 2 * summary.table_queries >= summary.contact_queries) return;
+  fmt::print(
+      stderr,
+      "vsi run: warning: the table served {:.1f} % of the contact queries, the online search the rest; does it cover "
+      "the run's roll, yaw and lateral shift (tablegen info; tablegen geometry --roll)?\n",
+      100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
+}
+
 /// What a run that has ended says, and its exit code.
 int conclude(const report::Headline& headline, const RunSummary& summary, const RunOptions& options) {
   if (options.json) {
@@ -62,6 +72,7 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
   } else if (!options.quiet && headline.largest_Q.found()) {
     fmt::print("{}Results: {}\n", headline_text(headline, summary), options.output);
   }
+  if (!options.quiet) warn_of_uncovered_queries(summary);
   if (summary.complete) return 0;
   fmt::print(stderr, "vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
              headline.simulated_time, summary.message, options.output);
