@@ -64,8 +64,7 @@ void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::Ve
     }
   }
   for (const RailCoupling& c : problem.rail) {
-    r.segment<3>(wheelset_unknowns * (c.i / 2) + 6 + 3 * (c.i % 2)) +=
-        c.compliance * s.force.segment<3>(wheelset_unknowns * (c.j / 2) + 6 + 3 * (c.j % 2));
+    r.segment<3>(rail_unknown(c.i)) += c.compliance * s.force.segment<3>(rail_unknown(c.j));
   }
 }
 
@@ -87,7 +86,7 @@ void factorise(const ContactProblem& problem, NewtonWorkspace& ws) {
       const int i = c.i - first_wheel;
       const int j = c.j - first_wheel;
       if (i < 0 || j < 0 || i >= 2 * per_vehicle || j >= 2 * per_vehicle) continue;
-      ws.compliance.block<3, 3>(12 * (i / 2) + 6 + 3 * (i % 2), 12 * (j / 2) + 6 + 3 * (j % 2)) = c.compliance;
+      ws.compliance.block<3, 3>(rail_unknown(i), rail_unknown(j)) = c.compliance;
     }
     ws.jacobian.setIdentity(size, size);
     for (int j = 0; j < per_vehicle; ++j) {
@@ -159,7 +158,6 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
     }
     if (new_tangent) {
       factorise(problem, ws);
-      ++report.tangents;
       new_tangent = false;
     }
     previous = size;

@@ -102,7 +102,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
     fill_patches(state.contact, wheel, w);
-    const auto unknown = static_cast<Eigen::Index>(wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2));
+    const int unknown = rail_unknown(static_cast<int>(wheel));
     w.Y = state.contact.force[unknown];
     w.Q = state.contact.force[unknown + 1];
     w.X = state.contact.rail_x[wheel];

@@ -26,7 +26,6 @@ class Stopwatch {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 int vehicles(const VsiModel& model) { return static_cast<int>(model.vehicle_x.size()); }
-int rail_unknown(int wheel) { return wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2); }
 
 // Vehicles: predictors and the increments that they would make without contact forces at the end of the step.
 void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiState& state, StepWorkspace& ws) {

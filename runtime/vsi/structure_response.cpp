@@ -141,10 +141,6 @@ StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(st
   factor_ = factorise(structure.stiffness);
 }
 
-long StructureResponse::factor_nonzeros() const {
-  return static_cast<long>(factor_->matrixL().nestedExpression().nonZeros());
-}
-
 void StructureResponse::free_increment(const StructureModel& structure, const HhtScheme& scheme,
                                        const LinearMotion& motion, const Prediction& prediction,
                                        Eigen::VectorXd& increment) const {

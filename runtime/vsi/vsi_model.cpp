@@ -13,9 +13,6 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-// Offset of a wheel's rail-head unknowns; wheel = 2·wheelset + side.
-int rail_unknown(int wheel) { return wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2); }
-
 const DofIndices& wheelset_dofs(const VsiModel& model, int wheelset_of_vehicle) {
   return model.vehicle.dof[index(model.vehicle.wheelsets[index(wheelset_of_vehicle)])];
 }

@@ -34,7 +34,6 @@ class ContactGeometry {
 
   /// The published method returns discretised pairs, which the common-normal Newton must not improve.
   [[nodiscard]] bool is_paper() const noexcept { return std::holds_alternative<PaperSearch>(source_); }
-  [[nodiscard]] bool is_table() const noexcept { return std::holds_alternative<TableContact>(source_); }
 
  private:
   Source source_;

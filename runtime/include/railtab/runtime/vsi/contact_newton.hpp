@@ -13,6 +13,10 @@ namespace railtab {
 
 /// Contact unknowns of one wheelset: its six displacements, then y, z, roll of the left and of the right rail head.
 inline constexpr int wheelset_unknowns = 12;
+/// First of the three rail-head unknowns of a wheel; wheel = 2·wheelset + side, left first.
+[[nodiscard]] constexpr int rail_unknown(int wheel) noexcept {
+  return wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2);
+}
 
 /// Compliance between two rail heads, (wheel i, wheel j) with wheel = 2·wheelset + side.
 struct RailCoupling {
@@ -48,7 +52,6 @@ struct ContactSolution {
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;       ///< corrections made
-  int tangents = 0;         ///< of them with a new tangent
   double correction = 0.0;  ///< largest last correction [m or rad]
   double seconds_contact = 0.0;
   long queries = 0, table_queries = 0;

@@ -39,7 +39,6 @@ class StructureResponse {
                       const Prediction& prediction, Eigen::VectorXd& increment) const;
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
-  [[nodiscard]] long factor_nonzeros() const;
 
   /// Fill the node-by-node compliance of the rails within `window` [m] on either side (at least one element), from one
   /// solve per rail dof.
