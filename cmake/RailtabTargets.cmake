@@ -5,6 +5,8 @@ target_compile_features(railtab_options INTERFACE cxx_std_20)
 target_compile_options(railtab_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   $<$<BOOL:${RAILTAB_WARNINGS_AS_ERRORS}>:-Werror>
+  # GCC 12 takes its own AVX-512 intrinsics for uninitialised values (GCC bug 105593).
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized -Wno-maybe-uninitialized>
   # Contracted multiply-adds are wanted in the kernels, value-changing shortcuts are not: never -ffast-math.
   $<$<AND:$<BOOL:${RAILTAB_NATIVE}>,$<CONFIG:Release,RelWithDebInfo>>:-march=native>)
 
