@@ -14,6 +14,9 @@
 
 namespace railtab {
 
+/// Gyroscopic moments of the rolling wheelsets.
+enum class GyroscopicMoments { included, neglected };
+
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
@@ -22,6 +25,7 @@ struct VsiModel {
   Irregularity irregularity;
   std::shared_ptr<const ContactGeometry> geometry;
   WheelContactModel contact;  ///< its geometry points to `geometry`
+  GyroscopicMoments gyroscopic_moments = GyroscopicMoments::included;
 
   [[nodiscard]] int wheelsets_per_vehicle() const noexcept { return static_cast<int>(vehicle.wheelsets.size()); }
   [[nodiscard]] int wheelsets() const noexcept { return wheelsets_per_vehicle() * static_cast<int>(vehicle_x.size()); }
@@ -29,6 +33,7 @@ struct VsiModel {
   [[nodiscard]] double wheelset_x(int wheelset, double time) const noexcept;
   /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.
   [[nodiscard]] Eigen::MatrixXd vehicle_damping() const {
+    if (gyroscopic_moments == GyroscopicMoments::neglected) return vehicle.damping;
     return vehicle.damping + contact.speed / vehicle.nominal_radius * vehicle.gyroscopic;
   }
 };
