@@ -191,12 +191,13 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   }
 }
 
-Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+template <class Rows, class Columns>
+auto StructureResponse::between(const RailContact& i, const Rows& row, const RailContact& j,
+                                const Columns& column) const noexcept {
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, Columns::RowsAtCompileTime> result;
+  result.setZero();
   if (!i.on_rail || !j.on_rail) return result;
   const auto row_side = static_cast<std::size_t>(i.side);
-  const Eigen::Matrix<double, 3, 12> row = rows_of(i);
-  const Eigen::Matrix<double, 3, 12> column = rows_of(j);
   for (int q = 0; q < 2; ++q) {
     const Column& from = column_[static_cast<std::size_t>(j.side)][static_cast<std::size_t>(j.element + q)];
     const auto count = static_cast<int>(from.rows[row_side].size());
@@ -204,10 +205,24 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
       const int offset = i.element + p - from.first[row_side];
       if (offset < 0 || offset >= count) continue;
       const Block& block = from.rows[row_side][static_cast<std::size_t>(offset)];
-      result.noalias() += row.middleCols<6>(6 * p) * (block * column.middleCols<6>(6 * q).transpose());
+      result.noalias() +=
+          row.template middleCols<6>(6 * p) * (block * column.template middleCols<6>(6 * q).transpose());
     }
   }
   return result;
+}
+
+Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
+  return between(i, rows_of(i), j, rows_of(j));
+}
+
+Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, const RailContact& j) const noexcept {
+  using Row = Eigen::Matrix<double, 1, 12>;
+  Eigen::Matrix<double, 3, 12> rows;
+  rows.row(0) = Row::Map(i.rows.z.data());
+  rows.row(1) = -Row::Map(i.rows.pitch.data());
+  rows.row(2) = Row::Map(i.rows.bend.data());
+  return between(i, rows, j, Row(Row::Map(j.rows.z.data())));
 }
 
 Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) const {

@@ -47,11 +47,19 @@ class StructureResponse {
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
   [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
 
+  /// Vertical displacement z, slope dz/dx and curvature d²z/dx² of rail `i` from a unit vertical load on rail `j`, from
+  /// the same table.
+  [[nodiscard]] Eigen::Vector3d vertical_compliance(const RailContact& i, const RailContact& j) const noexcept;
+
   /// The same without tabulation, by solving for the columns of every contact (3n × 3n): exact, for few positions.
   [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts) const;
 
  private:
   using Block = Eigen::Matrix<double, 6, 6>;
+  /// rows · (tabulated compliance between the elements of i and j) · columnsᵀ.
+  template <class Rows, class Columns>
+  [[nodiscard]] auto between(const RailContact& i, const Rows& row, const RailContact& j,
+                             const Columns& column) const noexcept;
   std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
   Eigen::Index dofs_ = 0;
   // compliance_[node column][window offset]; columns: left rail's nodes, then the right's; rows likewise in pairs.
