@@ -62,16 +62,16 @@ PatchForce patch_force(const WheelContactModel& model, const ContactPatch& patch
   if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero(), 0.0};
 
   Vector3 force = -N * axes.n;
+  if (model.gravitational_stiffness == GravitationalStiffness::neglected) force[1] = 0.0;
   Vector3 moment = Vector3::Zero();
   const double bound = model.friction * N;
   if (bound > 0.0) {
-    const double a = load.hertz.a1 * std::cbrt(N);
-    const double b = load.hertz.b1 * std::cbrt(N);
+    const auto [a, b] =
+        model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
     const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, patch.angle, model.speed);
     const Creepage creepage =
         normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.normal.material.shear_modulus(), bound);
-    const PatchCreepForce creep =
-        dimensional_creep_force(creep_force(model.creep_law, load.hertz.ratio, creepage), a, b, bound);
+    const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
     force += creep.x * Vector3::UnitX() + creep.y * axes.t;
     moment = creep.moment * axes.n;
   }

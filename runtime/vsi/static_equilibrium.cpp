@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/vsi/rigid_wheels.hpp"
+
 namespace railtab {
 
 namespace {
@@ -134,8 +136,11 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
       set_down(model, problem, state.contact.displacement);
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;
-    const NewtonReport newton = solve_contact(model.contact, problem, limits, state.contact, workspace);
-    if (!newton.converged) return report;
+    if (model.normal_contact == NormalContact::rigid) {
+      rest_on_rails(problem, state.contact);
+    } else if (!solve_contact(model.contact, problem, limits, state.contact, workspace).converged) {
+      return report;
+    }
 
     report.change = 0.0;
     for (int v = 0; v < vehicles; ++v) {
