@@ -7,6 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "railtab/runtime/contact/contact_search.hpp"
+#include "railtab/runtime/contact/equivalent_conicity.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+
+namespace railtab {
 namespace {
 
 struct Outcome {
@@ -59,7 +64,7 @@ class TablegenCommand : public ::testing::Test {
 constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
 
 TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
-  for (const std::string command : {"", "geometry ", "info ", "verify "}) {
+  for (const std::string command : {"", "conicity ", "geometry ", "info ", "verify "}) {
     const Outcome help = tablegen(command + "--help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Usage: tablegen " + command), std::string::npos) << help.out;
@@ -90,6 +95,9 @@ TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused("info", "file is missing");
   expect_refused("info none.h5", "none.h5");
   expect_refused("verify none.h5", "none.h5");
+  expect_refused("conicity none.h5", "none.h5");
+  expect_refused("conicity none.h5 --amplitude 0", "--amplitude");
+  expect_refused("conicity none.h5 --roll free", "--roll");
 }
 
 TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
@@ -141,6 +149,41 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
   expect_refused_with_table("verify out.h5 --dz -1e-4:1e-4", "dz");
 }
 
+TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
+  const std::string ranges = " --lateral -0.006:0.006 --yaw 0:0 --quiet -o ";
+  ASSERT_EQ(tablegen("geometry --wheel cone-1:40 --rail 60E1 --rail-inclination 0" + ranges + "cone.h5").exit_code, 0);
+  const auto conicity = [&](const std::string& arguments) {
+    const Outcome outcome = tablegen("conicity " + arguments + " --json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const nlohmann::json cone = conicity("cone.h5");
+  EXPECT_EQ(cone["kind"], "conicity");
+  EXPECT_EQ(cone["amplitude"], 3e-3);
+  EXPECT_NEAR(cone["wave"]["conicity"], 0.025, 1e-6);
+  EXPECT_NEAR(cone["regression"]["conicity"], 0.025, 1e-6);
+  EXPECT_GT(conicity("cone.h5 --roll on")["wave"]["conicity"], 0.0252);
+  const nlohmann::json unequal = conicity("cone.h5 --diameter-difference 1e-4 --amplitude 4e-3");
+  EXPECT_NEAR(unequal["wave"]["conicity"], 0.025, 1e-6);
+  EXPECT_NEAR(unequal["wave"]["y_low"], -5e-3, 1e-7);  // the wave runs about −50 µm/(2·0.025)
+
+  // The table's answer is the online search's.
+  ASSERT_EQ(tablegen("geometry --wheel S1002 --rail 60E1" + ranges + "s1002.h5").exit_code, 0);
+  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
+                                           PairDimensions{}));
+  WheelsetContactOptions options;
+  options.y_low = -6e-3;
+  options.y_high = 6e-3;
+  const RadiusDifferenceCurve curve(
+      wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
+                        search.pair(), options));
+  EXPECT_NEAR(conicity("s1002.h5")["wave"]["conicity"], conicity_of_wave(curve, 3e-3).tan_gamma, 1e-6);
+
+  EXPECT_EQ(tablegen("conicity s1002.h5 --amplitude 8e-3").exit_code, 1);
+  expect_refused_with_table("conicity s1002.h5 --diameter-difference 1", "diameter difference");
+}
+
 TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
   ASSERT_EQ(tablegen(std::string(small) + "--quiet").exit_code, 0);
   std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
@@ -154,3 +197,4 @@ TEST_F(TablegenCommand, QuietPrintsNothing) {
 }
 
 }  // namespace
+}  // namespace railtab
