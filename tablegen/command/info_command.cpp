@@ -25,6 +25,13 @@ double statistic(const GeometryTableData& table, std::string_view name) {
   return std::nan("");
 }
 
+/// What was done to the points of both profile files.
+std::vector<std::string> profile_notes(const GeometryTableData& table) {
+  std::vector<std::string> notes = table.wheel.notes;
+  notes.insert(notes.end(), table.rail.notes.begin(), table.rail.notes.end());
+  return notes;
+}
+
 }  // namespace
 
 nlohmann::ordered_json table_description(const GeometryTableData& table, const std::string& file) {
@@ -50,7 +57,8 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
   j["provenance"] = {{"program_version", table.provenance.program_version},
                      {"command_line", table.provenance.command_line},
-                     {"created", table.provenance.created}};
+                     {"created", table.provenance.created},
+                     {"profile_notes", profile_notes(table)}};
   return j;
 }
 
@@ -79,6 +87,7 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
       statistic(table, "certified.error.penetration.max"), table.tolerance);
   text += fmt::format("  made         {} by version {}: {}\n", table.provenance.created,
                       table.provenance.program_version, table.provenance.command_line);
+  for (const std::string& note : profile_notes(table)) text += fmt::format("  profile      {}\n", note);
   return text;
 }
 

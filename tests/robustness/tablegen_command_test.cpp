@@ -184,6 +184,26 @@ TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
   expect_refused_with_table("conicity s1002.h5 --diameter-difference 1", "diameter difference");
 }
 
+TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
+  std::ofstream wheel(folder_ / "wheel.txt");
+  for (int y = -30; y <= 30; ++y) wheel << y << ' ' << 1e-4 * y * y - 0.05 * y << '\n' << (y == 7 ? "7 -0.3451\n" : "");
+  wheel.close();
+  const std::string rest = " --rail 60E1 --lateral -0.001:0.001 --yaw 0:0 -o out.h5";
+  const Outcome made = tablegen("geometry --wheel wheel.txt --smoothing 1e-8" + rest);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const nlohmann::json info = nlohmann::json::parse(tablegen("info out.h5 --json").out);
+  const nlohmann::json notes = info["provenance"]["profile_notes"];
+  ASSERT_EQ(notes.size(), 4U) << notes;
+  const char* words[] = {"taken as mm", "wheel.txt:39: 1 repeated", "no flange", "smoothed"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string note = notes[i];
+    EXPECT_NE(note.find(words[i]), std::string::npos) << note;
+    EXPECT_NE(made.err.find(note), std::string::npos) << made.err;
+    EXPECT_NE(made.out.find(note), std::string::npos) << made.out;
+  }
+  expect_refused_with_table("geometry --wheel wheel.txt --smoothing -1" + rest, "--smoothing");
+}
+
 TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
   ASSERT_EQ(tablegen(std::string(small) + "--quiet").exit_code, 0);
   std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
