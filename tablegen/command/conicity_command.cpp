@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
@@ -36,7 +38,9 @@ void conicity_command(const std::vector<std::string>& arguments) {
   const WheelsetRoll roll = roll_option(line);
   const double difference = line.number("diameter-difference");
   const TableContact table{GeometryTable(read_geometry_table(file))};
-  const WheelsetFunctions functions = wheelset_functions(table, roll, difference);
+  const std::optional<WheelsetFunctions> found = wheelset_functions(table, roll, difference);
+  if (!found) throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");
+  const WheelsetFunctions& functions = *found;
   const EquivalentConicity wave = conicity_of_wave(functions.radius_difference, amplitude);
   const EquivalentConicity regression = conicity_of_regression(functions.radius_difference, amplitude);
   if (line.json()) {

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+#include "table_page.hpp"
+#include "wheelset_functions.hpp"
 
 namespace railtab {
 
@@ -92,16 +97,30 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
 }
 
 void info_command(const std::vector<std::string>& arguments) {
-  boost::program_options::options_description own("Arguments");
-  own.add_options()("file", boost::program_options::value<std::string>()->value_name("FILE.h5"), "a table");
-  const CommandLine line("tablegen info FILE.h5 [--json]", own, {"file"}, arguments);
+  namespace po = boost::program_options;
+  po::options_description own("Options");
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")  //
+      ("html", po::value<std::string>()->value_name("PAGE.html"),
+       "write a page with contact points, rolling radius difference, contact angle and conicity");
+  const CommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
-  const GeometryTableData table = read_geometry_table(file);
+  const GeometryTableData data = read_geometry_table(file);
+  if (line.given("html")) require_no_input(line.text("html"), {file});
+  const std::string text = table_text(data, file);
+  nlohmann::ordered_json description = table_description(data, file);
+  const TableContact table{GeometryTable(data)};
+  const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
+  if (line.given("html")) {
+    if (!functions)
+      throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");
+    write_text_file(line.text("html"), table_page(table.search().pair(), data, *functions, text));
+  }
   if (line.json()) {
-    fmt::print("{}\n", table_description(table, file).dump(2));
+    if (functions) description["wheelset"] = functions_json(*functions);
+    fmt::print("{}\n", description.dump(2));
   } else {
-    fmt::print("{}", table_text(table, file));
+    fmt::print("{}{}", text, functions ? functions_text(*functions) : "");
   }
 }
 

@@ -41,8 +41,10 @@ nlohmann::ordered_json number_or_null(double value) {
 
 }  // namespace
 
-WheelsetFunctions wheelset_functions(const TableContact& table, WheelsetRoll roll, double diameter_difference) {
+std::optional<WheelsetFunctions> wheelset_functions(const TableContact& table, WheelsetRoll roll,
+                                                    double diameter_difference) {
   const GeometryTableData& data = table.table().data();
+  if (!(data.lateral.front() < 0.0 && data.lateral.back() > 0.0)) return std::nullopt;
   WheelsetContactOptions options;
   options.y_low = data.lateral.front();
   options.y_high = data.lateral.back();
@@ -50,9 +52,9 @@ WheelsetFunctions wheelset_functions(const TableContact& table, WheelsetRoll rol
   options.diameter_difference = diameter_difference;
   const auto query = [&](const WheelsetPose& pose, double near_miss) { return table.patches(pose, near_miss); };
   std::vector<WheelsetContact> contacts = wheelset_contacts(query, table.search().pair(), options);
-  if (contacts.size() < 2) throw ComputationError("the centred wheelset does not touch both rails");
+  if (contacts.size() < 2) return std::nullopt;
   RadiusDifferenceCurve curve(contacts);
-  return {roll, diameter_difference, std::move(contacts), std::move(curve)};
+  return WheelsetFunctions{roll, diameter_difference, std::move(contacts), std::move(curve)};
 }
 
 std::vector<double> conicity_amplitudes(const RadiusDifferenceCurve& curve) {

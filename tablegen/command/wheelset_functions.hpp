@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct WheelsetFunctions {
   RadiusDifferenceCurve radius_difference;
 };
 
-/// Over the table's lateral range. @throws ComputationError where the wheelset does not touch its rails when centred
-[[nodiscard]] WheelsetFunctions wheelset_functions(const TableContact& table, WheelsetRoll roll,
-                                                   double diameter_difference);
+/// Over the table's lateral range; nothing where that does not contain 0, or the centred wheelset does not touch both
+/// rails.
+[[nodiscard]] std::optional<WheelsetFunctions> wheelset_functions(const TableContact& table, WheelsetRoll roll,
+                                                                  double diameter_difference);
 
 /// Amplitudes of a conicity curve [m]: 0.5 to 10 mm, every 0.5 mm, as far as the wave fits into the samples.
 [[nodiscard]] std::vector<double> conicity_amplitudes(const RadiusDifferenceCurve& curve);
