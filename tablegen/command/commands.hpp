@@ -9,6 +9,7 @@
 namespace railtab {
 
 /// The subcommands. `arguments` are those after the subcommand's name. Errors leave as exceptions; see main.cpp.
+void conicity_command(const std::vector<std::string>& arguments);
 void contact_command(const std::vector<std::string>& arguments);
 void geometry_command(const std::vector<std::string>& arguments);
 void info_command(const std::vector<std::string>& arguments);
