@@ -84,25 +84,34 @@ double Overlap::reach(const ContactPatch& patch, int direction, double level, do
   return s;
 }
 
-double Overlap::area(const ContactPatch& patch, double level, double s_low, double s_high) const noexcept {
+OverlapArea Overlap::area(const ContactPatch& patch, double level, double s_low, double s_high) const noexcept {
   // Gauss and Legendre: exact for the parabola of constant curvatures; six points for what departs from it.
   constexpr std::array<double, 3> node{0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
   constexpr std::array<double, 3> weight{0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
   const double middle = 0.5 * (s_low + s_high);
   const double half = 0.5 * (s_high - s_low);
-  if (!(half > 0.0)) return 0.0;
+  if (!(half > 0.0)) return {};
   std::array<OverlapPoint, 2> outer{};
-  double sum = 0.0;
+  OverlapArea sum;
   for (std::size_t i = 0; i < node.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side) {
       const double s = middle + (side == 0 ? -1.0 : 1.0) * half * node[i];
       outer[side] = at(s, patch.s_rail + (s - patch.s_wheel));
-      sum += weight[i] * std::max(outer[side].penetration - level, 0.0);
+      const double part = weight[i] * std::max(outer[side].penetration - level, 0.0);
+      sum.area += part;
+      sum.moment += part * (s - patch.s_wheel);
     }
   }
   // The silhouette's own speed along the wheel profile has steps where the curvature has.
   const double chord = std::hypot(outer[1].y - outer[0].y, outer[1].z - outer[0].z) / (2.0 * half * node.back());
-  return half * sum * chord;
+  return {half * chord * sum.area, half * chord * sum.moment};
+}
+
+ContactPatch Overlap::pair_at(const ContactPatch& patch, double s_wheel) const noexcept {
+  const OverlapPoint point = at(s_wheel, patch.s_rail + (s_wheel - patch.s_wheel));
+  ContactPatch pair = patch_of_pair(pair_, pose_, trigonometry_, point.s_wheel, point.s_rail);
+  pair.source = patch.source;
+  return pair;
 }
 
 }  // namespace railtab

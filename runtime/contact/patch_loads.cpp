@@ -80,28 +80,49 @@ Side counted_side(const Overlap& overlap, const ProfileCurve& wheel, const Conta
   return {saddle.s_wheel, other.s_wheel + direction * overlap.reach(other, direction, level, edge), merged};
 }
 
-/// B of the parabola that has the overlap's area between the deepest point and (1 - kappa) d: with
-/// area = (4/3) kappa d w and kappa d = B w².
-double overlap_curvature(const NormalContactModel& model, const Overlap& overlap, const ProfileCurve& wheel,
-                         const ContactPatch& patch, const Neighbourhood& left, const Neighbourhood& right) {
-  const double d = patch.penetration;
-  if (d <= least_penetration) return 0.5 * (patch.curv_wheel + patch.curv_rail);
+/// The deepest part of a patch's overlap.
+OverlapArea counted_area(const Overlap& overlap, const ProfileCurve& wheel, const ContactPatch& patch,
+                         const Neighbourhood& left, const Neighbourhood& right) {
   const Side low = counted_side(overlap, wheel, patch, -1, left);
   const Side high = counted_side(overlap, wheel, patch, 1, right);
-  const auto area_between = [&](double from, double to) { return overlap.area(patch, level_of(patch), from, to); };
-  const double inner = area_between(low.end, high.end);
-  double area = inner;
-  if (low.merged > 0.0) area += low.merged * (area_between(low.far_end, high.end) - inner);
-  if (high.merged > 0.0) area += high.merged * (area_between(low.end, high.far_end) - inner);
-  if (!(area > 0.0)) return model.curvature_floor;
-  const double half_width = 0.75 * area / (counted_share * d);
-  return counted_share * d / (half_width * half_width);
+  const auto between = [&](double from, double to) { return overlap.area(patch, level_of(patch), from, to); };
+  const OverlapArea inner = between(low.end, high.end);
+  OverlapArea sum = inner;
+  const auto add = [&](double merged, const OverlapArea& with_neighbour) {
+    sum.area += merged * (with_neighbour.area - inner.area);
+    sum.moment += merged * (with_neighbour.moment - inner.moment);
+  };
+  if (low.merged > 0.0) add(low.merged, between(low.far_end, high.end));
+  if (high.merged > 0.0) add(high.merged, between(low.end, high.far_end));
+  return sum;
+}
+
+/// B of the parabola that has the overlap's area between the deepest point and (1 - kappa) d: with
+/// area = (4/3) kappa d w and kappa d = B w².
+double overlap_curvature(double penetration, double area) {
+  const double half_width = 0.75 * area / (counted_share * penetration);
+  return counted_share * penetration / (half_width * half_width);
 }
 
 PatchLoad load(const NormalContactModel& model, const ContactPatch& patch, double B, double shared) {
   PatchLoad result;
   result.hertz = hertz_contact(0.5 * patch.curv_rolling, std::max(B, model.curvature_floor), model.material);
   result.elastic_force = result.hertz.stiffness * std::max(power_3_2(patch.penetration) - shared, 0.0);
+  result.contact = patch;
+  return result;
+}
+
+/// The load of the true overlap, at its centre.
+PatchLoad overlap_load(const NormalContactModel& model, const Overlap& overlap, const ProfileCurve& wheel,
+                       const ContactPatch& patch, const Neighbourhood& left, const Neighbourhood& right,
+                       double shared) {
+  if (patch.penetration <= least_penetration) {
+    return load(model, patch, 0.5 * (patch.curv_wheel + patch.curv_rail), shared);
+  }
+  const OverlapArea counted = counted_area(overlap, wheel, patch, left, right);
+  if (!(counted.area > 0.0)) return load(model, patch, model.curvature_floor, shared);
+  PatchLoad result = load(model, patch, overlap_curvature(patch.penetration, counted.area), shared);
+  result.contact = overlap.pair_at(patch, patch.s_wheel + counted.moment / counted.area);
   return result;
 }
 
@@ -142,7 +163,7 @@ PatchLoads patch_loads(const NormalContactModel& model, const ContactGeometry& g
       shared = std::max(shared, right.junction->left_share * power_3_2(right.junction->saddle.penetration));
       if (right.patch->penetration > patch.penetration) own *= 1.0 - right.junction->merged;
     }
-    loads[i] = load(model, patch, overlap_curvature(model, overlap, pair.wheel(), patch, left, right), shared);
+    loads[i] = overlap_load(model, overlap, pair.wheel(), patch, left, right, shared);
     loads[i].elastic_force *= own;
   }
   return loads;

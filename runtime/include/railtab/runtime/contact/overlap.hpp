@@ -13,6 +13,12 @@ struct OverlapPoint {
   double y, z;         ///< of the silhouette, rail-head frame [m]
 };
 
+/// Area between the profiles above a level of penetration, seen along the rail.
+struct OverlapArea {
+  double area = 0.0;    ///< integral of penetration - level across the contact [m²]
+  double moment = 0.0;  ///< the same, times the distance from the patch along the wheel profile [m³]
+};
+
 /// The overlap of one (right) wheel with its rail at a pose, seen along the wheel profile. Refers to its pair.
 /// Allocation-free, thread-safe.
 class Overlap {
@@ -33,10 +39,13 @@ class Overlap {
   ///   the pair to there. Where the level is not reached, the distance to the limit is returned.
   [[nodiscard]] double reach(const ContactPatch& patch, int direction, double level, double limit) const noexcept;
 
-  /// Area between the profiles where penetration exceeds `level` [m²], seen along the rail: the integral of
-  /// penetration - level over s_low..s_high on the wheel profile near the patch, times the chord of the silhouette
-  /// there per arc length.
-  [[nodiscard]] double area(const ContactPatch& patch, double level, double s_low, double s_high) const noexcept;
+  /// Area where penetration exceeds `level` [m] over s_low..s_high on the wheel profile near the patch: the integral
+  /// over the arc length, times the silhouette's chord per arc length.
+  [[nodiscard]] OverlapArea area(const ContactPatch& patch, double level, double s_low, double s_high) const noexcept;
+
+  /// The geometry of the pair at wheel point s_wheel near a patch and the rail point whose normal passes through it;
+  /// penetration is that of the point.
+  [[nodiscard]] ContactPatch pair_at(const ContactPatch& patch, double s_wheel) const noexcept;
 
  private:
   const WheelRailPair& pair_;
