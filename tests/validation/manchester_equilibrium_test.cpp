@@ -1,5 +1,6 @@
-// The Manchester benchmark's wheelset under 10 kN per wheel, cases A1.1 and A1.2: Hertzian patches at the deepest pairs
-// against CONTACT's solution for the true interpenetration [Shackleton2008]; see the header of the CSV file.
+// The Manchester benchmark's wheelset under 10 kN per wheel, cases A1.1 and A1.2, in its own equilibrium: Hertzian
+// patches at the deepest pairs against CONTACT's solution for the true interpenetration [Shackleton2008]; see the
+// header of the CSV file.
 
 #include <gtest/gtest.h>
 
@@ -35,8 +36,8 @@ struct Differences {
   }
 };
 
-// Shifts at which the elastic patch reaches across a jump of the geometric contact (0.2 to 0.3 mm and 4.85 mm): the
-// deepest pair and one Hertz ellipse are not what CONTACT's single patch is.
+// Shifts at which the elastic patch reaches across a jump of the geometric contact (0.2 to 0.3 mm and 4.85 mm): its
+// centre of pressure is far from the deepest pair.
 bool beside_jump(double y, double side) { return y < 1.1 * mm || (side > 0 && std::abs(y - 5 * mm) < 0.1 * mm); }
 
 TEST(ManchesterEquilibrium, WheelsetInEquilibriumAgainstContact) {
@@ -61,17 +62,17 @@ TEST(ManchesterEquilibrium, WheelsetInEquilibriumAgainstContact) {
   EXPECT_EQ(tread.count + flange.count + jump.count, 84);
   EXPECT_EQ(flange.count, 16);
   EXPECT_EQ(jump.count, 14);
-  EXPECT_LT(tread.penetration, 0.015);
+  EXPECT_LT(tread.penetration, 0.012);
   EXPECT_LT(tread.normal_force, 0.005);
   EXPECT_LT(tread.position, 0.25 * mm);
   EXPECT_LT(tread.height, 0.5e-3 * mm);
-  EXPECT_LT(flange.penetration, 0.01);
+  EXPECT_LT(flange.penetration, 0.015);
   EXPECT_LT(flange.normal_force, 0.012);
   EXPECT_LT(flange.position, 0.03 * mm);
   EXPECT_LT(flange.height, 2e-3 * mm);
-  EXPECT_LT(jump.penetration, 0.25);
-  EXPECT_LT(jump.normal_force, 0.003);
-  EXPECT_LT(jump.height, 6e-3 * mm);
+  EXPECT_LT(jump.penetration, 0.03);
+  EXPECT_LT(jump.normal_force, 0.004);
+  EXPECT_LT(jump.height, 1e-3 * mm);
 }
 
 }  // namespace
