@@ -106,11 +106,12 @@ std::string functions_text(const WheelsetFunctions& functions) {
   std::string text = fmt::format("\n{:>8}{:>12}{:>16}{:>16}{:>14}{:>14}\n", "y", "delta r", "angle left", "angle right",
                                  "radius left", "radius right");
   text += fmt::format("{:>8}{:>12}{:>16}{:>16}{:>14}{:>14}\n", "[mm]", "[mm]", "[mrad]", "[mrad]", "[mm]", "[mm]");
+  const double excess = 0.25 * functions.diameter_difference;  // of the right wheel's radius over the nominal one
   for (const double y : shifts(curve, 1.0 * mm)) {
     const WheelsetContact& c = nearest_contact(functions, y);
     text += fmt::format("{:8.1f}{:12.4f}{:16.2f}{:16.2f}{:14.3f}{:14.3f}\n", y / mm, curve.at(y) / mm,
-                        1e3 * std::abs(c.left.angle), 1e3 * std::abs(c.right.angle), c.left.rolling_radius / mm,
-                        c.right.rolling_radius / mm);
+                        1e3 * std::abs(c.left.angle), 1e3 * std::abs(c.right.angle),
+                        (c.left.rolling_radius - excess) / mm, (c.right.rolling_radius + excess) / mm);
   }
   text += fmt::format("\n{:>14}{:>22}{:>14}\n", "amplitude [mm]", "equivalent conicity", "regression");
   for (const double a : conicity_amplitudes(curve)) {
