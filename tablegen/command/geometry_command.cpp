@@ -1,10 +1,4 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <chrono>
-#include <ctime>
-#include <filesystem>
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -46,13 +40,6 @@ PairDimensions dimensions(const CommandLine& line) {
   return d;
 }
 
-void check_folder(const std::string& file) {
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  if (!std::filesystem::is_directory(folder)) {
-    throw input_error("--output " + file, "no folder " + folder.string(), "a file in an existing folder");
-  }
-}
-
 }  // namespace
 
 void geometry_command(const std::vector<std::string>& arguments) {
@@ -62,7 +49,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
   const std::string file = line.required("output");
   const std::string wheel_name = line.required("wheel");
   const std::string rail_name = line.required("rail");
-  check_folder(file);
+  require_folder(file);
   require_no_input(file, {wheel_name, rail_name});
   GeometrySweepOptions options;
   options.lateral = line.interval("lateral");
@@ -77,10 +64,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
   const ContactSearch search(WheelRailPair(std::move(wheel), std::move(rail), dimensions(line)));
   ProgressBar bar("geometry table", !line.quiet());
   GeometryTableData table = generate_geometry_table(search, options, [&](double share) { bar.show(share); });
-  table.provenance.program_version = RAILTAB_VERSION;
-  table.provenance.command_line = fmt::format("tablegen geometry {}", fmt::join(arguments, " "));
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  table.provenance.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  table.provenance = provenance("geometry", arguments);
   write_geometry_table(file, table);
   if (line.json()) {
     fmt::print("{}\n", table_description(table, file).dump(2));

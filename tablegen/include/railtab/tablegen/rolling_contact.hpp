@@ -34,6 +34,8 @@ struct RollingContactSolution {
   /// Σ|p − P(p − s/b0)| over that of p = 0: P the projection on the friction circle, b0 an element's own influence.
   double residual = 0.0;
   double bound_excess = 0.0;  ///< largest |p|/(μ p_n) − 1, zero (to rounding) where friction is not exceeded
+  /// Σ(|p||s| + p·s)/Σ|p||s| over the slipping elements: zero where slip opposes traction, 2 where it goes along.
+  double slip_deviation = 0.0;
   int iterations = 0;         ///< of Newton's method, or steps rolled by the safe one
   int products = 0;           ///< with the influence matrix
   int adhesion = 0;           ///< elements that stick
