@@ -18,14 +18,15 @@ namespace po = boost::program_options;
 
 po::options_description creep_options() {
   po::options_description own("Options");
-  own.add_options()("poisson", text_value("0.28")->value_name("NU"), "Poisson's ratio that the table serves, 0..0.5")  //
+  own.add_options()("poisson", text_value("0.28")->value_name("NU"),
+                    "Poisson's ratio that the table serves, 0..0.5")  //
       ("elements", text_value("40")->value_name("N"),
-       "of the exact solution along each axis, even; extrapolated from N/2 and N")                                     //
-      ("layout", text_value("default")->value_name("NAME"), "default or paper")                                        //
+       "of the exact solution along each axis, even; extrapolated from N/2 and N")  //
+      ("layout", text_value("default")->value_name("NAME"), "default or paper")     //
       ("nodes", po::value<std::string>()->value_name("R,T,A,B"),
-       "of the default layout along a/b, radius, polar angle, azimuth")                                                //
-      ("tolerance", text_value("1e-6")->value_name("T"), "on the residual of each solution")                           //
-      ("shard", po::value<std::string>()->value_name("I/N"), "solve one of N parts only, for tablegen merge")          //
+       "of the default layout along a/b, radius, polar angle, azimuth")                                        //
+      ("tolerance", text_value("1e-6")->value_name("T"), "on the residual of each solution")                   //
+      ("shard", po::value<std::string>()->value_name("I/N"), "solve one of N parts only, for tablegen merge")  //
       ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table, or the shard");
   return own;
 }

@@ -49,8 +49,8 @@ void CreepJob::validate() const {
   }
 }
 
-CreepJobOutcome run_creep_job(const CreepJob& job, const std::filesystem::path& file,
-                              const TableProvenance& provenance, const Progress& progress) {
+CreepJobOutcome run_creep_job(const CreepJob& job, const std::filesystem::path& file, const TableProvenance& provenance,
+                              const Progress& progress) {
   job.validate();
   const std::vector<CreepCase> cases = creep_cases(job.layout);
   const std::vector<CreepLine> lines = creep_lines(cases);

@@ -131,8 +131,9 @@ void require_same_job(const CreepShardHeader& found, const std::filesystem::path
 
 ArrayFileWriter create_creep_partial(const std::filesystem::path& file, const CreepShardHeader& header) {
   ArrayFileWriter out(file, creep_partial_filetype, creep_shard_format_version, ArrayFileWriter::Mode::growing);
-  write_header(out, header,
-               "An unfinished creep table: the cases solved so far. The same tablegen creep command goes on from here.");
+  write_header(
+      out, header,
+      "An unfinished creep table: the cases solved so far. The same tablegen creep command goes on from here.");
   for (const Column& column : columns()) out.create_growing(column.path, {}, "1", column.description);
   out.flush();
   return out;

@@ -32,21 +32,22 @@ struct CreepJob {
 
 /// What run_creep_job() did.
 struct CreepJobOutcome {
-  std::size_t cases = 0;         ///< of the table or the shard
-  std::size_t resumed = 0;       ///< of these, read from the file of an interrupted run
-  double seconds = 0.0;          ///< wall time of the sweep
-  std::size_t safe_method = 0;   ///< cases that Newton's method did not solve
-  double worst_residual = 0.0;   ///< of all cases
+  std::size_t cases = 0;        ///< of the table or the shard
+  std::size_t resumed = 0;      ///< of these, read from the file of an interrupted run
+  double seconds = 0.0;         ///< wall time of the sweep
+  std::size_t safe_method = 0;  ///< cases that Newton's method did not solve
+  double worst_residual = 0.0;  ///< of all cases
 };
 
 /// Solves the cases of a creep table and writes `file`: the table, or a shard file for merge_creep_shards().
 ///
-/// While it runs, `file`.partial holds all lines that are done, flushed every two seconds. Where that file is found, the
-/// job goes on after its last line, with the same bits in the result as without interruption; it is removed at the end.
+/// While it runs, `file`.partial holds all lines that are done, flushed every two seconds. Where that file is found,
+/// the job goes on after its last line, with the same bits in the result as without interruption; it is removed at the
+/// end.
 /// @throws InputError where `file`.partial belongs to another job (naming what differs), is damaged or in use;
 /// ComputationError as sweep_creep().
-CreepJobOutcome run_creep_job(const CreepJob& job, const std::filesystem::path& file,
-                              const TableProvenance& provenance, const Progress& progress = {});
+CreepJobOutcome run_creep_job(const CreepJob& job, const std::filesystem::path& file, const TableProvenance& provenance,
+                              const Progress& progress = {});
 
 /// The table of all its shards, in any order, equal to the one made in one go to the last bit.
 /// @throws InputError where a file is no finished shard, was made with other options or by another version than the

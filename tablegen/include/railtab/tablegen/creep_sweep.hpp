@@ -21,9 +21,9 @@ struct CreepSweepOptions {
 /// One solved case and what proves it; the proofs are the worse ones of the two grids.
 struct SolvedCreepCase {
   CreepForce force;
-  double residual = 0.0;        ///< of the friction law, relative to that of zero traction
-  double bound_excess = 0.0;    ///< largest |p|/(μ p_n) − 1
-  double slip_deviation = 0.0;  ///< Σ(|p||s| + p·s)/Σ|p||s| over slipping elements: 0 where slip opposes traction
+  double residual = 0.0;         ///< of the friction law, relative to that of zero traction
+  double bound_excess = 0.0;     ///< largest |p|/(μ p_n) − 1
+  double slip_deviation = 0.0;   ///< Σ(|p||s| + p·s)/Σ|p||s| over slipping elements: 0 where slip opposes traction
   double grid_difference = 0.0;  ///< |force on the fine grid − on the coarse one|, twice what extrapolation adds
   bool safe_method = false;      ///< Newton's method failed on one of the grids, the slow one was used
 };

@@ -36,12 +36,12 @@ struct RollingContactSolution {
   double bound_excess = 0.0;  ///< largest |p|/(μ p_n) − 1, zero (to rounding) where friction is not exceeded
   /// Σ(|p||s| + p·s)/Σ|p||s| over the slipping elements: zero where slip opposes traction, 2 where it goes along.
   double slip_deviation = 0.0;
-  int iterations = 0;         ///< of Newton's method, or steps rolled by the safe one
-  int products = 0;           ///< with the influence matrix
-  int adhesion = 0;           ///< elements that stick
-  int slip = 0;               ///< elements that slip
-  bool safe_method = false;   ///< Newton's method failed, the slow one was used
-  bool converged = false;     ///< the residual is below the tolerance
+  int iterations = 0;        ///< of Newton's method, or steps rolled by the safe one
+  int products = 0;          ///< with the influence matrix
+  int adhesion = 0;          ///< elements that stick
+  int slip = 0;              ///< elements that slip
+  bool safe_method = false;  ///< Newton's method failed, the slow one was used
+  bool converged = false;    ///< the residual is below the tolerance
 };
 
 /// Kalker's exact theory of steady rolling [Kalker1990, Ch. 4]: two half-spaces of the same material, a Hertzian
