@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 
 #include "batch_list.hpp"
@@ -43,23 +45,34 @@ bool same_profile(const ProfileKnots& a, const ProfileKnots& b) {
   return a.s == b.s && a.y == b.y && a.z == b.z && a.dy == b.dy && a.dz == b.dz;
 }
 
-/// What the table that stands in the way of a job was made with, where that is not what the job asks for; empty where
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// The words of `text` that are not in `other`.
+std::string words_beyond(const std::string& text, const std::string& other) {
+  const std::vector<std::string> known = words(other);
+  std::string beyond;
+  for (const std::string& word : words(text)) {
+    if (std::find(known.begin(), known.end(), word) == known.end()) beyond += (beyond.empty() ? "" : " ") + word;
+  }
+  return beyond.empty() ? text : beyond;
+}
+
+/// The options that the table in a job's place was made with, where they are not what the job asks for; empty where
 /// it is the job's own table. @throws InputError where the file is no geometry table
-std::string difference(const BatchPair& pair, const GeometryRequest& request) {
+std::string other_options(const BatchPair& pair, const GeometryRequest& request) {
   const GeometryTableData table = read_geometry_table(pair.output);
   if (!same_profile(table.wheel, request.search.pair().wheel().knots())) return "another wheel profile";
   if (!same_profile(table.rail, request.search.pair().rail().knots())) return "another rail profile";
-  const std::string wanted = geometry_options_text(pair.arguments);
-  std::istringstream words(table.provenance.command_line);
-  std::vector<std::string> arguments;
-  for (std::string word; words >> word;) arguments.push_back(word);
   std::string found;
   try {
-    found = geometry_options_text(arguments);
+    found = geometry_options_text(words(table.provenance.command_line));
   } catch (const po::error&) {
     found = table.provenance.command_line;  // of a version with other options
   }
-  return found == wanted ? "" : found;
+  return found == geometry_options_text(pair.arguments) ? "" : found;
 }
 
 GeometryRequest request_of(const BatchPair& pair) {
@@ -74,10 +87,11 @@ std::vector<Job> read_jobs(const CommandLine& line) {
     try {
       const GeometryRequest request = request_of(job.pair);
       if (!line.given("overwrite") && std::filesystem::exists(job.pair.output)) {
-        const std::string found = difference(job.pair, request);
+        const std::string found = other_options(job.pair, request);
         if (!found.empty()) {
-          throw input_error(job.pair.output.string(), "a table made with " + found,
-                            geometry_options_text(job.pair.arguments) + "; --overwrite makes it anew");
+          const std::string wanted = geometry_options_text(job.pair.arguments);
+          throw input_error(job.pair.output.string(), "a table made with " + words_beyond(found, wanted),
+                            words_beyond(wanted, found) + "; --overwrite makes it anew");
         }
         job.state = State::done;
       }

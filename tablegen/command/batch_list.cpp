@@ -27,7 +27,10 @@ using Settings = std::map<std::string, Setting, std::less<>>;
 std::vector<std::string> option_names() {
   const po::options_description described = geometry_options();
   std::vector<std::string> names;
-  for (const auto& option : described.options()) names.push_back(option->long_name());
+  for (const auto& option : described.options()) {
+    // a pair of a list is always a whole table
+    if (option->long_name() != "shard") names.push_back(option->long_name());
+  }
   return names;
 }
 

@@ -16,7 +16,7 @@ namespace railtab {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kFlushEvery = std::chrono::seconds(2);
+constexpr auto kFlushEvery = std::chrono::milliseconds(100);
 
 CreepSweepOptions sweep_options(const CreepJob& job) {
   return {job.layout.poisson, job.layout.elements, job.tolerance};

@@ -41,7 +41,7 @@ struct CreepJobOutcome {
 
 /// Solves the cases of a creep table and writes `file`: the table, or a shard file for merge_creep_shards().
 ///
-/// While it runs, `file`.partial holds all lines that are done, flushed every two seconds. Where that file is found,
+/// While it runs, `file`.partial holds all lines that are done, flushed ten times a second. Where that file is found,
 /// the job goes on after its last line, with the same bits in the result as without interruption; it is removed at the
 /// end.
 /// @throws InputError where `file`.partial belongs to another job (naming what differs), is damaged or in use;
