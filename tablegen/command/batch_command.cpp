@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "geometry_request.hpp"
 #include "progress_bar.hpp"
+#include "railtab/tables/array_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
@@ -131,6 +132,7 @@ void print_json(const std::vector<Job>& jobs) {
   for (const Job& job : jobs) {
     nlohmann::ordered_json j{
         {"place", job.pair.place}, {"file", job.pair.output.string()}, {"state", state_name(job.state)}};
+    if (job.state == State::done || job.state == State::made) j["checksum"] = array_file_checksum(job.pair.output);
     if (!job.message.empty()) j["message"] = job.message;
     list.push_back(std::move(j));
   }

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "railtab/tablegen/creep_job.hpp"
+#include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -90,7 +91,11 @@ void creep_command(const std::vector<std::string>& arguments) {
                              {"residual_max", done.worst_residual},
                              {"safe_method_cases", done.safe_method},
                              {"file_bytes", std::filesystem::file_size(file)}};
-    if (job.shard) j["shard"] = {job.shard->index, job.shard->count};
+    if (job.shard) {
+      j["shard"] = {job.shard->index, job.shard->count};
+    } else {
+      j["checksum"] = array_file_checksum(file);
+    }
     fmt::print("{}\n", j.dump(2));
   } else if (!line.quiet()) {
     fmt::print("{}: {} cases", file, done.cases);

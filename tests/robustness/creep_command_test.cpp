@@ -66,7 +66,6 @@ class CreepCommand : public ::testing::Test {
     const CreepTableData a = read_creep_table(folder_ / one), b = read_creep_table(folder_ / other);
     EXPECT_EQ(a.values, b.values);
     EXPECT_EQ(a.nodes, b.nodes);
-    EXPECT_EQ(a.scale, b.scale);
     EXPECT_EQ(a.statistics, b.statistics);
     EXPECT_EQ(a.poisson, b.poisson);
     EXPECT_EQ(a.elements, b.elements);

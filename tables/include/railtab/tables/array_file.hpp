@@ -117,6 +117,10 @@ class ArrayFileReader {
 /// The filetype attribute of a railtab file, to tell tables from results. @throws InputError if it is none.
 [[nodiscard]] std::string array_file_type(const std::filesystem::path& file);
 
+/// The attribute "checksum" that a table's writer stored: two tables with one checksum hold the same numbers, whenever
+/// they were made. @throws InputError where there is none.
+[[nodiscard]] std::string array_file_checksum(const std::filesystem::path& file);
+
 /// 64-bit FNV-1a over the little-endian bytes: the checksum of what a table stores.
 [[nodiscard]] std::uint64_t checksum(std::span<const double> values,
                                      std::uint64_t seed = 14695981039346656037ULL) noexcept;
