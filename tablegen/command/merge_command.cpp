@@ -49,8 +49,11 @@ void merge_command(const std::vector<std::string>& arguments) {
   table.provenance = provenance("merge", arguments);
   write_creep_table(file, table);
   if (line.json()) {
-    const nlohmann::ordered_json j{
-        {"kind", "creep"}, {"file", file}, {"shards", shards.size()}, {"file_bytes", std::filesystem::file_size(file)}};
+    const nlohmann::ordered_json j{{"kind", "creep"},
+                                   {"file", file},
+                                   {"shards", shards.size()},
+                                   {"checksum", array_file_checksum(file)},
+                                   {"file_bytes", std::filesystem::file_size(file)}};
     fmt::print("{}\n", j.dump(2));
   } else if (!line.quiet()) {
     fmt::print("{}: merged from {} shards\n", file, shards.size());
