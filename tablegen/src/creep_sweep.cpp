@@ -55,12 +55,15 @@ SolvedCreepCase checked(const CreepCase& c, const ExtrapolatedContactSolution& s
 
 std::vector<SolvedCreepCase> LineSolver::solve(std::span<const CreepCase> line) {
   std::vector<SolvedCreepCase> solved;
+  std::vector<double> neighbour;  // tractions of the case before, on the coarse grid
   for (const CreepCase& c : line) {
     if (!solver_ || c.ratio != ratio_) {
       solver_.emplace(c.ratio, poisson_, contact_);
       ratio_ = c.ratio;
     }
-    solved.push_back(checked(c, solver_->solve(c.creepage)));
+    ExtrapolatedContactSolution s = solver_->solve(c.creepage, neighbour.empty() ? nullptr : &neighbour);
+    solved.push_back(checked(c, s));
+    neighbour = std::move(s.coarse.traction);
   }
   return solved;
 }

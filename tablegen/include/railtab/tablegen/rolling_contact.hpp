@@ -83,7 +83,9 @@ class ExtrapolatedRollingContact {
   /// As RollingContact; options.elements is the fine grid's, even and at least 8; of equal area with averaged slip
   /// direction whatever the options say.
   ExtrapolatedRollingContact(double ratio, double nu, const RollingContactOptions& options = {});
-  [[nodiscard]] ExtrapolatedContactSolution solve(const Creepage& creepage);
+  /// @param coarse_start tractions on the coarse grid to begin with, those of a neighbouring creepage; nullptr for none
+  [[nodiscard]] ExtrapolatedContactSolution solve(const Creepage& creepage,
+                                                  const std::vector<double>* coarse_start = nullptr);
 
  private:
   RollingContact coarse_, fine_;
