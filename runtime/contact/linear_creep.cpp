@@ -8,7 +8,7 @@
 namespace railtab {
 
 CreepForce linear_creep(const LinearCreep& law, double ratio, const Creepage& creepage) noexcept {
-  const KalkerCoefficients c = kalker_coefficients(ratio, law.nu);
+  const KalkerCoefficients c = law.coefficients ? *law.coefficients : kalker_coefficients(ratio, law.nu);
   CreepForce force{-c.c11 * creepage.x, -c.c22 * creepage.y - c.c23 * creepage.spin,
                    c.c23 * creepage.y - c.c33 * creepage.spin};
   if (law.saturated) {

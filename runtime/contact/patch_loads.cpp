@@ -3,111 +3,168 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/contact/overlap.hpp"
+
 namespace railtab {
 
 namespace {
 
-constexpr double averaging_length = 1e-3;  // m
-
-// Turning of the tangent over [s - w, s + w] per length, with the sign of CurvePoint::curvature().
-double mean_curvature(const ProfileCurve& curve, double s, double curvature) {
-  const double w = std::min(averaging_length, 0.2 / std::max(std::abs(curvature), 1e-9));
-  const double low = std::max(s - w, curve.s_begin());
-  const double high = std::min(s + w, curve.s_end());
-  const CurvePoint a = curve.at(low);
-  const CurvePoint b = curve.at(high);
-  const double sine =
-      (a.dy * b.dz - a.dz * b.dy) / std::sqrt((a.dy * a.dy + a.dz * a.dz) * (b.dy * b.dy + b.dz * b.dz));
-  return std::asin(std::clamp(sine, -1.0, 1.0)) / (high - low);
-}
-
-HertzContact patch_hertz(const NormalContactModel& model, const ContactGeometry& geometry, const ContactPatch& p) {
-  double relative = p.curv_wheel + p.curv_rail;
-  if (!geometry.is_paper()) {
-    const WheelRailPair& pair = geometry.pair();
-    relative =
-        mean_curvature(pair.rail(), p.s_rail, p.curv_rail) - mean_curvature(pair.wheel(), p.s_wheel, p.curv_wheel);
-  }
-  return hertz_contact(0.5 * p.curv_rolling, std::max(0.5 * relative, model.curvature_floor), model.material);
-}
+/// Share of the penetration, from the deepest point up, over which the overlap's area counts: chosen by half-space
+/// solutions (docs/theory/normal_contact.md, section 5).
+constexpr double counted_share = 0.7;
+/// Below this penetration the overlap is narrower than any detail of a profile [m].
+constexpr double least_penetration = 1e-9;
 
 double power_3_2(double d) { return d > 0.0 ? d * std::sqrt(d) : 0.0; }
 
-// A wheel point against the rail: its penetration along the rail's normal, and how that grows along the wheel.
-struct PointPenetration {
-  double value, slope, s_rail;
+/// Between two neighbouring patches whose penetrations are both positive.
+struct Junction {
+  bool loaded = false;  ///< otherwise nothing below holds
+  OverlapPoint saddle{};
+  double left_share = 0.0;   ///< of d_s^{3/2}, what the left patch leaves to the other: w_left of patch_loads()
+  double right_share = 0.0;  ///< likewise
+  /// How far the shallower patch has become part of the deeper one: 0 where the saddle is at the deeper patch's level
+  /// or both are equally deep, 1 where the shallower one vanishes in the saddle.
+  double merged = 0.0;
 };
 
-PointPenetration point_penetration(const WheelRailPair& pair, const WheelsetCentre& centre,
-                                   const PoseTrigonometry& trig, double s_wheel, double s_rail) {
-  const SilhouettePoint w = placed(
-      silhouette_point(pair.wheel().at(s_wheel), pair.tape_circle_offset(), pair.nominal_radius(), trig), centre, trig);
-  CurvePoint r = pair.rail().at(s_rail);
-  for (int iteration = 0; iteration < 6; ++iteration) {
-    const double along = r.dy * (w.y - r.y) + r.dz * (w.z - r.z);
-    const double change = r.dy * r.dy + r.dz * r.dz - r.ddy * (w.y - r.y) - r.ddz * (w.z - r.z);
-    const double step = along / change;
-    s_rail += step;
-    r = pair.rail().at(s_rail);
-    if (std::abs(step) < 1e-10) break;
+double level_of(const ContactPatch& patch) { return (1.0 - counted_share) * patch.penetration; }
+
+Junction junction(const Overlap& overlap, const ContactPatch& left, const ContactPatch& right) {
+  Junction result;
+  result.loaded = left.penetration > 0.0 && right.penetration > 0.0;
+  if (!result.loaded) return result;
+  result.saddle = overlap.saddle(left, right);
+  const double saddle = result.saddle.penetration;
+  const double left_rise = std::max(left.penetration - saddle, 0.0);
+  const double right_rise = std::max(right.penetration - saddle, 0.0);
+  const double both = left_rise + right_rise;
+  result.left_share = both > 0.0 ? right_rise / both : 0.5;
+  result.right_share = 1.0 - result.left_share;
+  const bool left_deeper = left.penetration >= right.penetration;
+  const ContactPatch& shallow = left_deeper ? right : left;
+  const double level = level_of(left_deeper ? left : right);
+  if (saddle <= level) return result;
+  const double one_sided = 1.0 - 2.0 * std::min(result.left_share, result.right_share);
+  result.merged = one_sided * one_sided * (saddle - level) / (shallow.penetration - level);
+  return result;
+}
+
+/// What lies at one side of a patch.
+struct Neighbourhood {
+  const Junction* junction = nullptr;  ///< none where the patch is the last on that side
+  const ContactPatch* patch = nullptr;
+};
+
+/// End of the counted overlap on one side, on the wheel profile [m].
+struct Side {
+  double end;            ///< without what a vanishing neighbour adds
+  double far_end = 0.0;  ///< across that neighbour
+  double merged = 0.0;   ///< how much of it counts, see Junction
+};
+
+Side counted_side(const Overlap& overlap, const ProfileCurve& wheel, const ContactPatch& patch, int direction,
+                  const Neighbourhood& side) {
+  const double level = level_of(patch);
+  const double edge = direction > 0 ? wheel.s_end() : wheel.s_begin();
+  if (!side.junction || !side.junction->loaded) {
+    return {patch.s_wheel + direction * overlap.reach(patch, direction, level, edge)};
   }
-  const double length = std::sqrt(r.dy * r.dy + r.dz * r.dz);
-  const double ny = -r.dz / length;  // into the rail
-  const double nz = r.dy / length;
-  return {ny * (w.y - r.y) + nz * (w.z - r.z), ny * w.dy + nz * w.dz, s_rail};
+  const OverlapPoint& saddle = side.junction->saddle;
+  if (saddle.penetration <= level) {
+    return {patch.s_wheel + direction * overlap.reach(patch, direction, level, saddle.s_wheel)};
+  }
+  const ContactPatch& other = *side.patch;
+  const double merged = patch.penetration >= other.penetration ? side.junction->merged : 0.0;
+  if (merged <= 0.0) return {saddle.s_wheel};
+  return {saddle.s_wheel, other.s_wheel + direction * overlap.reach(other, direction, level, edge), merged};
+}
+
+/// The deepest part of a patch's overlap.
+OverlapArea counted_area(const Overlap& overlap, const ProfileCurve& wheel, const ContactPatch& patch,
+                         const Neighbourhood& left, const Neighbourhood& right) {
+  const Side low = counted_side(overlap, wheel, patch, -1, left);
+  const Side high = counted_side(overlap, wheel, patch, 1, right);
+  const auto between = [&](double from, double to) { return overlap.area(patch, level_of(patch), from, to); };
+  const OverlapArea inner = between(low.end, high.end);
+  OverlapArea sum = inner;
+  const auto add = [&](double merged, const OverlapArea& with_neighbour) {
+    sum.area += merged * (with_neighbour.area - inner.area);
+    sum.moment += merged * (with_neighbour.moment - inner.moment);
+  };
+  if (low.merged > 0.0) add(low.merged, between(low.far_end, high.end));
+  if (high.merged > 0.0) add(high.merged, between(low.end, high.far_end));
+  return sum;
+}
+
+/// B of the parabola that has the overlap's area between the deepest point and (1 - kappa) d: with
+/// area = (4/3) kappa d w and kappa d = B w².
+double overlap_curvature(double penetration, double area) {
+  const double half_width = 0.75 * area / (counted_share * penetration);
+  return counted_share * penetration / (half_width * half_width);
+}
+
+PatchLoad load(const NormalContactModel& model, const ContactPatch& patch, double B, double shared) {
+  PatchLoad result;
+  result.hertz = hertz_contact(0.5 * patch.curv_rolling, std::max(B, model.curvature_floor), model.material);
+  result.elastic_force = result.hertz.stiffness * std::max(power_3_2(patch.penetration) - shared, 0.0);
+  result.contact = patch;
+  return result;
+}
+
+/// The load of the true overlap, at its centre.
+PatchLoad overlap_load(const NormalContactModel& model, const Overlap& overlap, const ProfileCurve& wheel,
+                       const ContactPatch& patch, const Neighbourhood& left, const Neighbourhood& right,
+                       double shared) {
+  if (patch.penetration <= least_penetration) {
+    return load(model, patch, 0.5 * (patch.curv_wheel + patch.curv_rail), shared);
+  }
+  const OverlapArea counted = counted_area(overlap, wheel, patch, left, right);
+  if (!(counted.area > 0.0)) return load(model, patch, model.curvature_floor, shared);
+  PatchLoad result = load(model, patch, overlap_curvature(patch.penetration, counted.area), shared);
+  result.contact = overlap.pair_at(patch, patch.s_wheel + counted.moment / counted.area);
+  return result;
+}
+
+PatchLoads published_loads(const NormalContactModel& model, const ContactPatches& patches) {
+  PatchLoads loads;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+    const ContactPatch& patch = patches.patch[i];
+    loads[i] = load(model, patch, 0.5 * (patch.curv_wheel + patch.curv_rail), 0.0);
+  }
+  return loads;
 }
 
 }  // namespace
 
-double saddle_penetration(const WheelRailPair& pair, const WheelsetPose& pose, const ContactPatch& left,
-                          const ContactPatch& right) noexcept {
-  const PoseTrigonometry trig(pose);
-  const WheelsetCentre centre = wheelset_centre(pair, pose);
-  double low = left.s_wheel;
-  double high = right.s_wheel;
-  double s_rail = 0.5 * (left.s_rail + right.s_rail);
-  PointPenetration middle{};
-  // Penetration falls from the left patch to the saddle and rises to the right one: bisection on its slope. Once near,
-  // Newton on the common normal is exact, or the error of bisection is of second order.
-  constexpr int coarse = 7, fine = 16;
-  for (int i = 0; i < coarse + fine; ++i) {
-    const double s = 0.5 * (low + high);
-    middle = point_penetration(pair, centre, trig, s, s_rail);
-    s_rail = middle.s_rail;
-    (middle.slope < 0.0 ? low : high) = s;
-    if (i + 1 == coarse) {
-      const RefinedPair saddle = refine_pair(pair, pose, trig, 0.5 * (low + high), s_rail, 8);
-      if (saddle.status == PairStatus::not_a_minimum && saddle.patch.s_wheel > left.s_wheel &&
-          saddle.patch.s_wheel < right.s_wheel) {
-        return saddle.patch.penetration;
-      }
-    }
-  }
-  return middle.value;
-}
-
 PatchLoads patch_loads(const NormalContactModel& model, const ContactGeometry& geometry, const WheelsetPose& pose,
                        const ContactPatches& patches) noexcept {
-  PatchLoads loads;
-  std::array<double, ContactPatches::capacity> shared{};  // w_i d_s^{3/2}
-  for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(patches.count) && !geometry.is_paper(); ++i) {
-    const ContactPatch& left = patches.patch[i];
-    const ContactPatch& right = patches.patch[i + 1];
-    if (left.penetration <= 0.0 || right.penetration <= 0.0) continue;
-    const double saddle = saddle_penetration(geometry.pair(), pose, left, right);
-    if (saddle <= 0.0) continue;
-    const double left_rise = std::max(left.penetration - saddle, 0.0);
-    const double right_rise = std::max(right.penetration - saddle, 0.0);
-    const double both = left_rise + right_rise;
-    const double left_share = both > 0.0 ? right_rise / both : 0.5;
-    const double below = power_3_2(saddle);
-    shared[i] = std::max(shared[i], left_share * below);
-    shared[i + 1] = std::max(shared[i + 1], (1.0 - left_share) * below);
+  if (geometry.is_paper()) return published_loads(model, patches);
+  const WheelRailPair& pair = geometry.pair();
+  const Overlap overlap(pair, pose);
+  const auto count = static_cast<std::size_t>(patches.count);
+  std::array<Junction, ContactPatches::capacity> junctions{};  // i: between patches i and i + 1
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    junctions[i] = junction(overlap, patches.patch[i], patches.patch[i + 1]);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
-    loads[i].hertz = patch_hertz(model, geometry, patches.patch[i]);
-    const double own = std::max(power_3_2(patches.patch[i].penetration) - shared[i], 0.0);
-    loads[i].elastic_force = loads[i].hertz.stiffness * own;
+  PatchLoads loads;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContactPatch& patch = patches.patch[i];
+    Neighbourhood left, right;
+    double shared = 0.0;  // w_i d_s^{3/2}, the larger of both sides
+    double own = 1.0;     // of the force, what a patch does not yield to deeper neighbours
+    if (i > 0) {
+      left = {&junctions[i - 1], &patches.patch[i - 1]};
+      shared = left.junction->right_share * power_3_2(left.junction->saddle.penetration);
+      if (left.patch->penetration >= patch.penetration) own *= 1.0 - left.junction->merged;
+    }
+    if (i + 1 < count) {
+      right = {&junctions[i], &patches.patch[i + 1]};
+      shared = std::max(shared, right.junction->left_share * power_3_2(right.junction->saddle.penetration));
+      if (right.patch->penetration > patch.penetration) own *= 1.0 - right.junction->merged;
+    }
+    loads[i] = overlap_load(model, overlap, pair.wheel(), patch, left, right, shared);
+    loads[i].elastic_force *= own;
   }
   return loads;
 }

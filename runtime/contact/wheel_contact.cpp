@@ -54,24 +54,24 @@ struct PatchForce {
 
 // velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact
 // point.
-PatchForce patch_force(const WheelContactModel& model, const ContactPatch& patch, const PatchLoad& load,
-                       const Vector3& arm, const Vector3& velocity, const Vector3& rotation) {
-  const ContactAxes axes(patch.angle);
+PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, const Vector3& arm,
+                       const Vector3& velocity, const Vector3& rotation) {
+  const ContactAxes axes(load.contact.angle);
   const double approach = (velocity + rotation.cross(arm)).dot(axes.n);
   const double N = std::max(0.0, load.elastic_force * (1.0 + model.damping * approach));
   if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero(), 0.0};
 
   Vector3 force = -N * axes.n;
+  if (model.gravitational_stiffness == GravitationalStiffness::neglected) force[1] = 0.0;
   Vector3 moment = Vector3::Zero();
   const double bound = model.friction * N;
   if (bound > 0.0) {
-    const double a = load.hertz.a1 * std::cbrt(N);
-    const double b = load.hertz.b1 * std::cbrt(N);
-    const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, patch.angle, model.speed);
+    const auto [a, b] =
+        model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
+    const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, load.contact.angle, model.speed);
     const Creepage creepage =
         normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.normal.material.shear_modulus(), bound);
-    const PatchCreepForce creep =
-        dimensional_creep_force(creep_force(model.creep_law, load.hertz.ratio, creepage), a, b, bound);
+    const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
     force += creep.x * Vector3::UnitX() + creep.y * axes.t;
     moment = creep.moment * axes.n;
   }
@@ -109,7 +109,7 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
   double rail_moment = 0.0;
   const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
   for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
-    const ContactPatch& patch = patches.patch[i];
+    const ContactPatch& patch = loads[i].contact;
     // To the wheel's own undeformed surface, the penetration below the rail's: rolling radii are those of the wheel.
     const Vector3 arm = Vector3(patch.x, patch.y_rail - (pose.y - pair.rail_offset()),
                                 patch.z_rail - (pose.z - pair.nominal_radius())) +
@@ -118,7 +118,7 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     const Vector3 surface_velocity = r.velocity[2] * Vector3(0.0, -patch.z_rail, patch.y_rail);
     // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
     const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
-    const PatchForce p = patch_force(model, patch, loads[i], arm, velocity + centre_shift - surface_velocity, rotation);
+    const PatchForce p = patch_force(model, loads[i], arm, velocity + centre_shift - surface_velocity, rotation);
     force += p.force;
     moment += p.moment;
     result.normal[i] = p.normal;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "outline_turn.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -18,10 +19,6 @@ constexpr std::size_t fewest_points = 4;
 // The limits that CONTACT sets to the chord of a profile: what lies outside was read in the wrong unit.
 constexpr double smallest_extent = 0.005;  // [m]
 constexpr double largest_extent = 0.5;     // [m]
-// Far below the rounding of any profile file (1e-9 m), far above that of the numbers in it.
-constexpr double repeated_distance = 1e-9;  // [m]
-// No profile has a corner sharper than a right angle; two swapped points turn by about 180 degrees.
-constexpr double cosine_of_turning_back = -0.5;
 
 std::string place(const std::string& file, const OutlinePoint& p) { return fmt::format("{}:{}", file, p.line); }
 
@@ -39,24 +36,9 @@ void check_extent(const std::string& file, const std::vector<OutlinePoint>& poin
 }
 
 void check_steps(const std::string& file, const std::vector<OutlinePoint>& points) {
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const OutlinePoint& a = points[i - 1];
-    const OutlinePoint& b = points[i];
-    const double length = std::hypot(b.y - a.y, b.z - a.z);
-    if (length < repeated_distance) {
-      throw input_error(place(file, b), fmt::format("the point {} of line {} again", text(b), a.line),
-                        "points that differ");
-    }
-    if (i + 1 == points.size()) break;
-    const OutlinePoint& c = points[i + 1];
-    const double next = std::hypot(c.y - b.y, c.z - b.z);
-    const double cosine = ((b.y - a.y) * (c.y - b.y) + (b.z - a.z) * (c.z - b.z)) / (length * next);
-    if (next >= repeated_distance && cosine < cosine_of_turning_back) {
-      throw input_error(place(file, b),
-                        fmt::format("an outline that turns back by {:.0f} degrees at {}",
-                                    std::acos(std::max(cosine, -1.0)) * 57.29577951308232, text(b)),
-                        "points in order along the outline");
-    }
+  for (std::size_t i = 2; i < points.size(); ++i) {
+    const double cosine = cosine_of_turn(points[i - 2], points[i - 1], points[i]);
+    if (cosine < cosine_of_turning_back) throw turning_back(file, points[i - 1], cosine);
   }
 }
 

@@ -5,14 +5,13 @@
 #include <cstddef>
 #include <utility>
 
+#include "arc_lengths.hpp"
 #include "cubic_spline.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
-
-namespace {
 
 std::vector<double> chord_lengths(const std::string& name, const std::vector<double>& y, const std::vector<double>& z) {
   std::vector<double> s{0.0};
@@ -28,7 +27,7 @@ std::vector<double> chord_lengths(const std::string& name, const std::vector<dou
   return s;
 }
 
-/// Arc length at each knot of a curve, Gauss-Legendre with 4 points per interval.
+// Gauss-Legendre with 4 points per interval.
 std::vector<double> arc_lengths(const ProfileCurve& curve) {
   constexpr std::array<double, 4> node{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                        0.8611363115940526};
@@ -47,8 +46,6 @@ std::vector<double> arc_lengths(const ProfileCurve& curve) {
   }
   return arc;
 }
-
-}  // namespace
 
 ProfileKnots spline_through_points(ProfileKind kind, std::string name, const std::vector<double>& y,
                                    const std::vector<double>& z) {

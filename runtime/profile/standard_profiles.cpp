@@ -7,8 +7,10 @@
 #include <cctype>
 #include <numbers>
 
+#include "conic_arc_wheel.hpp"
+#include "lma_type_wheel.hpp"
 #include "profile_segments.hpp"
-#include "rail_60e1.hpp"
+#include "rail_head.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "s1002_wheel.hpp"
 
@@ -39,11 +41,16 @@ struct Entry {
   std::vector<ProfileSegment> (*segments)(double rail_inclination);
 };
 
-constexpr std::array<Entry, 5> entries{{
+constexpr std::array<Entry, 9> entries{{
     {ProfileKind::wheel, "S1002", "", [](double) { return s1002_segments(); }},
     {ProfileKind::wheel, "cone-1:20", "", [](double) { return cone_segments(1.0 / 20.0); }},
     {ProfileKind::wheel, "cone-1:40", "", [](double) { return cone_segments(1.0 / 40.0); }},
-    {ProfileKind::rail, "60E1", "UIC60", [](double inclination) { return rail_60e1_segments(inclination); }},
+    {ProfileKind::wheel, "LMA-type", "", [](double) { return lma_type_segments(); }},
+    {ProfileKind::wheel, "conic-arc-stand-in", "", [](double) { return conic_arc_stand_in_segments(); }},
+    {ProfileKind::rail, "60E1", "UIC60", [](double inclination) { return rail_head_segments(rail_60e1, inclination); }},
+    {ProfileKind::rail, "CHN60", "", [](double inclination) { return rail_head_segments(rail_chn60, inclination); }},
+    {ProfileKind::rail, "JIS60-stand-in", "",
+     [](double inclination) { return rail_head_segments(rail_jis60_stand_in, inclination); }},
     {ProfileKind::rail, "knife-edge", "", [](double) { return knife_edge_segments(); }},
 }};
 

@@ -24,6 +24,12 @@ RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
     rows.yaw[k] = N(5, k);
     rows.pitch[k] = N(4, k);
   }
+  const double t = (x - rail.x[e]) / length;
+  rows.bend = {};
+  rows.bend[2] = (12 * t - 6) / (length * length);
+  rows.bend[4] = -(6 * t - 4) / length;  // pitch = -dz/dx
+  rows.bend[8] = -rows.bend[2];
+  rows.bend[10] = -(6 * t - 2) / length;
   // the slope of the head's line has the twist of the rail in it
   rows.yaw[3] -= rail.head_height / length;
   rows.yaw[9] += rail.head_height / length;

@@ -1,5 +1,6 @@
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -107,6 +108,18 @@ void correct(const ContactProblem& problem, NewtonWorkspace& ws) {
   }
 }
 
+// Holds every wheelset with its rails to the largest move, in its own proportions. Pitch turns no profile; where its
+// unknown is a rate, its size says nothing.
+void limit_moves(const ContactProblem& problem, Eigen::VectorXd& correction) {
+  constexpr int pitch = 4;
+  for (int k = 0; k < correction.size(); k += wheelset_unknowns) {
+    auto moves = correction.segment<wheelset_unknowns>(k);
+    const double largest = std::max(moves.head<pitch>().cwiseAbs().maxCoeff(),
+                                    moves.tail<wheelset_unknowns - pitch - 1>().cwiseAbs().maxCoeff());
+    if (largest > problem.largest_move) moves *= problem.largest_move / largest;
+  }
+}
+
 }  // namespace
 
 WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept {
@@ -165,7 +178,7 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
     correct(problem, ws);
     ++report.iterations;
     report.correction = ws.correction.cwiseAbs().maxCoeff();
-    if (report.correction > problem.largest_move) ws.correction *= problem.largest_move / report.correction;
+    limit_moves(problem, ws.correction);
     ws.start = solution.displacement;
     solution.displacement += ws.correction;
     if (report.correction < limits.tolerance) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/vsi/rigid_wheels.hpp"
+
 namespace railtab {
 
 namespace {
@@ -68,6 +70,44 @@ struct RestOperators {
   }
 };
 
+// Vertical force of one rail on wheelset w, down [N].
+double vertical_force(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement, int w,
+                      int side) {
+  const WheelSide wheel_side = side == 0 ? WheelSide::left : WheelSide::right;
+  const WheelsetMotion motion = wheelset_motion(problem, displacement, w);
+  const RailHeadMotion rail = rail_motion(problem, displacement, w, side);
+  const ContactPatches patches =
+      model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+  return -wheel_force(model.contact, wheel_side, motion, rail, patches).wheelset[2];
+}
+
+// Lowers every wheelset onto its rails until each wheel carries half its static load: where Newton starts. From above
+// the rails, with one wheel in the air or from deep inside, its first corrections would be worth nothing.
+void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::VectorXd& displacement) {
+  constexpr double range = 0.02;  // m, about the nominal height: rail deviations are less
+  constexpr double accuracy = 1e-9;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const DofIndices& dof = model.vehicle.dof[index(model.vehicle.wheelsets[index(w % model.wheelsets_per_vehicle())])];
+    if (dof[2] == held) continue;
+    double& z = displacement[wheelset_unknowns * w + 2];
+    std::array<double, 2> level{};
+    for (int side = 0; side < 2; ++side) {
+      double high = -range, low = range;
+      while (low - high > accuracy) {
+        z = 0.5 * (low + high);
+        const bool enough =
+            vertical_force(model, problem, displacement, w, side) > 0.5 * model.vehicle.static_load[dof[2]];
+        (enough ? low : high) = z;
+      }
+      level[index(side)] = z;
+    }
+    z = 0.5 * (level[0] + level[1]);
+    if (dof[3] == held) continue;
+    displacement[wheelset_unknowns * w + 3] =
+        (level[1] - level[0]) / (2.0 * model.geometry->pair().tape_circle_offset());
+  }
+}
+
 // Equilibrium at state.time with `structure_load` on the structure besides the wheels.
 EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
                               VsiState& state) {
@@ -92,9 +132,15 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     for (int w = 0; w < model.wheelsets(); ++w) {
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
     }
+    if (report.iterations == 0 && state.contact.displacement.isZero()) {
+      set_down(model, problem, state.contact.displacement);
+    }
     const Eigen::VectorXd contact_before = state.contact.displacement;
-    const NewtonReport newton = solve_contact(model.contact, problem, limits, state.contact, workspace);
-    if (!newton.converged) return report;
+    if (model.normal_contact == NormalContact::rigid) {
+      rest_on_rails(problem, state.contact);
+    } else if (!solve_contact(model.contact, problem, limits, state.contact, workspace).converged) {
+      return report;
+    }
 
     report.change = 0.0;
     for (int v = 0; v < vehicles; ++v) {

@@ -1,28 +1,14 @@
 #include "railtab/runtime/vsi/step.hpp"
 
-#include <chrono>
+#include "stopwatch.hpp"
 
 namespace railtab {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Rail coupling beyond this distance is left to the far-field correction: rail bending waves within one step have died
 // out.
 constexpr double compliance_window = 5.0;  // m
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), begin_(Clock::now()) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  Clock::time_point begin_;
-};
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 int vehicles(const VsiModel& model) { return static_cast<int>(model.vehicle_x.size()); }
@@ -95,6 +81,7 @@ double full_structure(const StepOperators& op, const std::vector<RailContact>& c
 
 StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
     : scheme(hht), vehicle_damping(model.vehicle_damping()), vehicle(model.vehicle, vehicle_damping, hht) {
+  if (model.normal_contact == NormalContact::rigid) rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
   structure->tabulate_compliance(*model.structure, compliance_window);
@@ -114,6 +101,7 @@ StepWorkspace::StepWorkspace(const VsiModel& model) {
 
 StepReport advance(const VsiModel& model, const StepOperators& op, const StepLimits& limits, VsiState& state,
                    StepWorkspace& ws) {
+  if (op.rigid_wheels) return advance_rigid_wheels(model, op, limits, state, ws);
   StepReport report;
   const HhtScheme& hht = op.scheme;
   const double time = state.time + hht.time_step;

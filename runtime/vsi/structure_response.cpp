@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "railtab/tables/input_error.hpp"
+#include "selected_solve.hpp"
 
 namespace railtab {
 
@@ -32,57 +33,20 @@ void require_finite(const StructureModel& structure) {
   require_finite(structure.stiffness, "stiffness");
 }
 
-std::unique_ptr<Eigen::SimplicialLDLT<Sparse>> factorise(const Sparse& effective) {
-  auto factor = std::make_unique<Eigen::SimplicialLDLT<Sparse>>(effective);
+template <class Factor>
+std::unique_ptr<Factor> factorise(const Sparse& effective) {
+  auto factor = std::make_unique<Factor>(effective);
   if (factor->info() != Eigen::Success || !(factor->vectorD().minCoeff() > 0.0)) {
     throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
   }
   return factor;
 }
 
-// Six right-hand sides side by side, in the factor's order of unknowns.
-using SixColumns = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
-
-// Far from its load a compliance (1e-9 m/N under it) decays until it is a denormal number, on which a processor is a
-// hundred times slower: below 1e-40 it is set to zero. Returns whether all six are.
-bool flush(double* x) {
-  bool zero = true;
-  for (int k = 0; k < 6; ++k) {
-    if (std::abs(x[k]) < 1e-40) x[k] = 0.0;
-    zero = zero && x[k] == 0.0;
-  }
-  return zero;
-}
-
-// L D Lᵀ x = b for six right-hand sides at once: the factor is read once instead of six times, which is what a solve
-// costs. Rows of b before `first` are zero.
-void solve_six(const Sparse& L, const Eigen::VectorXd& D, int first, SixColumns& x) {
-  const int* begin = L.outerIndexPtr();
-  const int* count = L.innerNonZeroPtr();  // null where compressed
-  const int* row = L.innerIndexPtr();
-  const double* value = L.valuePtr();
-  double* data = x.data();
-  const int n = static_cast<int>(L.outerSize());
-  for (int j = first; j < n; ++j) {
-    const double* xj = data + 6 * j;
-    if (flush(data + 6 * j)) continue;
-    const int end = count ? begin[j] + count[j] : begin[j + 1];
-    for (int p = begin[j]; p < end; ++p) {
-      double* xi = data + 6 * row[p];
-      for (int k = 0; k < 6; ++k) xi[k] -= value[p] * xj[k];
-    }
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    double* xj = data + 6 * j;
-    double sum[6];
-    for (int k = 0; k < 6; ++k) sum[k] = xj[k] / D[j];
-    const int end = count ? begin[j] + count[j] : begin[j + 1];
-    for (int p = begin[j]; p < end; ++p) {
-      const double* xi = data + 6 * row[p];
-      for (int k = 0; k < 6; ++k) sum[k] -= value[p] * xi[k];
-    }
-    for (int k = 0; k < 6; ++k) xj[k] = sum[k];
-    flush(xj);
+// The unknowns of nodes in the factor's order, held ones left out.
+void append_rows(const DofIndices& dof, const Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>& order,
+                 std::vector<int>& rows) {
+  for (int d : dof) {
+    if (d != held) rows.push_back(order.indices()[d]);
   }
 }
 
@@ -131,14 +95,20 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : dofs_(structure.dofs()) {
   require_finite(structure);
-  const Sparse effective = scheme.acceleration_rate() * structure.mass +
-                           scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
-  factor_ = factorise(effective);
+  effective_ = scheme.acceleration_rate() * structure.mass +
+               scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
+  factor_ = factorise<SmallFactor>(effective_);
 }
 
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
   require_finite(structure);
-  factor_ = factorise(structure.stiffness);
+  effective_ = structure.stiffness;
+  factor_ = factorise<SmallFactor>(effective_);
+  low_factor_ = low_factor();
+}
+
+std::shared_ptr<const StructureResponse::LowFactor> StructureResponse::low_factor() const {
+  return low_factor_ ? low_factor_ : std::shared_ptr<const LowFactor>(factorise<LowFactor>(effective_));
 }
 
 void StructureResponse::free_increment(const StructureModel& structure, const HhtScheme& scheme,
@@ -155,34 +125,41 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   for (const RailLine& rail : structure.rail) {
     for (std::size_t i = 1; i < rail.x.size(); ++i) window = std::max(window, rail.x[i] - rail.x[i - 1]);
   }
-  const auto& order = factor_->permutationP().indices();
-  const Sparse& L = factor_->matrixL().nestedExpression();  // below the diagonal; the diagonal is one
-  const Eigen::VectorXd D = factor_->vectorD();
-  SixColumns response;
+  const std::shared_ptr<const LowFactor> factor = low_factor();
+  const auto& order = factor->permutationP();
+  const Sparse& L = factor->matrixL().nestedExpression();  // below the diagonal; the diagonal is one
+  SelectedSolve solve(L, factor->vectorD());
+  SelectedSolve::Columns loads;
+  std::vector<int> loaded, wanted;
   for (std::size_t side = 0; side < 2; ++side) {
     const RailLine& rail = structure.rail[side];
     column_[side].assign(rail.x.size(), {});
     for (std::size_t node = 0; node < rail.x.size(); ++node) {
-      response.setZero(dofs_, 6);
-      int first = static_cast<int>(dofs_);
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (rail.dof[node][k] == held) continue;
-        const int row = order[rail.dof[node][k]];
-        response(row, static_cast<Eigen::Index>(k)) = 1.0;
-        first = std::min(first, row);
-      }
-      solve_six(L, D, first, response);
       Column& column = column_[side][node];
+      std::array<std::size_t, 2> last{};  // of the window on each rail
+      wanted.clear();
       for (std::size_t other = 0; other < 2; ++other) {
         const RailLine& to = structure.rail[other];
-        const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window);
-        const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window);
-        column.first[other] = static_cast<int>(begin - to.x.begin());
-        for (auto n = begin - to.x.begin(); n < end - to.x.begin(); ++n) {
+        const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window) - to.x.begin();
+        const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin();
+        column.first[other] = static_cast<int>(begin);
+        last[other] = static_cast<std::size_t>(end);
+        for (auto n = begin; n < end; ++n) append_rows(to.dof[static_cast<std::size_t>(n)], order, wanted);
+      }
+      loaded.clear();
+      append_rows(rail.dof[node], order, loaded);
+      loads.setZero(static_cast<Eigen::Index>(loaded.size()), 6);
+      for (int k = 0, i = 0; k < 6; ++k) {
+        if (rail.dof[node][static_cast<std::size_t>(k)] != held) loads(i++, k) = 1.0;
+      }
+      solve.want(wanted);
+      solve.solve(loaded, loads);
+      for (std::size_t other = 0; other < 2; ++other) {
+        for (auto n = static_cast<std::size_t>(column.first[other]); n < last[other]; ++n) {
           Block block = Block::Zero();
           for (std::size_t k = 0; k < 6; ++k) {
-            const int dof = to.dof[static_cast<std::size_t>(n)][k];
-            if (dof != held) block.row(static_cast<Eigen::Index>(k)) = response.row(order[dof]);
+            const int dof = structure.rail[other].dof[n][k];
+            if (dof != held) block.row(static_cast<Eigen::Index>(k)) = solve.x(order.indices()[dof]);
           }
           column.rows[other].push_back(block);
         }
@@ -191,12 +168,13 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   }
 }
 
-Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+template <class Rows, class Columns>
+auto StructureResponse::between(const RailContact& i, const Rows& row, const RailContact& j,
+                                const Columns& column) const noexcept {
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, Columns::RowsAtCompileTime> result;
+  result.setZero();
   if (!i.on_rail || !j.on_rail) return result;
   const auto row_side = static_cast<std::size_t>(i.side);
-  const Eigen::Matrix<double, 3, 12> row = rows_of(i);
-  const Eigen::Matrix<double, 3, 12> column = rows_of(j);
   for (int q = 0; q < 2; ++q) {
     const Column& from = column_[static_cast<std::size_t>(j.side)][static_cast<std::size_t>(j.element + q)];
     const auto count = static_cast<int>(from.rows[row_side].size());
@@ -204,27 +182,60 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
       const int offset = i.element + p - from.first[row_side];
       if (offset < 0 || offset >= count) continue;
       const Block& block = from.rows[row_side][static_cast<std::size_t>(offset)];
-      result.noalias() += row.middleCols<6>(6 * p) * (block * column.middleCols<6>(6 * q).transpose());
+      result.noalias() +=
+          row.template middleCols<6>(6 * p) * (block * column.template middleCols<6>(6 * q).transpose());
     }
   }
   return result;
 }
 
+Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
+  return between(i, rows_of(i), j, rows_of(j));
+}
+
+Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, const RailContact& j) const noexcept {
+  using Row = Eigen::Matrix<double, 1, 12>;
+  Eigen::Matrix<double, 3, 12> rows;
+  rows.row(0) = Row::Map(i.rows.z.data());
+  rows.row(1) = -Row::Map(i.rows.pitch.data());
+  rows.row(2) = Row::Map(i.rows.bend.data());
+  return between(i, rows, j, Row(Row::Map(j.rows.z.data())));
+}
+
 Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) const {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(dofs_, 3 * n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (int k = 0; k < 3; ++k) {
-      Eigen::VectorXd column = Eigen::VectorXd::Zero(dofs_);
-      add_rail_load(contacts[static_cast<std::size_t>(j)], Eigen::Vector3d::Unit(k), column);
-      loads.col(3 * j + k) = column;
+  const std::shared_ptr<const LowFactor> factor = low_factor();
+  const auto& order = factor->permutationP().indices();
+  const Sparse& L = factor->matrixL().nestedExpression();
+  SelectedSolve solve(L, factor->vectorD());
+  std::vector<int> rows;
+  const auto append = [&](const RailContact& contact) {
+    if (!contact.on_rail) return;
+    for (int dof : contact.rows.dof) {
+      if (dof != held) rows.push_back(order[dof]);
     }
-  }
-  const Eigen::MatrixXd response = factor_->solve(loads);
+  };
+  for (const RailContact& contact : contacts) append(contact);
+  solve.want(rows);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < 3 * n; ++j) {
-      result.block<3, 1>(3 * i, j) = rail_head(contacts[static_cast<std::size_t>(i)], response.col(j));
+  SelectedSolve::Columns loads;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const RailContact& from = contacts[static_cast<std::size_t>(j)];
+    rows.clear();
+    append(from);
+    loads.setZero(static_cast<Eigen::Index>(rows.size()), 6);
+    for (std::size_t k = 0, i = 0; k < 12 && from.on_rail; ++k) {
+      if (from.rows.dof[k] == held) continue;
+      loads.row(static_cast<Eigen::Index>(i++)).head<3>() << from.rows.y[k], from.rows.z[k], from.rows.roll[k];
+    }
+    solve.solve(rows, loads);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const RailContact& to = contacts[static_cast<std::size_t>(i)];
+      for (std::size_t k = 0; k < 12 && to.on_rail; ++k) {
+        if (to.rows.dof[k] == held) continue;
+        result.block<3, 3>(3 * i, 3 * j) +=
+            Eigen::Vector3d(to.rows.y[k], to.rows.z[k], to.rows.roll[k]) * solve.x(order[to.rows.dof[k]]).head<3>();
+      }
     }
   }
   return result;

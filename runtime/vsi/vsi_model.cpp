@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -97,7 +98,11 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
   deviation.resize(index(model.wheelsets()));
   for (int w = 0; w < model.wheelsets(); ++w) {
     for (int side = 0; side < 2; ++side) {
-      const RailDeviation d = model.irregularity.at(static_cast<RailSide>(side), model.wheelset_x(w, time));
+      RailDeviation d = model.irregularity.at(static_cast<RailSide>(side), model.wheelset_x(w, time));
+      if (model.deviation_history) {
+        const VerticalDeviation given = model.deviation_history->at(w, time);
+        d = {.z = given.z, .dz_dx = given.rate / model.contact.speed};
+      }
       RailHeadMotion& head = deviation[index(w)][index(side)];
       head = RailHeadMotion{{d.y, d.z, 0.0}, Vector3::Zero(), d.dy_dx, d.dz_dx};
       if (contacts.empty()) continue;
@@ -111,6 +116,26 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
       }
     }
   }
+}
+
+VerticalDeviation DeviationHistory::at(int wheelset_of_train, double time) const noexcept {
+  const std::vector<VerticalDeviation>& history = wheelset[index(wheelset_of_train)];
+  const double step = std::round(time / time_step);
+  if (history.empty() || step < 0.0) return {};
+  return history[std::min(static_cast<std::size_t>(step), history.size() - 1)];
+}
+
+VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept {
+  if (model.deviation_history) return model.deviation_history->at(wheelset, time);
+  const double V = model.contact.speed;
+  VerticalDeviation mean;
+  for (const RailSide side : {RailSide::left, RailSide::right}) {
+    const RailDeviation d = model.irregularity.at(side, model.wheelset_x(wheelset, time));
+    mean.z += 0.5 * d.z;
+    mean.rate += 0.5 * V * d.dz_dx;
+    mean.acceleration += 0.5 * V * V * d.ddz_dx2;
+  }
+  return mean;
 }
 
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept {

@@ -114,6 +114,7 @@ std::vector<Job> read_jobs(const CommandLine& line) {
 void make(Job& job, const std::string& title, const CommandLine& line) {
   try {
     const GeometryRequest request = request_of(job.pair);
+    if (!line.quiet()) print_notes(request);
     ProgressBar bar(title, !line.quiet());
     GeometryTableData table =
         generate_geometry_table(request.search, request.options, [&](double share) { bar.show(share); });

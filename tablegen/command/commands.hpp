@@ -10,6 +10,7 @@ namespace railtab {
 
 /// The subcommands. `arguments` are those after the subcommand's name. Errors leave as exceptions; see main.cpp.
 void batch_command(const std::vector<std::string>& arguments);
+void conicity_command(const std::vector<std::string>& arguments);
 void contact_command(const std::vector<std::string>& arguments);
 void creep_command(const std::vector<std::string>& arguments);
 void geometry_command(const std::vector<std::string>& arguments);

@@ -13,6 +13,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
                          arguments);
   if (line.help_printed()) return;
   const GeometryRequest request = geometry_request(line);
+  if (!line.quiet()) print_notes(request);
   ProgressBar bar("geometry table", !line.quiet());
   GeometryTableData table =
       generate_geometry_table(request.search, request.options, [&](double share) { bar.show(share); });

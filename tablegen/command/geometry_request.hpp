@@ -22,4 +22,7 @@ struct GeometryRequest {
 /// @throws InputError
 [[nodiscard]] GeometryRequest geometry_request(const CommandLine& line);
 
+/// To stderr, before the table is made: what was repaired in profile files should be looked at.
+void print_notes(const GeometryRequest& request);
+
 }  // namespace railtab

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+#include "table_page.hpp"
+#include "wheelset_functions.hpp"
 
 namespace railtab {
 
@@ -23,6 +28,13 @@ double statistic(const GeometryTableData& table, std::string_view name) {
     if (key == name) return value;
   }
   return std::nan("");
+}
+
+/// What was done to the points of both profile files.
+std::vector<std::string> profile_notes(const GeometryTableData& table) {
+  std::vector<std::string> notes = table.wheel.notes;
+  notes.insert(notes.end(), table.rail.notes.begin(), table.rail.notes.end());
+  return notes;
 }
 
 }  // namespace
@@ -50,7 +62,8 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
   j["provenance"] = {{"program_version", table.provenance.program_version},
                      {"command_line", table.provenance.command_line},
-                     {"created", table.provenance.created}};
+                     {"created", table.provenance.created},
+                     {"profile_notes", profile_notes(table)}};
   return j;
 }
 
@@ -79,20 +92,35 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
       statistic(table, "certified.error.penetration.max"), table.tolerance);
   text += fmt::format("  made         {} by version {}: {}\n", table.provenance.created,
                       table.provenance.program_version, table.provenance.command_line);
+  for (const std::string& note : profile_notes(table)) text += fmt::format("  profile      {}\n", note);
   return text;
 }
 
 void info_command(const std::vector<std::string>& arguments) {
-  boost::program_options::options_description own("Arguments");
-  own.add_options()("file", boost::program_options::value<std::string>()->value_name("FILE.h5"), "a table");
-  const CommandLine line("tablegen info FILE.h5 [--json]", own, {"file"}, arguments);
+  namespace po = boost::program_options;
+  po::options_description own("Options");
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")  //
+      ("html", po::value<std::string>()->value_name("PAGE.html"),
+       "write a page with contact points, rolling radius difference, contact angle and conicity");
+  const CommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
-  const GeometryTableData table = read_geometry_table(file);
+  const GeometryTableData data = read_geometry_table(file);
+  if (line.given("html")) require_no_input(line.text("html"), {file});
+  const std::string text = table_text(data, file);
+  nlohmann::ordered_json description = table_description(data, file);
+  const TableContact table{GeometryTable(data)};
+  const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
+  if (line.given("html")) {
+    if (!functions)
+      throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");
+    write_text_file(line.text("html"), table_page(table.search().pair(), data, *functions, text));
+  }
   if (line.json()) {
-    fmt::print("{}\n", table_description(table, file).dump(2));
+    if (functions) description["wheelset"] = functions_json(*functions);
+    fmt::print("{}\n", description.dump(2));
   } else {
-    fmt::print("{}", table_text(table, file));
+    fmt::print("{}{}", text, functions ? functions_text(*functions) : "");
   }
 }
 

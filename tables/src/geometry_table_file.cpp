@@ -1,8 +1,11 @@
 #include "railtab/tables/geometry_table_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -114,6 +117,7 @@ void write_profile(ArrayFileWriter& file, const std::string& group, const Profil
     file.write(fmt::format("{}/{}", group, column.name), values, {values.size()}, column.unit, column.description);
   }
   file.attribute(group, "name", profile.name);
+  if (!profile.notes.empty()) file.attribute(group, "notes", fmt::format("{}", fmt::join(profile.notes, "\n")));
 }
 
 void write_branch(ArrayFileWriter& file, std::size_t n, const GeometryBranch& branch) {
@@ -222,6 +226,11 @@ class Reading {
     ProfileKnots profile;
     profile.kind = kind;
     profile.name = file_.text(group, "name");
+    const std::vector<std::string> present = file_.attribute_names(group);
+    if (std::find(present.begin(), present.end(), "notes") != present.end()) {
+      std::istringstream notes(file_.text(group, "notes"));
+      for (std::string line; std::getline(notes, line);) profile.notes.push_back(line);
+    }
     long knots = -1;
     for (const ProfileColumn& column : profile_columns) {
       profile.*column.values = numbers(fmt::format("{}/{}", group, column.name), {knots});

@@ -7,6 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "railtab/runtime/contact/contact_search.hpp"
+#include "railtab/runtime/contact/equivalent_conicity.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+
+namespace railtab {
 namespace {
 
 struct Outcome {
@@ -59,7 +64,7 @@ class TablegenCommand : public ::testing::Test {
 constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
 
 TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
-  for (const std::string command : {"", "geometry ", "info ", "verify "}) {
+  for (const std::string command : {"", "conicity ", "geometry ", "info ", "verify "}) {
     const Outcome help = tablegen(command + "--help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Usage: tablegen " + command), std::string::npos) << help.out;
@@ -90,6 +95,9 @@ TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused("info", "file is missing");
   expect_refused("info none.h5", "none.h5");
   expect_refused("verify none.h5", "none.h5");
+  expect_refused("conicity none.h5", "none.h5");
+  expect_refused("conicity none.h5 --amplitude 0", "--amplitude");
+  expect_refused("conicity none.h5 --roll free", "--roll");
 }
 
 TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
@@ -103,8 +111,19 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Outcome info = tablegen("info out.h5 --json");
   ASSERT_EQ(info.exit_code, 0) << info.err;
-  EXPECT_EQ(made.out, info.out);
-  const nlohmann::json table = nlohmann::json::parse(info.out);
+  nlohmann::json table = nlohmann::json::parse(info.out);
+  const nlohmann::json wheelset = table["wheelset"];
+  EXPECT_EQ(wheelset["radius_difference"]["y"].size(), 21U);
+  EXPECT_NEAR(wheelset["radius_difference"]["value"][20], 0.6315e-3, 1e-7);  // at y = 1 mm
+  table.erase("wheelset");
+  EXPECT_EQ(nlohmann::json::parse(made.out), table);
+  ASSERT_EQ(tablegen("info out.h5 --html page.html").exit_code, 0);
+  const std::string page = contents(folder_ / "page.html");
+  for (const char* words : {"Contact points", "Rolling radius difference", "Contact angle", "Equivalent conicity"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  expect_refused_with_table("info out.h5 --html out.h5", "out.h5");
   EXPECT_EQ(table["kind"], "geometry");
   EXPECT_EQ(table["wheel"], "S1002");
   EXPECT_EQ(table["axes"]["roll"]["nodes"], 1);
@@ -141,6 +160,61 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
   expect_refused_with_table("verify out.h5 --dz -1e-4:1e-4", "dz");
 }
 
+TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
+  const std::string ranges = " --lateral -0.006:0.006 --yaw 0:0 --quiet -o ";
+  ASSERT_EQ(tablegen("geometry --wheel cone-1:40 --rail 60E1 --rail-inclination 0" + ranges + "cone.h5").exit_code, 0);
+  const auto conicity = [&](const std::string& arguments) {
+    const Outcome outcome = tablegen("conicity " + arguments + " --json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const nlohmann::json cone = conicity("cone.h5");
+  EXPECT_EQ(cone["kind"], "conicity");
+  EXPECT_EQ(cone["amplitude"], 3e-3);
+  EXPECT_NEAR(cone["wave"]["conicity"], 0.025, 1e-6);
+  EXPECT_NEAR(cone["regression"]["conicity"], 0.025, 1e-6);
+  EXPECT_GT(conicity("cone.h5 --roll on")["wave"]["conicity"], 0.0252);
+  const nlohmann::json unequal = conicity("cone.h5 --diameter-difference 1e-4 --amplitude 4e-3");
+  EXPECT_NEAR(unequal["wave"]["conicity"], 0.025, 1e-6);
+  EXPECT_NEAR(unequal["wave"]["y_low"], -5e-3, 1e-7);  // the wave runs about −50 µm/(2·0.025)
+
+  // The table's answer is the online search's.
+  ASSERT_EQ(tablegen("geometry --wheel S1002 --rail 60E1" + ranges + "s1002.h5").exit_code, 0);
+  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
+                                           PairDimensions{}));
+  WheelsetContactOptions options;
+  options.y_low = -6e-3;
+  options.y_high = 6e-3;
+  const RadiusDifferenceCurve curve(
+      wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
+                        search.pair(), options));
+  EXPECT_NEAR(conicity("s1002.h5")["wave"]["conicity"], conicity_of_wave(curve, 3e-3).tan_gamma, 1e-6);
+
+  EXPECT_EQ(tablegen("conicity s1002.h5 --amplitude 8e-3").exit_code, 1);
+  expect_refused_with_table("conicity s1002.h5 --diameter-difference 1", "diameter difference");
+}
+
+TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
+  std::ofstream wheel(folder_ / "wheel.txt");
+  for (int y = -30; y <= 30; ++y) wheel << y << ' ' << 1e-4 * y * y - 0.05 * y << '\n' << (y == 7 ? "7 -0.3451\n" : "");
+  wheel.close();
+  const std::string rest = " --rail 60E1 --lateral -0.001:0.001 --yaw 0:0 -o out.h5";
+  const Outcome made = tablegen("geometry --wheel wheel.txt --smoothing 1e-8" + rest);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const nlohmann::json info = nlohmann::json::parse(tablegen("info out.h5 --json").out);
+  const nlohmann::json notes = info["provenance"]["profile_notes"];
+  ASSERT_EQ(notes.size(), 4U) << notes;
+  const char* words[] = {"taken as mm", "wheel.txt:39: 1 repeated", "no flange", "smoothed"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string note = notes[i];
+    EXPECT_NE(note.find(words[i]), std::string::npos) << note;
+    EXPECT_NE(made.err.find(note), std::string::npos) << made.err;
+    EXPECT_NE(made.out.find(note), std::string::npos) << made.out;
+  }
+  expect_refused_with_table("geometry --wheel wheel.txt --smoothing -1" + rest, "--smoothing");
+}
+
 TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
   ASSERT_EQ(tablegen(std::string(small) + "--quiet").exit_code, 0);
   std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
@@ -154,3 +228,4 @@ TEST_F(TablegenCommand, QuietPrintsNothing) {
 }
 
 }  // namespace
+}  // namespace railtab

@@ -28,6 +28,15 @@ TEST_F(GeometryTableFile, ReturnsTheTableToTheLastBit) {
   EXPECT_NO_THROW(GeometryTable{read});
 }
 
+TEST_F(GeometryTableFile, KeepsWhatWasSaidAboutTheProfiles) {
+  GeometryTableData table = small_geometry_table();
+  table.wheel.notes = {"wheel.txt:9: 2 repeated points left out", "wheel.txt: z mirrored"};
+  write_geometry_table(file_, table);
+  const GeometryTableData read = read_geometry_table(file_);
+  EXPECT_EQ(read.wheel.notes, table.wheel.notes);
+  EXPECT_TRUE(read.rail.notes.empty());
+}
+
 TEST_F(GeometryTableFile, TellsATableFromAnotherOne) {
   // The comparison itself: a difference in the last bit of any part must show.
   const GeometryTableData table = small_geometry_table();

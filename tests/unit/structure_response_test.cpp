@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -19,7 +22,8 @@ StructureModel short_bridge() {
   return build_track_bridge(track, {span});
 }
 
-// Two routes: the table of node compliances with shape functions, and a solve for the very positions.
+// Three routes: the table of node compliances with shape functions, single entries of the inverse for the very
+// positions, and whole solutions with the factor of the time steps.
 TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
   const StructureModel structure = short_bridge();
   StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
@@ -38,6 +42,49 @@ TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
       EXPECT_LT((tabulated - exact).cwiseAbs().maxCoeff(), 1e-10 * solved.cwiseAbs().maxCoeff()) << i << " " << j;
     }
   }
+  for (std::size_t j = 0; j < contacts.size(); ++j) {
+    for (int k = 0; k < 3; ++k) {
+      Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs());
+      add_rail_load(contacts[j], Eigen::Vector3d::Unit(k), load);
+      const Eigen::VectorXd whole = response.solve(load);
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Eigen::Vector3d miss =
+            rail_head(contacts[i], whole) -
+            solved.block<3, 1>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j) + k);
+        EXPECT_LT(miss.cwiseAbs().maxCoeff(), 1e-10 * solved.cwiseAbs().maxCoeff()) << i << " " << j << " " << k;
+      }
+    }
+  }
+}
+
+// Displacement, slope and curvature of the rail's line under a load on the other rail: slope and curvature by
+// differences.
+TEST(StructureResponse, VerticalComplianceHasTheLinesSlopeAndCurvature) {
+  const StructureModel structure = short_bridge();
+  StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
+  response.tabulate_compliance(structure, 100.0);
+  const RailContact load = rail_contact(structure, RailSide::left, 2.345);
+  for (const RailSide side : {RailSide::left, RailSide::right}) {
+    const auto at = [&](double x) { return response.vertical_compliance(rail_contact(structure, side, x), load); };
+    constexpr double x = 2.05, h = 1e-3;
+    const Eigen::Vector3d line = at(x);
+    const double scale = std::abs(at(2.345)[0]) / 0.3;  // per length of an element
+    EXPECT_NEAR(line[0], response.compliance(rail_contact(structure, side, x), load)(1, 1), 1e-12 * scale);
+    EXPECT_NEAR(line[1], (at(x + h)[0] - at(x - h)[0]) / (2 * h), 1e-4 * scale);
+    EXPECT_NEAR(line[2], (at(x + h)[1] - at(x - h)[1]) / (2 * h), 1e-4 * scale / 0.3);
+  }
+}
+
+TEST(NestedDissection, OrdersEveryUnknownOnce) {
+  const StructureModel structure = short_bridge();
+  Eigen::SparseMatrix<double> full = structure.stiffness;
+  full.makeCompressed();
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  NestedDissection{}(full, order);
+  std::vector<int> seen(order.indices().data(), order.indices().data() + order.size());
+  std::sort(seen.begin(), seen.end());
+  ASSERT_EQ(static_cast<int>(seen.size()), structure.dofs());
+  for (int i = 0; i < structure.dofs(); ++i) EXPECT_EQ(seen[static_cast<std::size_t>(i)], i);
 }
 
 TEST(StructureResponse, RefusesANumberThatIsNotFinite) {

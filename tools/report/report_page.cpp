@@ -8,8 +8,8 @@
 
 #include "contact_figure.hpp"
 #include "headline.hpp"
+#include "html_page.hpp"
 #include "html_text.hpp"
-#include "page_assets.hpp"
 #include "railtab/tables/text_file.hpp"
 #include "run_charts.hpp"
 
@@ -103,10 +103,6 @@ std::string run_table(const RunResults& results) {
   return "<table>" + rows + "</table></div>";
 }
 
-std::string section(std::string_view title, const std::string& content) {
-  return content.empty() ? "" : fmt::format("<section><h2>{}</h2>{}</section>", title, content);
-}
-
 Headline headline_of(const RunResults& results) {
   HeadlineCollector collector(results.header);
   for (const StepRecord& step : results.steps) collector.add(step);
@@ -132,23 +128,17 @@ std::string heading(const RunResults& results, const Headline& headline) {
 std::string report_page(const RunResults& results) {
   const Headline headline = headline_of(results);
   const std::string time = time_figure(results.summary);
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\"><title>{} – "
-      "railtab</title><style>{}</style></head>\n<body><main>",
-      escaped(results.header.scene_name), page_style());
-  page += heading(results, headline) + tiles(headline, results.summary);
-  page += section("Running safety", running_safety_charts(results));
-  page += section("Wheel forces", wheel_force_charts(results));
-  page += section("Wheel and rail", contact_figure(results));
-  page += section("Car bodies", car_body_charts(results));
-  page += section("Bridge and track", structure_charts(results));
-  page += section("Where the time went", time.empty() ? "" : time + run_table(results));
-  page += section("Scene", fmt::format("<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
-                                       escaped(results.header.scene_text)));
-  page += fmt::format("<footer>railtab {}</footer></main><script>{}</script></body></html>\n",
-                      escaped(results.header.program_version), page_script());
-  return page;
+  std::string body = heading(results, headline) + tiles(headline, results.summary);
+  body += html_section("Running safety", running_safety_charts(results));
+  body += html_section("Wheel forces", wheel_force_charts(results));
+  body += html_section("Wheel and rail", contact_figure(results));
+  body += html_section("Car bodies", car_body_charts(results));
+  body += html_section("Bridge and track", structure_charts(results));
+  body += html_section("Where the time went", time.empty() ? "" : time + run_table(results));
+  body +=
+      html_section("Scene", fmt::format("<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
+                                        escaped(results.header.scene_text)));
+  return html_page(results.header.scene_name, body, results.header.program_version);
 }
 
 void write_report(const std::filesystem::path& file, const RunResults& results) {

@@ -20,6 +20,8 @@ struct ProfileKnots {
   std::vector<double> s;       ///< arc length [m]
   std::vector<double> y, z;    ///< position [m]
   std::vector<double> dy, dz;  ///< dy/ds, dz/ds [-]
+  /// What was done to the points of a profile file when it was read, for the user; part of the provenance.
+  std::vector<std::string> notes = {};
 };
 
 }  // namespace railtab

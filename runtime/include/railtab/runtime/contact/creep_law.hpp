@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -31,6 +32,8 @@ struct CreepForce {
 struct LinearCreep {
   double nu = 0.28;
   bool saturated = false;
+  /// In place of Kalker's table, for every ellipse; c23 = c33 = 0 leaves spin out.
+  std::optional<KalkerCoefficients> coefficients{};
 };
 
 /// Polach [Polach1999]: no moment is given by the method; that of linear theory, saturated, is returned.

@@ -11,6 +11,9 @@ namespace railtab {
 struct PatchLoad {
   HertzContact hertz{};
   double elastic_force = 0.0;  ///< normal force without damping [N]
+  /// Where the force acts and creepage is taken: the pair at the centre of the overlap, which is the deepest pair where
+  /// curvatures are constant. Its penetration is the depth there.
+  ContactPatch contact{};
 };
 using PatchLoads = std::array<PatchLoad, ContactPatches::capacity>;
 
@@ -22,21 +25,17 @@ struct NormalContactModel {
 
 /// Normal forces of the patches of one (right) wheel at a pose, F_n = K_h d^{3/2} (Eq. 11) made continuous in the pose:
 ///
-/// * The ellipse takes each profile's mean curvature over ±1 mm around the contact point (a fifth of the radius, if
-/// that
-///   is less): the curvature itself jumps where arcs of a profile join, and with it the force would.
+/// * The ellipse follows the true overlap of the undeformed profiles, not the curvatures at the point: B is that of the
+///   parabola which has the overlap's area between the deepest point and (1 - kappa) d, kappa = 0.7,
+///   B = kappa d/w², w = (3/4) area/(kappa d). For constant curvatures that is (1/R_wy + 1/R_ry)/2.
+/// * The force acts at the centre of that area, along the normal there.
 /// * Two neighbouring patches whose interpenetrations have merged share what lies below the saddle between them:
-///   F_i = K_i (d_i^{3/2} − w_i d_s^{3/2}), d_s the penetration at the saddle, w_i = (d_j − d_s)/((d_i − d_s) + (d_j −
-///   d_s)). Separate patches (d_s <= 0) carry their full Hertz force; a patch that ends in the saddle does so without
-///   load.
+///   F_i = K_i (d_i^{3/2} - w_i d_s^{3/2}), d_s the penetration at the saddle,
+///   w_i = (d_j - d_s)/((d_i - d_s) + (d_j - d_s)). Separate patches (d_s <= 0) carry their full Hertz force; a patch
+///   that ends in the saddle does so without load.
 ///
 /// In the published method curvatures are those at the point, and patches are independent.
 [[nodiscard]] PatchLoads patch_loads(const NormalContactModel& model, const ContactGeometry& geometry,
                                      const WheelsetPose& pose, const ContactPatches& patches) noexcept;
-
-/// Penetration at the saddle between two neighbouring patches (left: smaller y_rail), the least along the wheel profile
-/// between them [m]; not positive where the patches are apart.
-[[nodiscard]] double saddle_penetration(const WheelRailPair& pair, const WheelsetPose& pose, const ContactPatch& left,
-                                        const ContactPatch& right) noexcept;
 
 }  // namespace railtab

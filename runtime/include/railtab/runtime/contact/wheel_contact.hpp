@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
@@ -26,6 +27,15 @@ struct RailHeadMotion {
   double slope = 0.0;                      ///< slope dz/dx of the rail head [-]
 };
 
+/// Semi-axes of a contact patch along (a) and across (b) the rolling direction [m].
+struct PatchEllipse {
+  double a, b;
+};
+
+/// What the lateral component of the normal forces does: it restores a wheelset that shifts. Linear stability theory of
+/// conical wheels often leaves it out [MontenegroCalcada2023, section 4.3.3, assumption g].
+enum class GravitationalStiffness { included, neglected };
+
 /// Parameters of the contact forces that every wheel shares.
 struct WheelContactModel {
   const ContactGeometry* geometry = nullptr;
@@ -34,6 +44,9 @@ struct WheelContactModel {
   double friction = 0.3;  ///< [-]
   double damping = 0.0;   ///< F_n = K_h d^{3/2} (1 + damping·d') [s/m]
   double speed = 0.0;     ///< running speed V [m/s], > 0
+  /// Ellipse of every patch, whatever its load and place (linear stability theory); else Hertz's.
+  std::optional<PatchEllipse> constant_ellipse;
+  GravitationalStiffness gravitational_stiffness = GravitationalStiffness::included;
 };
 
 /// Forces between one wheel and its rail, in the track frame.

@@ -24,6 +24,7 @@ struct RailInterpolation {
   std::array<int, 12> dof;
   std::array<double, 12> y, z, roll;  ///< lateral and vertical displacement of the rail head, roll
   std::array<double, 12> yaw, pitch;  ///< slopes dy/dx of row y, and -dz/dx of row z: a wheel at speed V sees V·dy/dx
+  std::array<double, 12> bend;        ///< d²z/dx² of row z
 };
 /// The rail head stands head_height above the axis, r = (0, 0, -h), so that u_head = u + θ × r gives y_head = y +
 /// h·roll; the transpose of row y therefore carries a lateral force at the head into the axis with its torsional moment

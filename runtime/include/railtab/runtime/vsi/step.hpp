@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "railtab/runtime/vsi/rigid_wheels.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
@@ -12,7 +13,8 @@ struct StepOperators {
   HhtScheme scheme;
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
-  std::unique_ptr<StructureResponse> structure;  ///< null on rigid track
+  std::unique_ptr<StructureResponse> structure;    ///< null on rigid track
+  std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);
 };
@@ -39,12 +41,16 @@ struct StepWorkspace {
   ContactProblem problem;
   ContactSolution solution;
   NewtonWorkspace newton;
+  RigidWheelWorkspace rigid_wheels;
 
   explicit StepWorkspace(const VsiModel& model);
 };
 
-/// One HHT step of the coupled system (Eqs. 12-16). If it does not converge, `state` is as before.
+/// One HHT step of the coupled system (Eqs. 12-16). If it does not converge, `state` is as before. Serves both kinds of
+/// normal contact; `advance_rigid_wheels` is the part for wheels that follow the rails.
 [[nodiscard]] StepReport advance(const VsiModel& model, const StepOperators& operators, const StepLimits& limits,
                                  VsiState& state, StepWorkspace& workspace);
+[[nodiscard]] StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& operators,
+                                              const StepLimits& limits, VsiState& state, StepWorkspace& workspace);
 
 }  // namespace railtab

@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
+#include "railtab/runtime/vsi/nested_dissection.hpp"
 
 namespace railtab {
 
@@ -40,19 +41,35 @@ class StructureResponse {
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
-  /// Fill the node-by-node compliance of the rails within `window` [m] on either side (at least one element), from one
-  /// solve per rail dof.
+  /// Fill the node-by-node compliance of the rails within `window` [m] on either side (at least one element), at a
+  /// price linear in their length.
   void tabulate_compliance(const StructureModel& structure, double window);
   /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
   [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
+
+  /// Vertical displacement z, slope dz/dx and curvature d²z/dx² of rail `i` from a unit vertical load on rail `j`, from
+  /// the same table.
+  [[nodiscard]] Eigen::Vector3d vertical_compliance(const RailContact& i, const RailContact& j) const noexcept;
 
   /// The same without tabulation, by solving for the columns of every contact (3n × 3n): exact, for few positions.
   [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts) const;
 
  private:
   using Block = Eigen::Matrix<double, 6, 6>;
-  std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
+  /// rows · (tabulated compliance between the elements of i and j) · columnsᵀ.
+  template <class Rows, class Columns>
+  [[nodiscard]] auto between(const RailContact& i, const Rows& row, const RailContact& j,
+                             const Columns& column) const noexcept;
+  /// The factor with the fewest entries serves the steps' back-substitutions; the one with the lowest elimination tree,
+  /// twice as large, gives single entries of the inverse (SelectedSolve).
+  using SmallFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+  using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
+  [[nodiscard]] std::shared_ptr<const LowFactor> low_factor() const;
+
+  Eigen::SparseMatrix<double> effective_;  ///< K̄
+  std::unique_ptr<SmallFactor> factor_;
+  std::shared_ptr<const LowFactor> low_factor_;  ///< kept at rest, where compliance_at() is called again and again
   Eigen::Index dofs_ = 0;
   // compliance_[node column][window offset]; columns: left rail's nodes, then the right's; rows likewise in pairs.
   struct Column {

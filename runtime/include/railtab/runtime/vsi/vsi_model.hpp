@@ -14,14 +14,42 @@
 
 namespace railtab {
 
+/// Gyroscopic moments of the rolling wheelsets.
+enum class GyroscopicMoments { included, neglected };
+
+/// How wheels stand on rails vertically.
+enum class NormalContact {
+  hertz,  ///< Hertz's contact force (Eq. 11) of every patch, with creep forces and loss of contact
+  /// A wheelset follows the mean of its two rails, irregularity included, as if glued to them: constraint of Eq. 14
+  /// with its first two time derivatives. The lean choice for vertical questions: no contact geometry, no creep forces,
+  /// no lateral load, and no loss of contact (a negative wheel load says where there would be one).
+  rigid,
+};
+
+/// Vertical deviation of the track under a wheelset and its time derivatives as the wheelset meets them; z is down.
+struct VerticalDeviation {
+  double z = 0, rate = 0, acceleration = 0;  ///< [m], [m/s], [m/s²]
+};
+
+/// Deviations that each wheelset meets, given at equal time steps from t = 0 in place of an irregularity over x.
+struct DeviationHistory {
+  double time_step = 0;                                    ///< [s]
+  std::vector<std::vector<VerticalDeviation>> wheelset{};  ///< per wheelset of the train, front first, and step
+  /// At the nearest step; zero before the first, the last value after the last.
+  [[nodiscard]] VerticalDeviation at(int wheelset_of_train, double time) const noexcept;
+};
+
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
   std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
   std::optional<StructureModel> structure;
   Irregularity irregularity;
+  std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`
+  NormalContact normal_contact = NormalContact::hertz;
   std::shared_ptr<const ContactGeometry> geometry;
   WheelContactModel contact;  ///< its geometry points to `geometry`
+  GyroscopicMoments gyroscopic_moments = GyroscopicMoments::included;
 
   [[nodiscard]] int wheelsets_per_vehicle() const noexcept { return static_cast<int>(vehicle.wheelsets.size()); }
   [[nodiscard]] int wheelsets() const noexcept { return wheelsets_per_vehicle() * static_cast<int>(vehicle_x.size()); }
@@ -29,6 +57,7 @@ struct VsiModel {
   [[nodiscard]] double wheelset_x(int wheelset, double time) const noexcept;
   /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.
   [[nodiscard]] Eigen::MatrixXd vehicle_damping() const {
+    if (gyroscopic_moments == GyroscopicMoments::neglected) return vehicle.damping;
     return vehicle.damping + contact.speed / vehicle.nominal_radius * vehicle.gyroscopic;
   }
 };
@@ -59,6 +88,10 @@ void unpack(std::span<const double> numbers, VsiState& state);
 void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
                     const Eigen::VectorXd& structure_displacement,
                     std::vector<std::array<RailHeadMotion, 2>>& deviation);
+
+/// Mean vertical deviation of the two rails under a wheelset, from the history or the irregularity at the running
+/// speed.
+[[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
 
 /// Restriction of one vehicle's dof vector to its wheelset unknowns, written into a 12-per-wheelset vector.
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;

@@ -1,4 +1,4 @@
-#include "rail_60e1.hpp"
+#include "rail_head.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -6,14 +6,6 @@
 namespace railtab {
 
 namespace {
-
-constexpr double crown_radius = 0.300;
-constexpr double shoulder_radius = 0.080;
-constexpr double corner_radius = 0.013;
-constexpr double crown_end = 10.500e-3;     // |y| on the upright head [m]
-constexpr double shoulder_end = 25.988e-3;  // |y| on the upright head [m]
-constexpr double flank_slope = 1.0 / 20.0;  // dy/dz
-constexpr double flank_depth = 37.5e-3;     // below the crown of the upright head [m]
 
 /// The upright head's field half as a tangent chain: theta is the tangent's angle below +y, so that a point of an arc
 /// is its centre + R (sin theta, -cos theta). The gauge half is its mirror image.
@@ -23,20 +15,20 @@ struct UprightHead {
   ProfilePoint flank_top, flank_end;                ///< upper and lower end of the flank, field side [m]
 };
 
-UprightHead upright_head() {
+UprightHead upright_head(const RailHead& head) {
   UprightHead h{};
-  h.crown = {0.0, crown_radius};
-  h.theta_crown = std::asin(crown_end / crown_radius);
+  h.crown = {0.0, head.crown_radius};
+  h.theta_crown = std::asin(head.crown_end / head.crown_radius);
   // Tangent arcs have their centres on the normal at the joint.
-  const double inside = crown_radius - shoulder_radius;
+  const double inside = head.crown_radius - head.shoulder_radius;
   h.shoulder = {inside * std::sin(h.theta_crown), h.crown.z - inside * std::cos(h.theta_crown)};
-  h.theta_shoulder = std::asin((shoulder_end - h.shoulder.y) / shoulder_radius);
-  const double step = shoulder_radius - corner_radius;
+  h.theta_shoulder = std::asin((head.shoulder_end - h.shoulder.y) / head.shoulder_radius);
+  const double step = head.shoulder_radius - head.corner_radius;
   h.corner = {h.shoulder.y + step * std::sin(h.theta_shoulder), h.shoulder.z - step * std::cos(h.theta_shoulder)};
-  h.theta_flank = std::atan2(1.0, flank_slope);
-  h.flank_top = {h.corner.y + corner_radius * std::sin(h.theta_flank),
-                 h.corner.z - corner_radius * std::cos(h.theta_flank)};
-  h.flank_end = {h.flank_top.y + flank_slope * (flank_depth - h.flank_top.z), flank_depth};
+  h.theta_flank = std::atan2(1.0, head.flank_slope);
+  h.flank_top = {h.corner.y + head.corner_radius * std::sin(h.theta_flank),
+                 h.corner.z - head.corner_radius * std::cos(h.theta_flank)};
+  h.flank_end = {h.flank_top.y + head.flank_slope * (head.flank_depth - h.flank_top.z), head.flank_depth};
   return h;
 }
 
@@ -60,24 +52,24 @@ struct Inclination {
 ProfilePoint mirrored(ProfilePoint p) { return {-p.y, p.z}; }
 
 /// Highest point of the rotated head: where the upright head's tangent angle is alpha.
-ProfilePoint highest_point(const UprightHead& h, const Inclination& rotate) {
+ProfilePoint highest_point(const RailHead& head, const UprightHead& h, const Inclination& rotate) {
   const bool on_crown = rotate.alpha <= h.theta_crown;
   const ProfilePoint centre = rotate(on_crown ? h.crown : h.shoulder);
-  return {centre.y, centre.z - (on_crown ? crown_radius : shoulder_radius)};
+  return {centre.y, centre.z - (on_crown ? head.crown_radius : head.shoulder_radius)};
 }
 
 }  // namespace
 
-std::vector<ProfileSegment> rail_60e1_segments(double inclination) {
-  const UprightHead h = upright_head();
+std::vector<ProfileSegment> rail_head_segments(const RailHead& head, double inclination) {
+  const UprightHead h = upright_head(head);
   Inclination place{std::atan(inclination), {0, 0}};
-  place.origin = highest_point(h, place);
+  place.origin = highest_point(head, h, place);
   return {straight_segment(place(mirrored(h.flank_end)), place(mirrored(h.flank_top))),
-          place.arc(mirrored(h.corner), corner_radius, -h.theta_flank, -h.theta_shoulder),
-          place.arc(mirrored(h.shoulder), shoulder_radius, -h.theta_shoulder, -h.theta_crown),
-          place.arc(h.crown, crown_radius, -h.theta_crown, h.theta_crown),
-          place.arc(h.shoulder, shoulder_radius, h.theta_crown, h.theta_shoulder),
-          place.arc(h.corner, corner_radius, h.theta_shoulder, h.theta_flank),
+          place.arc(mirrored(h.corner), head.corner_radius, -h.theta_flank, -h.theta_shoulder),
+          place.arc(mirrored(h.shoulder), head.shoulder_radius, -h.theta_shoulder, -h.theta_crown),
+          place.arc(h.crown, head.crown_radius, -h.theta_crown, h.theta_crown),
+          place.arc(h.shoulder, head.shoulder_radius, h.theta_crown, h.theta_shoulder),
+          place.arc(h.corner, head.corner_radius, h.theta_shoulder, h.theta_flank),
           straight_segment(place(h.flank_top), place(h.flank_end))};
 }
 

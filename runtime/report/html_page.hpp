@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace railtab::report {
+
+/// A whole HTML page with style and read-out script inside: one file that loads nothing.
+/// @param title plain text; @param body HTML; @param version of the program, for the foot of the page
+[[nodiscard]] std::string html_page(std::string_view title, std::string_view body, std::string_view version);
+
+/// A section with its heading; empty where `content` is.
+[[nodiscard]] std::string html_section(std::string_view title, const std::string& content);
+
+}  // namespace railtab::report

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chart.hpp"
+
+namespace railtab::report {
+
+/// A diagram of a figure: lines, and values to hold them against as circles.
+struct SvgPanel {
+  std::string title;
+  std::string x_label, y_label;  ///< with unit
+  std::vector<Series> lines;     ///< NaN in y is a gap; up to four are told apart by colour
+  std::vector<Series> dots;      ///< circles in the colour of the line of the same place
+};
+
+/// Diagrams beside and below each other as one SVG file that stands alone, with a legend below the heading.
+/// @param columns diagrams beside each other
+[[nodiscard]] std::string svg_figure(const std::string& heading, const std::vector<SvgPanel>& panels, int columns);
+
+}  // namespace railtab::report

@@ -1,0 +1,198 @@
+#include "railtab/runtime/structure/structure_import.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+constexpr std::string_view header = "row,node,x[m],motion,rail";
+constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "roll", "pitch", "yaw"};
+constexpr double symmetry_tolerance = 1e-9;  // of the largest diagonal entry: what writing with ten digits leaves
+
+struct Node {
+  double x = 0.0;
+  std::string place;  // of its first line
+  bool left = false, right = false;
+  DofIndices dof{held, held, held, held, held, held};
+};
+
+struct DofTable {
+  std::vector<std::pair<std::string, Node>> nodes;  // in the order of the file
+  std::vector<double> sign;                         // per row of the matrices
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r";
+  const std::size_t first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::array<std::string_view, 5> cells_of(const std::string& place, std::string_view text) {
+  std::array<std::string_view, 5> cells;
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin <= text.size(); ++count) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (count < cells.size()) cells[count] = trimmed(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (count != cells.size()) throw input_error(place, fmt::format("{} columns", count), fmt::format("5: {}", header));
+  return cells;
+}
+
+template <class Number>
+bool parse(std::string_view text, Number& value) {
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && stop == text.data() + text.size();
+}
+
+void set_rails(Node& node, const std::string& place, std::string_view rail) {
+  if (rail != "left" && rail != "right" && rail != "both" && !rail.empty()) {
+    throw input_error(place, fmt::format("rail '{}'", rail), "left, right, both, or nothing");
+  }
+  node.left = rail == "left" || rail == "both";
+  node.right = rail == "right" || rail == "both";
+}
+
+void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place, std::string_view text) {
+  const auto [row_cell, name, x_cell, motion_cell, rail] = cells_of(place, text);
+  const int rows = static_cast<int>(table.sign.size());
+  int row = 0;
+  if (!parse(row_cell, row) || row < 1 || row > rows) {
+    throw input_error(place, fmt::format("row '{}'", row_cell), fmt::format("1 to {}, the matrices' rows", rows));
+  }
+  if (taken[static_cast<std::size_t>(row - 1)]) throw input_error(place, fmt::format("row {} again", row), "each once");
+  taken[static_cast<std::size_t>(row - 1)] = true;
+  double x = 0.0;
+  if (!parse(x_cell, x) || !std::isfinite(x)) throw input_error(place, fmt::format("x '{}'", x_cell), "a number in m");
+  const bool turned = motion_cell.starts_with('-');
+  const std::string_view motion = motion_cell.substr(turned ? 1 : 0);
+  const auto* const known = std::find(motions.begin(), motions.end(), motion);
+  if (known == motions.end()) {
+    throw input_error(place, fmt::format("motion '{}'", motion_cell),
+                      "x, y, z, roll, pitch or yaw, with a minus where the model counts the other way");
+  }
+  if (name.empty()) throw input_error(place, "no node name", "a name");
+  table.sign[static_cast<std::size_t>(row - 1)] = turned ? -1.0 : 1.0;
+  auto at = std::find_if(table.nodes.rbegin(), table.nodes.rend(), [&](const auto& n) { return n.first == name; });
+  if (at == table.nodes.rend()) {
+    table.nodes.emplace_back(std::string(name), Node{});
+    at = table.nodes.rbegin();
+    at->second.x = x;
+    at->second.place = place;
+    set_rails(at->second, place, rail);
+  }
+  Node& node = at->second;
+  Node other;
+  set_rails(other, place, rail);
+  if (node.x != x || node.left != other.left || node.right != other.right) {
+    throw input_error(place, fmt::format("node {} at another place or on another rail", name),
+                      fmt::format("as in {}", node.place));
+  }
+  int& dof = node.dof[static_cast<std::size_t>(known - motions.begin())];
+  if (dof != held) throw input_error(place, fmt::format("motion {} of node {} again", motion, name), "each once");
+  dof = row - 1;
+}
+
+DofTable read_dofs(const std::filesystem::path& file, int rows) {
+  std::ifstream stream(file);
+  if (!stream) throw input_error(file.string(), "no readable file", "a table of dofs");
+  DofTable table;
+  table.sign.assign(static_cast<std::size_t>(rows), 1.0);
+  std::vector<bool> taken(static_cast<std::size_t>(rows), false);
+  bool has_header = false;
+  std::string text;
+  for (long count = 1; std::getline(stream, text); ++count) {
+    const std::string place = fmt::format("{}:{}", file.string(), count);
+    const std::string_view line = trimmed(text);
+    if (line.empty() || line.front() == '#') continue;
+    if (has_header) {
+      add_row(table, taken, place, line);
+    } else if (line == header) {
+      has_header = true;
+    } else {
+      throw input_error(place, fmt::format("'{}'", line), header);
+    }
+  }
+  return table;
+}
+
+RailLine rail_line(const DofTable& table, bool Node::*on_rail, const std::filesystem::path& file,
+                   std::string_view name) {
+  std::vector<Node> nodes;
+  for (const auto& [label, node] : table.nodes) {
+    if (node.*on_rail) nodes.push_back(node);
+  }
+  std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.x < b.x; });
+  if (nodes.size() < 2) {
+    throw input_error(file.string(), fmt::format("{} nodes of the {} rail", nodes.size(), name), "at least 2");
+  }
+  RailLine line;
+  for (const Node& node : nodes) {
+    if (!line.x.empty() && node.x == line.x.back()) {
+      throw input_error(node.place, fmt::format("a second node of the {} rail at x = {} m", name, node.x), "one");
+    }
+    if (node.dof[2] == held) throw input_error(node.place, "a rail node without the motion z", "z of every rail node");
+    line.x.push_back(node.x);
+    line.dof.push_back(node.dof);
+  }
+  return line;
+}
+
+Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
+  const Sparse matrix = read_matrix_market(file);
+  const Eigen::Index expected = rows > 0 ? rows : matrix.rows();
+  if (matrix.rows() != expected || matrix.cols() != expected) {
+    throw input_error(file.string(), fmt::format("{} x {}", matrix.rows(), matrix.cols()),
+                      fmt::format("{0} x {0}{1}", expected, rows > 0 ? ", as the stiffness matrix" : ", square"));
+  }
+  const Sparse transposed = matrix.transpose();
+  const Sparse difference = matrix - transposed;
+  const double bound = symmetry_tolerance * matrix.diagonal().cwiseAbs().maxCoeff();
+  for (int column = 0; column < difference.outerSize(); ++column) {
+    for (Sparse::InnerIterator entry(difference, column); entry; ++entry) {
+      if (std::abs(entry.value()) <= bound) continue;
+      throw input_error(fmt::format("{}: row {}, column {}", file.string(), entry.row() + 1, column + 1),
+                        fmt::format("{} against {} at the mirrored place", matrix.coeff(entry.row(), column),
+                                    matrix.coeff(column, entry.row())),
+                        "a symmetric matrix");
+    }
+  }
+  return 0.5 * (matrix + transposed);
+}
+
+}  // namespace
+
+StructureModel import_structure(const StructureFiles& files) {
+  StructureModel model;
+  model.stiffness = read_symmetric(files.stiffness, 0);
+  model.mass = read_symmetric(files.mass, model.stiffness.rows());
+  model.damping = read_symmetric(files.damping, model.stiffness.rows());
+  const DofTable table = read_dofs(files.dofs, static_cast<int>(model.stiffness.rows()));
+  const Eigen::VectorXd sign = Eigen::VectorXd::Map(table.sign.data(), static_cast<Eigen::Index>(table.sign.size()));
+  for (Sparse* matrix : {&model.mass, &model.damping, &model.stiffness}) {
+    *matrix = sign.asDiagonal() * *matrix * sign.asDiagonal();
+    matrix->makeCompressed();
+  }
+  model.rail[0] = rail_line(table, &Node::left, files.dofs, "left");
+  model.rail[1] = rail_line(table, &Node::right, files.dofs, "right");
+  for (const auto& [name, node] : table.nodes) {
+    if (!node.left && !node.right) model.nodes.push_back({name, node.x, node.dof});
+  }
+  return model;
+}
+
+}  // namespace railtab

@@ -1,0 +1,108 @@
+#include "railtab/runtime/vsi/rigid_wheels.hpp"
+
+#include <algorithm>
+
+namespace railtab {
+
+namespace {
+
+constexpr int heave = 2;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
+                                       const HhtScheme& scheme)
+    : load_weight_(scheme.load_weight()) {
+  for (int w : vehicle.wheelsets) c_.push_back(vehicle.dof[index(w)][heave]);
+  for (int i = 0; i < vehicle.dofs(); ++i) {
+    if (std::find(c_.begin(), c_.end(), i) == c_.end()) b_.push_back(i);
+  }
+  const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
+                                    scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
+  inverse_bb_ = Eigen::MatrixXd(effective(b_, b_)).partialPivLu().inverse();
+  E_inverse_ = effective(c_, b_) * inverse_bb_;
+  K_bc_ = vehicle.stiffness(b_, c_);
+  C_bc_ = damping(b_, c_);
+  M_bc_ = vehicle.mass(b_, c_);
+  Z_ = vehicle.stiffness(c_, c_) - E_inverse_ * K_bc_;
+  W_ = damping(c_, c_) - E_inverse_ * C_bc_;
+  A_ = (vehicle.mass(c_, c_) - E_inverse_ * M_bc_) / load_weight_;
+}
+
+void RigidWheelResponse::remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme,
+                                   const LinearMotion& motion, Prediction& p, Eigen::VectorXd& R) const {
+  predict(scheme, motion, p);
+  for (int i : c_) {
+    p.weighted_displacement[i] = -scheme.alpha * motion.displacement[i];
+    p.weighted_velocity[i] = -scheme.alpha * motion.velocity[i];
+  }
+  R = vehicle.static_load - scheme.alpha * motion.contact_load;
+  R.noalias() -= damping * p.weighted_velocity;
+  R.noalias() -= vehicle.stiffness * p.weighted_displacement;
+}
+
+Eigen::VectorXd RigidWheelResponse::free_force(const Eigen::VectorXd& R) const {
+  return (E_inverse_ * R(b_) - R(c_)) / load_weight_;
+}
+
+void RigidWheelResponse::update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& R,
+                                const WheelsetHeave& h, const Eigen::VectorXd& force, LinearMotion& motion) const {
+  const Eigen::VectorXd load = R(b_) - M_bc_ * h.a - load_weight_ * (C_bc_ * h.v + K_bc_ * h.z);
+  const Eigen::VectorXd increment = inverse_bb_ * load;
+  motion.displacement(b_) = p.displacement(b_) + increment;
+  motion.velocity(b_) = p.velocity(b_) + scheme.velocity_rate() * increment;
+  motion.acceleration(b_) = scheme.acceleration_rate() * increment;
+  motion.displacement(c_) = h.z;
+  motion.velocity(c_) = h.v;
+  motion.acceleration(c_) = h.a;
+  motion.contact_load.setZero();
+  motion.contact_load(c_) = force;
+}
+
+void set_vertical_forces(const Eigen::VectorXd& force, ContactSolution& solution) {
+  solution.force.setZero();
+  for (int w = 0; w < static_cast<int>(force.size()); ++w) {
+    solution.force[wheelset_unknowns * w + heave] = force[w];
+    for (int side = 0; side < 2; ++side) {
+      solution.force[rail_unknown(2 * w + side) + 1] = -0.5 * force[w];
+      solution.patches[index(2 * w + side)].count = 0;
+    }
+  }
+}
+
+void rest_on_rails(const ContactProblem& problem, ContactSolution& solution) {
+  const int wheelsets = static_cast<int>(solution.displacement.size()) / wheelset_unknowns;
+  const int per_vehicle = problem.wheelsets_per_vehicle;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(wheelsets, wheelsets);
+  Eigen::VectorXd gap(wheelsets);  // of rail below wheel, without forces
+  for (int i = 0; i < wheelsets; ++i) {
+    gap[i] = -problem.free[wheelset_unknowns * i + heave];
+    for (int side = 0; side < 2; ++side) {
+      gap[i] += 0.5 * (problem.free[rail_unknown(2 * i + side) + 1] +
+                       problem.deviation[index(i)][index(side)].displacement[1]);
+    }
+    const int first = i - i % per_vehicle;
+    for (int j = first; j < first + per_vehicle; ++j) {
+      system(i, j) += problem.vehicle_compliance(6 * (i - first) + heave, 6 * (j - first) + heave);
+    }
+  }
+  for (const RailCoupling& c : problem.rail) system(c.i / 2, c.j / 2) += 0.25 * c.compliance(1, 1);
+  const Eigen::VectorXd force = system.partialPivLu().solve(gap);
+  set_vertical_forces(force, solution);
+
+  solution.displacement = problem.free;
+  for (int i = 0; i < wheelsets; ++i) {
+    const int first = i - i % per_vehicle;
+    for (int j = first; j < first + per_vehicle; ++j) {
+      solution.displacement.segment<6>(wheelset_unknowns * i) +=
+          problem.vehicle_compliance.block<6, 1>(6 * (i - first), 6 * (j - first) + heave) * force[j];
+    }
+  }
+  for (const RailCoupling& c : problem.rail) {
+    solution.displacement.segment<3>(rail_unknown(c.i)) += c.compliance.col(1) * (-0.5 * force[c.j / 2]);
+  }
+}
+
+}  // namespace railtab

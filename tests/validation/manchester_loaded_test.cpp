@@ -1,0 +1,69 @@
+// The Manchester benchmark's wheelset loaded with 10 kN per wheel, cases A1.1 and A1.2, against the program CONTACT
+// (non-Hertzian half-space theory) at CONTACT's own wheelset positions [Shackleton2008]. All 21
+// positions of both wheels count, also those of conformal and of two-point contact.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "../reference_table.hpp"
+#include "railtab/runtime/contact/patch_loads.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+
+namespace railtab {
+namespace {
+
+TEST(ManchesterLoaded, NormalForceOfAllPositionsAgainstContact) {
+  const ContactGeometry geometry{ContactSearch(
+      WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                    ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), PairDimensions{}))};
+  NormalContactModel model;
+  model.material.E = 2.0 * 82e9 * (1.0 + model.material.nu);
+
+  const auto reference = testing::read_reference("manchester_loaded.csv");
+  const auto value = [&](const char* column, std::size_t row) { return reference.at(column)[row]; };
+  const std::size_t rows = reference.at("side").size();
+  double approach = 0.0, worst = 0.0, squares = 0.0, worst_published = 0.0;
+  int beyond_two_percent = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double side = value("side", row);
+    const WheelsetPose pose{side * value("y_ws", row) * 1e-3, value("z_ws", row) * 1e-3, side * value("roll_ws", row),
+                            side * value("yaw_ws", row)};
+    const ContactPatches patches = geometry.patches(pose);
+    const PatchLoads loads = patch_loads(model, geometry, pose, patches);
+    const double reference_force = value("normal_force", row);
+    double force = 0.0, published = 0.0, deepest = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+      const ContactPatch& p = patches.patch[i];
+      force += loads[i].elastic_force;
+      deepest = std::max(deepest, p.penetration);
+      if (p.penetration <= 0.0) continue;
+      const HertzContact point =
+          hertz_contact(0.5 * p.curv_rolling, std::max(0.5 * (p.curv_wheel + p.curv_rail), 1e-6), model.material);
+      published += point.stiffness * std::pow(p.penetration, 1.5);
+    }
+    const double error = force / reference_force - 1.0;
+    approach = std::max(approach, std::abs(deepest / (value("approach", row) * 1e-3) - 1.0));
+    worst = std::max(worst, std::abs(error));
+    worst_published = std::max(worst_published, std::abs(published / reference_force - 1.0));
+    squares += error * error;
+    beyond_two_percent += std::abs(error) > 0.02 ? 1 : 0;
+    EXPECT_LT(std::abs(error), 0.09) << "case A" << value("case", row) << ", side " << side
+                                     << ", y = " << value("y_ws", row) << " mm";
+  }
+  const double rms = std::sqrt(squares / static_cast<double>(rows));
+  std::printf(
+      "normal force against CONTACT, %zu wheels: rms %.2f %%, largest %.1f %% (curvature at the point: %.1f %%), %d "
+      "beyond 2 %%; penetration within %.2f %%\n",
+      rows, 100 * rms, 100 * worst, 100 * worst_published, beyond_two_percent, 100 * approach);
+  EXPECT_EQ(rows, 84u);
+  EXPECT_LT(rms, 0.015);
+  EXPECT_LT(approach, 0.01);
+  EXPECT_LT(4.0 * worst, worst_published);
+}
+
+}  // namespace
+}  // namespace railtab
