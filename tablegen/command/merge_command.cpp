@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "railtab/tablegen/creep_job.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Files = std::vector<std::filesystem::path>;
+
+/// The file type that all shards have. @throws InputError
+std::string shard_type(const Files& shards) {
+  std::string type;
+  for (const std::filesystem::path& shard : shards) {
+    const std::string found = array_file_type(shard);
+    if (found == creep_partial_filetype) {
+      throw input_error(shard.string(), "an unfinished shard", "a finished one; run its tablegen command again");
+    }
+    if (found != creep_shard_filetype) throw input_error(shard.string(), found, "a shard of a table");
+    if (type.empty()) type = found;
+  }
+  return type;
+}
+
+}  // namespace
+
+void merge_command(const std::vector<std::string>& arguments) {
+  namespace po = boost::program_options;
+  po::options_description own("Arguments");
+  own.add_options()("shard", po::value<std::vector<std::string>>()->value_name("SHARD.h5"), "all shards of a table")  //
+      ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table");
+  const CommandLine line("tablegen merge SHARD.h5... -o FILE.h5", own, {"shard..."}, arguments);
+  if (line.help_printed()) return;
+  const std::string file = line.required("output");
+  const std::vector<std::string> names = line.required_many("shard");
+  const Files shards(names.begin(), names.end());
+  require_folder(file);
+  for (const std::filesystem::path& shard : shards) require_no_input(file, {shard});
+  static_cast<void>(shard_type(shards));
+  CreepTableData table = merge_creep_shards(shards);
+  table.provenance = provenance("merge", arguments);
+  write_creep_table(file, table);
+  if (line.json()) {
+    const nlohmann::ordered_json j{{"kind", "creep"},
+                                   {"file", file},
+                                   {"shards", shards.size()},
+                                   {"checksum", array_file_checksum(file)},
+                                   {"file_bytes", std::filesystem::file_size(file)}};
+    fmt::print("{}\n", j.dump(2));
+  } else if (!line.quiet()) {
+    fmt::print("{}: merged from {} shards\n", file, shards.size());
+  }
+}
+
+}  // namespace railtab
