@@ -145,15 +145,6 @@ ContactPatches ContactSearch::patches(const WheelsetPose& pose, double near_miss
   return result;
 }
 
-void ContactSearch::add_patches_between(double s_low, double s_high, const WheelsetPose& pose,
-                                        const PoseTrigonometry& trig, double near_miss,
-                                        ContactPatches& result) const noexcept {
-  const double most = static_cast<double>(scan_.blocks() * ContactScan::block_size);
-  const auto point = [&](double s) { return std::clamp((s - scan_.s_wheel(0)) / scan_.spacing(), 0.0, most); };
-  const ScanRange range{static_cast<int>(point(s_low)), static_cast<int>(std::ceil(point(s_high)))};
-  add_patches(pair_, scan_, range, pose, trig, near_miss, result);
-}
-
 namespace {
 
 // A block whose scan points are this much higher than the limit holds no minimum below it [m].

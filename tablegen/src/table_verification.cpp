@@ -32,7 +32,6 @@ struct Query {
   WheelsetPose pose;
   bool touches = false;
   bool answered = false;
-  bool searched = false;
 };
 
 /// Draws poses and lowers each wheel below its first touch; the latter in parallel.
@@ -128,7 +127,6 @@ void compare_queries(const TableContact& contact, const ContactSearch& finer, do
       if (!q.touches) continue;
       ContactPatches answer;
       q.answered = contact.patches_from_table(q.pose, 0.0, answer);
-      q.searched = q.answered && contact.searches_windows(q.pose, 0.0);
       if (!q.answered || !compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
       ++own_mismatched.online;
       std::vector<PatchError> unused;
@@ -245,7 +243,6 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   std::vector<PatchError> errors;
   Mismatches mismatched;
   const ContactSearch finer(search.pair(), finer_spacing);
-  int searched = 0;
   // In portions, so that progress can be told and positions where the wheel does not touch are drawn again.
   const int portion = std::min(options.samples, 5000);
   std::vector<Query> timed;
@@ -257,7 +254,6 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
       result.samples += q.touches;
       result.never_touching += !q.touches;
       result.answered_by_table += q.answered;
-      searched += q.searched;
     }
     if (result.never_touching > 20 * (result.samples + portion)) {
       throw ComputationError("verification: the wheel does not meet the rail in more than 95 % of the range");
@@ -266,7 +262,6 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
     timed = std::move(queries);
   }
   result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;
-  result.searched_share = static_cast<double>(searched) / result.samples;
   if (result.answered_by_table > 0) {
     result.patch_mismatch_share = static_cast<double>(mismatched.online) / result.answered_by_table;
     result.finer_mismatch_share = static_cast<double>(mismatched.finer) / result.answered_by_table;

@@ -54,7 +54,7 @@ void run(benchmark::State& state, const Case& c, const Query& query) {
 }
 
 void look_up(benchmark::State& state, const Case& c) {
-  run(state, c, [&](const WheelsetPose& p) { return c.contact.table().lookup(p.y, p.yaw, p.roll); });
+  run(state, c, [&](const WheelsetPose& p) { return c.contact.table().lookup(p.y, p.z, p.yaw, p.roll); });
 }
 void table(benchmark::State& state, const Case& c) {
   run(state, c, [&](const WheelsetPose& p) { return c.contact.patches(p); });

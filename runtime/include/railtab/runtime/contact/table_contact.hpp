@@ -16,32 +16,23 @@ class TableContact {
   /// As ContactSearch::patches; patches from the fallback have an online source.
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose, double near_miss = 0.0) const noexcept;
 
-  /// The table's own answer. @return false where it has none (outside, a branch that begins or ends, a start that does
-  /// not lead to its pair); `result`, empty at the call, is then without meaning. Where a branch begins or ends, the
-  /// table's search windows, short stretches of the wheel profile, are searched.
+  /// The table's own answer. @return false where it has none (outside, lowered further than the cell is trusted, a
+  /// start that does not lead to its pair); `result`, empty at the call, is then without meaning.
   [[nodiscard]] bool patches_from_table(const WheelsetPose& pose, double near_miss,
-                                        ContactPatches& result) const noexcept;
-
-  /// Whether the table's own answer needs a search in its windows.
-  [[nodiscard]] bool searches_windows(const WheelsetPose& pose, double near_miss) const noexcept;
-
-  /// The patches to which the starts of these branches lead, whether or not there are others; added to `result`, in
-  /// increasing y_rail. @return false where a start leads nowhere, too far, or to the pair of another one.
-  [[nodiscard]] bool add_branch_patches(const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
-                                        const PoseTrigonometry& trig, double near_miss,
                                         ContactPatches& result) const noexcept;
 
   [[nodiscard]] const GeometryTable& table() const noexcept { return table_; }
   [[nodiscard]] const ContactSearch& search() const noexcept { return search_; }
 
  private:
-  enum class Route { branches, windows, online };
-  [[nodiscard]] Route route(const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
-                            double near_miss) const noexcept;
-
   GeometryTable table_;
   ContactSearch search_;
-  double steepest_;  ///< largest height per normal distance on any branch [-]
 };
+
+/// The patches to which the starts of a table's branches lead, whether or not there are others; added to `result`, in
+/// increasing y_rail. @return false where a start leads nowhere, too far, or to the pair of another one.
+[[nodiscard]] bool add_branch_patches(const WheelRailPair& pair, const GeometryTable::Lookup& lookup,
+                                      const WheelsetPose& pose, const PoseTrigonometry& trig, double near_miss,
+                                      ContactPatches& result) noexcept;
 
 }  // namespace railtab
