@@ -68,8 +68,7 @@ void set_patch(const WheelRailPair& pair, double s_wheel, double s_rail, const C
   const double inverse_rail = 1.0 / std::sqrt(C.dy * C.dy + C.dz * C.dz);
   const double inverse_wheel = 1.0 / std::sqrt(wheel.dy * wheel.dy + wheel.dz * wheel.dz);
   p.penetration = ((S.z - C.z) * C.dy - (S.y - C.y) * C.dz) * inverse_rail;
-  p.curv_wheel =
-      (wheel.dz * wheel.ddy - wheel.dy * wheel.ddz) * inverse_wheel * inverse_wheel * inverse_wheel;
+  p.curv_wheel = (wheel.dz * wheel.ddy - wheel.dy * wheel.ddz) * inverse_wheel * inverse_wheel * inverse_wheel;
   p.curv_rail = (C.dy * C.ddz - C.dz * C.ddy) * inverse_rail * inverse_rail * inverse_rail;
   // The wheel's normal leans from the axle's radial direction by the slope of its own section alone.
   p.curv_rolling = wheel.dy * inverse_wheel / p.rolling_radius;

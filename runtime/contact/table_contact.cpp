@@ -69,7 +69,8 @@ bool add_branch_patches(const WheelRailPair& pair, const GeometryTable::Lookup& 
     if (patch.penetration <= -near_miss) continue;
     patch.source = PatchSource::table;
     // The branches of a leaf stand in increasing s_rail, so this is rare.
-    for (int place = result.count++; place > 0 && result.patch[place - 1].y_rail > result.patch[place].y_rail; --place) {
+    for (int place = result.count++; place > 0 && result.patch[place - 1].y_rail > result.patch[place].y_rail;
+         --place) {
       std::swap(result.patch[place - 1], result.patch[place]);
     }
   }

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <system_error>
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -35,6 +37,7 @@ po::options_description geometry_options() {
       ("yaw", text_value("-0.030:0.030")->value_name("LO:HI"), "wheelset yaw")                                  //
       ("roll", text_value("0:0")->value_name("LO:HI"), "wheelset roll against the rail head")                   //
       ("tolerance", text_value("1e-8")->value_name("M"), "penetration error asked for")                         //
+      ("shard", text_value("1/1")->value_name("I/N"), "make part I of N only, for tablegen merge")              //
       ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table");
   return own;
 }
@@ -46,6 +49,19 @@ PairDimensions dimensions(const CommandLine& line) {
   d.flange_back = line.number("flange-back");
   d.nominal_radius = line.number("wheel-radius");
   return d;
+}
+
+TableShard shard(const CommandLine& line) {
+  const std::string text = line.required("shard");
+  TableShard result;
+  const char* const end = text.data() + text.size();
+  const auto [slash, first_error] = std::from_chars(text.data(), end, result.index);
+  const bool separated = first_error == std::errc() && slash != end && *slash == '/';
+  if (separated) {
+    const auto [last, error] = std::from_chars(slash + 1, end, result.count);
+    if (error == std::errc() && last == end) return result;
+  }
+  throw input_error("--shard", text, "I/N, part I of N");
 }
 
 void check_folder(const std::string& file) {
@@ -71,6 +87,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
   options.yaw = line.interval("yaw");
   options.roll = line.interval("roll");
   options.tolerance = line.number("tolerance");
+  options.shard = shard(line);
   options.validate();
 
   const double inclination = line.slope("rail-inclination");

@@ -81,9 +81,9 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
                       table.track_gauge, 1e3 * table.gauge_height, table.flange_back, table.nominal_radius);
   text += fmt::format("  lateral      {:.3f} .. {:.3f} mm, {} root cells (y - R0 roll)\n", 1e3 * table.lateral.low,
                       1e3 * table.lateral.high, table.lateral.cells);
-  text += fmt::format("  yaw          +-{:.3f} .. +-{:.3f} mrad, {} root cells (even in yaw)\n",
-                      milliradians(table.yaw_squared.low), milliradians(table.yaw_squared.high),
-                      table.yaw_squared.cells);
+  text +=
+      fmt::format("  yaw          +-{:.3f} .. +-{:.3f} mrad, {} root cells (even in yaw)\n",
+                  milliradians(table.yaw_squared.low), milliradians(table.yaw_squared.high), table.yaw_squared.cells);
   text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} root cells\n", 1e3 * table.roll.low,
                       1e3 * table.roll.high, table.roll.cells);
   text += fmt::format("  cells        {}, with {} branches; {} limited in the height of the wheel\n",
@@ -91,7 +91,8 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
   text += fmt::format("  size         {:.2f} MiB on disk\n",
                       static_cast<double>(std::filesystem::file_size(file)) / 1048576.0);
   if (!table.shard.whole()) {
-    text += fmt::format("  part         {} of {}: to be merged with the others\n", table.shard.index, table.shard.count);
+    text +=
+        fmt::format("  part         {} of {}: to be merged with the others\n", table.shard.index, table.shard.count);
     return text;
   }
   text += fmt::format(

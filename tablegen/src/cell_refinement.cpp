@@ -165,9 +165,8 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
   bool wrong = false;
   const auto missing = [&](const ContactPatches& from, const ContactPatches& in) {
     for (const ContactPatch& p : from) {
-      const bool found = std::any_of(in.begin(), in.end(), [&](const ContactPatch& q) {
-        return std::abs(p.s_wheel - q.s_wheel) < same_pair;
-      });
+      const bool found = std::any_of(
+          in.begin(), in.end(), [&](const ContactPatch& q) { return std::abs(p.s_wheel - q.s_wheel) < same_pair; });
       if (found || p.penetration < grazing) continue;
       wrong = true;
       const double height = pose.z - lookup.first_touch - p.penetration / std::cos(p.angle);
@@ -213,7 +212,8 @@ std::size_t CellRefinement::axis_to_halve(const BoxSamples& samples, const Trial
       double fitted = 0;
       for (int t = 0; t < terms; ++t) {
         const int place = (b * terms + t) * branch_quantities + 1;
-        fitted += static_cast<double>(trial.coefficient[static_cast<std::size_t>(place)]) * m[static_cast<std::size_t>(t)];
+        fitted +=
+            static_cast<double>(trial.coefficient[static_cast<std::size_t>(place)]) * m[static_cast<std::size_t>(t)];
       }
       residual[n] = fitted - d.s_wheel;
       s_wheel[n] = d.s_wheel;

@@ -35,7 +35,9 @@ class CellRefinement {
   [[nodiscard]] bool in_range(const CellBox& box) const;
   [[nodiscard]] double share_of_queries(const CellBox& box) const;
   [[nodiscard]] std::size_t axis_to_halve(const BoxSamples& samples, const Trial& trial) const;
-  [[nodiscard]] bool axis_fixed(std::size_t axis) const noexcept { return axis == 1 ? !yaw_axis_ : axis == 2 && !roll_axis_; }
+  [[nodiscard]] bool axis_fixed(std::size_t axis) const noexcept {
+    return axis == 1 ? !yaw_axis_ : axis == 2 && !roll_axis_;
+  }
 
   const ContactSearch& search_;
   const GeometrySweepOptions& options_;

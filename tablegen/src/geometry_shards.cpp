@@ -37,12 +37,14 @@ GeometryTableData merge_geometry_tables(std::vector<GeometryTableData> parts) {
   for (std::size_t n = 0; n < parts.size(); ++n) {
     const TableShard& shard = parts[n].shard;
     const std::string name = fmt::format("geometry part {}/{}", shard.index, shard.count);
-    if (shard.count != count) throw input_error(name, fmt::format("a part of {}", shard.count), fmt::format("of {}", count));
+    if (shard.count != count)
+      throw input_error(name, fmt::format("a part of {}", shard.count), fmt::format("of {}", count));
     const std::string other = difference(parts.front(), parts[n]);
     if (!other.empty()) throw input_error(name, other, fmt::format("that of part {}", parts.front().shard.index));
     if (shard.index != static_cast<int>(n) + 1) {
       const bool twice = n > 0 && shard.index == parts[n - 1].shard.index;
-      throw input_error("geometry parts", twice ? fmt::format("part {} twice", shard.index) : fmt::format("no part {}", n + 1),
+      throw input_error("geometry parts",
+                        twice ? fmt::format("part {} twice", shard.index) : fmt::format("no part {}", n + 1),
                         fmt::format("parts 1 to {}, each once", count));
     }
     const auto [first, end] = root_range(shard, root_cells(parts[n]));

@@ -40,7 +40,8 @@ void set_axes(const GeometrySweepOptions& o, GeometryTableData& table) {
   const double yaw_low = through_zero ? 0.0 : std::min(std::abs(o.yaw.low), std::abs(o.yaw.high));
   const double yaw_high = std::max(std::abs(o.yaw.low), std::abs(o.yaw.high));
   table.yaw_squared = {yaw_low * yaw_low, yaw_high * yaw_high, yaw_low < yaw_high ? o.yaw_roots : 1};
-  table.roll = {o.roll.low, o.roll.high, o.roll.low < o.roll.high ? cells_for(o.roll.high - o.roll.low, o.roll_root) : 1};
+  table.roll = {o.roll.low, o.roll.high,
+                o.roll.low < o.roll.high ? cells_for(o.roll.high - o.roll.low, o.roll_root) : 1};
 }
 
 CellBox root_box(const GeometryTableData& table, std::int64_t root) {
@@ -116,8 +117,7 @@ void GeometrySweepOptions::validate() const {
   check_range("fallback cell", fallback_cell, 1e-12, 1);
   check_range("tolerance [m]", tolerance, 1e-12, 1e-3);
   if (!(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count)) {
-    throw input_error("geometry sweep: shard", fmt::format("{}/{}", shard.index, shard.count),
-                      "I/N with I in 1..N");
+    throw input_error("geometry sweep: shard", fmt::format("{}/{}", shard.index, shard.count), "I/N with I in 1..N");
   }
 }
 

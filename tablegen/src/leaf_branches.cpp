@@ -36,7 +36,8 @@ BoxSamples::BoxSamples(const ContactSearch& search, const CellBox& box, double l
 
 void BoxSamples::search_samples(const ContactSearch& search) {
   const auto local = [&](std::size_t axis, std::size_t n) {
-    return size_[axis] == 1 ? 0.0 : enlarged * (2.0 * static_cast<double>(n) / static_cast<double>(size_[axis] - 1) - 1.0);
+    return size_[axis] == 1 ? 0.0
+                            : enlarged * (2.0 * static_cast<double>(n) / static_cast<double>(size_[axis] - 1) - 1.0);
   };
   for (std::size_t k = 0; k < size_[2]; ++k)
     for (std::size_t j = 0; j < size_[1]; ++j)
@@ -180,8 +181,7 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
       const ContactPatch& patch = s.lowered.patch[n];
       const double shift = patch.penetration * std::sin(patch.angle);  // y* - y = -d n_y
       const double z = s.pose.z + lowering_ - patch.penetration * std::cos(patch.angle);
-      std::vector<BranchDatum> way{
-          datum(s, s.pose.y + shift, z, -std::sin(patch.angle), patch.s_wheel, patch.s_rail)};
+      std::vector<BranchDatum> way{datum(s, s.pose.y + shift, z, -std::sin(patch.angle), patch.s_wheel, patch.s_rail)};
       const int steps = std::clamp(static_cast<int>(std::ceil(std::abs(shift) / half)), 1, 4);
       TouchPoint touch = touch_of_pair(search.pair(), {s.pose.y + shift, 0, s.pose.roll, s.pose.yaw}, trig,
                                        patch.s_wheel, patch.s_rail);
@@ -189,9 +189,8 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
       for (int k = steps - 1; k >= 0 && followed; --k) {
         const double y = s.pose.y + shift * k / steps;
         const double dy = -shift / steps;
-        const RefinedTouch r =
-            refine_touch(search.pair(), {y, 0, s.pose.roll, s.pose.yaw}, trig, touch.s_wheel + dy * touch.s_wheel_dy,
-                         touch.s_rail + dy * touch.s_rail_dy);
+        const RefinedTouch r = refine_touch(search.pair(), {y, 0, s.pose.roll, s.pose.yaw}, trig,
+                                            touch.s_wheel + dy * touch.s_wheel_dy, touch.s_rail + dy * touch.s_rail_dy);
         followed = r.status == PairStatus::converged;
         touch = r.touch;
         const double sine = touch.z_touch_dy / std::hypot(1.0, touch.z_touch_dy);

@@ -22,12 +22,12 @@ struct CellBox {
 
 /// What the online search says at one point of a box.
 struct BoxSample {
-  std::array<double, 3> local{};      ///< -1..1, 0 on a fixed axis
-  std::array<int, 3> grid{};          ///< place among the samples along each axis
-  WheelsetPose pose;                  ///< z: of first touch; NaN where the wheel does not meet the rail
-  TouchPoints touches;                ///< up to some height above first touch, in increasing s_wheel
-  ContactPatches lowered;             ///< patches at the largest lowering
-  std::array<int, TouchPoints::capacity> component{};          ///< branch of each touch
+  std::array<double, 3> local{};  ///< -1..1, 0 on a fixed axis
+  std::array<int, 3> grid{};      ///< place among the samples along each axis
+  WheelsetPose pose;              ///< z: of first touch; NaN where the wheel does not meet the rail
+  TouchPoints touches;            ///< up to some height above first touch, in increasing s_wheel
+  ContactPatches lowered;         ///< patches at the largest lowering
+  std::array<int, TouchPoints::capacity> component{};           ///< branch of each touch
   std::array<int, ContactPatches::capacity> patch_component{};  ///< branch of each patch; -1: of none
 };
 
@@ -53,8 +53,8 @@ class BoxSamples {
   BoxSamples(const ContactSearch& search, const CellBox& box, double lowering);
 
   [[nodiscard]] const std::vector<BoxSample>& samples() const noexcept { return samples_; }
-  /// Those that can touch at up to the largest lowering, from the inner to the outer one; the lowest where they are more
-  /// than a leaf holds.
+  /// Those that can touch at up to the largest lowering, from the inner to the outer one; the lowest where they are
+  /// more than a leaf holds.
   [[nodiscard]] const std::vector<SampledBranch>& branches() const noexcept { return branches_; }
   /// The wheel meets the rail at every sample.
   [[nodiscard]] bool touches_everywhere() const noexcept { return touches_everywhere_; }

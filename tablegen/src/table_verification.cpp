@@ -10,6 +10,7 @@
 #include <random>
 
 #include "railtab/runtime/contact/hertz.hpp"
+#include "railtab/runtime/contact/paper_search.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -108,6 +109,8 @@ bool compare_patches(const ContactPatches& table, const ContactPatches& online, 
 
 /// Scan of the search that judges where table and online search differ [m].
 constexpr double finer_spacing = 0.02e-3;
+/// Points per profile of the published search that is timed for comparison.
+constexpr int paper_points = 1000;
 
 struct Mismatches {
   int online = 0;  ///< queries at which the table differs from the online search
@@ -168,6 +171,11 @@ void measure_time(const TableContact& contact, const std::vector<Query>& queries
   result.time_table_ns = nanoseconds_per_query(answered, 10, from_table);
   result.time_online_ns = nanoseconds_per_query(answered, 2, online);
   result.time_with_fallback_ns = nanoseconds_per_query(all, 5, from_table);
+  // A thousand queries of it take as long as a hundred thousand of the table.
+  answered.resize(std::min<std::size_t>(answered.size(), 1000));
+  const PaperSearch paper(contact.search().pair(), paper_points);
+  result.time_paper_ns =
+      nanoseconds_per_query(answered, 2, [&](const WheelsetPose& pose) { return paper.patches(pose).count; });
 }
 
 void set_errors(const std::vector<PatchError>& errors, GeometryVerification& result) {

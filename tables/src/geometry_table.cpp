@@ -31,8 +31,8 @@ namespace {
 void check_axis(const TableAxis& axis, std::string_view name) {
   if (!(std::isfinite(axis.low) && std::isfinite(axis.high) && axis.low <= axis.high && axis.cells >= 1 &&
         (!axis.fixed() || axis.cells == 1))) {
-    throw input_error(fmt::format("axis {}", name),
-                      fmt::format("{}..{} in {} cells", axis.low, axis.high, axis.cells), "low..high in cells");
+    throw input_error(fmt::format("axis {}", name), fmt::format("{}..{} in {} cells", axis.low, axis.high, axis.cells),
+                      "low..high in cells");
   }
 }
 
@@ -221,11 +221,10 @@ GeometryTable::Lookup GeometryTable::lookup(double y, double z, double yaw, doub
   const double squared = (yaw * yaw - axis_[1].low) * axis_[1].inverse_width;
   const double rolled = (roll - axis_[2].low) * axis_[2].inverse_width;
   // On a fixed axis it is the yaw, not its square, that has to agree. NaN is outside.
-  const bool inside =
-      lateral >= 0 && lateral <= axis_[0].cells &&
-      (yaw_axis ? squared >= 0 && squared <= axis_[1].cells
-                : std::abs(std::abs(yaw) - std::sqrt(axis_[1].low)) <= 1e-12) &&
-      (roll_axis ? rolled >= 0 && rolled <= axis_[2].cells : std::abs(roll - axis_[2].low) <= 1e-12);
+  const bool inside = lateral >= 0 && lateral <= axis_[0].cells &&
+                      (yaw_axis ? squared >= 0 && squared <= axis_[1].cells
+                                : std::abs(std::abs(yaw) - std::sqrt(axis_[1].low)) <= 1e-12) &&
+                      (roll_axis ? rolled >= 0 && rolled <= axis_[2].cells : std::abs(roll - axis_[2].low) <= 1e-12);
   if (!inside) return result;
   result.status = Status::inside;
 

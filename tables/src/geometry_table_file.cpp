@@ -116,9 +116,10 @@ void write_cells(ArrayFileWriter& file, const GeometryTableData& table) {
   file.write("cells/trusted_lowering", table.trusted_lowering, {table.trusted_lowering.size()}, "m",
              "per leaf: lowering below first touch up to which its branches are all that can touch");
   const std::size_t terms = terms_of(table);
-  file.write("branches/coefficient", table.coefficient, {table.coefficient.size() / (4 * terms), terms, 4}, "m; 1",
-             "per branch, in the order of the leaves: polynomials of the leaf's local coordinates for z_touch, s_wheel, "
-             "s_rail [m] and n_y [1]");
+  file.write(
+      "branches/coefficient", table.coefficient, {table.coefficient.size() / (4 * terms), terms, 4}, "m; 1",
+      "per branch, in the order of the leaves: polynomials of the leaf's local coordinates for z_touch, s_wheel, "
+      "s_rail [m] and n_y [1]");
 }
 
 /// One table file being read; every error names the file and the dataset.

@@ -8,8 +8,8 @@
 #include "railtab/tablegen/geometry_sweep.hpp"
 
 // Contact patches of one wheel at random positions that the table answers: S1002 on 60E1 1:40, y ±12 mm, yaw ±30 mrad,
-// 0..0.3 mm below first touch. "LookUp" is the interpolation alone, "Table" with the Newton on the profiles, "Online"
-// the search that the table stands for.
+// 0..0.3 mm below first touch. "LookUp" is the leaf and its polynomials alone, "Table" with the Newton on the profiles,
+// "Online" the search that the table stands for.
 namespace {
 
 using namespace railtab;

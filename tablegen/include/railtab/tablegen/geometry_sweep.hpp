@@ -24,8 +24,8 @@ struct GeometrySweepOptions {
   double roll_root = 2.5e-3;          ///< largest width of a root cell along roll, 1e-5..0.05 [rad]
   double searched_lowering = 0.4e-3;  ///< lowering below first touch up to which the table is made, 1e-6..0.01 [m]
   double start_error = 8e-6;          ///< a cell is halved where its starts are further off along the wheel [m] ...
-  double iterated_cell = 3e-5;        ///< ... as long as this share of uniform queries or more falls into it
-  double fallback_cell = 1e-5;        ///< ... and as long as this share of uniform queries falls back in it
+  double iterated_cell = 2e-5;        ///< ... as long as this share of uniform queries or more falls into it
+  double fallback_cell = 2e-6;        ///< ... and as long as this share of uniform queries falls back in it
   TableShard shard;                   ///< the slab of root cells that is made
   double tolerance = 1e-8;            ///< penetration error asked for, 1e-12..1e-3 [m]
 
@@ -37,14 +37,16 @@ struct GeometrySweepOptions {
 using Progress = std::function<void(double)>;
 
 /// Halves the root cells until every leaf's polynomials lead the Newton iteration to what the online search finds, at
-/// points of the closed leaf and lowerings up to searched_lowering (OpenMP over the root cells, each by itself). What is
-/// still wrong in the smallest leaves limits the lowering up to which they are trusted.
+/// points of the closed leaf and lowerings up to searched_lowering (OpenMP over the root cells, each by itself). What
+/// is still wrong in the smallest leaves limits the lowering up to which they are trusted.
 /// @throws InputError for options out of range, ComputationError where the wheel meets the rail nowhere in the range.
 [[nodiscard]] GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
                                                const Progress& progress = {});
 
-/// sweep_geometry(), and, of a whole table, certify_geometry_table(), with finer cells until it keeps its word.
-/// @throws ComputationError where the third refinement does not reach the tolerance; the message says what was reached.
+/// sweep_geometry(), and, of a whole table, certify_geometry_table(), with finer cells until it keeps its word. A part
+/// (options.shard) is not certified: merge_geometry_tables() first.
+/// @throws ComputationError where the second refinement does not reach the tolerance; the message says what was
+/// reached.
 [[nodiscard]] GeometryTableData generate_geometry_table(const ContactSearch& search,
                                                         const GeometrySweepOptions& options,
                                                         const Progress& progress = {});
@@ -57,6 +59,6 @@ using Progress = std::function<void(double)>;
 /// in it.
 /// @return whether the penetration error is within the tolerance at the 99.9 % point and no patch is missed or
 ///         invented, a search with a finer scan judging where the table differs from the online search.
-[[nodiscard]] bool certify_geometry_table(const ContactSearch& search, GeometryTableData& table);
+[[nodiscard]] bool certify_geometry_table(GeometryTableData& table);
 
 }  // namespace railtab

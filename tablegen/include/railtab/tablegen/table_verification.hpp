@@ -48,6 +48,7 @@ struct GeometryVerification {
   double time_table_ns = 0;               ///< per query that the table answered, the best of several passes [ns]
   double time_online_ns = 0;              ///< online search on the same queries
   double time_with_fallback_ns = 0;       ///< per query, fallback included
+  double time_paper_ns = 0;               ///< the published method's search with 1000 points, on some of them
   std::size_t bytes = 0;                  ///< memory of the look-up
 
   [[nodiscard]] std::array<std::pair<std::string_view, const ErrorStatistics*>, 6> errors() const {

@@ -27,10 +27,16 @@ struct SineCosine {
     constexpr double series_limit = 0.25;  // [rad] the first term left out is 1e-21 of the result
     const double x = angle * angle;
     if (x <= series_limit * series_limit) {
-      sine = angle * (1 - x * (1.0 / 6) * (1 - x * (1.0 / 20) * (1 - x * (1.0 / 42) * (1 - x * (1.0 / 72) *
-             (1 - x * (1.0 / 110) * (1 - x * (1.0 / 156)))))));
-      cosine = 1 - x * 0.5 * (1 - x * (1.0 / 12) * (1 - x * (1.0 / 30) * (1 - x * (1.0 / 56) * (1 - x * (1.0 / 90) *
-               (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
+      sine = angle * (1 - x * (1.0 / 6) *
+                              (1 - x * (1.0 / 20) *
+                                       (1 - x * (1.0 / 42) *
+                                                (1 - x * (1.0 / 72) * (1 - x * (1.0 / 110) * (1 - x * (1.0 / 156)))))));
+      cosine =
+          1 - x * 0.5 *
+                  (1 - x * (1.0 / 12) *
+                           (1 - x * (1.0 / 30) *
+                                    (1 - x * (1.0 / 56) *
+                                             (1 - x * (1.0 / 90) * (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
     } else {
       sine = std::sin(angle);
       cosine = std::cos(angle);
