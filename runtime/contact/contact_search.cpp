@@ -34,7 +34,7 @@ void insert(ContactPatches& patches, const ContactPatch& patch) noexcept {
   for (ContactPatch* p = begin; p != end; ++p) {
     // Two neighbouring brackets that share their common end point can both end there; a table's patch is that near to
     // the search's.
-    if (std::abs(p->s_wheel - patch.s_wheel) < 1e-7) return;
+    if (std::abs(p->s_wheel - patch.s_wheel) < 5e-6) return;
   }
   if (patches.count == ContactPatches::capacity) {
     patches.overflow = true;
@@ -143,6 +143,15 @@ ContactPatches ContactSearch::patches(const WheelsetPose& pose, double near_miss
   add_patches(pair_, scan_, {0, scan_.blocks() * ContactScan::block_size}, pose, PoseTrigonometry(pose), near_miss,
               result);
   return result;
+}
+
+void ContactSearch::add_patches_between(double s_low, double s_high, const WheelsetPose& pose,
+                                        const PoseTrigonometry& trig, double near_miss,
+                                        ContactPatches& result) const noexcept {
+  const double most = static_cast<double>(scan_.blocks() * ContactScan::block_size);
+  const auto point = [&](double s) { return std::clamp((s - scan_.s_wheel(0)) / scan_.spacing(), 0.0, most); };
+  const ScanRange range{static_cast<int>(point(s_low)), static_cast<int>(std::ceil(point(s_high)))};
+  add_patches(pair_, scan_, range, pose, trig, near_miss, result);
 }
 
 namespace {

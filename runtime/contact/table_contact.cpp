@@ -1,6 +1,7 @@
 #include "railtab/runtime/contact/table_contact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,7 +23,7 @@ constexpr double height_margin = 4e-6;
 /// A refined pair further from its start than this is another branch's [m].
 constexpr double capture_distance = 0.5e-3;
 /// Two refined pairs nearer than this are one [m].
-constexpr double same_pair = 1e-6;
+constexpr double same_pair = 5e-6;
 /// A gap counts as vertical height at most this many times: 1/cos of the steepest contact angle, 80 degrees [-].
 constexpr double steepest_gap = 6.0;
 
@@ -33,38 +34,40 @@ TableContact::TableContact(GeometryTable table) : table_(std::move(table)), sear
 ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss) const noexcept {
   ContactPatches result;
   if (!patches_from_table(pose, near_miss, result)) {
-    result.count = 0;
     result = search_.patches(pose, near_miss);
   }
   return result;
 }
 
-bool TableContact::patches_from_table(const WheelsetPose& pose, double near_miss,
-                                      ContactPatches& result) const noexcept {
+TableAnswer TableContact::answer(const WheelsetPose& pose, double near_miss, ContactPatches& result) const noexcept {
   const GeometryTable::Lookup lookup = table_.lookup(pose.y, pose.z, pose.yaw, pose.roll);
-  if (lookup.status == GeometryTable::Status::outside || lookup.count == 0) return false;
+  if (lookup.status == GeometryTable::Status::outside || lookup.count == 0) return TableAnswer::none;
   const double lowering = pose.z + near_miss * steepest_gap - lookup.first_touch;
   // A limit of 0 is a branch that may touch before all of these: it is to be searched at any height.
-  if (!(lookup.trusted_lowering > 0 && lowering <= lookup.trusted_lowering)) return false;
-  if (!add_branch_patches(search_.pair(), lookup, pose, PoseTrigonometry(pose), near_miss, result)) return false;
-  result.from_table = true;
-  return true;
+  if (!(lookup.trusted_lowering > 0 && lowering <= lookup.trusted_lowering)) return TableAnswer::none;
+  const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), near_miss, result);
+  result.from_table = answer != TableAnswer::none;
+  return answer;
 }
 
-bool add_branch_patches(const WheelRailPair& pair, const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
-                        const PoseTrigonometry& trig, double near_miss, ContactPatches& result) noexcept {
+TableAnswer add_branch_patches(const ContactSearch& search, const GeometryTable::Lookup& lookup,
+                               const WheelsetPose& pose, const PoseTrigonometry& trig, double near_miss,
+                               ContactPatches& result) noexcept {
   static_assert(GeometryTable::max_branches <= ContactPatches::capacity);
+  const WheelRailPair& pair = search.pair();
   const WheelsetCentre centre = wheelset_centre(pair, pose);
+  std::array<double, GeometryTable::max_branches> astray;  // starts that led to no pair of their own
+  int strays = 0;
   for (int n = 0; n < lookup.count; ++n) {
     const BranchStart& start = lookup.branch[n];
     if (start.distance < -near_miss - height_margin) continue;
     ContactPatch& patch = result.patch[result.count];
-    if (polish_pair(pair, centre, trig, start.s_wheel, start.s_rail, patch) != PairStatus::converged ||
-        std::abs(patch.s_wheel - start.s_wheel) > capture_distance) {
-      return false;
-    }
-    for (const ContactPatch& other : result) {
-      if (std::abs(other.s_wheel - patch.s_wheel) < same_pair) return false;
+    bool own = polish_pair(pair, centre, trig, start.s_wheel, start.s_rail, patch) == PairStatus::converged &&
+               std::abs(patch.s_wheel - start.s_wheel) <= capture_distance;
+    for (int m = 0; m < result.count && own; ++m) own = std::abs(result.patch[m].s_wheel - patch.s_wheel) >= same_pair;
+    if (!own) {
+      astray[strays++] = start.s_wheel;
+      continue;
     }
     if (patch.penetration <= -near_miss) continue;
     patch.source = PatchSource::table;
@@ -74,7 +77,13 @@ bool add_branch_patches(const WheelRailPair& pair, const GeometryTable::Lookup& 
       std::swap(result.patch[place - 1], result.patch[place]);
     }
   }
-  return true;
+  if (strays == 0) return TableAnswer::looked_up;
+  for (int n = 0; n < strays; ++n) {
+    search.add_patches_between(astray[n] - capture_distance, astray[n] + capture_distance, pose, trig, near_miss,
+                               result);
+  }
+  for (int n = 0; n < result.count; ++n) result.patch[n].source = PatchSource::table;
+  return result.overflow ? TableAnswer::none : TableAnswer::searched;
 }
 
 }  // namespace railtab

@@ -17,6 +17,7 @@ nlohmann::ordered_json description(const GeometryVerification& v) {
   j["never_touching"] = v.never_touching;
   j["patches_compared"] = v.patches_compared;
   j["fallback_share"] = v.fallback_share;
+  j["searched_share"] = v.searched_share;
   j["patch_mismatch_share"] = v.patch_mismatch_share;
   j["finer_mismatch_share"] = v.finer_mismatch_share;
   for (const auto& [quantity, errors] : v.errors()) {
@@ -32,11 +33,11 @@ nlohmann::ordered_json description(const GeometryVerification& v) {
 
 std::string text(const GeometryVerification& v) {
   std::string out = fmt::format(
-      "{} random queries, {} answered by the table (fallback {:.3f} %), {} patches "
+      "{} random queries, {} answered by the table (fallback {:.3f} %; {:.2f} % with a short search), {} patches "
       "compared with the online search\n"
       "patches missed or invented at {:.4f} % of the queries answered ({:.4f} % against a finer search)\n\n",
-      v.samples, v.answered_by_table, 100 * v.fallback_share, v.patches_compared, 100 * v.patch_mismatch_share,
-      100 * v.finer_mismatch_share);
+      v.samples, v.answered_by_table, 100 * v.fallback_share, 100 * v.searched_share, v.patches_compared,
+      100 * v.patch_mismatch_share, 100 * v.finer_mismatch_share);
   out +=
       fmt::format("{:24}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "error", "mean", "p50", "p95", "p99", "p99.9", "max");
   for (const auto& [quantity, errors] : v.errors()) {

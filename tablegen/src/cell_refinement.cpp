@@ -13,7 +13,7 @@ namespace {
 /// A limit found at a few points holds for the whole leaf only with some room below it [m].
 constexpr double height_margin = 20e-6;
 /// Table and online search agree where their pairs are this near along the wheel [m].
-constexpr double same_pair = 1e-6;
+constexpr double same_pair = 5e-6;
 /// A patch shallower than this may be on one side only [m].
 constexpr double grazing = 1e-8;
 constexpr int inside_checks = 16;       ///< points inside every cell
@@ -34,13 +34,13 @@ struct CellRefinement::Trial {
   std::vector<float> coefficient;
   double trusted_lowering = 0;
   int checks = 0;
-  int unanswered = 0;      ///< checks at which the online search would have to answer
+  int searched = 0;        ///< checks at which a start would lead nowhere
   int wrong = 0;           ///< checks at which the patches differ
   double start_error = 0;  ///< largest, along the wheel [m]
   bool empty = false;      ///< the wheel meets the rail nowhere
   std::size_t axis = 0;    ///< to be halved if any
 
-  [[nodiscard]] double failing() const { return checks == 0 ? 1.0 : static_cast<double>(unanswered + wrong) / checks; }
+  [[nodiscard]] double failing() const { return checks == 0 ? 1.0 : static_cast<double>(searched + wrong) / checks; }
 };
 
 CellRefinement::CellRefinement(const ContactSearch& search, const GeometrySweepOptions& options)
@@ -97,7 +97,7 @@ void CellRefinement::refine(const CellBox& box, std::size_t node, CellTree& tree
       refine(half, lower + 1, tree);
       return;
     }
-    if (trial.unanswered + trial.wrong > 0) check_inside(box, inside_checks, last_inside_checks, trial);
+    if (trial.searched + trial.wrong > 0) check_inside(box, inside_checks, last_inside_checks, trial);
   }
   tree.node[node] = CellNode::leaf(static_cast<std::uint32_t>(tree.leaf_branch.size()));
   tree.leaf_branch.push_back(static_cast<std::uint32_t>(trial.branches));
@@ -158,10 +158,8 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
   GeometryTable::evaluate(trial.coefficient.data(), trial.branches, yaw_axis_, roll_axis_, point,
                           2.0 / (box.high[0] - box.low[0]), pose.z, lookup);
   ContactPatches table;
-  if (!add_branch_patches(search_.pair(), lookup, pose, PoseTrigonometry(pose), 0.0, table)) {
-    ++trial.unanswered;
-    return;
-  }
+  const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), 0.0, table);
+  trial.searched += answer == TableAnswer::searched;
   bool wrong = false;
   const auto missing = [&](const ContactPatches& from, const ContactPatches& in) {
     for (const ContactPatch& p : from) {
@@ -196,7 +194,7 @@ std::size_t largest(const std::array<double, 3>& values) {
 /// neighbours; else, where the samples lie on the polynomials, along which s_wheel bends the most.
 std::size_t CellRefinement::axis_to_halve(const BoxSamples& samples, const Trial& trial) const {
   const std::array<double, 3> changes = samples.changes();
-  if (trial.unanswered + trial.wrong > 0 && changes[largest(changes)] > 0) return largest(changes);
+  if (trial.searched + trial.wrong > 0 && changes[largest(changes)] > 0) return largest(changes);
   std::array<double, 3> error{}, bend{};
   const int terms = branch_terms(yaw_axis_, roll_axis_);
   const std::vector<BoxSample>& all = samples.samples();

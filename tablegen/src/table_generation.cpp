@@ -16,6 +16,7 @@ void store_statistics(const GeometryVerification& v, GeometryTableData& table) {
   table.statistics.emplace_back("certified.samples", v.samples);
   table.statistics.emplace_back("certified.answered_by_table", v.answered_by_table);
   table.statistics.emplace_back("certified.fallback_share", v.fallback_share);
+  table.statistics.emplace_back("certified.searched_share", v.searched_share);
   table.statistics.emplace_back("certified.finer_mismatch_share", v.finer_mismatch_share);
   table.statistics.emplace_back("certified.patch_mismatch_share", v.patch_mismatch_share);
   for (const auto& [quantity, errors] : v.errors()) {

@@ -33,6 +33,7 @@ struct Query {
   WheelsetPose pose;
   bool touches = false;
   bool answered = false;
+  bool searched = false;
 };
 
 /// Draws poses and lowers each wheel below its first touch; the latter in parallel.
@@ -129,7 +130,9 @@ void compare_queries(const TableContact& contact, const ContactSearch& finer, do
       Query& q = queries[n];
       if (!q.touches) continue;
       ContactPatches answer;
-      q.answered = contact.patches_from_table(q.pose, 0.0, answer);
+      const TableAnswer way = contact.answer(q.pose, 0.0, answer);
+      q.answered = way != TableAnswer::none;
+      q.searched = way == TableAnswer::searched;
       if (!q.answered || !compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
       ++own_mismatched.online;
       std::vector<PatchError> unused;
@@ -250,6 +253,7 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   result.bytes = contact.table().bytes();
   std::vector<PatchError> errors;
   Mismatches mismatched;
+  int searched = 0;
   const ContactSearch finer(search.pair(), finer_spacing);
   // In portions, so that progress can be told and positions where the wheel does not touch are drawn again.
   const int portion = std::min(options.samples, 5000);
@@ -262,6 +266,7 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
       result.samples += q.touches;
       result.never_touching += !q.touches;
       result.answered_by_table += q.answered;
+      searched += q.searched;
     }
     if (result.never_touching > 20 * (result.samples + portion)) {
       throw ComputationError("verification: the wheel does not meet the rail in more than 95 % of the range");
@@ -269,6 +274,7 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
     if (progress) progress(static_cast<double>(result.samples) / options.samples);
     timed = std::move(queries);
   }
+  result.searched_share = static_cast<double>(searched) / result.samples;
   result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;
   if (result.answered_by_table > 0) {
     result.patch_mismatch_share = static_cast<double>(mismatched.online) / result.answered_by_table;

@@ -25,7 +25,7 @@ struct GeometrySweepOptions {
   double searched_lowering = 0.4e-3;  ///< lowering below first touch up to which the table is made, 1e-6..0.01 [m]
   double start_error = 8e-6;          ///< a cell is halved where its starts are further off along the wheel [m] ...
   double iterated_cell = 2e-5;        ///< ... as long as this share of uniform queries or more falls into it
-  double fallback_cell = 2e-6;        ///< ... and as long as this share of uniform queries falls back in it
+  double fallback_cell = 2e-6;        ///< ... and as long as this share of uniform queries is searched in it
   TableShard shard;                   ///< the slab of root cells that is made
   double tolerance = 1e-8;            ///< penetration error asked for, 1e-12..1e-3 [m]
 

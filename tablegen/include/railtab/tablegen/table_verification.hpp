@@ -39,6 +39,7 @@ struct GeometryVerification {
   int never_touching = 0;  ///< draws thrown away because the wheel does not meet the rail there
   int patches_compared = 0;
   double fallback_share = 0;        ///< of the samples: the whole profile searched
+  double searched_share = 0;        ///< of the samples: answered by the table with a search about a start
   double patch_mismatch_share = 0;  ///< queries with a patch missed or invented, of those answered by the table
   /// The same against a search with a scan of 0.02 mm: the online search, too, can miss a minimum just born.
   double finer_mismatch_share = 0;

@@ -32,6 +32,11 @@ class ContactSearch {
   /// A minimum at an open end of a profile is not a contact.
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose, double near_miss = 0.0) const noexcept;
 
+  /// Adds to `result` the patches that patches() finds on the scan intervals that meet the stretch s_low..s_high of the
+  /// wheel profile [m]; a patch within 5 µm of one already there is that one.
+  void add_patches_between(double s_low, double s_high, const WheelsetPose& pose, const PoseTrigonometry& trig,
+                           double near_miss, ContactPatches& result) const noexcept;
+
   /// Every local minimum of the vertical gap between wheel and rail, whatever the height of the wheel: one TouchPoint
   /// per branch, with exact derivatives along y. A wheel at pose.z = z_touch touches there; the least z_touch is where
   /// it first touches. At the touch, vertical gap and normal distance have the same minimum.
