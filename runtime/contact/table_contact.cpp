@@ -24,12 +24,25 @@ constexpr double height_margin = 4e-6;
 constexpr double capture_distance = 0.5e-3;
 /// Two refined pairs nearer than this are one [m].
 constexpr double same_pair = 5e-6;
-/// A gap counts as vertical height at most this many times: 1/cos of the steepest contact angle, 80 degrees [-].
-constexpr double steepest_gap = 6.0;
+
+/// Largest vertical height per unit of normal distance on any branch: 1/n_z, n_y from the middle of its leaf.
+double steepest_branch(const GeometryTableData& data) {
+  const auto stride =
+      static_cast<std::size_t>(branch_quantities * branch_terms(!data.yaw_squared.fixed(), !data.roll.fixed()));
+  float least = 1.0F;
+  for (std::size_t n = 0; n < data.coefficient.size(); n += stride) {
+    const float normal_y = data.coefficient[n + 3];
+    least = std::min(least, 1.0F - normal_y * normal_y);
+  }
+  constexpr double off_middle = 1.1;  // it is a little steeper elsewhere in the leaf
+  constexpr double most = 10.0;       // beyond that, a gap to a wall
+  return std::min(most, off_middle / std::sqrt(static_cast<double>(std::max(least, 1e-4F))));
+}
 
 }  // namespace
 
-TableContact::TableContact(GeometryTable table) : table_(std::move(table)), search_(pair_of(table_.data())) {}
+TableContact::TableContact(GeometryTable table)
+    : table_(std::move(table)), search_(pair_of(table_.data())), steepest_(steepest_branch(table_.data())) {}
 
 ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss) const noexcept {
   ContactPatches result;
@@ -42,7 +55,7 @@ ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss)
 TableAnswer TableContact::answer(const WheelsetPose& pose, double near_miss, ContactPatches& result) const noexcept {
   const GeometryTable::Lookup lookup = table_.lookup(pose.y, pose.z, pose.yaw, pose.roll);
   if (lookup.status == GeometryTable::Status::outside || lookup.count == 0) return TableAnswer::none;
-  const double lowering = pose.z + near_miss * steepest_gap - lookup.first_touch;
+  const double lowering = pose.z + near_miss * steepest_ - lookup.first_touch;
   // A limit of 0 is a branch that may touch before all of these: it is to be searched at any height.
   if (!(lookup.trusted_lowering > 0 && lowering <= lookup.trusted_lowering)) return TableAnswer::none;
   const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), near_miss, result);

@@ -120,6 +120,11 @@ void info_command(const std::vector<std::string>& arguments) {
   if (line.given("html")) require_no_input(line.text("html"), {file});
   const std::string text = table_text(data, file);
   nlohmann::ordered_json description = table_description(data, file);
+  if (!data.shard.whole()) {
+    if (line.given("html")) throw input_error(file, "a part of a table", "a whole one: merge the parts first");
+    fmt::print("{}", line.json() ? description.dump(2) + "\n" : text);
+    return;
+  }
   const TableContact table{GeometryTable(data)};
   const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
   if (line.given("html")) {

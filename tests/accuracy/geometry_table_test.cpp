@@ -193,7 +193,7 @@ TEST(GeometryTableAccuracy, NearMissesAreThoseOfTheOnlineSearch) {
   const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), coarse()))};
   std::mt19937 random(5);
   std::uniform_real_distribution<double> y(-0.011, 0.011), yaw(-0.03, 0.03), dz(-3e-4, 3e-4);
-  const double near_miss = 2e-5;
+  const double near_miss = 1e-4;
   int gaps = 0;
   for (int n = 0; n < 3000; ++n) {
     WheelsetPose pose{y(random), 0, 0, yaw(random)};
@@ -206,7 +206,7 @@ TEST(GeometryTableAccuracy, NearMissesAreThoseOfTheOnlineSearch) {
       gaps += table.patch[p].penetration < 0;
     }
   }
-  EXPECT_GT(gaps, 100);
+  EXPECT_GT(gaps, 300);
 }
 
 TEST(GeometryTableAccuracy, ALookUpDoesNotAllocate) {

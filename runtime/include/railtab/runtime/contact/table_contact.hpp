@@ -37,6 +37,7 @@ class TableContact {
  private:
   GeometryTable table_;
   ContactSearch search_;
+  double steepest_;  ///< largest height per normal distance on any branch [-]
 };
 
 /// The patches to which the starts of a table's branches lead, added to `result`, in increasing y_rail. Where a branch
