@@ -25,13 +25,37 @@ Step newton_step(double a, double b, double c, double d, double det, double f, d
   return step;
 }
 
+// Eqs. 1-4 at a pair: t_r·d_wr (f) and t_w x t_r (g), with their derivatives by (s_wheel, s_rail).
+struct CommonNormal {
+  CurvePoint C;
+  SilhouettePoint S;
+  double f, g, f_w, f_r, g_w, g_r, det;
+
+  CommonNormal(const CurvePoint& wheel, const CurvePoint& rail, double axial, double radius,
+               const WheelsetCentre& centre, const PoseTrigonometry& trig) noexcept
+      : C(rail), S(placed(silhouette_point(wheel, axial, radius, trig), centre, trig)) {
+    const double ey = S.y - C.y;
+    const double ez = S.z - C.z;
+    f = C.dy * ey + C.dz * ez;
+    g = S.ty * C.dz - S.tz * C.dy;
+    f_w = C.dy * S.dy + C.dz * S.dz;
+    f_r = C.ddy * ey + C.ddz * ez - C.dy * C.dy - C.dz * C.dz;
+    g_w = S.dty * C.dz - S.dtz * C.dy;
+    g_r = S.ty * C.ddz - S.tz * C.ddy;
+    det = f_w * g_r - f_r * g_w;
+  }
+
+  [[nodiscard]] Step newton_step() const noexcept { return railtab::newton_step(f_w, f_r, g_w, g_r, det, f, g); }
+  // At the solution det = speed |t_r|^3 |t_w|^2 (1 - kappa_r d)(kappa_r/(1 - kappa_r d) + kappa_w).
+  [[nodiscard]] bool is_minimum() const noexcept { return det > 0.0 && f_r < 0.0 && S.speed > 0.0; }
+};
+
 bool off_profile(const WheelRailPair& pair, double s_wheel, double s_rail) noexcept {
   return !pair.wheel().contains(s_wheel) || !pair.rail().contains(s_rail);
 }
 
-ContactPatch patch_of(const WheelRailPair& pair, double s_wheel, double s_rail, const CurvePoint& wheel,
-                      const SilhouettePoint& S, const CurvePoint& C) noexcept {
-  ContactPatch p;
+void set_patch(const WheelRailPair& pair, double s_wheel, double s_rail, const CurvePoint& wheel,
+               const SilhouettePoint& S, const CurvePoint& C, double angle, ContactPatch& p) noexcept {
   p.s_wheel = s_wheel;
   p.s_rail = s_rail;
   p.y_rail = C.y;
@@ -39,15 +63,23 @@ ContactPatch patch_of(const WheelRailPair& pair, double s_wheel, double s_rail, 
   p.y_wheel = wheel.y;
   p.z_wheel = wheel.z;
   p.x = S.x;
-  p.angle = std::atan2(C.dz, C.dy);
+  p.angle = angle;
   p.rolling_radius = pair.nominal_radius() + wheel.z;
-  p.penetration = ((S.z - C.z) * C.dy - (S.y - C.y) * C.dz) / std::sqrt(C.dy * C.dy + C.dz * C.dz);
-  p.curv_wheel = -wheel.curvature();
-  p.curv_rail = C.curvature();
+  const double inverse_rail = 1.0 / std::sqrt(C.dy * C.dy + C.dz * C.dz);
+  const double inverse_wheel = 1.0 / std::sqrt(wheel.dy * wheel.dy + wheel.dz * wheel.dz);
+  p.penetration = ((S.z - C.z) * C.dy - (S.y - C.y) * C.dz) * inverse_rail;
+  p.curv_wheel = (wheel.dz * wheel.ddy - wheel.dy * wheel.ddz) * inverse_wheel * inverse_wheel * inverse_wheel;
+  p.curv_rail = (C.dy * C.ddz - C.dz * C.ddy) * inverse_rail * inverse_rail * inverse_rail;
   // The wheel's normal leans from the axle's radial direction by the slope of its own section alone.
-  p.curv_rolling = wheel.dy / (std::sqrt(wheel.dy * wheel.dy + wheel.dz * wheel.dz) * p.rolling_radius);
+  p.curv_rolling = wheel.dy * inverse_wheel / p.rolling_radius;
   p.concave = p.curv_wheel < 0.0;
   p.source = PatchSource::online_convex;
+}
+
+ContactPatch patch_of(const WheelRailPair& pair, double s_wheel, double s_rail, const CurvePoint& wheel,
+                      const SilhouettePoint& S, const CurvePoint& C) noexcept {
+  ContactPatch p;
+  set_patch(pair, s_wheel, s_rail, wheel, S, C, std::atan2(C.dz, C.dy), p);
   return p;
 }
 
@@ -69,28 +101,15 @@ RefinedPair refine_pair(const WheelRailPair& pair, const WheelsetPose& pose, con
   double previous = largest_step;
   for (result.iterations = 1; result.iterations <= max_iterations; ++result.iterations) {
     const CurvePoint wheel = pair.wheel().at(s_wheel);
-    const CurvePoint C = pair.rail().at(s_rail);
-    const SilhouettePoint S = placed(silhouette_point(wheel, axial, radius, trig), centre, trig);
-    if (!S.exists) return result;
-    // Eq. 1: t_r·d_wr and t_w x t_r; rows of the Jacobian by (s_wheel, s_rail).
-    const double ey = S.y - C.y;
-    const double ez = S.z - C.z;
-    const double f = C.dy * ey + C.dz * ez;
-    const double g = S.ty * C.dz - S.tz * C.dy;
-    const double f_w = C.dy * S.dy + C.dz * S.dz;
-    const double f_r = C.ddy * ey + C.ddz * ez - C.dy * C.dy - C.dz * C.dz;
-    const double g_w = S.dty * C.dz - S.dtz * C.dy;
-    const double g_r = S.ty * C.ddz - S.tz * C.ddy;
-    const double det = f_w * g_r - f_r * g_w;
-    const Step step = newton_step(f_w, f_r, g_w, g_r, det, f, g);
+    const CommonNormal at(wheel, pair.rail().at(s_rail), axial, radius, centre, trig);
+    if (!at.S.exists) return result;
+    const Step step = at.newton_step();
     const double size = step.size();
     result.residual = size;
     if (size < tolerance || (size < rounding_step && size >= 0.5 * previous)) {
-      result.patch = patch_of(pair, s_wheel, s_rail, wheel, S, C);
-      // At the solution det = speed |t_r|^3 |t_w|^2 (1 - kappa_r d)(kappa_r/(1 - kappa_r d) + kappa_w).
-      const bool minimum = det > 0.0 && f_r < 0.0 && S.speed > 0.0;
+      result.patch = patch_of(pair, s_wheel, s_rail, wheel, at.S, at.C);
       result.status = off_profile(pair, s_wheel, s_rail) ? PairStatus::off_profile
-                      : minimum                          ? PairStatus::converged
+                      : at.is_minimum()                  ? PairStatus::converged
                                                          : PairStatus::not_a_minimum;
       return result;
     }
@@ -101,6 +120,43 @@ RefinedPair refine_pair(const WheelRailPair& pair, const WheelsetPose& pose, con
   }
   result.iterations = max_iterations;
   return result;
+}
+
+PairStatus polish_pair(const WheelRailPair& pair, const WheelsetCentre& centre, const PoseTrigonometry& trig,
+                       double s_wheel, double s_rail, ContactPatch& patch) noexcept {
+  constexpr int most_iterations = 8;
+  constexpr double last_step = 20e-6;  // [m]
+  const ProfileCurve& wheel = pair.wheel();
+  const ProfileCurve& rail = pair.rail();
+  const double axial = pair.tape_circle_offset();
+  const double radius = pair.nominal_radius();
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const std::size_t wheel_piece = wheel.piece_of(s_wheel);
+    const std::size_t rail_piece = rail.piece_of(s_rail);
+    const CommonNormal at(wheel.on_piece(wheel_piece, s_wheel), rail.on_piece(rail_piece, s_rail), axial, radius,
+                          centre, trig);
+    if (!at.S.exists) return PairStatus::not_converged;
+    const Step step = at.newton_step();
+    const double size = step.size();
+    if (!(size < std::numeric_limits<double>::infinity())) return PairStatus::not_converged;
+    s_wheel += step.wheel;
+    s_rail += step.rail;
+    if (size > last_step || !wheel.piece_contains(wheel_piece, s_wheel) || !rail.piece_contains(rail_piece, s_rail)) {
+      continue;
+    }
+    if (!at.is_minimum()) return PairStatus::not_a_minimum;
+    // The silhouette point to second order across the normal, along which alone its place matters; the rest exactly.
+    SilhouettePoint S = at.S;
+    const double bend = 0.5 * step.wheel * step.wheel * S.speed;
+    S.y += step.wheel * S.dy + bend * S.dty;
+    S.z += step.wheel * S.dz + bend * S.dtz;
+    const CurvePoint W = wheel.on_piece(wheel_piece, s_wheel);
+    const CurvePoint C = rail.on_piece(rail_piece, s_rail);
+    S.x = -trig.sin_yaw * (axial + W.y + (radius + W.z) * (W.dz / W.dy));
+    set_patch(pair, s_wheel, s_rail, W, S, C, rail.tangent_angle(rail_piece, C), patch);
+    return off_profile(pair, s_wheel, s_rail) ? PairStatus::off_profile : PairStatus::converged;
+  }
+  return PairStatus::not_converged;
 }
 
 namespace {

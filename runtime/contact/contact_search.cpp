@@ -34,7 +34,7 @@ void insert(ContactPatches& patches, const ContactPatch& patch) noexcept {
   for (ContactPatch* p = begin; p != end; ++p) {
     // Two neighbouring brackets that share their common end point can both end there; a table's patch is that near to
     // the search's.
-    if (std::abs(p->s_wheel - patch.s_wheel) < 1e-7) return;
+    if (std::abs(p->s_wheel - patch.s_wheel) < 5e-6) return;
   }
   if (patches.count == ContactPatches::capacity) {
     patches.overflow = true;

@@ -56,10 +56,13 @@ GapBracket GapWalk::bracket(const GapSlope& left, const GapSlope& right) const n
   GapSlope b = right;
   for (int i = 0; i < 8; ++i) {
     // Where the end tangents meet: at once the kink of a slope that bends at a profile joint, and a bound of a smooth
-    // one.
+    // one. Where the slope is both, bent before the kink, it goes beyond that bound by a part of what the tangents
+    // change over the width.
+    constexpr double bend = 0.1;
     const double width = b.s_wheel - a.s_wheel;
     const double x = (b.slope - a.slope - b.slope_ds * width) / (a.slope_ds - b.slope_ds);
-    if (sign * (a.slope + x * a.slope_ds) >= 0.0) return {};
+    const double reserve = bend * width * (std::abs(a.slope_ds) + std::abs(b.slope_ds));
+    if (sign * (a.slope + x * a.slope_ds) >= reserve) return {};
     const double t = std::clamp(x / width, 0.02, 0.98);
     const double s = a.s_wheel + t * width;
     const GapSlope c = at(wheel_point(s), s, a.s_rail + t * (b.s_rail - a.s_rail));

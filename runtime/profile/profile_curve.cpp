@@ -10,11 +10,6 @@
 
 namespace railtab {
 
-double CurvePoint::curvature() const noexcept {
-  const double t2 = dy * dy + dz * dz;
-  return (dy * ddz - dz * ddy) / (t2 * std::sqrt(t2));
-}
-
 namespace {
 
 void check(const ProfileKnots& k) {
@@ -52,6 +47,7 @@ ProfileCurve::ProfileCurve(ProfileKnots knots) : knots_(std::move(knots)) {
                       (k.dy[i] + k.dy[i + 1] - 2 * vy) / (h * h), k.z[i], k.dz[i],
                       (3 * vz - 2 * k.dz[i] - k.dz[i + 1]) / h, (k.dz[i] + k.dz[i + 1] - 2 * vz) / (h * h)});
   }
+  for (const Piece& piece : piece_) start_angle_.push_back(std::atan2(piece.z1, piece.y1));
   start_ = k.s;
   start_.back() = std::numeric_limits<double>::quiet_NaN();  // no s is beyond it
   fill_buckets();

@@ -102,7 +102,7 @@ std::vector<Job> read_jobs(const CommandLine& line) {
     jobs.push_back(std::move(job));
   }
   if (!line.given("only")) return jobs;
-  const Shard part = line.shard("only");
+  const TableShard part = line.shard("only");
   std::vector<Job> own;
   for (std::size_t i = static_cast<std::size_t>(part.index - 1); i < jobs.size();
        i += static_cast<std::size_t>(part.count)) {

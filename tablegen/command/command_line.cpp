@@ -101,7 +101,7 @@ Interval CommandLine::interval(const std::string& name) const {
   throw input_error("--" + name, fmt::format("\"{}\"", found), "LO:HI, two numbers in SI units with LO not above HI");
 }
 
-Shard CommandLine::shard(const std::string& name) const {
+TableShard CommandLine::shard(const std::string& name) const {
   const std::string found = text(name);
   const std::size_t stroke = found.find('/');
   if (stroke != std::string::npos) {

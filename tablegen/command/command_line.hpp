@@ -36,7 +36,7 @@ class CommandLine {
   /// "LO:HI". @throws InputError
   [[nodiscard]] Interval interval(const std::string& name) const;
   /// "I/N" with 1 <= I <= N. @throws InputError
-  [[nodiscard]] Shard shard(const std::string& name) const;
+  [[nodiscard]] TableShard shard(const std::string& name) const;
   /// A slope as a fraction "1:40" or a number. @throws InputError
   [[nodiscard]] double slope(const std::string& name) const;
 

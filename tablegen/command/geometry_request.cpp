@@ -38,7 +38,8 @@ po::options_description geometry_options() {
       ("yaw", text_value("-0.030:0.030")->value_name("LO:HI"), "wheelset yaw")                                  //
       ("roll", text_value("0:0")->value_name("LO:HI"), "wheelset roll against the rail head")                   //
       ("tolerance", text_value("1e-8")->value_name("M"), "penetration error asked for")                         //
-      ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table");
+      ("shard", po::value<std::string>()->value_name("I/N"), "make one of N parts only, for tablegen merge")    //
+      ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table, or the shard");
   return own;
 }
 
@@ -53,6 +54,7 @@ GeometryRequest geometry_request(const CommandLine& line) {
   options.yaw = line.interval("yaw");
   options.roll = line.interval("roll");
   options.tolerance = line.number("tolerance");
+  if (line.given("shard")) options.shard = line.shard("shard");
   options.validate();
 
   const double inclination = line.slope("rail-inclination");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 
 #include "command_line.hpp"
@@ -17,10 +18,15 @@ namespace railtab {
 
 namespace {
 
-/// Cells that send at least some query to the online search.
-long limited_cells(const GeometryTableData& table) {
+/// Leaves that send some queries to the online search by the height of the wheel alone.
+long limited_leaves(const GeometryTableData& table) {
+  const auto most = std::max_element(table.trusted_lowering.begin(), table.trusted_lowering.end());
   return std::count_if(table.trusted_lowering.begin(), table.trusted_lowering.end(),
-                       [](double height) { return std::isfinite(height); });
+                       [&](float height) { return height < *most; });
+}
+
+std::size_t branches_of(const GeometryTableData& table) {
+  return std::accumulate(table.leaf_branch.begin(), table.leaf_branch.end(), std::size_t{0});
 }
 
 double statistic(const GeometryTableData& table, std::string_view name) {
@@ -40,8 +46,8 @@ std::vector<std::string> profile_notes(const GeometryTableData& table) {
 }  // namespace
 
 nlohmann::ordered_json table_description(const GeometryTableData& table, const std::string& file) {
-  const auto axis = [](const std::vector<double>& nodes) {
-    return nlohmann::ordered_json{{"low", nodes.front()}, {"high", nodes.back()}, {"nodes", nodes.size()}};
+  const auto axis = [](const TableAxis& a) {
+    return nlohmann::ordered_json{{"low", a.low}, {"high", a.high}, {"root_cells", a.cells}};
   };
   nlohmann::ordered_json j;
   j["kind"] = "geometry";
@@ -53,10 +59,11 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   j["flange_back"] = table.flange_back;
   j["nominal_radius"] = table.nominal_radius;
   j["axes"] = {{"lateral", axis(table.lateral)}, {"yaw_squared", axis(table.yaw_squared)}, {"roll", axis(table.roll)}};
-  j["branches"] = table.branches.size();
-  j["cells"] = table.trusted_lowering.size();
-  j["cells_limited"] = limited_cells(table);
-  j["bytes"] = GeometryTable(table).bytes();
+  j["shard"] = {{"index", table.shard.index}, {"count", table.shard.count}};
+  j["leaves"] = table.leaf_branch.size();
+  j["leaves_limited"] = limited_leaves(table);
+  j["branches"] = branches_of(table);
+  if (table.shard.whole()) j["bytes"] = GeometryTable(table).bytes();
   j["file_bytes"] = std::filesystem::file_size(file);
   j["tolerance"] = table.tolerance;
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
@@ -72,18 +79,22 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
   std::string text = fmt::format("{}: contact geometry of {} on {}\n", file, table.wheel.name, table.rail.name);
   text += fmt::format("  pair         gauge {:.4f} m at {:.1f} mm, flange backs {:.4f} m, nominal radius {:.4f} m\n",
                       table.track_gauge, 1e3 * table.gauge_height, table.flange_back, table.nominal_radius);
-  text += fmt::format("  lateral      {:.3f} .. {:.3f} mm, {} nodes (y - R0 roll)\n", 1e3 * table.lateral.front(),
-                      1e3 * table.lateral.back(), table.lateral.size());
-  text += fmt::format("  yaw          +-{:.3f} .. +-{:.3f} mrad, {} nodes (even in yaw)\n",
-                      milliradians(table.yaw_squared.front()), milliradians(table.yaw_squared.back()),
-                      table.yaw_squared.size());
-  text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} nodes\n", 1e3 * table.roll.front(),
-                      1e3 * table.roll.back(), table.roll.size());
-  text += fmt::format("  branches     {}, in {} cells, of which {} are limited (a branch begins or ends nearby)\n",
-                      table.branches.size(), table.trusted_lowering.size(), limited_cells(table));
-  text += fmt::format("  size         {:.2f} MiB on disk, {:.2f} MiB in memory\n",
-                      static_cast<double>(std::filesystem::file_size(file)) / 1048576.0,
-                      static_cast<double>(GeometryTable(table).bytes()) / 1048576.0);
+  text += fmt::format("  lateral      {:.3f} .. {:.3f} mm, {} root cells (y - R0 roll)\n", 1e3 * table.lateral.low,
+                      1e3 * table.lateral.high, table.lateral.cells);
+  text +=
+      fmt::format("  yaw          +-{:.3f} .. +-{:.3f} mrad, {} root cells (even in yaw)\n",
+                  milliradians(table.yaw_squared.low), milliradians(table.yaw_squared.high), table.yaw_squared.cells);
+  text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} root cells\n", 1e3 * table.roll.low,
+                      1e3 * table.roll.high, table.roll.cells);
+  text += fmt::format("  cells        {}, with {} branches; {} limited in the height of the wheel\n",
+                      table.leaf_branch.size(), branches_of(table), limited_leaves(table));
+  text += fmt::format("  size         {:.2f} MiB on disk\n",
+                      static_cast<double>(std::filesystem::file_size(file)) / 1048576.0);
+  if (!table.shard.whole()) {
+    text +=
+        fmt::format("  part         {} of {}: to be merged with the others\n", table.shard.index, table.shard.count);
+    return text;
+  }
   text += fmt::format(
       "  certified    on {:.0f} queries: fallback {:.2f} %, patches missed or invented {:.3f} %,\n"
       "               penetration error {:.2g} m (99.9 %), {:.2g} m (largest); asked for {:.2g} m\n",
@@ -109,6 +120,11 @@ void info_command(const std::vector<std::string>& arguments) {
   if (line.given("html")) require_no_input(line.text("html"), {file});
   const std::string text = table_text(data, file);
   nlohmann::ordered_json description = table_description(data, file);
+  if (!data.shard.whole()) {
+    if (line.given("html")) throw input_error(file, "a part of a table", "a whole one: merge the parts first");
+    fmt::print("{}", line.json() ? description.dump(2) + "\n" : text);
+    return;
+  }
   const TableContact table{GeometryTable(data)};
   const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
   if (line.given("html")) {

@@ -5,8 +5,10 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "railtab/tablegen/creep_job.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
 
@@ -24,10 +26,30 @@ std::string shard_type(const Files& shards) {
     if (found == creep_partial_filetype) {
       throw input_error(shard.string(), "an unfinished shard", "a finished one; run its tablegen command again");
     }
-    if (found != creep_shard_filetype) throw input_error(shard.string(), found, "a shard of a table");
+    if (found != creep_shard_filetype && found != geometry_table_filetype) {
+      throw input_error(shard.string(), found, "a shard of a table");
+    }
     if (type.empty()) type = found;
+    if (type != found) throw input_error(shard.string(), found, type + ", as " + shards.front().string());
   }
   return type;
+}
+
+void merge_creep(const Files& shards, const std::string& file, const TableProvenance& provenance) {
+  CreepTableData table = merge_creep_shards(shards);
+  table.provenance = provenance;
+  write_creep_table(file, table);
+}
+
+void merge_geometry(const Files& shards, const std::string& file, const TableProvenance& provenance) {
+  std::vector<GeometryTableData> parts;
+  for (const std::filesystem::path& shard : shards) parts.push_back(read_geometry_table(shard));
+  GeometryTableData table = merge_geometry_tables(std::move(parts));
+  if (!certify_geometry_table(table)) {
+    throw ComputationError(file + ": the merged table does not keep its tolerance; make it with a finer one");
+  }
+  table.provenance = provenance;
+  write_geometry_table(file, table);
 }
 
 }  // namespace
@@ -44,12 +66,10 @@ void merge_command(const std::vector<std::string>& arguments) {
   const Files shards(names.begin(), names.end());
   require_folder(file);
   for (const std::filesystem::path& shard : shards) require_no_input(file, {shard});
-  static_cast<void>(shard_type(shards));
-  CreepTableData table = merge_creep_shards(shards);
-  table.provenance = provenance("merge", arguments);
-  write_creep_table(file, table);
+  const bool geometry = shard_type(shards) == geometry_table_filetype;
+  (geometry ? merge_geometry : merge_creep)(shards, file, provenance("merge", arguments));
   if (line.json()) {
-    const nlohmann::ordered_json j{{"kind", "creep"},
+    const nlohmann::ordered_json j{{"kind", geometry ? "geometry" : "creep"},
                                    {"file", file},
                                    {"shards", shards.size()},
                                    {"checksum", array_file_checksum(file)},

@@ -44,10 +44,10 @@ nlohmann::ordered_json number_or_null(double value) {
 std::optional<WheelsetFunctions> wheelset_functions(const TableContact& table, WheelsetRoll roll,
                                                     double diameter_difference) {
   const GeometryTableData& data = table.table().data();
-  if (!(data.lateral.front() < 0.0 && data.lateral.back() > 0.0)) return std::nullopt;
+  if (!(data.lateral.low < 0.0 && data.lateral.high > 0.0)) return std::nullopt;
   WheelsetContactOptions options;
-  options.y_low = data.lateral.front();
-  options.y_high = data.lateral.back();
+  options.y_low = data.lateral.low;
+  options.y_high = data.lateral.high;
   options.roll = roll;
   options.diameter_difference = diameter_difference;
   const auto query = [&](const WheelsetPose& pose, double near_miss) { return table.patches(pose, near_miss); };

@@ -76,7 +76,7 @@ CreepShardHeader read_header(const ArrayFileReader& file, const std::filesystem:
   job.layout.poisson = file.number("options", "poisson");
   job.layout.elements = whole("elements");
   job.tolerance = file.number("options", "tolerance");
-  if (whole("shards") > 0) job.shard = Shard{whole("shard"), whole("shards")};
+  if (whole("shards") > 0) job.shard = TableShard{whole("shard"), whole("shards")};
   if (job.shard && !job.shard->valid()) {
     throw input_error(name.string() + ": options", fmt::format("shard {}/{}", job.shard->index, job.shard->count),
                       "shard I/N with 1 <= I <= N <= 100000");

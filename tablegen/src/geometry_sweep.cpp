@@ -6,10 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "railtab/tablegen/branch_tracking.hpp"
-#include "railtab/tablegen/cell_check.hpp"
-#include "railtab/tablegen/cell_trust.hpp"
-#include "railtab/tablegen/search_windows.hpp"
+#include "cell_refinement.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -32,55 +29,73 @@ void check_interval(const char* name, const Interval& interval, double limit) {
   }
 }
 
-std::vector<double> uniform_nodes(double low, double high, int cells) {
-  std::vector<double> nodes;
-  for (int i = 0; i <= cells; ++i) nodes.push_back(i == cells ? high : low + (high - low) * i / cells);
-  return nodes;
-}
-
 int cells_for(double length, double step) { return std::max(1, static_cast<int>(std::ceil(length / step - 1e-9))); }
 
-/// The lateral axis is y - R0·roll: it reaches further than y by what the largest roll shears.
-GeometryGrid make_grid(const GeometrySweepOptions& o, double nominal_radius) {
-  GeometryGrid grid;
-  const double low = o.lateral.low - nominal_radius * o.roll.high;
-  const double high = o.lateral.high - nominal_radius * o.roll.low;
-  grid.lateral = uniform_nodes(low, high, cells_for(high - low, o.lateral_step));
+void set_axes(const GeometrySweepOptions& o, GeometryTableData& table) {
+  // The lateral axis is y - R0·roll: it reaches further than y by what the largest roll shears.
+  table.lateral.low = o.lateral.low - table.nominal_radius * o.roll.high;
+  table.lateral.high = o.lateral.high - table.nominal_radius * o.roll.low;
+  table.lateral.cells = cells_for(table.lateral.high - table.lateral.low, o.lateral_root);
   const bool through_zero = o.yaw.low <= 0 && o.yaw.high >= 0;
   const double yaw_low = through_zero ? 0.0 : std::min(std::abs(o.yaw.low), std::abs(o.yaw.high));
   const double yaw_high = std::max(std::abs(o.yaw.low), std::abs(o.yaw.high));
-  grid.yaw_squared = yaw_high > yaw_low ? uniform_nodes(yaw_low * yaw_low, yaw_high * yaw_high, o.yaw_nodes - 1)
-                                        : std::vector<double>{yaw_low * yaw_low};
-  grid.roll = o.roll.high > o.roll.low
-                  ? uniform_nodes(o.roll.low, o.roll.high, cells_for(o.roll.high - o.roll.low, o.roll_step))
-                  : std::vector<double>{o.roll.low};
-  return grid;
+  table.yaw_squared = {yaw_low * yaw_low, yaw_high * yaw_high, yaw_low < yaw_high ? o.yaw_roots : 1};
+  table.roll = {o.roll.low, o.roll.high,
+                o.roll.low < o.roll.high ? cells_for(o.roll.high - o.roll.low, o.roll_root) : 1};
 }
 
-/// All minima at all nodes.
-std::vector<std::vector<BranchPoint>> search_nodes(const ContactSearch& search, const GeometryGrid& grid,
-                                                   const GeometrySweepOptions& options, const Progress& progress) {
-  const std::array<int, 3> n = grid.nodes();
-  const int total = n[0] * n[1] * n[2];
-  const double radius = search.pair().nominal_radius();
-  std::vector<std::vector<BranchPoint>> nodes(static_cast<std::size_t>(total));
-  std::atomic<int> done = 0;
-#pragma omp parallel for schedule(dynamic, 64)
-  for (int m = 0; m < total; ++m) {
-    const double roll = grid.roll[static_cast<std::size_t>(m / (n[0] * n[1]))];
-    const double yaw = std::sqrt(grid.yaw_squared[static_cast<std::size_t>(m / n[0] % n[1])]);
-    const double y = grid.lateral[static_cast<std::size_t>(m % n[0])] + radius * roll;
-    for (const TouchPoint& t : search.touches(y, roll, yaw, options.branch_height)) {
-      nodes[static_cast<std::size_t>(m)].push_back(
-          {t.z_touch, t.z_touch_dy, t.s_wheel, t.s_wheel_dy, t.s_rail, t.s_rail_dy});
-    }
-    const int count = ++done;
-    if (progress && count % 64 == 0) {
+CellBox root_box(const GeometryTableData& table, std::int64_t root) {
+  CellBox box;
+  const std::array<const TableAxis*, 3> axes{&table.lateral, &table.yaw_squared, &table.roll};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const TableAxis& axis = *axes[a];
+    const std::int64_t cell = root % axis.cells;
+    root /= axis.cells;
+    const double width = (axis.high - axis.low) / axis.cells;
+    box.low[a] = axis.low + width * static_cast<double>(cell);
+    box.high[a] = cell + 1 == axis.cells ? axis.high : axis.low + width * static_cast<double>(cell + 1);
+  }
+  return box;
+}
+
+std::vector<CellTree> make_trees(const ContactSearch& search, const GeometrySweepOptions& options,
+                                 const GeometryTableData& table, const Progress& progress) {
+  const auto [first, end] = root_range(options.shard, root_cells(table));
+  const CellRefinement refinement(search, options);
+  std::vector<CellTree> trees(static_cast<std::size_t>(end - first));
+  std::atomic<std::size_t> done = 0;
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t n = 0; n < trees.size(); ++n) {
+    trees[n] = refinement.tree(root_box(table, first + static_cast<std::int64_t>(n)));
+    const std::size_t count = ++done;
+    if (progress && count % 4 == 0) {
 #pragma omp critical(sweep_progress)
-      progress(static_cast<double>(count) / total);
+      progress(static_cast<double>(count) / static_cast<double>(trees.size()));
     }
   }
-  return nodes;
+  return trees;
+}
+
+/// Root nodes first, then each tree's other nodes together.
+void append_trees(const std::vector<CellTree>& trees, GeometryTableData& table) {
+  table.node.resize(trees.size());
+  for (std::size_t n = 0; n < trees.size(); ++n) {
+    const CellTree& tree = trees[n];
+    const std::size_t behind = table.node.size();
+    const std::size_t leaves = table.leaf_branch.size();
+    // The tree's root node 0 goes to place n, its node k > 0 to place behind + k - 1.
+    const auto moved = [&](std::uint32_t code) {
+      if (CellNode::is_leaf(code)) return CellNode::leaf(static_cast<std::uint32_t>(leaves) + CellNode::index(code));
+      return CellNode::halved(CellNode::axis(code), static_cast<std::uint32_t>(behind) + CellNode::index(code) - 1);
+    };
+    if (behind + tree.node.size() > CellNode::most) throw ComputationError("geometry sweep: more than 2^30 cells");
+    table.node[n] = moved(tree.node[0]);
+    for (std::size_t k = 1; k < tree.node.size(); ++k) table.node.push_back(moved(tree.node[k]));
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(table.leaf_branch, tree.leaf_branch);
+    append(table.trusted_lowering, tree.trusted_lowering);
+    append(table.coefficient, tree.coefficient);
+  }
 }
 
 }  // namespace
@@ -93,20 +108,22 @@ void GeometrySweepOptions::validate() const {
     throw input_error("geometry sweep: lateral [m]", fmt::format("{}:{}", lateral.low, lateral.high),
                       "low:high with low below high");
   }
-  check_range("lateral step [m]", lateral_step, 1e-6, 1e-3);
-  check_range("yaw nodes", yaw_nodes, 2, 1000);
-  check_range("roll step [rad]", roll_step, 1e-5, 0.05);
-  check_range("branch height [m]", branch_height, 1e-6, 0.1);
-  check_range("searched lowering [m]", searched_lowering, 1e-6, branch_height);
+  check_range("lateral root [m]", lateral_root, 1e-6, 1e-2);
+  check_range("yaw roots", yaw_roots, 1, 1000);
+  check_range("roll root [rad]", roll_root, 1e-5, 0.05);
+  check_range("searched lowering [m]", searched_lowering, 1e-6, 0.01);
+  check_range("start error [m]", start_error, 1e-9, 1e-3);
+  check_range("iterated cell", iterated_cell, 1e-12, 1);
+  check_range("fallback cell", fallback_cell, 1e-12, 1);
   check_range("tolerance [m]", tolerance, 1e-12, 1e-3);
+  if (!(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count)) {
+    throw input_error("geometry sweep: shard", fmt::format("{}/{}", shard.index, shard.count), "I/N with I in 1..N");
+  }
 }
 
 GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
                                  const Progress& progress) {
   options.validate();
-  const GeometryGrid grid = make_grid(options, search.pair().nominal_radius());
-  const std::vector<std::vector<BranchPoint>> nodes = search_nodes(search, grid, options, progress);
-
   const WheelRailPair& pair = search.pair();
   GeometryTableData table;
   table.wheel = pair.wheel().knots();
@@ -115,28 +132,27 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
   table.gauge_height = pair.dimensions().gauge_height;
   table.flange_back = pair.dimensions().flange_back;
   table.nominal_radius = pair.nominal_radius();
-  table.lateral = grid.lateral;
-  table.yaw_squared = grid.yaw_squared;
-  table.roll = grid.roll;
   table.tolerance = options.tolerance;
-  table.branches = track_branches(grid, nodes);
-  if (table.branches.empty()) {
+  table.shard = options.shard;
+  set_axes(options, table);
+  if (root_cells(table) < options.shard.count) {
+    throw input_error("geometry sweep: shard", fmt::format("{} parts", options.shard.count),
+                      fmt::format("at most {}, one per root cell", root_cells(table)));
+  }
+  append_trees(make_trees(search, options, table, progress), table);
+  if (options.shard.whole() && table.coefficient.empty()) {
     throw ComputationError("geometry sweep: the wheel does not meet the rail anywhere in the range");
   }
-  table.trusted_lowering = trusted_lowering(grid, table.branches);
-  limit_wrong_cells(search, options.branch_height, table);
-  set_search_windows(options.searched_lowering, table);
   table.statistics = {{"option.lateral_low", options.lateral.low},
                       {"option.lateral_high", options.lateral.high},
                       {"option.yaw_low", options.yaw.low},
                       {"option.yaw_high", options.yaw.high},
                       {"option.roll_low", options.roll.low},
                       {"option.roll_high", options.roll.high},
-                      {"option.lateral_step", options.lateral_step},
-                      {"option.yaw_nodes", static_cast<double>(options.yaw_nodes)},
-                      {"option.roll_step", options.roll_step},
-                      {"option.branch_height", options.branch_height},
-                      {"option.searched_lowering", options.searched_lowering}};
+                      {"option.searched_lowering", options.searched_lowering},
+                      {"option.start_error", options.start_error},
+                      {"option.iterated_cell", options.iterated_cell},
+                      {"option.fallback_cell", options.fallback_cell}};
   return table;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int certification_samples = 2000;
 constexpr std::uint64_t certification_seed = 20230601;
-constexpr int halvings = 3;
+constexpr int refinements = 2;
 
 void store_statistics(const GeometryVerification& v, GeometryTableData& table) {
   table.statistics.emplace_back("certified.samples", v.samples);
@@ -26,31 +26,43 @@ void store_statistics(const GeometryVerification& v, GeometryTableData& table) {
   }
 }
 
+GeometryVerification certify(GeometryTableData& table) {
+  const TableContact contact{GeometryTable(table)};
+  VerificationOptions check = verification_options(table);
+  check.samples = certification_samples;
+  check.seed = certification_seed;
+  check.timing = false;
+  const GeometryVerification result = verify_geometry_table(contact, check);
+  store_statistics(result, table);
+  return result;
+}
+
+bool keeps_its_word(const GeometryVerification& v, double tolerance) {
+  return v.penetration.p999 <= tolerance && v.finer_mismatch_share == 0;
+}
+
 }  // namespace
+
+bool certify_geometry_table(GeometryTableData& table) { return keeps_its_word(certify(table), table.tolerance); }
 
 GeometryTableData generate_geometry_table(const ContactSearch& search, const GeometrySweepOptions& options,
                                           const Progress& progress) {
+  if (!options.shard.whole()) return sweep_geometry(search, options, progress);
   GeometrySweepOptions current = options;
   GeometryVerification verification;
-  for (int halving = 0; halving <= halvings; ++halving) {
+  for (int refinement = 0; refinement <= refinements; ++refinement) {
     GeometryTableData table = sweep_geometry(search, current, progress);
-    const TableContact contact{GeometryTable(table)};
-    VerificationOptions check = verification_options(table);
-    check.samples = certification_samples;
-    check.seed = certification_seed;
-    check.timing = false;
-    verification = verify_geometry_table(contact, check);
-    if (verification.penetration.p999 <= options.tolerance && verification.finer_mismatch_share == 0) {
-      store_statistics(verification, table);
-      return table;
-    }
-    current.lateral_step *= 0.5;
+    verification = certify(table);
+    if (keeps_its_word(verification, options.tolerance)) return table;
+    current.start_error *= 0.5;
+    current.iterated_cell *= 0.25;
+    current.fallback_cell *= 0.25;
   }
-  throw ComputationError(fmt::format(
-      "geometry table: with {} mm between lateral nodes the penetration error is {} m (99.9 %) and patches are missed "
-      "or "
-      "invented at {} of the queries; asked for were {} m and none",
-      2e3 * current.lateral_step, verification.penetration.p999, verification.finer_mismatch_share, options.tolerance));
+  throw ComputationError(
+      fmt::format("geometry table: after {} refinements the penetration error is {} m (99.9 %) and patches are missed "
+                  "or invented at "
+                  "{} of the queries; asked for were {} m and none",
+                  refinements, verification.penetration.p999, verification.finer_mismatch_share, options.tolerance));
 }
 
 }  // namespace railtab

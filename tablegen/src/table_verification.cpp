@@ -10,6 +10,7 @@
 #include <random>
 
 #include "railtab/runtime/contact/hertz.hpp"
+#include "railtab/runtime/contact/paper_search.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -109,6 +110,8 @@ bool compare_patches(const ContactPatches& table, const ContactPatches& online, 
 
 /// Scan of the search that judges where table and online search differ [m].
 constexpr double finer_spacing = 0.02e-3;
+/// Points per profile of the published search that is timed for comparison.
+constexpr int paper_points = 1000;
 
 struct Mismatches {
   int online = 0;  ///< queries at which the table differs from the online search
@@ -127,8 +130,9 @@ void compare_queries(const TableContact& contact, const ContactSearch& finer, do
       Query& q = queries[n];
       if (!q.touches) continue;
       ContactPatches answer;
-      q.answered = contact.patches_from_table(q.pose, 0.0, answer);
-      q.searched = q.answered && contact.searches_windows(q.pose, 0.0);
+      const TableAnswer way = contact.answer(q.pose, 0.0, answer);
+      q.answered = way != TableAnswer::none;
+      q.searched = way == TableAnswer::searched;
       if (!q.answered || !compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
       ++own_mismatched.online;
       std::vector<PatchError> unused;
@@ -170,6 +174,11 @@ void measure_time(const TableContact& contact, const std::vector<Query>& queries
   result.time_table_ns = nanoseconds_per_query(answered, 10, from_table);
   result.time_online_ns = nanoseconds_per_query(answered, 2, online);
   result.time_with_fallback_ns = nanoseconds_per_query(all, 5, from_table);
+  // A thousand queries of it take as long as a hundred thousand of the table.
+  answered.resize(std::min<std::size_t>(answered.size(), 1000));
+  const PaperSearch paper(contact.search().pair(), paper_points);
+  result.time_paper_ns =
+      nanoseconds_per_query(answered, 2, [&](const WheelsetPose& pose) { return paper.patches(pose).count; });
 }
 
 void set_errors(const std::vector<PatchError>& errors, GeometryVerification& result) {
@@ -244,8 +253,8 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   result.bytes = contact.table().bytes();
   std::vector<PatchError> errors;
   Mismatches mismatched;
-  const ContactSearch finer(search.pair(), finer_spacing);
   int searched = 0;
+  const ContactSearch finer(search.pair(), finer_spacing);
   // In portions, so that progress can be told and positions where the wheel does not touch are drawn again.
   const int portion = std::min(options.samples, 5000);
   std::vector<Query> timed;
@@ -265,8 +274,8 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
     if (progress) progress(static_cast<double>(result.samples) / options.samples);
     timed = std::move(queries);
   }
-  result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;
   result.searched_share = static_cast<double>(searched) / result.samples;
+  result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;
   if (result.answered_by_table > 0) {
     result.patch_mismatch_share = static_cast<double>(mismatched.online) / result.answered_by_table;
     result.finer_mismatch_share = static_cast<double>(mismatched.finer) / result.answered_by_table;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,351 +11,250 @@
 
 namespace railtab {
 
-namespace {
-
-constexpr int quantities = 6;  // z, z', s_w, s_w', s_r, s_r'
-
-std::size_t nodes_in(const GeometryBranch& b) {
-  return static_cast<std::size_t>(b.size[0]) * static_cast<std::size_t>(b.size[1]) *
-         static_cast<std::size_t>(b.size[2]);
+std::pair<std::int64_t, std::int64_t> root_range(const TableShard& shard, std::int64_t roots) noexcept {
+  return {roots * (shard.index - 1) / shard.count, roots * shard.index / shard.count};
 }
 
-std::array<const std::vector<double>*, quantities> columns(const GeometryBranch& b) {
-  return {&b.z_touch, &b.z_touch_dy, &b.s_wheel, &b.s_wheel_dy, &b.s_rail, &b.s_rail_dy};
+std::int64_t root_cells(const GeometryTableData& data) noexcept {
+  return static_cast<std::int64_t>(data.lateral.cells) * data.yaw_squared.cells * data.roll.cells;
 }
 
-/// Box inside the grid, arrays of the box's size, and each node either wholly finite or wholly NaN.
-void check_branch(const GeometryBranch& b, std::size_t number, const std::array<int, 3>& grid) {
-  const std::string place = fmt::format("branch {}", number);
-  for (int a = 0; a < 3; ++a) {
-    if (b.first[a] < 0 || b.size[a] < 1 || b.first[a] + b.size[a] > grid[a]) {
-      throw input_error(place, fmt::format("nodes {}..{} along axis {}", b.first[a], b.first[a] + b.size[a] - 1, a),
-                        fmt::format("nodes in 0..{}", grid[a] - 1));
-    }
-  }
-  const auto column = columns(b);
-  for (const std::vector<double>* values : column) {
-    if (values->size() != nodes_in(b)) {
-      throw input_error(place, fmt::format("an array of {} values", values->size()),
-                        fmt::format("{}, one per node of its box", nodes_in(b)));
-    }
-  }
-  for (std::size_t n = 0; n < nodes_in(b); ++n) {
-    const bool exists = !std::isnan(b.z_touch[n]);
-    for (const std::vector<double>* values : column) {
-      if (exists ? !std::isfinite((*values)[n]) : !std::isnan((*values)[n])) {
-        throw input_error(fmt::format("{}, node {}", place, n), fmt::format("{}", (*values)[n]),
-                          exists ? "a finite number" : "NaN, as in its z_touch");
-      }
-    }
-  }
-}
-
-/// In the order of their cells, each a stretch, no two of a cell in touch.
-void check_windows(const GeometryTableData& data) {
-  if (!(data.searched_lowering >= 0 && std::isfinite(data.searched_lowering))) {
-    throw input_error("searched_lowering", fmt::format("{}", data.searched_lowering), "a height");
-  }
-  for (std::size_t n = 0; n < data.windows.size(); ++n) {
-    const SearchWindow& w = data.windows[n];
-    const std::string place = fmt::format("search window {}", n);
-    if (w.cell < 0 || w.cell >= static_cast<std::int64_t>(data.trusted_lowering.size())) {
-      throw input_error(place, fmt::format("cell {}", w.cell),
-                        fmt::format("a cell in 0..{}", data.trusted_lowering.size() - 1));
-    }
-    if (!(std::isfinite(w.s_low) && std::isfinite(w.s_high) && w.s_low < w.s_high)) {
-      throw input_error(place, fmt::format("s from {} to {}", w.s_low, w.s_high), "a stretch of the wheel profile");
-    }
-    if (n == 0) continue;
-    const SearchWindow& before = data.windows[n - 1];
-    if (w.cell < before.cell || (w.cell == before.cell && w.s_low <= before.s_high)) {
-      throw input_error(
-          place, fmt::format("cell {}, s from {} after cell {}, s to {}", w.cell, w.s_low, before.cell, before.s_high),
-          "windows in the order of their cells, apart from each other");
-    }
-  }
-}
-
-/// Slope at x[i] of the parabola through the node and its existing neighbours: two to the sides, else the two next on
-/// the existing side, else the straight line, else 0. `value(k)` is NaN where there is none; n nodes.
-template <typename Value>
-double finite_difference_slope(const std::vector<double>& x, int x_first, int n, int i, const Value& value) {
-  const auto exists = [&](int k) { return k >= 0 && k < n && !std::isnan(value(k)); };
-  const auto chord = [&](int a, int b) { return (value(b) - value(a)) / (x[x_first + b] - x[x_first + a]); };
-  const bool left = exists(i - 1);
-  const bool right = exists(i + 1);
-  if (!left && !right) return 0.0;
-  int a = i - 1;
-  int b = i + 1;
-  if (!left) {
-    if (!exists(i + 2)) return chord(i, i + 1);
-    a = i + 2;
-  } else if (!right) {
-    if (!exists(i - 2)) return chord(i - 1, i);
-    b = i - 2;
-  }
-  // Newton's divided differences of the parabola through i, a, b, differentiated at i.
-  const double first = chord(i, a);
-  const double second = (chord(i, b) - first) / (x[x_first + b] - x[x_first + a]);
-  return first + second * (x[x_first + i] - x[x_first + a]);
-}
-
-}  // namespace
-
-GeometryTable::GeometryTable(GeometryTableData data)
-    : data_(std::move(data)),
-      lateral_("lateral", data_.lateral),
-      yaw_squared_("yaw squared", data_.yaw_squared),
-      roll_("roll", data_.roll) {
-  const std::size_t cells = static_cast<std::size_t>(lateral_.cells()) *
-                            static_cast<std::size_t>(yaw_squared_.cells()) * static_cast<std::size_t>(roll_.cells());
-  if (lateral_.size() < 2) throw input_error("axis lateral", "1 node", "at least 2");
-  if (yaw_squared_.nodes().front() < 0) throw input_error("axis yaw squared", "a negative node", "squares");
-  if (data_.trusted_lowering.size() != cells) {
-    throw input_error("trusted_lowering", fmt::format("{} values", data_.trusted_lowering.size()),
-                      fmt::format("{}, one per cell", cells));
-  }
-  for (std::size_t c = 0; c < cells; ++c) {
-    if (!(data_.trusted_lowering[c] >= 0)) {
-      throw input_error(fmt::format("trusted_lowering, cell {}", c), fmt::format("{}", data_.trusted_lowering[c]),
-                        "a height or infinity");
-    }
-  }
-  const std::array<int, 3> grid{lateral_.size(), yaw_squared_.size(), roll_.size()};
-  for (std::size_t n = 0; n < data_.branches.size(); ++n) check_branch(data_.branches[n], n, grid);
-  check_windows(data_);
-  pack_branches();
-  index_cells();
-  index_windows();
-}
-
-/// Puts the six quantities of a node side by side, together with their slopes across yaw² and roll.
-void GeometryTable::pack_branches() {
-  const bool yaw_axis = yaw_squared_.size() > 1;
-  const bool roll_axis = roll_.size() > 1;
-  slopes_ = (yaw_axis ? 2 : 1) * (roll_axis ? 2 : 1);
-  const std::size_t width = static_cast<std::size_t>(quantities * slopes_);
-  for (const GeometryBranch& b : data_.branches) {
-    const std::size_t start = packed_.size();
-    branch_offset_.push_back(start);
-    packed_.resize(start + nodes_in(b) * width);
-    const auto column = columns(b);
-    const auto at = [&](int i, int j, int k, int combination, int q) -> double& {
-      const std::size_t node = static_cast<std::size_t>((k * b.size[1] + j) * b.size[0] + i);
-      return packed_[start + node * width + static_cast<std::size_t>(combination * quantities + q)];
-    };
-    const auto for_each = [&](const auto& action) {
-      for (int k = 0; k < b.size[2]; ++k)
-        for (int j = 0; j < b.size[1]; ++j)
-          for (int i = 0; i < b.size[0]; ++i)
-            for (int q = 0; q < quantities; ++q) action(i, j, k, q);
-    };
-    for_each([&](int i, int j, int k, int q) {
-      at(i, j, k, 0, q) =
-          (*column[static_cast<std::size_t>(q)])[static_cast<std::size_t>((k * b.size[1] + j) * b.size[0] + i)];
-    });
-    if (yaw_axis) {
-      for_each([&](int i, int j, int k, int q) {
-        at(i, j, k, 1, q) = finite_difference_slope(yaw_squared_.nodes(), b.first[1], b.size[1], j,
-                                                    [&](int m) { return at(i, m, k, 0, q); });
-      });
-    }
-    if (roll_axis) {
-      const int source_combinations = yaw_axis ? 2 : 1;
-      for (int c = 0; c < source_combinations; ++c) {
-        for_each([&](int i, int j, int k, int q) {
-          // The value tells whether the node exists; its yaw slope is 0, not NaN, where the branch is one node wide.
-          at(i, j, k, source_combinations + c, q) =
-              finite_difference_slope(roll_.nodes(), b.first[2], b.size[2], k, [&](int m) {
-                return std::isnan(at(i, j, m, 0, q)) ? std::numeric_limits<double>::quiet_NaN() : at(i, j, m, c, q);
-              });
-        });
-      }
-    }
-  }
+std::array<double, most_branch_terms> branch_monomials(bool yaw_axis, bool roll_axis, double a, double b,
+                                                       double c) noexcept {
+  if (!yaw_axis && !roll_axis) return {1, a, a * a, a * a * a};
+  if (!yaw_axis) b = c;
+  return {1, b, b * b, a, a * b, a * a, a * a * b, a * a * a, c, c * c, b * c, a * c};
 }
 
 namespace {
 
-/// Corner nodes of a cell of a grid with these sizes: offset bits along lateral, yaw², roll where the axis has cells.
-std::vector<std::array<int, 3>> cell_corners(const std::array<int, 3>& grid) {
-  std::vector<std::array<int, 3>> corners;
-  for (int k = 0; k < (grid[2] > 1 ? 2 : 1); ++k)
-    for (int j = 0; j < (grid[1] > 1 ? 2 : 1); ++j)
-      for (int i = 0; i < 2; ++i) corners.push_back({i, j, k});
-  return corners;
+void check_axis(const TableAxis& axis, std::string_view name) {
+  if (!(std::isfinite(axis.low) && std::isfinite(axis.high) && axis.low <= axis.high && axis.cells >= 1 &&
+        (!axis.fixed() || axis.cells == 1))) {
+    throw input_error(fmt::format("axis {}", name), fmt::format("{}..{} in {} cells", axis.low, axis.high, axis.cells),
+                      "low..high in cells");
+  }
 }
 
-/// z_touch of a branch at a node of the grid; NaN where the branch does not exist.
-double touch_at(const GeometryBranch& b, int i, int j, int k) {
-  const std::array<int, 3> n{i - b.first[0], j - b.first[1], k - b.first[2]};
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (n[a] < 0 || n[a] >= b.size[a]) return std::numeric_limits<double>::quiet_NaN();
+/// Every node below a root is the child of one node, and comes after it; every leaf is named once, in order.
+void check_tree(const GeometryTableData& data, std::size_t roots) {
+  std::size_t next_child = roots;
+  std::size_t leaves = 0;
+  std::vector<bool> named(data.node.size(), false);
+  for (std::size_t n = 0; n < data.node.size(); ++n) {
+    const std::uint32_t code = data.node[n];
+    const std::size_t index = CellNode::index(code);
+    if (CellNode::is_leaf(code)) {
+      leaves = std::max(leaves, index + 1);
+      continue;
+    }
+    if (index <= n || index < roots || index + 1 >= data.node.size() || named[index]) {
+      throw input_error(fmt::format("node {}", n), fmt::format("halves at node {}", index),
+                        "two nodes behind it that belong to no other");
+    }
+    named[index] = named[index + 1] = true;
+    next_child += 2;
   }
-  return b.z_touch[static_cast<std::size_t>((n[2] * b.size[1] + n[1]) * b.size[0] + n[0])];
+  if (next_child != data.node.size() || leaves != data.leaf_branch.size()) {
+    throw input_error("nodes", fmt::format("{} nodes and {} leaves", data.node.size(), leaves),
+                      fmt::format("{} and {}", next_child, data.leaf_branch.size()));
+  }
 }
 
-struct CornerCount {
-  int present = 0;
-  double lowest = std::numeric_limits<double>::infinity();  ///< z_touch [m]
-};
-
-CornerCount count_corners(const GeometryBranch& b, const std::vector<std::array<int, 3>>& corners, int i, int j,
-                          int k) {
-  CornerCount count;
-  for (const std::array<int, 3>& corner : corners) {
-    const double z = touch_at(b, i + corner[0], j + corner[1], k + corner[2]);
-    if (std::isnan(z)) continue;
-    ++count.present;
-    count.lowest = std::min(count.lowest, z);
+void check(const GeometryTableData& data) {
+  check_axis(data.lateral, "lateral");
+  check_axis(data.yaw_squared, "yaw squared");
+  check_axis(data.roll, "roll");
+  if (data.lateral.fixed()) throw input_error("axis lateral", "one value", "low below high");
+  if (data.yaw_squared.low < 0) throw input_error("axis yaw squared", "a negative value", "squares");
+  if (!data.shard.whole()) {
+    throw input_error("geometry table", fmt::format("part {} of {}", data.shard.index, data.shard.count),
+                      "a whole table: merge the parts first");
   }
-  return count;
+  const auto roots = static_cast<std::size_t>(root_cells(data));
+  if (data.node.size() < roots) {
+    throw input_error("nodes", fmt::format("{}", data.node.size()), fmt::format("at least {}, one per cell", roots));
+  }
+  check_tree(data, roots);
+  const int terms = branch_terms(!data.yaw_squared.fixed(), !data.roll.fixed());
+  std::size_t branches = 0;
+  for (std::size_t n = 0; n < data.leaf_branch.size(); ++n) {
+    if (data.leaf_branch[n] > GeometryTable::max_branches) {
+      throw input_error(fmt::format("leaf {}", n), fmt::format("{} branches", data.leaf_branch[n]),
+                        fmt::format("at most {}", GeometryTable::max_branches));
+    }
+    branches += data.leaf_branch[n];
+  }
+  if (data.trusted_lowering.size() != data.leaf_branch.size()) {
+    throw input_error("trusted_lowering", fmt::format("{} values", data.trusted_lowering.size()),
+                      fmt::format("{}, one per leaf", data.leaf_branch.size()));
+  }
+  for (std::size_t n = 0; n < data.trusted_lowering.size(); ++n) {
+    if (!(data.trusted_lowering[n] >= 0)) {
+      throw input_error(fmt::format("trusted_lowering, leaf {}", n), fmt::format("{}", data.trusted_lowering[n]),
+                        "a height");
+    }
+  }
+  const std::size_t expected = branches * static_cast<std::size_t>(terms * branch_quantities);
+  if (data.coefficient.size() != expected || branches >= (1U << 26)) {
+    throw input_error("coefficients", fmt::format("{}", data.coefficient.size()),
+                      fmt::format("{} of {} branches", expected, branches));
+  }
+  for (std::size_t n = 0; n < data.coefficient.size(); ++n) {
+    if (!std::isfinite(data.coefficient[n])) {
+      throw input_error(fmt::format("coefficient {}", n), fmt::format("{}", data.coefficient[n]), "a finite number");
+    }
+  }
 }
 
 }  // namespace
 
-/// Lists, cell by cell, the branches that exist at all corners.
-void GeometryTable::index_cells() {
-  const std::array<int, 3> grid{lateral_.size(), yaw_squared_.size(), roll_.size()};
-  const std::array<int, 3> cells{lateral_.cells(), yaw_squared_.cells(), roll_.cells()};
-  const std::vector<std::array<int, 3>> corners = cell_corners(grid);
-  const std::size_t width = static_cast<std::size_t>(quantities * slopes_);
-  struct Found {
-    BranchCell cell;
-    double lowest;
+GeometryTable::GeometryTable(GeometryTableData data) : data_(std::move(data)) {
+  check(data_);
+  terms_ = branch_terms(!data_.yaw_squared.fixed(), !data_.roll.fixed());
+  const auto axis = [](const TableAxis& a) {
+    return Axis{a.low, a.fixed() ? 0.0 : a.cells / (a.high - a.low), static_cast<double>(a.cells)};
   };
-  std::vector<std::vector<Found>> found(data_.trusted_lowering.size());
-  for (std::size_t n = 0; n < data_.branches.size(); ++n) {
-    const GeometryBranch& b = data_.branches[n];
-    const std::size_t row = static_cast<std::size_t>(b.size[0]) * width;
-    const auto first_cell = [&](std::size_t a) { return std::max(0, b.first[a] - 1); };
-    const auto end_cell = [&](std::size_t a) { return std::min(cells[a], b.first[a] + b.size[a]); };
-    for (int k = first_cell(2); k < end_cell(2); ++k)
-      for (int j = first_cell(1); j < end_cell(1); ++j)
-        for (int i = first_cell(0); i < end_cell(0); ++i) {
-          const CornerCount count = count_corners(b, corners, i, j, k);
-          const std::size_t c = static_cast<std::size_t>((k * cells[1] + j) * cells[0] + i);
-          if (count.present == static_cast<int>(corners.size())) {
-            const std::size_t node =
-                static_cast<std::size_t>(((k - b.first[2]) * b.size[1] + j - b.first[1]) * b.size[0] + i - b.first[0]);
-            found[c].push_back({{branch_offset_[n] + node * width, static_cast<std::uint32_t>(row),
-                                 static_cast<std::uint32_t>(row * static_cast<std::size_t>(b.size[1]))},
-                                count.lowest});
-          } else if (count.present > 0 && std::isinf(data_.trusted_lowering[c])) {
-            throw input_error(fmt::format("cell ({}, {}, {})", i, j, k),
-                              fmt::format("branch {} at {} corners and no limit of trust", n, count.present),
-                              "a finite trusted_lowering");
-          }
-        }
-  }
-  cell_.reserve(found.size());
-  for (std::size_t c = 0; c < found.size(); ++c) {
-    std::sort(found[c].begin(), found[c].end(), [](const Found& a, const Found& b) { return a.lowest < b.lowest; });
-    double trusted = data_.trusted_lowering[c];
-    const bool overflow = found[c].size() > max_branches;
-    if (overflow) {
-      // Which of the branches left out comes first is known at the corners only, so the cell is not trusted at all.
-      trusted = 0.0;
-      found[c].resize(max_branches);
-    }
-    cell_.push_back({static_cast<std::uint32_t>(cell_branch_.size()), static_cast<std::uint32_t>(found[c].size()), 0, 0,
-                     overflow, trusted});
-    for (const Found& f : found[c]) cell_branch_.push_back(f.cell);
-  }
+  axis_ = {axis(data_.lateral), axis(data_.yaw_squared), axis(data_.roll)};
+  pack();
 }
 
-/// A cell whose branches are cut off at max_branches keeps no window: only the whole search can answer there.
-void GeometryTable::index_windows() {
-  for (std::size_t n = 0; n < data_.windows.size(); ++n) {
-    CellEntry& entry = cell_[static_cast<std::size_t>(data_.windows[n].cell)];
-    if (entry.overflow) continue;
-    if (entry.windows == 0) entry.first_window = static_cast<std::uint32_t>(n);
-    ++entry.windows;
+void GeometryTable::pack() {
+  std::vector<std::uint32_t> first(data_.leaf_branch.size());
+  std::uint32_t next = 0;
+  for (std::size_t n = 0; n < first.size(); ++n) {
+    first[n] = next;
+    next += data_.leaf_branch[n];
+  }
+  node_.reserve(data_.node.size());
+  for (const std::uint32_t code : data_.node) {
+    if (!CellNode::is_leaf(code)) {
+      node_.push_back({code, 0.0F});
+      continue;
+    }
+    const std::uint32_t leaf = CellNode::index(code);
+    node_.push_back({CellNode::leaf(first[leaf] << 4 | data_.leaf_branch[leaf]), data_.trusted_lowering[leaf]});
+  }
+  line_.resize(data_.coefficient.size() / 16);
+  for (std::size_t n = 0; n < data_.coefficient.size(); ++n) line_[n / 16].value[n % 16] = data_.coefficient[n];
+}
+
+namespace {
+
+using Row = Eigen::Array4f;  // z_touch, s_wheel, s_rail, n_y
+
+/// The polynomials of a branch at one (b, c), by powers of a.
+struct AlongLateral {
+  Row r0, r1, r2, r3;
+  [[nodiscard]] Row at(float a) const noexcept { return r0 + a * (r1 + a * (r2 + a * r3)); }
+};
+
+template <int terms>
+AlongLateral along_lateral(const float* coefficient, float b, float c) noexcept {
+  const auto row = [&](int n) { return Eigen::Map<const Row, Eigen::Aligned16>(coefficient + branch_quantities * n); };
+  if constexpr (terms == 4) return {row(0), row(1), row(2), row(3)};
+  AlongLateral p{row(0) + b * (row(1) + b * row(2)), row(3) + b * row(4), row(5) + b * row(6), row(7)};
+  if constexpr (terms == 12) {
+    p.r0 += c * (row(8) + c * row(9) + b * row(10));
+    p.r1 += c * row(11);
+  }
+  return p;
+}
+
+template <int terms>
+void evaluate_branches(const float* coefficient, int count, const LocalPoint& p, double inverse_half_width, double z,
+                       GeometryTable::Lookup& result) noexcept {
+  result.count = count;
+  double first = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < count; ++n) {
+    const AlongLateral branch = along_lateral<terms>(coefficient + n * terms * branch_quantities, p.b, p.c);
+    const Row touch = branch.at(p.a);
+    const double z_touch = static_cast<double>(touch[0]);
+    const float n_y = touch[3];
+    const float n_z = std::sqrt(std::max(1.0F - n_y * n_y, 1e-4F));
+    const double distance = (z - z_touch) * static_cast<double>(n_z);
+    const float shift = static_cast<float>(std::max(distance, 0.0) * inverse_half_width) * n_y;
+    const Row pair = branch.at(p.a - shift);
+    result.branch[static_cast<std::size_t>(n)] = {z_touch, distance, static_cast<double>(pair[1]),
+                                                  static_cast<double>(pair[2])};
+    first = std::min(first, z_touch);
+  }
+  result.first_touch = first;
+}
+
+}  // namespace
+
+void GeometryTable::evaluate(const float* coefficient, int count, bool yaw_axis, bool roll_axis,
+                             const LocalPoint& point, double inverse_half_width, double z, Lookup& result) noexcept {
+  const LocalPoint p = yaw_axis ? point : LocalPoint{point.a, point.c, 0.0F};
+  switch (branch_terms(yaw_axis, roll_axis)) {
+    case 4:
+      return evaluate_branches<4>(coefficient, count, p, inverse_half_width, z, result);
+    case 8:
+      return evaluate_branches<8>(coefficient, count, p, inverse_half_width, z, result);
+    default:
+      return evaluate_branches<12>(coefficient, count, p, inverse_half_width, z, result);
   }
 }
 
 namespace {
 
-/// Cubic Hermite weights on a cell: of the values (w0, w1) and of the slopes times 1 (d0, d1), and for d/dx.
-struct Hermite {
-  double w0, d0, w1, d1;
+/// Root cell and place in it, in units of 2^-32 of its width.
+struct CellPlace {
+  std::int64_t cell;
+  std::uint32_t fraction;
 };
 
-Hermite hermite(double t, double width) noexcept {
-  const double t2 = t * t;
-  const double t3 = t2 * t;
-  return {2 * t3 - 3 * t2 + 1, width * (t3 - 2 * t2 + t), 3 * t2 - 2 * t3, width * (t3 - t2)};
-}
-
-Hermite hermite_derivative(double t, double width) noexcept {
-  const double t2 = t * t;
-  return {6 * (t2 - t) / width, 3 * t2 - 4 * t + 1, 6 * (t - t2) / width, 3 * t2 - 2 * t};
+CellPlace place(double in_cells, double cells) noexcept {
+  const double whole = std::min(std::floor(in_cells), cells - 1);
+  const double fraction = std::min((in_cells - whole) * 0x1p32, 0x1p32 - 1);
+  return {static_cast<std::int64_t>(whole), static_cast<std::uint32_t>(fraction)};
 }
 
 }  // namespace
 
-GeometryTable::Lookup GeometryTable::lookup(double y, double yaw, double roll) const noexcept {
+GeometryTable::Lookup GeometryTable::lookup(double y, double z, double yaw, double roll) const noexcept {
   Lookup result;
-  const GridAxis::Cell lateral = lateral_.locate(y - data_.nominal_radius * roll);
-  const GridAxis::Cell roll_cell = roll_.locate(roll);
-  GridAxis::Cell yaw_cell = yaw_squared_.locate(yaw * yaw);
-  // On a single node it is the yaw, not its square, that has to agree.
-  if (yaw_squared_.size() == 1) {
-    yaw_cell.inside = std::abs(std::abs(yaw) - std::sqrt(yaw_squared_.nodes().front())) <= 1e-12;
-  }
-  if (!lateral.inside || !yaw_cell.inside || !roll_cell.inside) return result;
+  const bool yaw_axis = !data_.yaw_squared.fixed();
+  const bool roll_axis = !data_.roll.fixed();
+  const double lateral = (y - data_.nominal_radius * roll - axis_[0].low) * axis_[0].inverse_width;
+  const double squared = (yaw * yaw - axis_[1].low) * axis_[1].inverse_width;
+  const double rolled = (roll - axis_[2].low) * axis_[2].inverse_width;
+  // On a fixed axis it is the yaw, not its square, that has to agree. NaN is outside.
+  const bool inside = lateral >= 0 && lateral <= axis_[0].cells &&
+                      (yaw_axis ? squared >= 0 && squared <= axis_[1].cells
+                                : std::abs(std::abs(yaw) - std::sqrt(axis_[1].low)) <= 1e-12) &&
+                      (roll_axis ? rolled >= 0 && rolled <= axis_[2].cells : std::abs(roll - axis_[2].low) <= 1e-12);
+  if (!inside) return result;
   result.status = Status::inside;
 
-  const CellEntry& entry = cell_[static_cast<std::size_t>(
-      (roll_cell.index * yaw_squared_.cells() + yaw_cell.index) * lateral_.cells() + lateral.index)];
-  result.trusted_lowering = entry.trusted_lowering;
-  result.count = static_cast<int>(entry.count);
-  result.windows = std::span(data_.windows).subspan(entry.first_window, entry.windows);
-
-  // Weights of the corners and derivative combinations across yaw² and roll, in the order of the packed values.
-  const bool yaw_axis = yaw_squared_.size() > 1;
-  const bool roll_axis = roll_.size() > 1;
-  const Hermite across_yaw = yaw_axis ? hermite(yaw_cell.fraction, yaw_cell.width) : Hermite{1, 0, 0, 0};
-  const Hermite across_roll = roll_axis ? hermite(roll_cell.fraction, roll_cell.width) : Hermite{1, 0, 0, 0};
-  const std::array<std::array<double, 2>, 2> yaw_weight{
-      {{across_yaw.w0, across_yaw.d0}, {across_yaw.w1, across_yaw.d1}}};
-  const std::array<std::array<double, 2>, 2> roll_weight{
-      {{across_roll.w0, across_roll.d0}, {across_roll.w1, across_roll.d1}}};
-  const int yaw_corners = yaw_axis ? 2 : 1;
-  const int roll_corners = roll_axis ? 2 : 1;
-  const Hermite value = hermite(lateral.fraction, lateral.width);
-  const Hermite slope = hermite_derivative(lateral.fraction, lateral.width);
-  const std::size_t width = static_cast<std::size_t>(quantities * slopes_);
-
-  for (int n = 0; n < result.count; ++n) {
-    const BranchCell& cell = cell_branch_[entry.first + static_cast<std::uint32_t>(n)];
-    std::array<double, 2 * quantities> sum{};
-    for (int k = 0; k < roll_corners; ++k) {
-      for (int j = 0; j < yaw_corners; ++j) {
-        const double* left = packed_.data() + cell.offset + static_cast<std::size_t>(j) * cell.yaw_stride +
-                             static_cast<std::size_t>(k) * cell.roll_stride;
-        const double* right = left + width;
-        for (int c = 0; c < slopes_; ++c) {
-          const double weight = yaw_weight[static_cast<std::size_t>(j)][static_cast<std::size_t>(c % yaw_corners)] *
-                                roll_weight[static_cast<std::size_t>(k)][static_cast<std::size_t>(c / yaw_corners)];
-          for (std::size_t q = 0; q < quantities; ++q) {
-            sum[q] += weight * left[static_cast<std::size_t>(c) * quantities + q];
-            sum[quantities + q] += weight * right[static_cast<std::size_t>(c) * quantities + q];
-          }
-        }
-      }
-    }
-    const auto along = [&](const Hermite& h, std::size_t q) {
-      return h.w0 * sum[q] + h.d0 * sum[q + 1] + h.w1 * sum[quantities + q] + h.d1 * sum[quantities + q + 1];
-    };
-    result.branch[static_cast<std::size_t>(n)] = {along(value, 0), along(slope, 0), along(value, 2),
-                                                  along(slope, 2), along(value, 4), along(slope, 4)};
+  const CellPlace at_lateral = place(lateral, axis_[0].cells);
+  const CellPlace at_yaw = place(squared, axis_[1].cells);
+  const CellPlace at_roll = place(rolled, axis_[2].cells);
+  std::array<std::uint32_t, 3> fraction{at_lateral.fraction, at_yaw.fraction, at_roll.fraction};
+  const std::int64_t root =
+      (at_roll.cell * data_.yaw_squared.cells + at_yaw.cell) * data_.lateral.cells + at_lateral.cell;
+  Node node = node_[static_cast<std::size_t>(root)];
+  double inverse_half_width = 2.0 * axis_[0].inverse_width;
+  while (!CellNode::is_leaf(node.code)) {
+    const std::uint32_t axis = CellNode::axis(node.code);
+    std::uint32_t& f = fraction[axis];
+    const std::uint32_t upper = f >> 31;
+    f <<= 1;
+    if (axis == 0) inverse_half_width *= 2.0;
+    node = node_[CellNode::index(node.code) + upper];
   }
+  const auto local = [](std::uint32_t f) { return static_cast<float>(static_cast<double>(f) * 0x1p-31 - 1.0); };
+  const LocalPoint point{local(fraction[0]), yaw_axis ? local(fraction[1]) : 0.0F,
+                         roll_axis ? local(fraction[2]) : 0.0F};
+  const std::uint32_t packed = CellNode::index(node.code);
+  result.trusted_lowering = static_cast<double>(node.trusted_lowering);
+  const std::size_t first = static_cast<std::size_t>(packed >> 4) * static_cast<std::size_t>(terms_ / 4);
+  evaluate(line_[first].value.data(), static_cast<int>(packed & 15U), yaw_axis, roll_axis, point, inverse_half_width, z,
+           result);
   return result;
 }
 
-std::size_t GeometryTable::bytes() const noexcept {
-  return packed_.size() * sizeof(double) + cell_.size() * sizeof(CellEntry) + cell_branch_.size() * sizeof(BranchCell);
-}
+std::size_t GeometryTable::bytes() const noexcept { return node_.size() * sizeof(Node) + line_.size() * sizeof(Line); }
 
 }  // namespace railtab

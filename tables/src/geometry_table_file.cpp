@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "railtab/tables/array_file.hpp"
@@ -14,7 +15,7 @@ namespace railtab {
 namespace {
 
 constexpr std::string_view filetype = "railtab-geometry-table";
-constexpr int format_version = 2;
+constexpr int format_version = 3;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.
 struct Column {
@@ -33,26 +34,15 @@ constexpr std::array profile_columns{
     ProfileColumn{{"dy", "1", "dy/ds of the piecewise cubic Hermite curve"}, &ProfileKnots::dy},
     ProfileColumn{{"dz", "1", "dz/ds of the piecewise cubic Hermite curve"}, &ProfileKnots::dz}};
 
-struct BranchColumn : Column {
-  std::vector<double> GeometryBranch::*values;
-};
-constexpr std::array branch_columns{
-    BranchColumn{{"z_touch", "m", "height of the wheelset centre that touches on this branch, z down"},
-                 &GeometryBranch::z_touch},
-    BranchColumn{{"s_wheel", "m", "arc length of the touching point on the wheel profile"}, &GeometryBranch::s_wheel},
-    BranchColumn{{"s_rail", "m", "arc length of the touching point on the rail profile"}, &GeometryBranch::s_rail},
-    BranchColumn{{"z_touch_dy", "1", "derivative of z_touch along the lateral axis"}, &GeometryBranch::z_touch_dy},
-    BranchColumn{{"s_wheel_dy", "1", "derivative of s_wheel along the lateral axis"}, &GeometryBranch::s_wheel_dy},
-    BranchColumn{{"s_rail_dy", "1", "derivative of s_rail along the lateral axis"}, &GeometryBranch::s_rail_dy}};
-
 struct AxisColumn : Column {
-  std::vector<double> GeometryTableData::*values;
+  TableAxis GeometryTableData::*axis;
 };
 constexpr std::array axis_columns{
-    AxisColumn{{"lateral", "m", "lateral shift of the wheelset centre less nominal_radius times roll"},
+    AxisColumn{{"lateral", "m", "lateral shift of the wheelset centre less nominal_radius times roll: low, high"},
                &GeometryTableData::lateral},
-    AxisColumn{{"yaw_squared", "rad^2", "square of the yaw of the wheelset"}, &GeometryTableData::yaw_squared},
-    AxisColumn{{"roll", "rad", "roll of the wheelset against the rail head"}, &GeometryTableData::roll}};
+    AxisColumn{{"yaw_squared", "rad^2", "square of the yaw of the wheelset: low, high"},
+               &GeometryTableData::yaw_squared},
+    AxisColumn{{"roll", "rad", "roll of the wheelset against the rail head: low, high"}, &GeometryTableData::roll}};
 
 struct DimensionColumn : Column {
   double GeometryTableData::*value;
@@ -63,25 +53,8 @@ constexpr std::array dimension_columns{
                     &GeometryTableData::gauge_height},
     DimensionColumn{{"flange_back", "m", "distance of the flange backs"}, &GeometryTableData::flange_back},
     DimensionColumn{{"nominal_radius", "m", "nominal rolling radius"}, &GeometryTableData::nominal_radius},
-    DimensionColumn{{"searched_lowering", "m", "height above first touch up to which the search windows are complete"},
-                    &GeometryTableData::searched_lowering},
     DimensionColumn{{"tolerance", "m", "error of penetration that the table was made for"},
                     &GeometryTableData::tolerance}};
-
-using Shape = std::array<std::size_t, 3>;
-
-/// Of a branch's arrays: roll, yaw squared, lateral (C order, lateral fastest).
-Shape branch_shape(const GeometryBranch& branch) {
-  return {static_cast<std::size_t>(branch.size[2]), static_cast<std::size_t>(branch.size[1]),
-          static_cast<std::size_t>(branch.size[0])};
-}
-
-Shape cell_shape(const GeometryTableData& table) {
-  const auto cells = [](const std::vector<double>& nodes) { return nodes.size() > 1 ? nodes.size() - 1 : 1; };
-  return {cells(table.roll), cells(table.yaw_squared), cells(table.lateral)};
-}
-
-std::string branch_path(std::size_t n, std::string_view column) { return fmt::format("branches/{}/{}", n, column); }
 
 /// Over every number of the table, in the order of the lists above, lengths included.
 std::string content_checksum(const GeometryTableData& table) {
@@ -93,19 +66,21 @@ std::string content_checksum(const GeometryTableData& table) {
   for (const ProfileKnots* profile : {&table.wheel, &table.rail}) {
     for (const ProfileColumn& column : profile_columns) add(profile->*column.values);
   }
-  for (const AxisColumn& column : axis_columns) add(table.*column.values);
-  for (const GeometryBranch& branch : table.branches) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::array<double, 2> box{static_cast<double>(branch.first[axis]), static_cast<double>(branch.size[axis])};
-      add(box);
-    }
-    for (const BranchColumn& column : branch_columns) add(branch.*column.values);
+  for (const AxisColumn& column : axis_columns) {
+    const TableAxis& axis = table.*column.axis;
+    const std::array<double, 3> numbers{axis.low, axis.high, static_cast<double>(axis.cells)};
+    add(numbers);
   }
-  add(table.trusted_lowering);
-  for (const SearchWindow& w : table.windows) {
-    const std::array<double, 3> window{static_cast<double>(w.cell), w.s_low, w.s_high};
-    add(window);
-  }
+  const std::array<double, 2> shard{static_cast<double>(table.shard.index), static_cast<double>(table.shard.count)};
+  add(shard);
+  const auto add_array = [&](const auto& values) {
+    const double length = static_cast<double>(values.size());
+    sum = checksum(std::span(values), checksum({&length, 1}, sum));
+  };
+  add_array(table.node);
+  add_array(table.leaf_branch);
+  add_array(table.trusted_lowering);
+  add_array(table.coefficient);
   for (const DimensionColumn& column : dimension_columns) add({&(table.*column.value), 1});
   for (const auto& [name, value] : table.statistics) add({&value, 1});
   return fmt::format("{:016x}", sum);
@@ -120,33 +95,31 @@ void write_profile(ArrayFileWriter& file, const std::string& group, const Profil
   if (!profile.notes.empty()) file.attribute(group, "notes", fmt::format("{}", fmt::join(profile.notes, "\n")));
 }
 
-void write_branch(ArrayFileWriter& file, std::size_t n, const GeometryBranch& branch) {
-  const std::array<std::int64_t, 3> first{branch.first[0], branch.first[1], branch.first[2]};
-  file.write(branch_path(n, "first_node"), first, {3}, "1",
-             "first node of the branch's box on the axes lateral, yaw_squared, roll; the arrays have the shape "
-             "(roll, yaw_squared, lateral) and hold NaN where the branch does not exist");
-  const Shape shape = branch_shape(branch);
-  for (const BranchColumn& column : branch_columns) {
-    file.write(branch_path(n, column.name), branch.*column.values, {shape.begin(), shape.end()}, column.unit,
-               column.description);
-  }
+void write_axis(ArrayFileWriter& file, const AxisColumn& column, const TableAxis& axis) {
+  const std::string path = fmt::format("axes/{}", column.name);
+  const std::array<double, 2> ends{axis.low, axis.high};
+  file.write(path, ends, {2}, column.unit, column.description);
+  file.attribute(path, "cells", static_cast<std::int64_t>(axis.cells));
 }
 
-void write_windows(ArrayFileWriter& file, const std::vector<SearchWindow>& windows) {
-  file.attribute("windows", "count", static_cast<std::int64_t>(windows.size()));
-  if (windows.empty()) return;
-  std::vector<std::int64_t> cell;
-  std::vector<double> low, high;
-  for (const SearchWindow& w : windows) {
-    cell.push_back(w.cell);
-    low.push_back(w.s_low);
-    high.push_back(w.s_high);
-  }
-  file.write("windows/cell", cell, {cell.size()}, "1",
-             "number of the cell (roll, yaw_squared, lateral; lateral fastest), not decreasing");
-  file.write("windows/s_low", low, {low.size()}, "m",
-             "begin of the stretch of the wheel profile that is searched in this cell");
-  file.write("windows/s_high", high, {high.size()}, "m", "end of the stretch");
+std::size_t terms_of(const GeometryTableData& table) {
+  return static_cast<std::size_t>(branch_terms(!table.yaw_squared.fixed(), !table.roll.fixed()));
+}
+
+void write_cells(ArrayFileWriter& file, const GeometryTableData& table) {
+  file.write("cells/node", table.node, {table.node.size()}, "1",
+             "the root cells' nodes (roll, yaw_squared, lateral; lateral fastest), then those below; 4 times an index "
+             "plus 0, 1, 2: halved along lateral, yaw_squared, roll, index of the lower half's node, the upper half's "
+             "is the next; plus 3: index of a leaf");
+  file.write("cells/leaf_branches", table.leaf_branch, {table.leaf_branch.size()}, "1",
+             "number of branches of each leaf");
+  file.write("cells/trusted_lowering", table.trusted_lowering, {table.trusted_lowering.size()}, "m",
+             "per leaf: lowering below first touch up to which its branches are all that can touch");
+  const std::size_t terms = terms_of(table);
+  file.write(
+      "branches/coefficient", table.coefficient, {table.coefficient.size() / (4 * terms), terms, 4}, "m; 1",
+      "per branch, in the order of the leaves: polynomials of the leaf's local coordinates for z_touch, s_wheel, "
+      "s_rail [m] and n_y [1]");
 }
 
 /// One table file being read; every error names the file and the dataset.
@@ -158,21 +131,15 @@ class Reading {
     GeometryTableData table;
     table.wheel = profile("profiles/wheel", ProfileKind::wheel);
     table.rail = profile("profiles/rail", ProfileKind::rail);
-    for (const AxisColumn& column : axis_columns) {
-      const std::string path = fmt::format("axes/{}", column.name);
-      table.*column.values = numbers(path, {-1});
-      if ((table.*column.values).empty()) throw input_error(place(path), "no nodes", "at least one");
-    }
+    for (const AxisColumn& column : axis_columns) table.*column.axis = axis(fmt::format("axes/{}", column.name));
     for (const DimensionColumn& column : dimension_columns) {
       table.*column.value = numbers(fmt::format("dimensions/{}", column.name), {}).front();
     }
-    const double count = file_.number("branches", "count");
-    for (std::size_t n = 0; static_cast<double>(n) < count; ++n) table.branches.push_back(branch(n, table));
-    const Shape cells = cell_shape(table);
-    table.trusted_lowering = file_.read("cells/trusted_lowering", {cells.begin(), cells.end()});
-    check(
-        "cells/trusted_lowering", table.trusted_lowering, [](double v) { return v >= 0; }, "a height or infinity");
-    table.windows = windows();
+    table.shard = {count_of("cells", "shard_index"), count_of("cells", "shard_count")};
+    table.node = counts("cells/node");
+    table.leaf_branch = counts("cells/leaf_branches");
+    table.trusted_lowering = floats("cells/trusted_lowering", {static_cast<long>(table.leaf_branch.size())});
+    table.coefficient = floats("branches/coefficient", {-1, static_cast<long>(terms_of(table)), 4});
     if (file_.contains("statistics")) {
       for (const std::string& name : file_.attribute_names("statistics")) {
         table.statistics.emplace_back(name, file_.number("statistics", name));
@@ -207,19 +174,35 @@ class Reading {
     return values;
   }
 
-  [[nodiscard]] std::vector<SearchWindow> windows() const {
-    std::vector<SearchWindow> windows;
-    const double count = file_.number("windows", "count");
-    if (count == 0) return windows;
-    const std::vector<std::int64_t> cell = file_.read_integers("windows/cell");
-    const long n = static_cast<long>(cell.size());
-    const std::vector<double> low = numbers("windows/s_low", {n});
-    const std::vector<double> high = numbers("windows/s_high", {n});
-    if (count != static_cast<double>(n)) {
-      throw input_error(place("windows/cell"), fmt::format("{} values", n), fmt::format("{}, as counted", count));
+  [[nodiscard]] std::vector<float> floats(const std::string& path, const std::vector<long>& shape) const {
+    const std::vector<double> values = numbers(path, shape);
+    return {values.begin(), values.end()};
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> counts(const std::string& path) const {
+    const std::vector<std::int64_t> values = file_.read_integers(path);
+    std::vector<std::uint32_t> result;
+    result.reserve(values.size());
+    for (const std::int64_t value : values) {
+      if (value < 0 || value > std::numeric_limits<std::uint32_t>::max()) {
+        throw input_error(place(path), fmt::format("{}", value), "a number of 32 bits");
+      }
+      result.push_back(static_cast<std::uint32_t>(value));
     }
-    for (std::size_t i = 0; i < cell.size(); ++i) windows.push_back({cell[i], low[i], high[i]});
-    return windows;
+    return result;
+  }
+
+  [[nodiscard]] int count_of(const std::string& path, const std::string& attribute) const {
+    const double value = file_.number(path, attribute);
+    if (!(value >= 1 && value <= 1e9 && value == std::floor(value))) {
+      throw input_error(place(path + "." + attribute), fmt::format("{}", value), "a whole number, at least 1");
+    }
+    return static_cast<int>(value);
+  }
+
+  [[nodiscard]] TableAxis axis(const std::string& path) const {
+    const std::vector<double> ends = numbers(path, {2});
+    return {ends[0], ends[1], count_of(path, "cells")};
   }
 
   [[nodiscard]] ProfileKnots profile(const std::string& group, ProfileKind kind) const {
@@ -239,35 +222,6 @@ class Reading {
     return profile;
   }
 
-  [[nodiscard]] GeometryBranch branch(std::size_t n, const GeometryTableData& table) const {
-    GeometryBranch branch;
-    const std::array<std::size_t, 3> nodes{table.lateral.size(), table.yaw_squared.size(), table.roll.size()};
-    const std::string path = branch_path(n, "first_node");
-    const std::vector<std::int64_t> first = file_.read_integers(path);
-    if (first.size() != 3) throw input_error(place(path), fmt::format("{} values", first.size()), "3");
-    const std::vector<std::size_t> shape = file_.read(branch_path(n, branch_columns[0].name)).shape;
-    if (shape.size() != 3) throw input_error(place(path), fmt::format("arrays of rank {}", shape.size()), "rank 3");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t size = shape[2 - axis];
-      if (first[axis] < 0 || static_cast<std::size_t>(first[axis]) > nodes[axis] ||
-          size > nodes[axis] - static_cast<std::size_t>(first[axis])) {
-        throw input_error(place(path),
-                          fmt::format("{} nodes of axis {} from node {}", size, axis_columns[axis].name, first[axis]),
-                          fmt::format("a box in its {} nodes", nodes[axis]));
-      }
-      branch.first[axis] = static_cast<int>(first[axis]);
-      branch.size[axis] = static_cast<int>(size);
-    }
-    for (const BranchColumn& column : branch_columns) {
-      const std::string column_path = branch_path(n, column.name);
-      branch.*column.values = file_.read(column_path, {shape.begin(), shape.end()});
-      check(
-          column_path, branch.*column.values, [](double v) { return !std::isinf(v); },
-          "a finite number, or NaN where the branch does not exist");
-    }
-    return branch;
-  }
-
   std::filesystem::path name_;
   ArrayFileReader file_;
 };
@@ -281,21 +235,14 @@ void write_geometry_table(const std::filesystem::path& file, const GeometryTable
                 "Layout: docs/file_formats/geometry_table.md");
   write_profile(out, "profiles/wheel", table.wheel);
   write_profile(out, "profiles/rail", table.rail);
-  for (const AxisColumn& column : axis_columns) {
-    const std::vector<double>& nodes = table.*column.values;
-    out.write(fmt::format("axes/{}", column.name), nodes, {nodes.size()}, column.unit, column.description);
-  }
+  for (const AxisColumn& column : axis_columns) write_axis(out, column, table.*column.axis);
   for (const DimensionColumn& column : dimension_columns) {
     out.write(fmt::format("dimensions/{}", column.name), {&(table.*column.value), 1}, {}, column.unit,
               column.description);
   }
-  out.attribute("branches", "count", static_cast<std::int64_t>(table.branches.size()));
-  for (std::size_t n = 0; n < table.branches.size(); ++n) write_branch(out, n, table.branches[n]);
-  const Shape cells = cell_shape(table);
-  out.write("cells/trusted_lowering", table.trusted_lowering, {cells.begin(), cells.end()}, "m",
-            "per cell (roll, yaw_squared, lateral): height above first touch from which the table cannot be trusted; "
-            "infinity where it always can");
-  write_windows(out, table.windows);
+  out.attribute("cells", "shard_index", static_cast<std::int64_t>(table.shard.index));
+  out.attribute("cells", "shard_count", static_cast<std::int64_t>(table.shard.count));
+  write_cells(out, table);
   out.attribute("provenance", "program_version", table.provenance.program_version);
   out.attribute("provenance", "command_line", table.provenance.command_line);
   out.attribute("provenance", "created", table.provenance.created);

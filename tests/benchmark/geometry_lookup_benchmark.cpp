@@ -8,8 +8,8 @@
 #include "railtab/tablegen/geometry_sweep.hpp"
 
 // Contact patches of one wheel at random positions that the table answers: S1002 on 60E1 1:40, y ±12 mm, yaw ±30 mrad,
-// 0..0.3 mm below first touch. "LookUp" is the interpolation alone, "Table" with the Newton on the profiles, "Online"
-// the search that the table stands for.
+// 0..0.3 mm below first touch. "LookUp" is the leaf and its polynomials alone, "Table" with the Newton on the profiles,
+// "Online" the search that the table stands for.
 namespace {
 
 using namespace railtab;
@@ -54,7 +54,7 @@ void run(benchmark::State& state, const Case& c, const Query& query) {
 }
 
 void look_up(benchmark::State& state, const Case& c) {
-  run(state, c, [&](const WheelsetPose& p) { return c.contact.table().lookup(p.y, p.yaw, p.roll); });
+  run(state, c, [&](const WheelsetPose& p) { return c.contact.table().lookup(p.y, p.z, p.yaw, p.roll); });
 }
 void table(benchmark::State& state, const Case& c) {
   run(state, c, [&](const WheelsetPose& p) { return c.contact.patches(p); });

@@ -127,30 +127,45 @@ void copy_with_fault(const std::filesystem::path& from, const std::filesystem::p
     if (path == fault.last_bit) values.front() = std::nextafter(values.front(), 10.0);
     out.write(path, values, shape, "m", "values");
   };
+  const auto copy_floats = [&](const std::string& path) {
+    if (path == fault.left_out) return;
+    auto [shape, values] = in.read(path);
+    std::vector<float> floats(values.begin(), values.end());
+    if (path == fault.wrong_shape) {
+      floats.resize(floats.size() / shape.back() * (shape.back() + 1), 0.5F);
+      ++shape.back();
+    }
+    if (path == fault.not_finite) floats.back() = -std::numeric_limits<float>::infinity();
+    if (path == fault.last_bit) floats.front() = std::nextafter(floats.front(), 10.0F);
+    out.write(path, floats, shape, "m", "values");
+  };
+  const auto copy_counts = [&](const std::string& path) {
+    if (path == fault.left_out) return;
+    std::vector<std::int64_t> values = in.read_integers(path);
+    if (path == fault.last_bit) ++values.front();
+    out.write(path, values, {values.size()}, "1", "values");
+  };
   for (const char* profile : {"profiles/wheel", "profiles/rail"}) {
     for (const char* column : {"s", "y", "z", "dy", "dz"}) copy(std::string(profile) + "/" + column);
     out.attribute(profile, "name", in.text(profile, "name"));
   }
-  for (const char* axis : {"lateral", "yaw_squared", "roll"}) copy(std::string("axes/") + axis);
-  for (const char* name :
-       {"track_gauge", "gauge_height", "flange_back", "nominal_radius", "searched_lowering", "tolerance"}) {
-    copy(std::string("dimensions/") + name);
-  }
-  const int branches = static_cast<int>(in.number("branches", "count"));
-  out.attribute("branches", "count", std::int64_t{branches});
-  for (int n = 0; n < branches; ++n) {
-    const std::string branch = "branches/" + std::to_string(n) + "/";
-    out.write(branch + "first_node", in.read_integers(branch + "first_node"), {3}, "1", "first node");
-    for (const char* column : {"z_touch", "s_wheel", "s_rail", "z_touch_dy", "s_wheel_dy", "s_rail_dy"}) {
-      copy(branch + column);
+  for (const char* axis : {"lateral", "yaw_squared", "roll"}) {
+    const std::string path = std::string("axes/") + axis;
+    copy(path);
+    if (path != fault.left_out) {
+      out.attribute(path, "cells", static_cast<std::int64_t>(in.number(path, "cells")));
     }
   }
-  copy("cells/trusted_lowering");
-  out.attribute("windows", "count", static_cast<std::int64_t>(in.number("windows", "count")));
-  const std::vector<std::int64_t> window_cells = in.read_integers("windows/cell");
-  out.write("windows/cell", window_cells, {window_cells.size()}, "1", "cell");
-  copy("windows/s_low");
-  copy("windows/s_high");
+  for (const char* name : {"track_gauge", "gauge_height", "flange_back", "nominal_radius", "tolerance"}) {
+    copy(std::string("dimensions/") + name);
+  }
+  for (const char* name : {"shard_index", "shard_count"}) {
+    out.attribute("cells", name, static_cast<std::int64_t>(in.number("cells", name)));
+  }
+  copy_counts("cells/node");
+  copy_counts("cells/leaf_branches");
+  copy_floats("cells/trusted_lowering");
+  copy_floats("branches/coefficient");
   for (const std::string& name : in.attribute_names("statistics")) {
     out.attribute("statistics", name, in.number("statistics", name));
   }
@@ -172,20 +187,21 @@ TEST_F(TableFile, MissingMisshapenInfiniteOrChangedDatasetsAreNamed) {
     EXPECT_NE(message.find(words), std::string::npos) << "\"" << words << "\" is missing in: " << message;
   };
   EXPECT_EQ(outcome_of({}), "") << "the copy without a fault is a good table";
-  for (const std::string path :
-       {"profiles/wheel/s", "profiles/rail/dz", "axes/lateral", "axes/roll", "branches/0/z_touch",
-        "branches/1/s_rail_dy", "cells/trusted_lowering", "windows/s_high"}) {
+  for (const std::string path : {"profiles/wheel/s", "profiles/rail/dz", "axes/lateral", "axes/roll",
+                                 "cells/trusted_lowering", "branches/coefficient"}) {
     expect(outcome_of({.left_out = path}), path + ": found no such dataset");
     expect(outcome_of({.not_finite = path}), path + ": found -inf");
     expect(outcome_of({.last_bit = path}), "with checksum");
   }
+  for (const std::string path : {"cells/node", "cells/leaf_branches"}) {
+    expect(outcome_of({.left_out = path}), path + ": found no such dataset");
+    expect(outcome_of({.last_bit = path}), "with checksum");
+  }
   expect(outcome_of({.last_bit = "dimensions/track_gauge"}), "with checksum");
   for (const std::string path :
-       {"profiles/wheel/dy", "branches/0/s_wheel", "cells/trusted_lowering", "windows/s_low"}) {
+       {"profiles/wheel/dy", "axes/lateral", "cells/trusted_lowering", "branches/coefficient"}) {
     expect(outcome_of({.wrong_shape = path}), path + ": found the shape");
   }
-  expect(outcome_of({.wrong_shape = "branches/0/z_touch"}),
-         "3 nodes of axis roll from node 0, expected a box in its 2 nodes");
 }
 
 TEST_F(TableFile, AFullDiskIsAnInputErrorAndKeepsTheOldTable) {

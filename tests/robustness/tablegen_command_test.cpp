@@ -106,6 +106,17 @@ TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
   expect_refused("verify text.h5 --json", "text.h5");
 }
 
+TEST_F(TablegenCommand, APartSaysSoAndIsNoTable) {
+  for (const char* shard : {"2", "0/2", "3/2", "1/x", "1/2/3", "/2", ""}) {
+    expect_refused(std::string(small) + "--shard '" + shard + "'", "shard");
+  }
+  const Outcome made = tablegen(std::string(small) + "--shard 2/8 --json");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["index"], 2);
+  EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["count"], 8);
+  expect_refused_with_table("verify out.h5", "part 2 of 8");
+}
+
 TEST_F(TablegenCommand, GeometryInfoVerify) {
   const Outcome made = tablegen(std::string(small) + "--json");
   ASSERT_EQ(made.exit_code, 0) << made.err;
@@ -126,7 +137,7 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
   expect_refused_with_table("info out.h5 --html out.h5", "out.h5");
   EXPECT_EQ(table["kind"], "geometry");
   EXPECT_EQ(table["wheel"], "S1002");
-  EXPECT_EQ(table["axes"]["roll"]["nodes"], 1);
+  EXPECT_EQ(table["axes"]["roll"]["root_cells"], 1);
   EXPECT_GT(table["branches"], 0);
   EXPECT_EQ(table["statistics"]["certified.patch_mismatch_share"], 0.0);
 

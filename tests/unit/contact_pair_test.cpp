@@ -212,6 +212,53 @@ TEST(RefinePair, SaysThatAPairBeyondTheEndIsOffTheProfile) {
   EXPECT_EQ(r.status, PairStatus::off_profile);
 }
 
+// From starts up to 20 µm off, on both sides and across joints of the profiles, what Newton to rounding finds.
+TEST(PolishPair, IsThePairOfRefinePair) {
+  const WheelRailPair& pair = s1002_on_60e1();
+  int compared = 0;
+  for (const double y : {-0.003, 0.0, 0.002, 0.0065}) {
+    const WheelsetPose pose{y, 0.0, 0.002, 0.012};
+    const PoseTrigonometry trig(pose);
+    for (double at = -0.03; at < 0.02; at += 0.0011) {
+      WheelsetPose lowered = pose;
+      const RefinedTouch touch = refine_touch(pair, pose, trig, pair.wheel().s_at_y(at), pair.rail().s_at_y(at), 40);
+      if (touch.status != PairStatus::converged) continue;
+      lowered.z = touch.touch.z_touch + 1e-4;
+      const RefinedPair r = refine_pair(pair, lowered, trig, touch.touch.s_wheel, touch.touch.s_rail);
+      if (r.status != PairStatus::converged) continue;
+      for (const double off : {-20e-6, -3e-6, 0.0, 5e-6, 20e-6}) {
+        ContactPatch p;
+        ASSERT_EQ(
+            polish_pair(pair, wheelset_centre(pair, lowered), trig, r.patch.s_wheel + off, r.patch.s_rail - off, p),
+            PairStatus::converged);
+        // The second order of a step of 20 µm, times the change of curvature over the relative curvature.
+        EXPECT_NEAR(p.s_wheel, r.patch.s_wheel, 1e-6);
+        EXPECT_NEAR(p.s_rail, r.patch.s_rail, 1e-6);
+        EXPECT_NEAR(p.penetration, r.patch.penetration, 1e-11);
+        EXPECT_NEAR(p.angle, r.patch.angle, 1e-4);
+        EXPECT_NEAR(p.x, r.patch.x, 1e-6);
+        if (off != 0.0) continue;
+        EXPECT_NEAR(p.curv_wheel, r.patch.curv_wheel, 1e-9);
+        EXPECT_NEAR(p.curv_rail, r.patch.curv_rail, 1e-9);
+        EXPECT_NEAR(p.curv_rolling, r.patch.curv_rolling, 1e-12);
+        EXPECT_NEAR(p.rolling_radius, r.patch.rolling_radius, 1e-12);
+        EXPECT_NEAR(p.angle, r.patch.angle, 1e-12);
+        EXPECT_EQ(p.concave, r.patch.concave);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(SineCosine, AreTheLibrarysToRounding) {
+  for (double x = -0.4; x <= 0.4; x += 1.7e-4) {
+    const SineCosine series(x);
+    EXPECT_NEAR(series.sine, std::sin(x), 2.3e-16 * std::abs(x) + 1e-20);  // one unit in the last place
+    EXPECT_NEAR(series.cosine, std::cos(x), 2.3e-16);
+  }
+}
+
 TEST(RefineTouch, IsTheContactOfZeroPenetration) {
   const WheelRailPair& pair = s1002_on_60e1();
   const WheelsetPose pose{0.007, 0.0, -0.005, 0.02};

@@ -347,5 +347,26 @@ TEST(RigidPosition, PutsBothWheelsOnTheirRails) {
 
 TEST(RigidPosition, SaysWhereAWheelIsOffItsRail) { EXPECT_FALSE(rigid_position(search(), 0.3, 0.0).converged); }
 
+// A minimum born at a joint of a profile between two scan points: here the 80 mm and 300 mm arcs of the rail meet under
+// the tread.
+TEST(ContactSearch, FindsMinimaJustBorn) {
+  const ContactSearch search(s1002_on_60e1());
+  const ContactSearch finer(s1002_on_60e1(), 0.02e-3);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> y(-0.5e-3, 0.0), yaw(-0.03, 0.03), dz(0, 3e-4);
+  const auto touching = [](const ContactPatches& patches) {
+    return std::count_if(patches.begin(), patches.end(), [](const ContactPatch& p) { return p.penetration > 1e-7; });
+  };
+  long two = 0;
+  for (int n = 0; n < 10000; ++n) {
+    WheelsetPose pose{y(random), 0, 0, yaw(random)};
+    pose.z = search.touch_height(pose.y, pose.roll, pose.yaw) + dz(random);
+    const auto found = touching(search.patches(pose));
+    EXPECT_EQ(found, touching(finer.patches(pose))) << pose.y << " " << pose.yaw << " " << pose.z;
+    two += found == 2;
+  }
+  EXPECT_GT(two, 1000);
+}
+
 }  // namespace
 }  // namespace railtab

@@ -46,39 +46,53 @@ TEST_F(GeometryTableFile, TellsATableFromAnotherOne) {
     return !same_table(other, table);
   };
   EXPECT_TRUE(differs([](GeometryTableData& t) { t.rail.dz[3] = std::nextafter(t.rail.dz[3], 1.0); }));
-  EXPECT_TRUE(
-      differs([](GeometryTableData& t) { t.branches[1].s_rail[0] = std::nextafter(t.branches[1].s_rail[0], 1.0); }));
-  EXPECT_TRUE(differs([](GeometryTableData& t) { t.branches.pop_back(); }));
-  EXPECT_TRUE(differs([](GeometryTableData& t) { t.windows[1].s_high = std::nextafter(t.windows[1].s_high, 1.0); }));
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.coefficient[7] = std::nextafter(t.coefficient[7], 1.0F); }));
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.trusted_lowering.pop_back(); }));
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.node[0] ^= 1U; }));
+  EXPECT_TRUE(differs([](GeometryTableData& t) { t.roll.cells = 2; }));
 }
 
-TEST_F(GeometryTableFile, KeepsATableWithoutBranchesWindowsAndStatistics) {
+TEST_F(GeometryTableFile, KeepsATableWithoutBranchesAndStatistics) {
   GeometryTableData table = small_geometry_table();
-  table.branches.clear();
-  table.windows.clear();
   table.statistics.clear();
-  table.yaw_squared = {0.0};
-  table.roll = {0.0};
-  table.trusted_lowering.assign(4, 0.0);
+  table.coefficient.clear();
+  table.yaw_squared = {0.0, 0.0, 1};
+  table.roll = {0.0, 0.0, 1};
+  table.node = {CellNode::leaf(0), CellNode::leaf(1)};
+  table.leaf_branch = {0, 0};
+  table.trusted_lowering = {0.0F, 0.0F};
   write_geometry_table(file_, table);
   EXPECT_TRUE(same_table(read_geometry_table(file_), table));
+}
+
+TEST_F(GeometryTableFile, KeepsAPart) {
+  GeometryTableData table = small_geometry_table();
+  table.shard = {2, 3};
+  write_geometry_table(file_, table);
+  EXPECT_TRUE(same_table(read_geometry_table(file_), table));
+  EXPECT_THROW(GeometryTable{table}, InputError) << "a part is no table";
 }
 
 TEST_F(GeometryTableFile, NamesUnitAndMeaningOfEveryDataset) {
   write_geometry_table(file_, small_geometry_table());
   const ArrayFileReader in(file_, "railtab-geometry-table", geometry_table_version);
-  const std::vector<std::pair<std::string, std::string>> units{
-      {"profiles/wheel/s", "m"},       {"profiles/rail/dz", "1"},      {"axes/lateral", "m"},
-      {"axes/yaw_squared", "rad^2"},   {"axes/roll", "rad"},           {"branches/0/z_touch", "m"},
-      {"branches/1/s_rail_dy", "1"},   {"branches/1/first_node", "1"}, {"cells/trusted_lowering", "m"},
-      {"dimensions/track_gauge", "m"}, {"dimensions/tolerance", "m"},  {"windows/cell", "1"},
-      {"windows/s_low", "m"}};
+  const std::vector<std::pair<std::string, std::string>> units{{"profiles/wheel/s", "m"},
+                                                               {"profiles/rail/dz", "1"},
+                                                               {"axes/lateral", "m"},
+                                                               {"axes/yaw_squared", "rad^2"},
+                                                               {"axes/roll", "rad"},
+                                                               {"cells/node", "1"},
+                                                               {"cells/leaf_branches", "1"},
+                                                               {"cells/trusted_lowering", "m"},
+                                                               {"branches/coefficient", "m; 1"},
+                                                               {"dimensions/track_gauge", "m"},
+                                                               {"dimensions/tolerance", "m"}};
   for (const auto& [path, unit] : units) {
     EXPECT_EQ(in.text(path, "unit"), unit) << path;
     EXPECT_GT(in.text(path, "description").size(), 5U) << path;
   }
-  EXPECT_EQ(in.read("branches/1/z_touch").shape, (std::vector<std::size_t>{2, 1, 3})) << "roll, yaw squared, lateral";
-  EXPECT_EQ(in.read("cells/trusted_lowering").shape, (std::vector<std::size_t>{1, 2, 4}));
+  EXPECT_EQ(in.read("branches/coefficient").shape, (std::vector<std::size_t>{4, 12, 4}));
+  EXPECT_EQ(in.number("axes/lateral", "cells"), 2);
 }
 
 TEST_F(GeometryTableFile, AFolderThatDoesNotExistIsAnInputError) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -167,6 +168,17 @@ TEST(ProfileCurve, RefusesBrokenKnots) {
   k.dy.pop_back();
   EXPECT_THROW(ProfileCurve{k}, InputError);
   EXPECT_THROW(ProfileCurve{cubic_knots({0.0})}, InputError);
+}
+
+TEST(ProfileCurve, TangentAngleIsTheArctangent) {
+  const ProfileCurve wheel(standard_profile(ProfileKind::wheel, "S1002", 1.0 / 40));
+  for (double s = wheel.s_begin(); s <= wheel.s_end(); s += 3.1e-5) {
+    const std::size_t piece = wheel.piece_of(s);
+    EXPECT_TRUE(wheel.piece_contains(piece, s));
+    const CurvePoint p = wheel.on_piece(piece, s);
+    EXPECT_EQ(p.y, wheel.at(s).y);
+    EXPECT_NEAR(wheel.tangent_angle(piece, p), std::atan2(p.dz, p.dy), 1e-15);
+  }
 }
 
 }  // namespace

@@ -10,21 +10,15 @@
 #include "railtab/tablegen/creep_sweep.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tables/creep_table.hpp"
+#include "railtab/tables/table_shard.hpp"
 
 namespace railtab {
-
-/// One of `count` equal parts of a table, made by a command of its own.
-struct Shard {
-  int index = 1;  ///< 1..count
-  int count = 1;  ///< 1..100000
-  [[nodiscard]] bool valid() const noexcept { return 1 <= index && index <= count && count <= 100000; }
-};
 
 /// All that decides the numbers of a creep table, or of one shard of it.
 struct CreepJob {
   CreepLayoutOptions layout;  ///< with Poisson's ratio and the elements of the exact solution
   double tolerance = 1e-6;    ///< on the residual of each solution
-  std::optional<Shard> shard;
+  std::optional<TableShard> shard;
 
   /// @throws InputError
   void validate() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/tables/geometry_table.hpp"
@@ -18,12 +19,14 @@ struct GeometrySweepOptions {
   Interval lateral{-0.012, 0.012};    ///< wheelset lateral shift y, low < high, within ±0.1 [m]
   Interval yaw{-0.030, 0.030};        ///< within ±0.2 [rad]; the table is even in yaw
   Interval roll{0.0, 0.0};            ///< of the wheelset against the rail head, within ±0.1 [rad]
-  double lateral_step = 0.05e-3;      ///< largest node spacing of the sheared lateral axis, 1e-6..1e-3 [m]
-  int yaw_nodes = 9;                  ///< uniform in yaw², at least 2 where yaw is an interval
-  double roll_step = 1e-3;            ///< largest node spacing of the roll axis, 1e-5..0.05 [rad]
-  double branch_height = 3e-3;        ///< branches are followed up to this height above first touch, > 0 [m]
-  double searched_lowering = 0.4e-3;  ///< height above first touch up to which search windows are made,
-                                      ///< 1e-6..branch_height [m]
+  double lateral_root = 0.2e-3;       ///< largest width of a root cell along the sheared lateral axis, 1e-6..1e-2 [m]
+  int yaw_roots = 4;                  ///< root cells along yaw², where yaw is an interval
+  double roll_root = 2.5e-3;          ///< largest width of a root cell along roll, 1e-5..0.05 [rad]
+  double searched_lowering = 0.4e-3;  ///< lowering below first touch up to which the table is made, 1e-6..0.01 [m]
+  double start_error = 8e-6;          ///< a cell is halved where its starts are further off along the wheel [m] ...
+  double iterated_cell = 2e-5;        ///< ... as long as this share of uniform queries or more falls into it
+  double fallback_cell = 2e-6;        ///< ... and as long as this share of uniform queries is searched in it
+  TableShard shard;                   ///< the slab of root cells that is made
   double tolerance = 1e-8;            ///< penetration error asked for, 1e-12..1e-3 [m]
 
   /// @throws InputError naming the first member out of its range.
@@ -33,20 +36,29 @@ struct GeometrySweepOptions {
 /// Told the share done, 0..1, from one thread at a time.
 using Progress = std::function<void(double)>;
 
-/// Runs the online search on every node of the grid (OpenMP), follows the branches, sets the limits of trust from the
-/// branches' ends and checks each cell against the online search at points off the nodes: a cell in which a touching
-/// minimum is missing from the table, or a table start does not lead to it, is limited to the height of that minimum.
+/// Halves the root cells until every leaf's polynomials lead the Newton iteration to what the online search finds, at
+/// points of the closed leaf and lowerings up to searched_lowering (OpenMP over the root cells, each by itself). What
+/// is still wrong in the smallest leaves limits the lowering up to which they are trusted.
 /// @throws InputError for options out of range, ComputationError where the wheel meets the rail nowhere in the range.
 [[nodiscard]] GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
                                                const Progress& progress = {});
 
-/// sweep_geometry() at `options.lateral_step`, halved until the table keeps its word: on 2000 random queries
-/// (verify_geometry_table()) the penetration error is within `options.tolerance` at the 99.9 % point and no patch is
-/// missed or invented, a search with a finer scan judging where it differs from the online search. Statistics and
-/// options are stored in the table.
-/// @throws ComputationError where three halvings do not reach the tolerance; the message says what was reached.
+/// sweep_geometry(), and, of a whole table, certify_geometry_table(), with finer cells until it keeps its word. A part
+/// (options.shard) is not certified: merge_geometry_tables() first.
+/// @throws ComputationError where the second refinement does not reach the tolerance; the message says what was
+/// reached.
 [[nodiscard]] GeometryTableData generate_geometry_table(const ContactSearch& search,
                                                         const GeometrySweepOptions& options,
                                                         const Progress& progress = {});
+
+/// The whole table of its parts, the slabs of the same sweep, in any order. Not certified yet.
+/// @throws InputError where a part is missing, there twice, or not of the same pair, range and options.
+[[nodiscard]] GeometryTableData merge_geometry_tables(std::vector<GeometryTableData> parts);
+
+/// Holds a table against the online search on 2000 random queries (verify_geometry_table()) and stores the statistics
+/// in it.
+/// @return whether the penetration error is within the tolerance at the 99.9 % point and no patch is missed or
+///         invented, a search with a finer scan judging where the table differs from the online search.
+[[nodiscard]] bool certify_geometry_table(GeometryTableData& table);
 
 }  // namespace railtab

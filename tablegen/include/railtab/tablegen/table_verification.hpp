@@ -39,7 +39,7 @@ struct GeometryVerification {
   int never_touching = 0;  ///< draws thrown away because the wheel does not meet the rail there
   int patches_compared = 0;
   double fallback_share = 0;        ///< of the samples: the whole profile searched
-  double searched_share = 0;        ///< of the samples: answered by the table with a search in its windows
+  double searched_share = 0;        ///< of the samples: answered by the table with a search about a start
   double patch_mismatch_share = 0;  ///< queries with a patch missed or invented, of those answered by the table
   /// The same against a search with a scan of 0.02 mm: the online search, too, can miss a minimum just born.
   double finer_mismatch_share = 0;
@@ -49,6 +49,7 @@ struct GeometryVerification {
   double time_table_ns = 0;               ///< per query that the table answered, the best of several passes [ns]
   double time_online_ns = 0;              ///< online search on the same queries
   double time_with_fallback_ns = 0;       ///< per query, fallback included
+  double time_paper_ns = 0;               ///< the published method's search with 1000 points, on some of them
   std::size_t bytes = 0;                  ///< memory of the look-up
 
   [[nodiscard]] std::array<std::pair<std::string_view, const ErrorStatistics*>, 6> errors() const {

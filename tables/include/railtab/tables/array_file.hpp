@@ -51,6 +51,11 @@ class ArrayFileWriter {
              std::string_view unit, std::string_view description);
   void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
+  /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
+  void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
+             std::string_view unit, std::string_view description);
+  void write(std::string_view path, std::span<const std::uint32_t> values, const std::vector<std::size_t>& shape,
+             std::string_view unit, std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);
 
   /// Create or overwrite an attribute of a group or dataset.
@@ -124,5 +129,7 @@ class ArrayFileReader {
 /// 64-bit FNV-1a over the little-endian bytes: the checksum of what a table stores.
 [[nodiscard]] std::uint64_t checksum(std::span<const double> values,
                                      std::uint64_t seed = 14695981039346656037ULL) noexcept;
+[[nodiscard]] std::uint64_t checksum(std::span<const float> values, std::uint64_t seed) noexcept;
+[[nodiscard]] std::uint64_t checksum(std::span<const std::uint32_t> values, std::uint64_t seed) noexcept;
 
 }  // namespace railtab

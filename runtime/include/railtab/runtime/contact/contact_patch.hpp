@@ -49,7 +49,10 @@ struct ContactPatch {
 /// The patches of one wheel, without heap allocation, in increasing y_rail.
 struct ContactPatches {
   static constexpr int capacity = 8;
-  std::array<ContactPatch, capacity> patch;
+  ContactPatches() noexcept {}  // NOLINT(modernize-use-equals-default): the patches are not worth their zeros
+  union {
+    std::array<ContactPatch, capacity> patch;  ///< the first `count`; the others are not initialised
+  };
   int count = 0;
   bool from_table = false;  ///< the geometry table answered, also where it answers that nothing touches
   bool overflow = false;    ///< more than `capacity` candidates: the deepest were kept

@@ -33,7 +33,7 @@ class ContactSearch {
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose, double near_miss = 0.0) const noexcept;
 
   /// Adds to `result` the patches that patches() finds on the scan intervals that meet the stretch s_low..s_high of the
-  /// wheel profile [m]; a patch within 0.1 µm of one already there is that one.
+  /// wheel profile [m]; a patch within 5 µm of one already there is that one.
   void add_patches_between(double s_low, double s_high, const WheelsetPose& pose, const PoseTrigonometry& trig,
                            double near_miss, ContactPatches& result) const noexcept;
 

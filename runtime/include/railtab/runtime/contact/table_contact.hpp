@@ -5,6 +5,13 @@
 
 namespace railtab {
 
+/// How a table answered a query.
+enum class TableAnswer : std::uint8_t {
+  none,       ///< not: outside, or lowered further than the cell is trusted
+  looked_up,  ///< every start led to its pair
+  searched,   ///< a start led to no pair of its own, and the online search looked about it
+};
+
 /// Contact patches of a wheel from a geometry table: the table names the branches and gives each a starting pair, the
 /// common-normal Newton polishes it on the stored profiles, and the online search answers where the table cannot be
 /// trusted. Const, allocation-free, thread-safe.
@@ -16,32 +23,28 @@ class TableContact {
   /// As ContactSearch::patches; patches from the fallback have an online source.
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose, double near_miss = 0.0) const noexcept;
 
-  /// The table's own answer. @return false where it has none (outside, a branch that begins or ends, a start that does
-  /// not lead to its pair); `result`, empty at the call, is then without meaning. Where a branch begins or ends, the
-  /// table's search windows, short stretches of the wheel profile, are searched.
+  /// The table's own answer. Where it is `none`, `result`, empty at the call, is without meaning.
+  [[nodiscard]] TableAnswer answer(const WheelsetPose& pose, double near_miss, ContactPatches& result) const noexcept;
+  /// answer(), true where there is one.
   [[nodiscard]] bool patches_from_table(const WheelsetPose& pose, double near_miss,
-                                        ContactPatches& result) const noexcept;
-
-  /// Whether the table's own answer needs a search in its windows.
-  [[nodiscard]] bool searches_windows(const WheelsetPose& pose, double near_miss) const noexcept;
-
-  /// The patches to which the starts of these branches lead, whether or not there are others; added to `result`, in
-  /// increasing y_rail. @return false where a start leads nowhere, too far, or to the pair of another one.
-  [[nodiscard]] bool add_branch_patches(const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
-                                        const PoseTrigonometry& trig, double near_miss,
-                                        ContactPatches& result) const noexcept;
+                                        ContactPatches& result) const noexcept {
+    return answer(pose, near_miss, result) != TableAnswer::none;
+  }
 
   [[nodiscard]] const GeometryTable& table() const noexcept { return table_; }
   [[nodiscard]] const ContactSearch& search() const noexcept { return search_; }
 
  private:
-  enum class Route { branches, windows, online };
-  [[nodiscard]] Route route(const GeometryTable::Lookup& lookup, const WheelsetPose& pose,
-                            double near_miss) const noexcept;
-
   GeometryTable table_;
   ContactSearch search_;
   double steepest_;  ///< largest height per normal distance on any branch [-]
 };
+
+/// The patches to which the starts of a table's branches lead, added to `result`, in increasing y_rail. Where a branch
+/// begins or ends in a leaf, its start may lead nowhere, too far, or to the pair of another one: 0.5 mm of the wheel
+/// profile to both sides of it are searched then.
+[[nodiscard]] TableAnswer add_branch_patches(const ContactSearch& search, const GeometryTable::Lookup& lookup,
+                                             const WheelsetPose& pose, const PoseTrigonometry& trig, double near_miss,
+                                             ContactPatches& result) noexcept;
 
 }  // namespace railtab

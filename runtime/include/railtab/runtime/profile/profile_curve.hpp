@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,7 +17,10 @@ struct CurvePoint {
 
   /// Signed curvature dy·ddz − dz·ddy over |t|³ [1/m]: positive where the curve bends towards +z.
   /// A convex rail head has a positive value, a convex wheel tread a negative one.
-  [[nodiscard]] double curvature() const noexcept;
+  [[nodiscard]] double curvature() const noexcept {
+    const double t2 = dy * dy + dz * dz;
+    return (dy * ddz - dz * ddy) / (t2 * std::sqrt(t2));
+  }
 };
 
 /// A profile as a piecewise cubic curve in arc length, made for fast evaluation.
@@ -30,16 +34,36 @@ class ProfileCurve {
 
   /// Point at arc length s; outside [s_begin, s_end] the end piece is continued, so that Newton may
   /// step over the end; callers judge the final s with contains().
-  [[nodiscard]] CurvePoint at(double s) const noexcept {
-    const std::size_t i = interval(s);
-    const Piece& p = piece_[i];
-    const double t = s - start_[i];
+  [[nodiscard]] CurvePoint at(double s) const noexcept { return on_piece(piece_of(s), s); }
+
+  /// The cubic piece that at(s) takes.
+  [[nodiscard]] std::size_t piece_of(double s) const noexcept { return interval(s); }
+  /// Whether s lies on that piece, its ends included.
+  [[nodiscard]] bool piece_contains(std::size_t piece, double s) const noexcept {
+    return s >= start_[piece] && !(s > start_[piece + 1]);
+  }
+  /// Point at arc length s of one cubic piece, continued beyond its ends.
+  [[nodiscard]] CurvePoint on_piece(std::size_t piece, double s) const noexcept {
+    const Piece& p = piece_[piece];
+    const double t = s - start_[piece];
     return {p.y0 + t * (p.y1 + t * (p.y2 + t * p.y3)),
             p.z0 + t * (p.z1 + t * (p.z2 + t * p.z3)),
             p.y1 + t * (2 * p.y2 + t * 3 * p.y3),
             p.z1 + t * (2 * p.z2 + t * 3 * p.z3),
             2 * p.y2 + t * 6 * p.y3,
             2 * p.z2 + t * 6 * p.z3};
+  }
+
+  /// atan2(dz, dy) of a point of a piece, to rounding: from the piece's beginning, where it is known, the tangent has
+  /// turned little, so that a few terms of the series do.
+  [[nodiscard]] double tangent_angle(std::size_t piece, const CurvePoint& point) const noexcept {
+    constexpr double series_limit = 0.05;  // the first term left out is 2e-17
+    const Piece& p = piece_[piece];
+    const double turn = (p.y1 * point.dz - p.z1 * point.dy) / (p.y1 * point.dy + p.z1 * point.dz);
+    if (!(std::abs(turn) < series_limit)) return std::atan2(point.dz, point.dy);
+    const double x = turn * turn;
+    return start_angle_[piece] +
+           turn * (1 - x * (1.0 / 3 - x * (1.0 / 5 - x * (1.0 / 7 - x * (1.0 / 9 - x * (1.0 / 11))))));
   }
 
   [[nodiscard]] double s_begin() const noexcept { return knots_.s.front(); }
@@ -74,6 +98,7 @@ class ProfileCurve {
   ProfileKnots knots_;
   std::vector<Piece> piece_;           // one per interval between knots
   std::vector<double> start_;          // arc length at which each piece begins, and a NaN that ends every walk
+  std::vector<double> start_angle_;    // atan2(dz, dy) there
   std::vector<std::uint32_t> bucket_;  // first interval that reaches into each uniform bucket of s
   double bucket_origin_ = 0.0;
   double bucket_inverse_width_ = 0.0;
