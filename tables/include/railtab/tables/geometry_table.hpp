@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "railtab/tables/profile_knots.hpp"
+#include "railtab/tables/provenance.hpp"
 
 namespace railtab {
 
@@ -55,13 +56,6 @@ struct GeometryBranch {
 struct SearchWindow {
   std::int64_t cell = 0;         ///< lateral fastest, then yaw², roll
   double s_low = 0, s_high = 0;  ///< arc length on the wheel profile [m]
-};
-
-/// What the offline side stored beside the numbers.
-struct TableProvenance {
-  std::string program_version;
-  std::string command_line;
-  std::string created;  ///< ISO 8601, UTC
 };
 
 /// Contact geometry of a pair over lateral shift, yaw and roll: branches, and the cells that cannot be trusted.
