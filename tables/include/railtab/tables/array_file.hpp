@@ -46,6 +46,9 @@ class ArrayFileWriter {
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
   void write(std::string_view path, std::span<const double> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
+  /// Stored with 32 bits.
+  void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
+             std::string_view unit, std::string_view description);
   void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,7 +33,7 @@ struct CreepTableData {
   std::array<std::vector<double>, 4> nodes;
   /// smooth only: creepage scales (CreepScale: x, y, spin) at the nodes of a/b, 3 for each.
   std::vector<double> scale;
-  double ratio_stretch = 0.0;  ///< smooth only: the axis of a/b is uniform in asinh(ln(a/b)/ratio_stretch)
+  double ratio_stretch = 0.0;  ///< smooth only: of squeezed_ratio(), in which the axis of a/b is uniform
   double radius_unit = 0.0;    ///< smooth only: t = ρ/(ρ + radius_unit)
   /// F_x, F_y, M_z at all nodes, axes in the order above, the last one fastest, component fastest of all.
   /// smooth: divided by t. paper: as they are.
@@ -48,11 +50,17 @@ struct CreepLookup {
   bool inside = false;                                ///< false outside the table: force and derivative are zero
 };
 
+class CreepSpline;
+class GridAxis;
+
 /// Look-up: const, allocation-free, thread-safe.
 class CreepTable {
  public:
   /// @throws InputError where nodes are out of order or shapes disagree.
   explicit CreepTable(CreepTableData data);
+  ~CreepTable();
+  CreepTable(CreepTable&&) noexcept;
+  CreepTable& operator=(CreepTable&&) noexcept;
 
   /// smooth: inside for a/b within the axis and every finite creepage; C2 except at zero creepage, where it is C1.
   /// paper: inside for a/b and all creepages within the axes; continuous, the derivatives are those of the cell.
@@ -64,6 +72,8 @@ class CreepTable {
 
  private:
   CreepTableData data_;
+  std::unique_ptr<const CreepSpline> spline_;  ///< smooth layout
+  std::vector<GridAxis> axes_;                 ///< paper's layout
 };
 
 }  // namespace railtab

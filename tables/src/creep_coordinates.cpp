@@ -1,0 +1,23 @@
+#include "railtab/tables/creep_coordinates.hpp"
+
+#include <cmath>
+
+namespace railtab {
+
+std::array<double, 3> creepage_at(const CreepPoint& p, const CreepScale& scale, double radius_unit) noexcept {
+  const double rho = radius_unit * p.t / (1.0 - p.t);
+  const double across = rho * std::sin(p.alpha);
+  return {rho * std::cos(p.alpha) / scale.x, across * std::cos(p.beta) / scale.y,
+          across * std::sin(p.beta) / scale.spin};
+}
+
+double squeezed_ratio(double ratio, double stretch) noexcept {
+  const double x = std::log(ratio) / stretch;
+  return x / std::sqrt(1.0 + x * x);
+}
+
+double ratio_at(double squeezed, double stretch) noexcept {
+  return std::exp(stretch * squeezed / std::sqrt(1.0 - squeezed * squeezed));
+}
+
+}  // namespace railtab
