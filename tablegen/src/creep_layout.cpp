@@ -20,8 +20,7 @@ constexpr double linear_creepage = 1e-6;  // in scaled creepage: adhesion everyw
 
 // What the layout's measured errors decided; see docs/theory/creep_table.md.
 constexpr double ratio_stretch = 4.0;
-constexpr double radius_unit = 2.0;
-constexpr double spin_weight = 1.0;
+constexpr double radius_unit = 4.0;
 
 std::vector<double> uniform_nodes(double first, double last, int count) {
   std::vector<double> nodes(static_cast<std::size_t>(count));
@@ -34,15 +33,6 @@ std::vector<double> paper_nodes(double first) {
   std::vector<double> nodes = uniform_nodes(first, 1.0, 10);
   for (int i = 1; i <= 10; ++i) nodes.push_back(std::pow(10.0, 0.3 * i));
   return nodes;
-}
-
-/// Linear theory's coefficients for the translations. For spin the root mean square of the slip that it makes under the
-/// pressure, ⟨x²⟩ = a²/5 and ⟨y²⟩ = b²/5, with the same coefficients: in linear theory c23 alone would do, but for
-/// wide ellipses it is small against what spin does to sliding.
-CreepScale creep_scale(double ratio, double nu) {
-  const KalkerCoefficients c = kalker_coefficients(ratio, nu);
-  const double a = std::sqrt(ratio), b = 1.0 / a;
-  return {c.c11, c.c22, spin_weight * std::hypot(c.c11 * b, c.c22 * a) / std::sqrt(5.0)};
 }
 
 CreepTableData empty_table(const CreepLayoutOptions& options) {
@@ -68,19 +58,11 @@ CreepTableData empty_table(const CreepLayoutOptions& options) {
   table.nodes[1] = uniform_nodes(0.0, 1.0, n[1]);
   table.nodes[2] = uniform_nodes(0.0, 0.5 * pi, n[2]);
   table.nodes[3] = uniform_nodes(0.0, pi * (n[3] - 1) / n[3], n[3]);
-  for (const double ratio : table.nodes[0]) {
-    const CreepScale scale = creep_scale(ratio, options.poisson);
-    table.scale.insert(table.scale.end(), {scale.x, scale.y, scale.spin});
-  }
   return table;
 }
 
-CreepScale scale_at(const CreepTableData& table, std::size_t ratio) {
-  return {table.scale[3 * ratio], table.scale[3 * ratio + 1], table.scale[3 * ratio + 2]};
-}
-
 Creepage creepage_at_node(const CreepTableData& table, std::size_t ratio, double t, double alpha, double beta) {
-  const auto u = creepage_at({t, alpha, beta}, scale_at(table, ratio), table.radius_unit);
+  const auto u = creepage_at({t, alpha, beta}, creep_scale(table.nodes[0][ratio]), table.radius_unit);
   return {u[0], u[1], u[2]};
 }
 
@@ -99,7 +81,8 @@ void for_each_solved_node(const CreepTableData& table, const Visit& visit) {
 /// Fills the values of one a/b.
 class RatioSlab {
  public:
-  RatioSlab(CreepTableData& table, std::size_t ratio) : table_(table), ratio_(ratio) {}
+  RatioSlab(CreepTableData& table, std::size_t ratio)
+      : table_(table), ratio_(ratio), moment_unit_(creep_scale(table.nodes[0][ratio]).moment) {}
 
   /// At t = 0: V = lim F/t, from the responses to the three creepages alone.
   void set_linear(std::span<const CreepForce> response) {
@@ -146,11 +129,12 @@ class RatioSlab {
     const bool longitudinal = alpha == 0, across = alpha + 1 == table_.nodes[2].size();
     table_.values[3 * node] = across ? 0.0 : value.x;
     table_.values[3 * node + 1] = longitudinal ? 0.0 : value.y;
-    table_.values[3 * node + 2] = longitudinal ? 0.0 : value.moment;
+    table_.values[3 * node + 2] = longitudinal ? 0.0 : value.moment / moment_unit_;
   }
 
   CreepTableData& table_;
   std::size_t ratio_;
+  double moment_unit_;
 };
 
 std::vector<CreepCase> paper_cases(const CreepTableData& table) {
@@ -190,7 +174,7 @@ std::vector<CreepCase> creep_cases(const CreepLayoutOptions& options) {
   std::vector<CreepCase> cases;
   for (std::size_t i = 0; i < table.nodes[0].size(); ++i) {
     const double ratio = table.nodes[0][i];
-    const CreepScale scale = scale_at(table, i);
+    const CreepScale scale = creep_scale(ratio);
     cases.push_back({ratio, {linear_creepage / scale.x, 0.0, 0.0}});
     cases.push_back({ratio, {0.0, linear_creepage / scale.y, 0.0}});
     cases.push_back({ratio, {0.0, 0.0, linear_creepage / scale.spin}});

@@ -10,6 +10,7 @@
 #include "railtab/tables/input_error.hpp"
 #include "rolling_contact_newton.hpp"
 #include "rolling_contact_transient.hpp"
+#include "slip_average.hpp"
 
 namespace railtab {
 
@@ -37,6 +38,7 @@ struct RollingContact::Impl {
   void set_rigid_slip(const Creepage& creepage);
   [[nodiscard]] ElementField start(const std::vector<double>* given) const;
   void describe(const ElementField& traction, RollingContactSolution& solution) const;
+  void average_slip(const ElementField& traction, double spin, CreepForce& force);
 
   RollingContactOptions options;
   double nu;
@@ -84,6 +86,14 @@ void RollingContact::Impl::describe(const ElementField& traction, RollingContact
   solution.traction.assign(traction.begin(), traction.end());
 }
 
+void RollingContact::Impl::average_slip(const ElementField& traction, double spin, CreepForce& force) {
+  ElementField slip(traction.size());
+  newton.product().apply(traction, slip);
+  slip += rigid_slip;
+  const CreepForce correction = slip_average_correction(grid, traction, slip, spin * grid.dx);
+  force = {force.x + correction.x, force.y + correction.y, force.moment + correction.moment};
+}
+
 RollingContact::RollingContact(double ratio, double nu, const RollingContactOptions& options) {
   options.validate();
   if (!(ratio >= 1e-4 && ratio <= 1e4)) throw input_error("ratio a/b", fmt::format("{}", ratio), "1e-4..1e4");
@@ -115,6 +125,9 @@ RollingContactSolution RollingContact::solve(const Creepage& creepage, const std
   solution.products = outcome.products;
   solution.converged = outcome.converged;
   impl_->describe(traction, solution);
+  if (options.direction == RollingContactOptions::SlipDirection::averaged) {
+    impl_->average_slip(traction, creepage.spin, solution.force);
+  }
   return solution;
 }
 

@@ -13,6 +13,7 @@ RollingContactOptions equal_area(RollingContactOptions options, int divisor) {
   }
   options.elements /= divisor;
   options.size = RollingContactOptions::ElementSize::equal_area;
+  options.direction = RollingContactOptions::SlipDirection::averaged;
   return options;
 }
 

@@ -91,15 +91,6 @@ CreepSpline::CreepSpline(const CreepTableData& data)
     v = along_axis(v, 1, size[1] * size[2] * size[3], along_ratio);
     for (std::size_t i = 0; i < v.size(); ++i) coefficient_[components * i + c] = static_cast<float>(v[i]);
   }
-  scale_.assign(size[0], Eigen::Array4d::Zero());
-  for (std::size_t c = 0; c < 3; ++c) {
-    Eigen::VectorXd scale(n[0]);
-    for (int i = 0; i < n[0]; ++i) scale[i] = data.scale[static_cast<std::size_t>(3 * i) + c];
-    const Eigen::VectorXd coefficients = along_ratio * scale;
-    for (std::size_t i = 0; i < size[0]; ++i) {
-      scale_[i][static_cast<Eigen::Index>(c)] = coefficients[static_cast<Eigen::Index>(i)];
-    }
-  }
 }
 
 CreepSpline::Point CreepSpline::locate(const Eigen::Array3d& u) const noexcept {
@@ -156,10 +147,8 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
   if (!(ratio >= ratio_first_ && ratio <= ratio_last_)) return result;
   const double x = std::log(ratio) * inverse_stretch_;
   const Place place = axis_[0].locate(x / std::sqrt(1.0 + x * x));
-  const SplineWeights<double> w(place.fraction);
-  const Eigen::Array4d* around = scale_.data() + place.cell;
-  const Eigen::Array3d scale =
-      (w.value[0] * around[0] + w.value[1] * around[1] + w.value[2] * around[2] + w.value[3] * around[3]).head<3>();
+  const CreepScale scales = creep_scale(ratio);
+  const Eigen::Array3d scale(scales.x, scales.y, scales.spin), size(1.0, 1.0, scales.moment);
   const Point p = locate(scale * Eigen::Array3d(creepage[0], creepage[1], creepage[2]));
   const Jet jet = evaluate(place, p);
 
@@ -171,11 +160,12 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
   const double sin_beta = p.across > 0.0 ? p.radial[2] / sine : 0.0;
   const Eigen::Vector3d along_alpha(-sine, cosine * cos_beta, cosine * sin_beta);
   const Eigen::Vector3d along_beta(0.0, -sin_beta, cos_beta);
-  const Eigen::Array3d value = jet.value.head<3>().cast<double>();
-  const Eigen::Array3d by_rho = radius_unit_ * h * h * (value + t * jet.t.head<3>().cast<double>());
-  const Eigen::Array3d by_alpha = h * jet.alpha.head<3>().cast<double>();
-  const Eigen::Array3d by_beta = sine > pole_sine ? Eigen::Array3d((h / sine) * jet.beta.head<3>().cast<double>())
-                                                  : Eigen::Array3d(h * jet.alpha_beta.head<3>().cast<double>());
+  const Eigen::Array3d value = size * jet.value.head<3>().cast<double>();
+  const Eigen::Array3d by_rho = radius_unit_ * h * h * (value + t * size * jet.t.head<3>().cast<double>());
+  const Eigen::Array3d by_alpha = h * size * jet.alpha.head<3>().cast<double>();
+  const Eigen::Array3d by_beta = sine > pole_sine
+                                     ? Eigen::Array3d((h / sine) * size * jet.beta.head<3>().cast<double>())
+                                     : Eigen::Array3d(h * size * jet.alpha_beta.head<3>().cast<double>());
   for (int i = 0; i < 3; ++i) {
     result.force[static_cast<std::size_t>(i)] = p.sign[i] * t * value[i];
     for (int j = 0; j < 3; ++j) {

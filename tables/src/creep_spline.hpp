@@ -8,16 +8,14 @@
 
 namespace railtab {
 
-/// The cubic B-spline of the smooth layout: coefficients of F_x/t, F_y/t, M_z/t over stretched a/b, t, α, β.
+/// The cubic B-spline of the smooth layout: coefficients of F_x/t, F_y/t, M_z/(t m) over squeezed a/b, t, α, β.
 class CreepSpline {
  public:
   /// @param data of the smooth layout, checked
   explicit CreepSpline(const CreepTableData& data);
 
   [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return coefficient_.size() * sizeof(float) + scale_.size() * sizeof(Eigen::Array4d);
-  }
+  [[nodiscard]] std::size_t bytes() const noexcept { return coefficient_.size() * sizeof(float); }
 
  private:
   static constexpr int components = 4;  // F_x, F_y, M_z, and one to fill the vector
@@ -41,7 +39,6 @@ class CreepSpline {
   std::array<Axis, 4> axis_;
   std::array<std::size_t, 3> stride_;  ///< of a/b, t, α, in floats
   std::vector<float> coefficient_;
-  std::vector<Eigen::Array4d> scale_;  ///< spline coefficients of the creepage scales over stretched a/b
   double ratio_first_, ratio_last_, inverse_stretch_, radius_unit_;
 };
 

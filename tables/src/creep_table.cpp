@@ -53,11 +53,6 @@ void require_smooth_layout(const CreepTableData& data) {
   require_uniform(smooth_axes[2], data.nodes[2], 0.0, 0.5 * pi, same);
   const double beta_nodes = static_cast<double>(data.nodes[3].size());
   require_uniform(smooth_axes[3], data.nodes[3], 0.0, pi * (beta_nodes - 1.0) / beta_nodes, same);
-  if (data.scale.size() != 3 * data.nodes[0].size() ||
-      !std::all_of(data.scale.begin(), data.scale.end(), [](double v) { return v > 0.0 && std::isfinite(v); })) {
-    throw input_error("creep table: scale", fmt::format("{} values", data.scale.size()),
-                      fmt::format("{} positive numbers", 3 * data.nodes[0].size()));
-  }
 }
 
 /// Multilinear interpolation between the 16 corners of a cell; υx and υy folded into their positive halves.

@@ -45,7 +45,6 @@ std::string content_checksum(const CreepTableData& table) {
     sum = checksum(values, checksum({&length, 1}, sum));
   };
   for (const std::vector<double>& nodes : table.nodes) add(nodes);
-  add(table.scale);
   add(table.values);
   const std::array<double, 4> options{table.poisson, static_cast<double>(table.elements), table.ratio_stretch,
                                       table.radius_unit};
@@ -83,7 +82,6 @@ class Reading {
     shape.push_back(3);
     table.values = numbers("values", shape);
     if (table.layout == CreepTableLayout::smooth) {
-      table.scale = numbers("scale", {shape[0], 3});
       table.ratio_stretch = option("ratio_stretch", 1e-3, 1e3);
       table.radius_unit = option("radius_unit", 1e-3, 1e3);
     }
@@ -148,13 +146,9 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
   }
   shape.push_back(3);
   const bool smooth = table.layout == CreepTableLayout::smooth;
-  out.write(
-      "values", values, shape, "1",
-      smooth ? "F_x/t, F_y/t, M_z/t at the nodes; at t = 0 the limit of linear theory" : "F_x, F_y, M_z at the nodes");
-  if (smooth) {
-    out.write("scale", table.scale, {table.nodes[0].size(), 3}, "1",
-              "factors of longitudinal creepage, lateral creepage and spin at the nodes of a/b");
-  }
+  out.write("values", values, shape, "1",
+            smooth ? "F_x/t, F_y/t, M_z/(t m) at the nodes, m^2 = (a/b + b/a)/2; at t = 0 the limit of linear theory"
+                   : "F_x, F_y, M_z at the nodes");
   out.attribute("options", "layout", creep_table_layout_name(table.layout));
   out.attribute("options", "poisson", table.poisson);
   out.attribute("options", "elements", static_cast<std::int64_t>(table.elements));

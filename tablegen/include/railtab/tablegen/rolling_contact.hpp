@@ -18,6 +18,9 @@ struct RollingContactOptions {
   /// Elements of the ellipse's rectangle (2a/n, 2b/n), as CONTACT; or scaled so that those with their centre inside the
   /// ellipse have its area together, so that the error is smooth in 1/n.
   enum class ElementSize { rectangle, equal_area } size = ElementSize::rectangle;
+  /// Force of a slipping element: the bound against the slip at one place of it, as CONTACT, or its mean over the
+  /// element, which counts where the slip turns within elements. The tractions are the same.
+  enum class SlipDirection { sampled, averaged } direction = SlipDirection::sampled;
 
   /// @throws InputError
   void validate() const;
@@ -75,7 +78,8 @@ struct ExtrapolatedContactSolution {
 /// solution starts the fine one.
 class ExtrapolatedRollingContact {
  public:
-  /// As RollingContact; options.elements is the fine grid's, even and at least 8, options.size is not used.
+  /// As RollingContact; options.elements is the fine grid's, even and at least 8; of equal area with averaged slip
+  /// direction whatever the options say.
   ExtrapolatedRollingContact(double ratio, double nu, const RollingContactOptions& options = {});
   [[nodiscard]] ExtrapolatedContactSolution solve(const Creepage& creepage);
 

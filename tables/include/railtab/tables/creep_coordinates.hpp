@@ -4,10 +4,15 @@
 
 namespace railtab {
 
-/// Weights that make the three creepages comparable at one a/b: u = (x υx, y υy, spin φ).
+/// Factors that make the three creepages comparable at one a/b, u = (x υx, y υy, spin φ), and the size of the moment.
 struct CreepScale {
-  double x, y, spin;
+  double x, y, spin, moment;
 };
+
+/// Closed forms: x and y follow c11 and c22 of linear theory for a/b up to 20 (any smooth choice is right, this one
+/// keeps the force nearly the same along a/b); spin is the root mean square of the slip it makes under Hertz's
+/// pressure, √((x² b² + y² a²)/5), √(ab) = 1, and moment √(a² + b²)/√2.
+[[nodiscard]] CreepScale creep_scale(double ratio) noexcept;
 
 /// Bounded coordinates of a creepage, after the two exact symmetries have folded it into υx >= 0, φ >= 0:
 /// u = ρ (cos α, sin α cos β, sin α sin β), t = ρ/(ρ + unit). t = 0 is zero creepage, t = 1 infinite creepage.

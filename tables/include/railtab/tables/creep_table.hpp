@@ -31,12 +31,10 @@ struct CreepTableData {
   int elements = 40;  ///< of the exact solution along each axis of the ellipse
   /// smooth: a/b, radius t, polar angle α, azimuth β (CreepPoint). paper: a/b, υx, υy (both >= 0), φ (both signs).
   std::array<std::vector<double>, 4> nodes;
-  /// smooth only: creepage scales (CreepScale: x, y, spin) at the nodes of a/b, 3 for each.
-  std::vector<double> scale;
   double ratio_stretch = 0.0;  ///< smooth only: of squeezed_ratio(), in which the axis of a/b is uniform
   double radius_unit = 0.0;    ///< smooth only: t = ρ/(ρ + radius_unit)
   /// F_x, F_y, M_z at all nodes, axes in the order above, the last one fastest, component fastest of all.
-  /// smooth: divided by t. paper: as they are.
+  /// smooth: divided by t, the moment also by CreepScale::moment. paper: as they are.
   std::vector<double> values;
   /// Options and measured errors, name -> value; written as attributes.
   std::vector<std::pair<std::string, double>> statistics;
