@@ -87,15 +87,17 @@ class RatioSlab {
   /// At t = 0: V = lim F/t, from the responses to the three creepages alone.
   void set_linear(std::span<const CreepForce> response) {
     // response[j] is to a scaled creepage of linear_creepage; the components that symmetry forbids are left out.
-    const double unit = table_.radius_unit / linear_creepage;
+    const CreepScale scale = creep_scale(table_.nodes[0][ratio_]);
     for (std::size_t alpha = 0; alpha < table_.nodes[2].size(); ++alpha) {
       for (std::size_t beta = 0; beta < table_.nodes[3].size(); ++beta) {
-        const double sine = std::sin(table_.nodes[2][alpha]);
-        const double x = std::cos(table_.nodes[2][alpha]);
-        const double y = sine * std::cos(table_.nodes[3][beta]), spin = sine * std::sin(table_.nodes[3][beta]);
+        const Creepage u = creepage_at_node(table_, ratio_, 0.5, table_.nodes[2][alpha], table_.nodes[3][beta]);
+        // At t = 1/2 the scaled creepages are as long as the radius' unit, to which V refers.
+        const double by_length = 1.0 / linear_creepage;
+        const double x = by_length * scale.x * u.x, y = by_length * scale.y * u.y,
+                     spin = by_length * scale.spin * u.spin;
         set(0, alpha, beta,
-            {unit * x * response[0].x, unit * (y * response[1].y + spin * response[2].y),
-             unit * (y * response[1].moment + spin * response[2].moment)});
+            {x * response[0].x, y * response[1].y + spin * response[2].y,
+             y * response[1].moment + spin * response[2].moment});
       }
     }
   }
