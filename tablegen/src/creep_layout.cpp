@@ -55,6 +55,8 @@ CreepTableData empty_table(const CreepLayoutOptions& options) {
                                       squeezed_ratio(largest_ratio, ratio_stretch), n[0])) {
     table.nodes[0].push_back(ratio_at(x, ratio_stretch));
   }
+  table.nodes[0].front() = smallest_ratio;  // to the last bit
+  table.nodes[0].back() = largest_ratio;
   table.nodes[1] = uniform_nodes(0.0, 1.0, n[1]);
   table.nodes[2] = uniform_nodes(0.0, 0.5 * pi, n[2]);
   table.nodes[3] = uniform_nodes(0.0, pi * (n[3] - 1) / n[3], n[3]);

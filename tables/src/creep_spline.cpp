@@ -98,9 +98,7 @@ CreepSpline::Point CreepSpline::locate(const Eigen::Array3d& u, double alpha_spr
   Point p;
   const double turn = u[2] < 0.0 ? -1.0 : 1.0;
   p.sign = {u[0] < 0.0 ? -1.0 : 1.0, turn, turn};
-  Eigen::Vector3d folded = p.sign * u;
-  const double largest = folded.cwiseAbs().maxCoeff();
-  if (largest > largest_creepage) folded *= largest_creepage / largest;
+  const Eigen::Vector3d folded = p.sign * u;
   const double across_squared = folded[1] * folded[1] + folded[2] * folded[2];
   p.across = std::sqrt(across_squared);
   p.rho = std::sqrt(across_squared + folded[0] * folded[0]);
@@ -150,7 +148,10 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
   const Place place = axis_[0].locate(x / std::sqrt(1.0 + x * x));
   const CreepScale scales = creep_scale(ratio);
   const Eigen::Array3d scale(scales.x, scales.y, scales.spin), size(1.0, 1.0, scales.moment);
-  const Point p = locate(scale * Eigen::Array3d(creepage[0], creepage[1], creepage[2]), scales.alpha, scales.beta);
+  Eigen::Array3d wanted(creepage[0], creepage[1], creepage[2]);
+  const double largest = wanted.abs().maxCoeff();
+  if (largest > largest_creepage) wanted *= largest_creepage / largest;
+  const Point p = locate(scale * wanted, scales.alpha, scales.beta);
   const Jet jet = evaluate(place, p);
 
   // F = t V; its gradient over u in the directions of growing ρ, α, β.
