@@ -28,7 +28,7 @@ std::vector<double> uniform_nodes(double first, double last, int count) {
   return nodes;
 }
 
-/// Ten linear values up to 1 and ten logarithmic ones from there to 10³ [Montenegro2023, Sec. 3.4.2].
+/// Ten linear values up to 1 and ten logarithmic ones from there to 10³ [MontenegroCalcada2023, Sec. 3.4.2].
 std::vector<double> paper_nodes(double first) {
   std::vector<double> nodes = uniform_nodes(first, 1.0, 10);
   for (int i = 1; i <= 10; ++i) nodes.push_back(std::pow(10.0, 0.3 * i));
