@@ -59,9 +59,11 @@ std::vector<CreepForce> solve_exactly(const std::vector<CreepCase>& cases, const
     const ExtrapolatedContactSolution s = contact->solve(cases[i].creepage);
     forces[i] = s.force;
     extrapolated[i] = std::hypot(s.force.x - s.fine.force.x, s.force.y - s.fine.force.y);
+    // FFTW plans are made and given back by one thread at a time.
+#pragma omp critical(rolling_contact_set_up)
+    contact.reset();
 #pragma omp critical(creep_verification)
     {
-      contact.reset();
       failed += !(s.coarse.converged && s.fine.converged);
       result.safe_method += s.coarse.safe_method || s.fine.safe_method;
       result.worst_residual = std::max({result.worst_residual, s.coarse.residual, s.fine.residual});
