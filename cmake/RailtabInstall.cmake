@@ -17,6 +17,8 @@ if(TARGET tablegen)
   install(EXPORT railtabTablegen NAMESPACE railtab:: DESTINATION ${railtab_package_dir})
 endif()
 
+install(FILES ${PROJECT_SOURCE_DIR}/tables/data/creep_table_nu028.h5 DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab)
+
 # Both commands in one folder of the build: build/<preset>/bin
 foreach(command tablegen_command vsi)
   if(TARGET ${command})

@@ -4,7 +4,7 @@
 namespace railtab::scene {
 namespace {
 
-std::vector<std::string> creep_law_names() { return {"linear", "polach", "fastsim"}; }
+std::vector<std::string> creep_law_names() { return {"linear", "polach", "fastsim", "table"}; }
 
 std::vector<KeyBinding> train_keys() {
   return {
@@ -41,6 +41,8 @@ std::vector<KeyBinding> contact_keys() {
        RatioKey{[](SceneDraft& d) -> double& { return d.parameters.contact.rail_inclination; }, {0.0, 0.2}}},
       {"contact.creep_law", "", "creep law",
        TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.contact.creep_law; }, creep_law_names}},
+      {"contact.creep_table", "", "creep table of the law \"table\" (the shipped one, for nu = 0.28, where absent)",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.contact.creep_table; }}},
       {"contact.friction", "1", "Coulomb friction coefficient",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.friction; }, {0.0, 2.0}}},
       {"contact.damping", "s/m", "contact damping c of F_n·(1 + c·d'), d' the rate of penetration",

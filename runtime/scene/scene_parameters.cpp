@@ -29,6 +29,10 @@ void SceneParameters::validate() const {
     throw input_error(place, "contact.mode = \"table\" without contact.table",
                       "a geometry table (tablegen geometry makes one), or contact.mode = \"online\"");
   }
+  if (!contact.creep_table.empty() && contact.creep_law != "table") {
+    throw input_error(place, fmt::format("contact.creep_table with contact.creep_law = \"{}\"", contact.creep_law),
+                      "contact.creep_law = \"table\", or no contact.creep_table");
+  }
   if (track_kind == TrackKind::rigid && !spans.empty()) {
     throw input_error(place, "a [[bridge]] on track.kind = \"rigid\"", "track.kind = \"flexible\" or no bridge");
   }

@@ -155,7 +155,7 @@ VsiModel build_model(const SceneParameters& scene) {
   model.contact.normal.material = scene.contact.material;
   model.contact.normal.curvature_floor =
       scene.contact.mode == ContactMode::paper ? paper_curvature_floor : scene.contact.curvature_floor;
-  model.contact.creep_law = creep_law(scene.contact.creep_law, scene.contact.material.nu);
+  model.contact.creep_law = creep_law(scene.contact.creep_law, scene.contact.material.nu, scene.contact.creep_table);
   model.contact.friction = scene.contact.friction;
   model.contact.damping = scene.contact.damping;
   model.contact.speed = scene.train.speed;

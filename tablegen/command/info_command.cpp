@@ -8,6 +8,9 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "creep_report.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/creep_table_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
@@ -107,15 +110,9 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
   return text;
 }
 
-void info_command(const std::vector<std::string>& arguments) {
-  namespace po = boost::program_options;
-  po::options_description own("Options");
-  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")  //
-      ("html", po::value<std::string>()->value_name("PAGE.html"),
-       "write a page with contact points, rolling radius difference, contact angle and conicity");
-  const CommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
-  if (line.help_printed()) return;
-  const std::string file = line.required("file");
+namespace {
+
+void geometry_info(const CommandLine& line, const std::string& file) {
   const GeometryTableData data = read_geometry_table(file);
   if (line.given("html")) require_no_input(line.text("html"), {file});
   const std::string text = table_text(data, file);
@@ -138,6 +135,30 @@ void info_command(const std::vector<std::string>& arguments) {
   } else {
     fmt::print("{}{}", text, functions ? functions_text(*functions) : "");
   }
+}
+
+}  // namespace
+
+void info_command(const std::vector<std::string>& arguments) {
+  namespace po = boost::program_options;
+  po::options_description own("Options");
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")  //
+      ("html", po::value<std::string>()->value_name("PAGE.html"),
+       "write a page with contact points, rolling radius difference, contact angle and conicity");
+  const CommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
+  if (line.help_printed()) return;
+  const std::string file = line.required("file");
+  if (array_file_type(file) == "railtab-creep-table") {
+    if (line.given("html")) throw input_error("--html", "on a creep table", "a geometry table, or no --html");
+    const CreepTableData table = read_creep_table(file);
+    if (line.json()) {
+      fmt::print("{}\n", table_description(table, file).dump(2));
+    } else {
+      fmt::print("{}", table_text(table, file));
+    }
+    return;
+  }
+  geometry_info(line, file);
 }
 
 }  // namespace railtab

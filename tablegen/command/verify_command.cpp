@@ -2,8 +2,12 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "creep_report.hpp"
 #include "progress_bar.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/creep_table_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 
@@ -52,6 +56,43 @@ std::string text(const GeometryVerification& v) {
   return out;
 }
 
+void verify_creep(const CommandLine& line, const std::string& file) {
+  if (line.given("dz")) throw input_error("--dz", "on a creep table", "a geometry table, or no --dz");
+  const TableCreep law{std::make_shared<const CreepTable>(read_creep_table(file))};
+  CreepVerificationOptions options;
+  options.samples = static_cast<int>(line.whole_number("samples", 1, 10'000'000));
+  options.seed = static_cast<std::uint64_t>(line.whole_number("seed", 0, 1LL << 53));
+  if (line.given("ratio")) options.ratio = line.interval("ratio");
+  if (line.given("creepage")) options.creepage = line.interval("creepage");
+  ProgressBar bar("verify", !line.quiet());
+  const CreepVerification result = verify_creep_table(law, options, [&](double share) { bar.show(share); });
+  if (line.json()) {
+    fmt::print("{}\n", verification_description(result).dump(2));
+  } else {
+    fmt::print("{}", verification_text(result));
+  }
+}
+
+void verify_geometry(const CommandLine& line, const std::string& file) {
+  for (const char* option : {"ratio", "creepage"}) {
+    if (line.given(option)) {
+      throw input_error(fmt::format("--{}", option), "on a geometry table", "a creep table, or none of it");
+    }
+  }
+  const TableContact contact{GeometryTable(read_geometry_table(file))};
+  VerificationOptions options = verification_options(contact.table().data());
+  options.samples = static_cast<int>(line.whole_number("samples", 1, 100'000'000));
+  options.seed = static_cast<std::uint64_t>(line.whole_number("seed", 0, 1LL << 53));
+  if (line.given("dz")) options.lowering = line.interval("dz");
+  ProgressBar bar("verify", !line.quiet());
+  const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
+  if (line.json()) {
+    fmt::print("{}\n", description(result).dump(2));
+  } else {
+    fmt::print("{}", text(result));
+  }
+}
+
 }  // namespace
 
 void verify_command(const std::vector<std::string>& arguments) {
@@ -60,25 +101,18 @@ void verify_command(const std::vector<std::string>& arguments) {
   own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")           //
       ("samples", text_value("10000")->value_name("N"), "random queries over the table's range")  //
       ("seed", text_value("1")->value_name("N"), "of the random numbers")                         //
-      ("dz", text_value("0:3e-4")->value_name("LO:HI"), "lowering of the wheelset below first touch [m]");
+      ("dz", po::value<std::string>()->value_name("LO:HI"),
+       "geometry: lowering of the wheelset below first touch [m] (0:3e-4)")                          //
+      ("ratio", po::value<std::string>()->value_name("LO:HI"), "creep: a/b, log-uniform (0.05:20)")  //
+      ("creepage", po::value<std::string>()->value_name("LO:HI"),
+       "creep: size of (c11 ux/3, c22 uy/3, c23 phi), log-uniform (0.05:30)");
   const CommandLine line("tablegen verify FILE.h5 [options]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
-  const long long samples = line.whole_number("samples", 1, 100'000'000);
-  const long long seed = line.whole_number("seed", 0, 1LL << 53);
-  const Interval lowering = line.interval("dz");
-
-  const TableContact contact{GeometryTable(read_geometry_table(file))};
-  VerificationOptions options = verification_options(contact.table().data());
-  options.samples = static_cast<int>(samples);
-  options.seed = static_cast<std::uint64_t>(seed);
-  options.lowering = lowering;
-  ProgressBar bar("verify", !line.quiet());
-  const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
-  if (line.json()) {
-    fmt::print("{}\n", description(result).dump(2));
+  if (array_file_type(file) == "railtab-creep-table") {
+    verify_creep(line, file);
   } else {
-    fmt::print("{}", text(result));
+    verify_geometry(line, file);
   }
 }
 

@@ -28,7 +28,7 @@ std::vector<double> uniform_nodes(double first, double last, int count) {
   return nodes;
 }
 
-/// Ten linear values up to 1 and ten logarithmic ones from there to 10³ [Montenegro2023, Sec. 3.4.2].
+/// Ten linear values up to 1 and ten logarithmic ones from there to 10³ [MontenegroCalcada2023, Sec. 3.4.2].
 std::vector<double> paper_nodes(double first) {
   std::vector<double> nodes = uniform_nodes(first, 1.0, 10);
   for (int i = 1; i <= 10; ++i) nodes.push_back(std::pow(10.0, 0.3 * i));
@@ -55,6 +55,8 @@ CreepTableData empty_table(const CreepLayoutOptions& options) {
                                       squeezed_ratio(largest_ratio, ratio_stretch), n[0])) {
     table.nodes[0].push_back(ratio_at(x, ratio_stretch));
   }
+  table.nodes[0].front() = smallest_ratio;  // to the last bit
+  table.nodes[0].back() = largest_ratio;
   table.nodes[1] = uniform_nodes(0.0, 1.0, n[1]);
   table.nodes[2] = uniform_nodes(0.0, 0.5 * pi, n[2]);
   table.nodes[3] = uniform_nodes(0.0, pi * (n[3] - 1) / n[3], n[3]);
@@ -87,15 +89,17 @@ class RatioSlab {
   /// At t = 0: V = lim F/t, from the responses to the three creepages alone.
   void set_linear(std::span<const CreepForce> response) {
     // response[j] is to a scaled creepage of linear_creepage; the components that symmetry forbids are left out.
-    const double unit = table_.radius_unit / linear_creepage;
+    const CreepScale scale = creep_scale(table_.nodes[0][ratio_]);
     for (std::size_t alpha = 0; alpha < table_.nodes[2].size(); ++alpha) {
       for (std::size_t beta = 0; beta < table_.nodes[3].size(); ++beta) {
-        const double sine = std::sin(table_.nodes[2][alpha]);
-        const double x = std::cos(table_.nodes[2][alpha]);
-        const double y = sine * std::cos(table_.nodes[3][beta]), spin = sine * std::sin(table_.nodes[3][beta]);
+        const Creepage u = creepage_at_node(table_, ratio_, 0.5, table_.nodes[2][alpha], table_.nodes[3][beta]);
+        // At t = 1/2 the scaled creepages are as long as the radius' unit, to which V refers.
+        const double by_length = 1.0 / linear_creepage;
+        const double x = by_length * scale.x * u.x, y = by_length * scale.y * u.y,
+                     spin = by_length * scale.spin * u.spin;
         set(0, alpha, beta,
-            {unit * x * response[0].x, unit * (y * response[1].y + spin * response[2].y),
-             unit * (y * response[1].moment + spin * response[2].moment)});
+            {x * response[0].x, y * response[1].y + spin * response[2].y,
+             y * response[1].moment + spin * response[2].moment});
       }
     }
   }

@@ -93,20 +93,19 @@ CreepSpline::CreepSpline(const CreepTableData& data)
   }
 }
 
-CreepSpline::Point CreepSpline::locate(const Eigen::Array3d& u) const noexcept {
+CreepSpline::Point CreepSpline::locate(const Eigen::Array3d& u, double alpha_spread,
+                                       double beta_spread) const noexcept {
   Point p;
   const double turn = u[2] < 0.0 ? -1.0 : 1.0;
   p.sign = {u[0] < 0.0 ? -1.0 : 1.0, turn, turn};
-  Eigen::Vector3d folded = p.sign * u;
-  const double largest = folded.cwiseAbs().maxCoeff();
-  if (largest > largest_creepage) folded *= largest_creepage / largest;
+  const Eigen::Vector3d folded = p.sign * u;
   const double across_squared = folded[1] * folded[1] + folded[2] * folded[2];
   p.across = std::sqrt(across_squared);
   p.rho = std::sqrt(across_squared + folded[0] * folded[0]);
   p.radial = p.rho > 0.0 ? Eigen::Vector3d(folded / p.rho) : Eigen::Vector3d::UnitX();
   p.t = axis_[1].locate(p.rho / (p.rho + radius_unit_));
-  p.alpha = axis_[2].locate(std::atan2(p.across, folded[0]));
-  p.beta = axis_[3].locate(std::atan2(std::abs(folded[2]), folded[1]));
+  p.alpha = axis_[2].locate(std::atan2(p.across, alpha_spread * folded[0]));
+  p.beta = axis_[3].locate(std::atan2(std::abs(folded[2]), beta_spread * folded[1]));
   return p;
 }
 
@@ -149,7 +148,10 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
   const Place place = axis_[0].locate(x / std::sqrt(1.0 + x * x));
   const CreepScale scales = creep_scale(ratio);
   const Eigen::Array3d scale(scales.x, scales.y, scales.spin), size(1.0, 1.0, scales.moment);
-  const Point p = locate(scale * Eigen::Array3d(creepage[0], creepage[1], creepage[2]));
+  Eigen::Array3d wanted(creepage[0], creepage[1], creepage[2]);
+  const double largest = wanted.abs().maxCoeff();
+  if (largest > largest_creepage) wanted *= largest_creepage / largest;
+  const Point p = locate(scale * wanted, scales.alpha, scales.beta);
   const Jet jet = evaluate(place, p);
 
   // F = t V; its gradient over u in the directions of growing ρ, α, β.
@@ -158,14 +160,18 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
   const double cosine = p.radial[0], sine = p.rho > 0.0 ? p.across / p.rho : 0.0;
   const double cos_beta = p.across > 0.0 ? p.radial[1] / sine : 1.0;
   const double sin_beta = p.across > 0.0 ? p.radial[2] / sine : 0.0;
+  // What a spread axis moves by when the angle itself moves: q/(q² cos² + sin²).
+  const auto spread_rate = [](double q, double c, double sn) { return q / (q * q * c * c + sn * sn); };
+  const double alpha_rate = spread_rate(scales.alpha, cosine, sine);
+  const double beta_rate = spread_rate(scales.beta, cos_beta, sin_beta);
   const Eigen::Vector3d along_alpha(-sine, cosine * cos_beta, cosine * sin_beta);
   const Eigen::Vector3d along_beta(0.0, -sin_beta, cos_beta);
   const Eigen::Array3d value = size * jet.value.head<3>().cast<double>();
   const Eigen::Array3d by_rho = radius_unit_ * h * h * (value + t * size * jet.t.head<3>().cast<double>());
-  const Eigen::Array3d by_alpha = h * size * jet.alpha.head<3>().cast<double>();
-  const Eigen::Array3d by_beta = sine > pole_sine
-                                     ? Eigen::Array3d((h / sine) * size * jet.beta.head<3>().cast<double>())
-                                     : Eigen::Array3d(h * size * jet.alpha_beta.head<3>().cast<double>());
+  const Eigen::Array3d by_alpha = h * alpha_rate * size * jet.alpha.head<3>().cast<double>();
+  const Eigen::Array3d by_beta =
+      sine > pole_sine ? Eigen::Array3d((h * beta_rate / sine) * size * jet.beta.head<3>().cast<double>())
+                       : Eigen::Array3d(h * alpha_rate * beta_rate * size * jet.alpha_beta.head<3>().cast<double>());
   for (int i = 0; i < 3; ++i) {
     result.force[static_cast<std::size_t>(i)] = p.sign[i] * t * value[i];
     for (int j = 0; j < 3; ++j) {

@@ -33,7 +33,7 @@ class CreepSpline {
   struct Point;
   struct Jet;
 
-  [[nodiscard]] Point locate(const Eigen::Array3d& u) const noexcept;
+  [[nodiscard]] Point locate(const Eigen::Array3d& u, double alpha_spread, double beta_spread) const noexcept;
   [[nodiscard]] Jet evaluate(const Place& ratio, const Point& point) const noexcept;
 
   std::array<Axis, 4> axis_;

@@ -50,6 +50,37 @@ BENCHMARK(creep_linear_saturated);
 BENCHMARK(creep_polach);
 BENCHMARK(creep_fastsim)->Arg(10)->Arg(20)->Arg(40);
 
+const CreepTable& shipped_table() {
+  static const CreepLaw law = creep_law("table", 0.28);
+  return *std::get<TableCreep>(law).table;
+}
+
+/// With derivatives, at cases that have nothing to do with each other.
+void creep_table_random(benchmark::State& state) {
+  const CreepTable& table = shipped_table();
+  int i = 0;
+  for (auto _ : state) {
+    const Case& c = cases()[i++ & (kCases - 1)];
+    CreepLookup f = table.lookup(c.ratio, {c.creepage.x, c.creepage.y, c.creepage.spin});
+    benchmark::DoNotOptimize(f);
+  }
+}
+BENCHMARK(creep_table_random);
+
+/// With derivatives, along a smooth path, as a running wheel takes it.
+void creep_table_trajectory(benchmark::State& state) {
+  const CreepTable& table = shipped_table();
+  double s = 0.0;
+  for (auto _ : state) {
+    s += 1e-3;
+    const double wave = s - std::floor(s);  // no sine: its time would count
+    const double path = 4.0 * wave * (1.0 - wave);
+    CreepLookup f = table.lookup(0.9 + 0.6 * path, {0.3 * path - 0.15, 0.1 + 0.2 * path, 0.05 * path});
+    benchmark::DoNotOptimize(f);
+  }
+}
+BENCHMARK(creep_table_trajectory);
+
 void kalker(benchmark::State& state) {
   int i = 0;
   for (auto _ : state) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -140,10 +141,28 @@ TEST_F(VsiCommand, ARunThatLeavesTheTrackIsRefused) {
   expect_refused("run steps.toml --plan -o out", "integration.time_step");
 }
 
-TEST_F(VsiCommand, CreepTableIsNotPartOfThisVersion) {
+TEST_F(VsiCommand, CreepAnswersFromTheShippedTableAndSaysWhereItDoesNot) {
+  write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n900,0.1,0,0\n2000,0.1,0,0\n");
+  const Outcome outcome = vsi("creep --query q.csv -o r.csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("2 of them outside the table"), std::string::npos) << outcome.output;
+  std::ifstream result(folder_ / "r.csv");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(result, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[0], "fx,fy,mz,source");
+  EXPECT_EQ(lines[1].substr(lines[1].rfind(',')), ",table");
+  EXPECT_EQ(lines[2].substr(lines[2].rfind(',')), ",blend");
+  EXPECT_EQ(lines[3].substr(lines[3].rfind(',')), ",polach");
+  EXPECT_EQ(lines[1][0], '-') << "positive creepage pushes the wheel back";
+}
+
+TEST_F(VsiCommand, WrongCreepLawsAndTablesAreRefused) {
   write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
-  expect_refused("creep --query q.csv -o out", "no creep table");
-  expect_refused("creep creep.h5 --query q.csv -o out --law table", "no creep table");
+  write("junk.h5", "junk");
+  expect_refused("creep absent.h5 --query q.csv -o out", "absent.h5");
+  expect_refused("creep junk.h5 --query q.csv -o out --law table", "junk.h5");
+  expect_refused("creep --query q.csv -o out --poisson 0.3", "Poisson's ratio");
   expect_refused("creep --query q.csv -o out --law kalker", "kalker");
   expect_refused("creep --query q.csv -o out --law polach --poisson 0.7", "--poisson");
 }

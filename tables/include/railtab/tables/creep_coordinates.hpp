@@ -7,6 +7,7 @@ namespace railtab {
 /// Factors that make the three creepages comparable at one a/b, u = (x υx, y υy, spin φ), and the size of the moment.
 struct CreepScale {
   double x, y, spin, moment;
+  double alpha, beta;  ///< how much α and β are spread around υx = 0 and υy = 0, see CreepPoint
 };
 
 /// Closed forms: x and y follow c11 and c22 of linear theory for a/b up to 20 (any smooth choice is right, this one
@@ -15,8 +16,8 @@ struct CreepScale {
 [[nodiscard]] CreepScale creep_scale(double ratio) noexcept;
 
 /// Bounded coordinates of a creepage, after the two exact symmetries have folded it into υx >= 0, φ >= 0:
-/// u = ρ (cos α, sin α cos β, sin α sin β), t = ρ/(ρ + unit). t = 0 is zero creepage, t = 1 infinite creepage.
-/// α = 0 is pure longitudinal creepage, where all β are one point.
+/// t = |u|/(|u| + unit), tan α = |(u_y, u_spin)|/(q_α u_x), tan β = u_spin/(q_β u_y), with the spreads q of CreepScale.
+/// t = 0 is zero creepage, t = 1 infinite creepage. α = 0 is pure longitudinal creepage, where all β are one point.
 struct CreepPoint {
   double t;      ///< 0..1
   double alpha;  ///< 0..π/2 [rad]

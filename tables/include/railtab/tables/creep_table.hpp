@@ -16,7 +16,8 @@ namespace railtab {
 ///
 /// `smooth`: cubic B-splines over the coordinates of creep_coordinates.hpp, in which all creepages from zero to
 /// infinity lie in a bounded box and the exact symmetries are end conditions. Command line: "default".
-/// `paper`: linear interpolation over a/b and the three normalised creepages [Montenegro2023, Sec. 3.4.2]. "paper".
+/// `paper`: linear interpolation over a/b and the three normalised creepages [MontenegroCalcada2023, Sec. 3.4.2].
+/// "paper".
 enum class CreepTableLayout { smooth, paper };
 
 [[nodiscard]] std::string_view creep_table_layout_name(CreepTableLayout layout) noexcept;

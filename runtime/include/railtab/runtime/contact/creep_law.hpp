@@ -1,8 +1,12 @@
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <variant>
+
+#include "railtab/tables/creep_table.hpp"
 
 namespace railtab {
 
@@ -53,13 +57,29 @@ struct FastsimCreep {
   enum class Flexibility { three, blended } flexibility = Flexibility::blended;
 };
 
-using CreepLaw = std::variant<LinearCreep, PolachCreep, FastsimCreep>;
+/// Exact rolling contact from a creep table; Polach outside it, blended in over the table's outermost part so that the
+/// force is continuous. One table may serve any number of laws and threads.
+struct TableCreep {
+  std::shared_ptr<const CreepTable> table;  ///< never null
+
+  /// Share of the table in the force: 1 inside, 0 outside, between the two next to the border (a/b within a factor
+  /// 1.25 of it; in the paper's layout also creepages within a fifth of it).
+  [[nodiscard]] double share(double ratio, const Creepage& creepage) const noexcept;
+};
+
+using CreepLaw = std::variant<LinearCreep, PolachCreep, FastsimCreep, TableCreep>;
 
 /// Normalised creep force on the wheel for an ellipse of ratio a/b. Finite for every finite input.
 [[nodiscard]] CreepForce creep_force(const CreepLaw& law, double ratio, const Creepage& creepage) noexcept;
 
-/// "linear", "polach", "fastsim": @throws InputError with the known names.
-[[nodiscard]] CreepLaw creep_law(std::string_view name, double nu);
+/// "linear", "polach", "fastsim", or "table", which reads `table` (the shipped one where it is empty).
+/// @throws InputError with the known names; where the table cannot be read or is for another Poisson's ratio.
+[[nodiscard]] CreepLaw creep_law(std::string_view name, double nu, const std::filesystem::path& table = {});
 [[nodiscard]] std::string_view creep_law_name(const CreepLaw& law) noexcept;
+
+/// The creep table that comes with railtab, for Poisson's ratio 0.28: in the folder RAILTAB_DATA_DIR of the
+/// environment, in share/railtab beside the running program's bin, where railtab was installed, or in the source tree,
+/// in that order. @throws InputError where it is in none of them.
+[[nodiscard]] std::filesystem::path shipped_creep_table();
 
 }  // namespace railtab

@@ -33,7 +33,8 @@ struct ContactParameters {
   double rail_inclination = 1.0 / 40.0;
   PairDimensions dimensions;  ///< where no table is named
   std::string creep_law = "polach";
-  double friction = 0.30;  ///< Coulomb coefficient [-], 0..2
+  std::filesystem::path creep_table;  ///< of the law "table"; empty: the shipped one
+  double friction = 0.30;             ///< Coulomb coefficient [-], 0..2
   ElasticMaterial material;
   double damping = 0.0;           ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
   double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]

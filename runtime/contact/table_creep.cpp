@@ -1,0 +1,47 @@
+#include "table_creep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "polach.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr double ratio_border = 1.25;    ///< factor of a/b over which the table fades out at the ends of its axis
+constexpr double creepage_border = 0.8;  ///< share of the largest creepage at which it begins to fade out
+
+/// 0 at and below 0, 1 at and above 1, continuous slope.
+double smooth_step(double x) {
+  const double s = std::clamp(x, 0.0, 1.0);
+  return s * s * (3.0 - 2.0 * s);
+}
+
+}  // namespace
+
+double TableCreep::share(double ratio, const Creepage& creepage) const noexcept {
+  const CreepTableData& data = table->data();
+  const double factor = std::min(ratio / data.nodes[0].front(), data.nodes[0].back() / ratio);
+  double share = smooth_step((factor - 1.0) / (ratio_border - 1.0));
+  if (data.layout == CreepTableLayout::smooth) return share;
+  const double used =
+      std::max({std::abs(creepage.x) / data.nodes[1].back(), std::abs(creepage.y) / data.nodes[2].back(),
+                std::abs(creepage.spin) / data.nodes[3].back()});
+  return share * smooth_step((1.0 - used) / (1.0 - creepage_border));
+}
+
+CreepForce table_creep(const TableCreep& law, double ratio, const Creepage& creepage) noexcept {
+  const double share = law.share(ratio, creepage);
+  CreepForce force;
+  if (share > 0.0) {
+    const CreepLookup found = law.table->lookup(ratio, {creepage.x, creepage.y, creepage.spin});
+    force = {found.force[0], found.force[1], found.force[2]};
+  }
+  if (share == 1.0) return force;
+  const CreepForce polach = polach_creep({.nu = law.table->data().poisson}, ratio, creepage);
+  return {share * force.x + (1.0 - share) * polach.x, share * force.y + (1.0 - share) * polach.y,
+          share * force.moment + (1.0 - share) * polach.moment};
+}
+
+}  // namespace railtab
