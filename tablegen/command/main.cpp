@@ -27,26 +27,27 @@ Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
 
 int run(const std::vector<std::string>& arguments) {
   using namespace railtab;
-  const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands {
-    {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command}, {"creep", creep_command},
-        {"geometry", geometry_command}, {"info", info_command}, {"merge", merge_command},
-        if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
-    if (arguments[0] == "--help" || arguments[0] == "-h") {
-      fmt::print("{}", usage);
-      return 0;
-    }
-    if (arguments[0] == "--version") {
-      fmt::print("railtab {}\n", RAILTAB_VERSION);
-      return 0;
-    }
-    const auto command = commands.find(arguments[0]);
-    if (command == commands.end()) {
-      throw input_error("command", fmt::format("\"{}\"", arguments[0]),
-                        "geometry, batch, creep, merge, contact, conicity, info or verify");
-    }
-    command->second({arguments.begin() + 1, arguments.end()});
+  const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
+      {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command},
+      {"creep", creep_command}, {"geometry", geometry_command}, {"info", info_command},
+      {"merge", merge_command}, {"verify", verify_command}};
+  if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
+  if (arguments[0] == "--help" || arguments[0] == "-h") {
+    fmt::print("{}", usage);
     return 0;
   }
+  if (arguments[0] == "--version") {
+    fmt::print("railtab {}\n", RAILTAB_VERSION);
+    return 0;
+  }
+  const auto command = commands.find(arguments[0]);
+  if (command == commands.end()) {
+    throw input_error("command", fmt::format("\"{}\"", arguments[0]),
+                      "geometry, batch, creep, merge, contact, conicity, info or verify");
+  }
+  command->second({arguments.begin() + 1, arguments.end()});
+  return 0;
+}
 
 }  // namespace
 
