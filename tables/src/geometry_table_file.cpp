@@ -14,7 +14,6 @@
 namespace railtab {
 namespace {
 
-constexpr std::string_view filetype = "railtab-geometry-table";
 constexpr int format_version = 3;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.
@@ -125,7 +124,7 @@ void write_cells(ArrayFileWriter& file, const GeometryTableData& table) {
 /// One table file being read; every error names the file and the dataset.
 class Reading {
  public:
-  explicit Reading(const std::filesystem::path& name) : name_(name), file_(name, filetype, format_version) {}
+  explicit Reading(const std::filesystem::path& name) : name_(name), file_(name, geometry_table_filetype, format_version) {}
 
   [[nodiscard]] GeometryTableData table() const {
     GeometryTableData table;
@@ -229,7 +228,7 @@ class Reading {
 }  // namespace
 
 void write_geometry_table(const std::filesystem::path& file, const GeometryTableData& table) {
-  ArrayFileWriter out(file, filetype, format_version);
+  ArrayFileWriter out(file, geometry_table_filetype, format_version);
   out.attribute("", "description",
                 "Wheel-rail contact geometry of one pair. SI units; x forward, y right, z down; right wheel. "
                 "Layout: docs/file_formats/geometry_table.md");
