@@ -46,9 +46,6 @@ class ArrayFileWriter {
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
   void write(std::string_view path, std::span<const double> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
-  /// Stored with 32 bits.
-  void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
-             std::string_view unit, std::string_view description);
   void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
   /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
