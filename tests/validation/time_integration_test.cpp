@@ -61,7 +61,7 @@ Mode mode_of(std::complex<double> root, double step) {
 }
 
 // The principal root of the characteristic polynomial λ³ − 2 A1 λ² + A2 λ − A3 of HHT on one degree of freedom
-// [HHT1977, Eq. 13]: the complex one.
+// [HHT1977]: the complex one.
 std::complex<double> principal_root(double alpha, double step) {
   const double beta = 0.25 * (1 - alpha) * (1 - alpha), gamma = 0.5 - alpha;
   const double W = omega * omega * step * step;

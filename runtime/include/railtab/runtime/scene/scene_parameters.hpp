@@ -7,13 +7,15 @@
 
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
+#include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vsi/normal_contact.hpp"
 
 namespace railtab {
 
 enum class ContactMode { table, online, paper };
-enum class TrackKind { rigid, flexible };
+enum class TrackKind { rigid, flexible, imported };
 
 struct TrainParameters {
   std::string vehicle = "manchester-coach";  ///< a published vehicle
@@ -27,6 +29,7 @@ struct TrainParameters {
 
 struct ContactParameters {
   ContactMode mode = ContactMode::table;
+  NormalContact normal = NormalContact::hertz;
   std::filesystem::path table;  ///< geometry table; also gives the profiles
   std::string wheel = "S1002";  ///< where no table is named (online, paper)
   std::string rail = "60E1";
@@ -63,6 +66,7 @@ struct SceneParameters {
   TrackKind track_kind = TrackKind::flexible;
   TrackParameters track;
   std::vector<BridgeParameters> spans;  ///< none: no bridge
+  StructureFiles structure;             ///< for TrackKind::imported
   std::optional<std::filesystem::path> irregularity;
   IntegrationParameters integration;
   OutputParameters output;
