@@ -132,7 +132,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     for (int w = 0; w < model.wheelsets(); ++w) {
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
     }
-    if (report.iterations == 0 && state.contact.displacement.isZero()) {
+    if (model.normal_contact == NormalContact::hertz && report.iterations == 0 && state.contact.displacement.isZero()) {
       set_down(model, problem, state.contact.displacement);
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;
