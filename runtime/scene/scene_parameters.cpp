@@ -14,6 +14,11 @@ void require(bool ok, std::string_view key, double found, std::string_view expec
 
 }  // namespace
 
+std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
+  if (contact.normal == NormalContact::rigid) return "rigid";
+  return contact.mode == ContactMode::table ? "table" : contact.mode == ContactMode::online ? "online" : "paper";
+}
+
 void IntegrationParameters::validate() const {
   require(time_step > 0.0 && time_step <= 0.1, "integration.time_step", time_step, "> 0, <= 0.1 s");
   require(duration >= 0.0, "integration.duration", duration, ">= 0 s");

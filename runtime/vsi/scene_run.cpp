@@ -41,10 +41,6 @@ double spans_length(const SceneParameters& scene) {
   return length;
 }
 
-std::string mode_name(ContactMode mode) {
-  return mode == ContactMode::table ? "table" : mode == ContactMode::online ? "online" : "paper";
-}
-
 // The first wheelset stands at `start`; coaches follow each other at their length over couplers.
 std::vector<double> vehicle_positions(const TrainParameters& train, const VehicleModel& vehicle) {
   const double first_wheelset = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position[0];
@@ -199,7 +195,7 @@ RunPlan plan_run(const SceneParameters& scene) {
   plan.built.push_back(
       fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
   if (model.geometry) {
-    plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", mode_name(scene.contact.mode),
+    plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
                                      model.geometry->pair().wheel().knots().name,
                                      model.geometry->pair().rail().knots().name));
     plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
@@ -240,7 +236,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   RunSummary summary;
   if (!rest.converged) {
     summary.message = no_equilibrium(scene, rest);
-    summary.contact_mode = mode_name(scene.contact.mode);
+    summary.contact_mode = contact_mode_name(scene.contact);
     return summary;
   }
   if (!resume) displace(scene, model, state);
@@ -249,7 +245,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
       simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;
-  summary.contact_mode = mode_name(scene.contact.mode);
+  summary.contact_mode = contact_mode_name(scene.contact);
   return summary;
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/contact/hertz.hpp"
@@ -42,6 +43,9 @@ struct ContactParameters {
   double damping = 0.0;           ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
   double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]
 };
+
+/// "table", "online", "paper", or "rigid": what results say of how they were made.
+[[nodiscard]] std::string_view contact_mode_name(const ContactParameters& contact) noexcept;
 
 struct IntegrationParameters {
   double time_step = 5e-4;  ///< [s]
