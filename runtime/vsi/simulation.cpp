@@ -25,22 +25,28 @@ class Integrator {
       : model_(model), parameters_(p), workspace_(model) {
     // The tolerance counts relative to a contact displacement of 1 mm.
     limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
-    static_cast<void>(operators(0, seconds_setup));
+    static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 
   bool step(VsiState& state, RunSummary& summary) { return step(0, state, summary); }
 
  private:
-  const StepOperators& operators(int level, double& seconds_setup) {
-    const auto found = operators_.find(level);
-    if (found != operators_.end()) return found->second;
+  // Operators of a step that ends at `time`.
+  const StepOperators& operators(int level, double time, double& seconds_setup) {
     const Stopwatch watch(seconds_setup);
-    const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
-    return operators_.emplace(level, StepOperators(model_, scheme)).first->second;
+    auto found = operators_.find(level);
+    if (found == operators_.end()) {
+      const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
+      found = operators_.emplace(level, StepOperators(model_, scheme)).first;
+    }
+    found->second.follow(model_, time);
+    return found->second;
   }
 
   bool step(int level, VsiState& state, RunSummary& summary) {
-    const StepReport report = advance(model_, operators(level, summary.seconds_setup), limits_, state, workspace_);
+    const double end = state.time + std::ldexp(parameters_.time_step, -level);
+    const StepOperators& step_operators = operators(level, end, summary.seconds_setup);
+    const StepReport report = advance(model_, step_operators, limits_, state, workspace_);
     summary.newton_iterations += report.newton_iterations;
     summary.back_substitutions += report.back_substitutions;
     summary.contact_queries += report.queries;
