@@ -63,7 +63,8 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                    set("profile", joined(standard_profile_names(k.kind)) + " or a profile file", k.member(standard));
                  },
                  [&](const ContactModeKey&) { set("choice", "table, online, paper", "table"); },
-                 [&](const TrackKindKey&) { set("choice", "rigid, flexible", "flexible"); },
+                 [&](const TrackKindKey&) { set("choice", "rigid, flexible, imported", "flexible"); },
+                 [&](const NormalContactKey&) { set("choice", "hertz, rigid", "hertz"); },
              },
              key.value);
   return result;

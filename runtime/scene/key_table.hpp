@@ -72,6 +72,7 @@ struct ProfileKey {
 };
 struct ContactModeKey {};
 struct TrackKindKey {};
+struct NormalContactKey {};
 
 /// The one place that says which key goes to which member, in which unit and range.
 struct KeyBinding {
@@ -79,7 +80,7 @@ struct KeyBinding {
   std::string_view unit;
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ContactModeKey,
-               TrackKindKey>
+               TrackKindKey, NormalContactKey>
       value;
 };
 

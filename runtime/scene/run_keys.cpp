@@ -31,6 +31,9 @@ std::vector<KeyBinding> contact_keys() {
   return {
       {"contact.mode", "", "where contact patches come from: the geometry table, the online search, the paper's search",
        ContactModeKey{}},
+      {"contact.normal", "",
+       "Hertz's contact, or wheels that follow the rails rigidly: vertical only, never lifting off",
+       NormalContactKey{}},
       {"contact.table", "", "geometry table; it also gives profiles and dimensions",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.contact.table; }}},
       {"contact.wheel", "", "wheel profile where no table is named",

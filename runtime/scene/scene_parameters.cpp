@@ -14,6 +14,11 @@ void require(bool ok, std::string_view key, double found, std::string_view expec
 
 }  // namespace
 
+std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
+  if (contact.normal == NormalContact::rigid) return "rigid";
+  return contact.mode == ContactMode::table ? "table" : contact.mode == ContactMode::online ? "online" : "paper";
+}
+
 void IntegrationParameters::validate() const {
   require(time_step > 0.0 && time_step <= 0.1, "integration.time_step", time_step, "> 0, <= 0.1 s");
   require(duration >= 0.0, "integration.duration", duration, ">= 0 s");
@@ -25,7 +30,7 @@ void IntegrationParameters::validate() const {
 
 void SceneParameters::validate() const {
   const std::string place = name.empty() ? "scene" : name;
-  if (contact.mode == ContactMode::table && contact.table.empty()) {
+  if (contact.normal == NormalContact::hertz && contact.mode == ContactMode::table && contact.table.empty()) {
     throw input_error(place, "contact.mode = \"table\" without contact.table",
                       "a geometry table (tablegen geometry makes one), or contact.mode = \"online\"");
   }
@@ -33,8 +38,17 @@ void SceneParameters::validate() const {
     throw input_error(place, fmt::format("contact.creep_table with contact.creep_law = \"{}\"", contact.creep_law),
                       "contact.creep_law = \"table\", or no contact.creep_table");
   }
-  if (track_kind == TrackKind::rigid && !spans.empty()) {
-    throw input_error(place, "a [[bridge]] on track.kind = \"rigid\"", "track.kind = \"flexible\" or no bridge");
+  if (track_kind != TrackKind::flexible && !spans.empty()) {
+    throw input_error(
+        place,
+        fmt::format("a [[bridge]] on track.kind = \"{}\"", track_kind == TrackKind::rigid ? "rigid" : "imported"),
+        "track.kind = \"flexible\" or no bridge");
+  }
+  const bool all_files =
+      !structure.mass.empty() && !structure.damping.empty() && !structure.stiffness.empty() && !structure.dofs.empty();
+  if (track_kind == TrackKind::imported && !all_files) {
+    throw input_error(place, "track.kind = \"imported\" without all its files",
+                      "structure.mass, structure.damping, structure.stiffness and structure.dofs");
   }
   if (train.count < 1) throw input_error(place, fmt::format("train.count = {}", train.count), ">= 1");
   require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");

@@ -45,7 +45,14 @@ struct Assign {
                                                        : ContactMode::paper;
   }
   void operator()(const TrackKindKey&) const {
-    draft.parameters.track_kind = one_of({"rigid", "flexible"}) == "rigid" ? TrackKind::rigid : TrackKind::flexible;
+    const std::string name = one_of({"rigid", "flexible", "imported"});
+    draft.parameters.track_kind = name == "rigid"      ? TrackKind::rigid
+                                  : name == "flexible" ? TrackKind::flexible
+                                                       : TrackKind::imported;
+  }
+  void operator()(const NormalContactKey&) const {
+    draft.parameters.contact.normal =
+        one_of({"hertz", "rigid"}) == "rigid" ? NormalContact::rigid : NormalContact::hertz;
   }
 
  private:
@@ -107,7 +114,7 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   const std::string nearest = nearest_key(leaf.path);
   if (nearest.empty()) {
     return InputError(
-        fmt::format("{}: unknown key '{}'; the sections are train, contact, track, bridge, "
+        fmt::format("{}: unknown key '{}'; the sections are train, contact, track, bridge, structure, "
                     "irregularity, integration and output",
                     place, leaf.path));
   }

@@ -19,7 +19,8 @@ auto& of_span(SceneDraft& draft) {
 
 std::vector<KeyBinding> track_keys() {
   return {
-      {"track.kind", "", "rigid track is the lean alternative: no structure unknowns", TrackKindKey{}},
+      {"track.kind", "", "rigid: the lean alternative without structure unknowns; imported: matrices from files",
+       TrackKindKey{}},
       {"track.sleeper_spacing", "m", "distance of the sleepers",
        NumberKey{of_track<&TrackParameters::sleeper_spacing>, {0.2, 5.0}}},
       {"track.half_rail_distance", "m", "track centre to rail-head centre",
@@ -120,6 +121,19 @@ std::vector<KeyBinding> span_keys() {
   };
 }
 
+std::vector<KeyBinding> import_keys() {
+  return {
+      {"structure.mass", "", "Matrix Market file of the mass matrix",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.mass; }}},
+      {"structure.damping", "", "of the damping matrix",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.damping; }}},
+      {"structure.stiffness", "", "of the stiffness matrix",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.stiffness; }}},
+      {"structure.dofs", "", "table of the rails' and the reported degrees of freedom",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.dofs; }}},
+  };
+}
+
 }  // namespace
 
 const std::vector<KeyBinding>& structure_keys() {
@@ -134,7 +148,7 @@ const std::vector<KeyBinding>& structure_keys() {
                              support_keys<&TrackParameters::ballast_deck>(
                                  {"track.ballast_deck.kx", "track.ballast_deck.ky", "track.ballast_deck.kz",
                                   "track.ballast_deck.cx", "track.ballast_deck.cy", "track.ballast_deck.cz"}),
-                             span_keys()}) {
+                             span_keys(), import_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

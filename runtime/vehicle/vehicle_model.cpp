@@ -128,6 +128,7 @@ Eigen::VectorXd static_load(const VehicleModel& vehicle, double gravity) {
   }
   std::vector<int> supported, carried;
   for (int i = 0; i < n; ++i) (is_supported[i] ? supported : carried).push_back(i);
+  if (carried.empty()) return weight;  // wheelsets alone
 
   const Eigen::MatrixXd K = vehicle.stiffness(carried, carried);
   const Eigen::VectorXd load = weight(carried);

@@ -89,106 +89,151 @@ void solve_forces(const VsiModel& model, const StepOperators& op, const std::vec
   ws.force = ws.system.partialPivLu().solve(ws.force).eval();
 }
 
+// What the parts of one step hand on to each other. Lines are (displacement, slope, curvature) of the rails' mean under
+// each wheelset, increments over the structure's predictor.
+struct Lines {
+  std::vector<RailContact> contacts;  // two per wheelset, none on rigid track
+  std::vector<LineCoupling> couplings;
+  std::vector<Vector3d> known;      // (z, v, a) of irregularity and predictor
+  std::vector<Vector3d> free;       // increment without contact forces
+  std::vector<Vector3d> increment;  // with them
+};
+
+// (z, v, a) of wheelset w for an increment of its line.
+Vector3d heave(const VsiModel& model, const HhtScheme& hht, const Lines& lines, int w, const Vector3d& increment) {
+  return lines.known[index(w)] + followed(increment, hht.velocity_rate() * increment,
+                                          hht.acceleration_rate() * increment[0], model.contact.speed);
+}
+
+// Vehicles: what is known of their equations before the wheelsets' heave; returns the forces that no heave needs.
+Eigen::VectorXd free_vehicles(const VsiModel& model, const StepOperators& op, const VsiState& state,
+                              StepWorkspace& ws) {
+  const int per_vehicle = model.wheelsets_per_vehicle();
+  Eigen::VectorXd force(model.wheelsets());
+  ws.rigid_wheels.R.resize(model.vehicle_x.size());
+  for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
+    Eigen::VectorXd& R = ws.rigid_wheels.R[index(v)];
+    op.rigid_wheels->remainder(model.vehicle, op.vehicle_damping, op.scheme, state.vehicle[index(v)],
+                               ws.vehicle_prediction[index(v)], R);
+    force.segment(per_vehicle * v, per_vehicle) = op.rigid_wheels->free_force(R);
+  }
+  return force;
+}
+
+// What the wheels would follow without contact forces at t + dt; one back-substitution.
+Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState& state, double time,
+                 StepWorkspace& ws) {
+  const double V = model.contact.speed;
+  Lines lines;
+  lines.contacts = place_wheels(model, time);
+  lines.free.assign(index(model.wheelsets()), Vector3d::Zero());
+  lines.increment = lines.free;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const VerticalDeviation d = vertical_deviation(model, w, time);
+    lines.known.emplace_back(d.z, d.rate, d.acceleration);
+  }
+  if (!model.structure) return lines;
+  const Prediction& p = ws.structure_prediction;
+  predict(op.scheme, state.structure, ws.structure_prediction);
+  op.structure->free_increment(*model.structure, op.scheme, state.structure, p, ws.structure_free);
+  lines.couplings = line_couplings(op, lines.contacts);
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const RailContact* contact = &lines.contacts[index(2 * w)];
+    lines.known[index(w)] += followed(mean_line(contact, p.displacement), mean_line(contact, p.velocity), 0.0, V);
+    lines.free[index(w)] = mean_line(contact, ws.structure_free);
+  }
+  return lines;
+}
+
+// Forces from the compliance at hand and the far field.
+void solve_contact_forces(const VsiModel& model, const StepOperators& op, const Eigen::VectorXd& free_force,
+                          Lines& lines, StepWorkspace& ws) {
+  std::vector<Vector3d> free(lines.free.size());
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    lines.increment[index(w)] = lines.free[index(w)] + ws.far_field.segment<3>(3 * w);
+    free[index(w)] = heave(model, op.scheme, lines, w, lines.increment[index(w)]);
+  }
+  solve_forces(model, op, lines.couplings, free, free_force, ws.rigid_wheels);
+  for (const LineCoupling& c : lines.couplings) lines.increment[index(c.i)] -= c.line * ws.rigid_wheels.force[c.j];
+  set_vertical_forces(ws.rigid_wheels.force, ws.solution);
+}
+
+// Full response of the structure to the contact forces; returns what the forces' solution had missed of it.
+double full_structure(const StepOperators& op, Lines& lines, StepWorkspace& ws) {
+  scatter_rail_forces(lines.contacts, ws.solution.force, ws.structure_load);
+  ws.structure_increment = ws.structure_free + op.scheme.load_weight() * op.structure->solve(ws.structure_load);
+  double missed = 0.0;
+  for (int w = 0; w < static_cast<int>(lines.increment.size()); ++w) {
+    const Vector3d miss = mean_line(&lines.contacts[index(2 * w)], ws.structure_increment) - lines.increment[index(w)];
+    missed = std::max(missed, miss.cwiseAbs().maxCoeff());
+    ws.far_field.segment<3>(3 * w) += miss;
+    lines.increment[index(w)] += miss;
+  }
+  return missed;
+}
+
+void close_vehicles(const VsiModel& model, const StepOperators& op, const Lines& lines, VsiState& state,
+                    StepWorkspace& ws) {
+  const int per_vehicle = model.wheelsets_per_vehicle();
+  WheelsetHeave moved{Eigen::VectorXd(per_vehicle), Eigen::VectorXd(per_vehicle), Eigen::VectorXd(per_vehicle)};
+  for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
+    for (int i = 0; i < per_vehicle; ++i) {
+      const int w = per_vehicle * v + i;
+      const Vector3d h = heave(model, op.scheme, lines, w, lines.increment[index(w)]);
+      moved.z[i] = h[0];
+      moved.v[i] = h[1];
+      moved.a[i] = h[2];
+      ws.solution.displacement[wheelset_unknowns * w + 2] = h[0];
+    }
+    op.rigid_wheels->update(op.scheme, ws.vehicle_prediction[index(v)], ws.rigid_wheels.R[index(v)], moved,
+                            ws.rigid_wheels.force.segment(per_vehicle * v, per_vehicle), state.vehicle[index(v)]);
+  }
+}
+
 }  // namespace
 
 StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& op, const StepLimits& limits,
                                 VsiState& state, StepWorkspace& ws) {
   StepReport report;
-  const HhtScheme& hht = op.scheme;
-  const double V = model.contact.speed;
-  const double time = state.time + hht.time_step;
-  const std::vector<RailContact> contacts = place_wheels(model, time);
-  const int per_vehicle = model.wheelsets_per_vehicle();
-  const int vehicles = static_cast<int>(model.vehicle_x.size());
-  const int wheelsets = model.wheelsets();
-  Eigen::VectorXd free_force(wheelsets);
-  ws.rigid_wheels.R.resize(index(vehicles));
+  const double time = state.time + op.scheme.time_step;
+  Eigen::VectorXd free_force;
   {
     const Stopwatch watch(report.seconds_vehicle);
-    for (int v = 0; v < vehicles; ++v) {
-      Eigen::VectorXd& R = ws.rigid_wheels.R[index(v)];
-      op.rigid_wheels->remainder(model.vehicle, op.vehicle_damping, hht, state.vehicle[index(v)],
-                                 ws.vehicle_prediction[index(v)], R);
-      free_force.segment(per_vehicle * v, per_vehicle) = op.rigid_wheels->free_force(R);
-    }
+    free_force = free_vehicles(model, op, state, ws);
   }
-
-  // What the wheels would follow without contact forces at t + dt: (z, v, a) of the irregularity and of the rails.
-  const Prediction& p = ws.structure_prediction;
-  std::vector<Vector3d> known(index(wheelsets)), line(index(wheelsets)), increment(index(wheelsets));
-  std::vector<LineCoupling> couplings;
-  for (int w = 0; w < wheelsets; ++w) {
-    const VerticalDeviation d = vertical_deviation(model, w, time);
-    known[index(w)] = {d.z, d.rate, d.acceleration};
+  Lines lines;
+  {
+    const Stopwatch watch(report.seconds_structure);
+    lines = free_lines(model, op, state, time, ws);
+    if (model.structure) ++report.back_substitutions;
   }
   ws.far_field = state.far_field;
-  if (model.structure) {
-    const Stopwatch watch(report.seconds_structure);
-    predict(hht, state.structure, ws.structure_prediction);
-    op.structure->free_increment(*model.structure, hht, state.structure, p, ws.structure_free);
-    ++report.back_substitutions;
-    couplings = line_couplings(op, contacts);
-    for (int w = 0; w < wheelsets; ++w) {
-      const RailContact* contact = &contacts[index(2 * w)];
-      known[index(w)] += followed(mean_line(contact, p.displacement), mean_line(contact, p.velocity), 0.0, V);
-      line[index(w)] = mean_line(contact, ws.structure_free);
-    }
-  }
-  const auto heave = [&](int w, const Vector3d& delta) {
-    return Vector3d(known[index(w)] +
-                    followed(delta, hht.velocity_rate() * delta, hht.acceleration_rate() * delta[0], V));
-  };
 
-  // Forces from the compliance at hand, then the structure's full answer; what that adds is the far field.
-  std::vector<Vector3d> free(index(wheelsets));
+  // The constraint of Eq. 14 with its time derivatives, condensed to the forces; the structure's answer closes it.
   for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
     {
       const Stopwatch watch(report.seconds_contact);
-      for (int w = 0; w < wheelsets; ++w) {
-        free[index(w)] = heave(w, line[index(w)] + ws.far_field.segment<3>(3 * w));
-      }
-      solve_forces(model, op, couplings, free, free_force, ws.rigid_wheels);
+      solve_contact_forces(model, op, free_force, lines, ws);
       ++report.newton_iterations;
-      for (int w = 0; w < wheelsets; ++w) increment[index(w)] = line[index(w)] + ws.far_field.segment<3>(3 * w);
-      for (const LineCoupling& c : couplings) increment[index(c.i)] -= c.line * ws.rigid_wheels.force[c.j];
-      set_vertical_forces(ws.rigid_wheels.force, ws.solution);
     }
     if (!model.structure) {
       report.converged = true;
       break;
     }
     const Stopwatch watch(report.seconds_structure);
-    scatter_rail_forces(contacts, ws.solution.force, ws.structure_load);
-    ws.structure_increment = ws.structure_free + hht.load_weight() * op.structure->solve(ws.structure_load);
+    report.converged = full_structure(op, lines, ws) < limits.far_field_tolerance;
     ++report.back_substitutions;
-    double missed = 0.0;
-    for (int w = 0; w < wheelsets; ++w) {
-      const Vector3d miss = mean_line(&contacts[index(2 * w)], ws.structure_increment) - increment[index(w)];
-      missed = std::max(missed, miss.cwiseAbs().maxCoeff());
-      ws.far_field.segment<3>(3 * w) += miss;
-      increment[index(w)] += miss;
-    }
-    report.converged = missed < limits.far_field_tolerance;
   }
   if (!report.converged) return report;
 
-  const Stopwatch watch(report.seconds_vehicle);
-  WheelsetHeave moved{Eigen::VectorXd(per_vehicle), Eigen::VectorXd(per_vehicle), Eigen::VectorXd(per_vehicle)};
-  for (int v = 0; v < vehicles; ++v) {
-    for (int i = 0; i < per_vehicle; ++i) {
-      const int w = per_vehicle * v + i;
-      const Vector3d h = heave(w, increment[index(w)]);
-      moved.z[i] = h[0];
-      moved.v[i] = h[1];
-      moved.a[i] = h[2];
-      ws.solution.displacement[wheelset_unknowns * w + 2] = h[0];
-    }
-    op.rigid_wheels->update(hht, ws.vehicle_prediction[index(v)], ws.rigid_wheels.R[index(v)], moved,
-                            ws.rigid_wheels.force.segment(per_vehicle * v, per_vehicle), state.vehicle[index(v)]);
+  {
+    const Stopwatch watch(report.seconds_vehicle);
+    close_vehicles(model, op, lines, state, ws);
   }
   if (model.structure) {
+    const Stopwatch watch(report.seconds_structure);
     state.structure.contact_load = ws.structure_load;
-    update(hht, p, ws.structure_increment, state.structure);
+    update(op.scheme, ws.structure_prediction, ws.structure_increment, state.structure);
   }
   std::swap(state.contact, ws.solution);
   state.far_field = ws.far_field;

@@ -21,7 +21,8 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   }
   const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
                                     scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
-  inverse_bb_ = Eigen::MatrixXd(effective(b_, b_)).partialPivLu().inverse();
+  const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
+  inverse_bb_ = b_.empty() ? effective_bb : Eigen::MatrixXd(effective_bb.partialPivLu().inverse());
   E_inverse_ = effective(c_, b_) * inverse_bb_;
   K_bc_ = vehicle.stiffness(b_, c_);
   C_bc_ = damping(b_, c_);

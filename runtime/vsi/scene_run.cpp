@@ -41,10 +41,6 @@ double spans_length(const SceneParameters& scene) {
   return length;
 }
 
-std::string mode_name(ContactMode mode) {
-  return mode == ContactMode::table ? "table" : mode == ContactMode::online ? "online" : "paper";
-}
-
 // The first wheelset stands at `start`; coaches follow each other at their length over couplers.
 std::vector<double> vehicle_positions(const TrainParameters& train, const VehicleModel& vehicle) {
   const double first_wheelset = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position[0];
@@ -120,6 +116,7 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
       header.node_x.push_back(node.x);
     }
   }
+  if (!model.geometry) return header;
   const WheelRailPair& pair = model.geometry->pair();
   header.wheel_profile = pair.wheel().knots().name;
   header.rail_profile = pair.rail().knots().name;
@@ -143,6 +140,23 @@ void displace(const SceneParameters& scene, const VsiModel& model, VsiState& sta
   }
 }
 
+// Contact geometry and contact forces; a scene whose wheels follow the rails needs neither.
+void add_contact(const ContactParameters& contact, VsiModel& model) {
+  model.geometry = std::make_shared<const ContactGeometry>(geometry_source(contact));
+  model.contact.geometry = model.geometry.get();
+  model.contact.normal.material = contact.material;
+  model.contact.normal.curvature_floor =
+      contact.mode == ContactMode::paper ? paper_curvature_floor : contact.curvature_floor;
+  model.contact.creep_law = creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
+  model.contact.friction = contact.friction;
+  model.contact.damping = contact.damping;
+  const double radius = model.geometry->pair().nominal_radius();
+  if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
+    throw input_error("scene: contact", fmt::format("wheels of nominal radius {} m", radius),
+                      fmt::format("{} m, the wheels of {}", model.vehicle.nominal_radius, model.vehicle.name));
+  }
+}
+
 }  // namespace
 
 VsiModel build_model(const SceneParameters& scene) {
@@ -150,22 +164,12 @@ VsiModel build_model(const SceneParameters& scene) {
   VsiModel model;
   model.vehicle = build_coach(coach_parameters(scene.train.vehicle));
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
-  model.geometry = std::make_shared<const ContactGeometry>(geometry_source(scene.contact));
-  model.contact.geometry = model.geometry.get();
-  model.contact.normal.material = scene.contact.material;
-  model.contact.normal.curvature_floor =
-      scene.contact.mode == ContactMode::paper ? paper_curvature_floor : scene.contact.curvature_floor;
-  model.contact.creep_law = creep_law(scene.contact.creep_law, scene.contact.material.nu, scene.contact.creep_table);
-  model.contact.friction = scene.contact.friction;
-  model.contact.damping = scene.contact.damping;
+  model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
+  if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
   if (scene.track_kind == TrackKind::flexible) model.structure = build_track_bridge(scene.track, scene.spans);
+  if (scene.track_kind == TrackKind::imported) model.structure = import_structure(scene.structure);
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
-  const double radius = model.geometry->pair().nominal_radius();
-  if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
-    throw input_error("scene: contact", fmt::format("wheels of nominal radius {} m", radius),
-                      fmt::format("{} m, the wheels of {}", model.vehicle.nominal_radius, scene.train.vehicle));
-  }
   check_on_track(scene, model);
   return model;
 }
@@ -190,19 +194,26 @@ RunPlan plan_run(const SceneParameters& scene) {
   plan.steps = step_count(scene, plan.duration);
   plan.built.push_back(
       fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
-  plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", mode_name(scene.contact.mode),
-                                   model.geometry->pair().wheel().knots().name,
-                                   model.geometry->pair().rail().knots().name));
-  plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+  if (model.geometry) {
+    plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
+                                     model.geometry->pair().wheel().knots().name,
+                                     model.geometry->pair().rail().knots().name));
+    plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+  } else {
+    plan.built.emplace_back("wheels that follow the rails rigidly, vertical motion only");
+    plan.left_out.emplace_back("contact geometry, creep forces, loss of contact: contact.normal is \"rigid\"");
+  }
   if (model.structure) {
-    plan.built.push_back(fmt::format("flexible track, {} rail nodes, {} span(s)", 2 * model.structure->rail[0].x.size(),
-                                     scene.spans.size()));
+    plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",
+                                     scene.track_kind == TrackKind::imported ? "imported" : "flexible",
+                                     2 * model.structure->rail[0].x.size(), scene.spans.size()));
   } else {
     plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
   }
-  if (scene.spans.empty()) plan.left_out.emplace_back("bridge: the scene names none");
+  if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
+    plan.left_out.emplace_back("bridge: the scene names none");
   if (!scene.irregularity) plan.left_out.emplace_back("irregularity: the scene names none");
-  if (scene.contact.mode != ContactMode::table)
+  if (model.geometry && scene.contact.mode != ContactMode::table)
     plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
   return plan;
 }
@@ -225,7 +236,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   RunSummary summary;
   if (!rest.converged) {
     summary.message = no_equilibrium(scene, rest);
-    summary.contact_mode = mode_name(scene.contact.mode);
+    summary.contact_mode = contact_mode_name(scene.contact);
     return summary;
   }
   if (!resume) displace(scene, model, state);
@@ -234,7 +245,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
       simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;
-  summary.contact_mode = mode_name(scene.contact.mode);
+  summary.contact_mode = contact_mode_name(scene.contact);
   return summary;
 }
 

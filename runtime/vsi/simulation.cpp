@@ -8,6 +8,7 @@
 #include <map>
 
 #include "railtab/runtime/vsi/step.hpp"
+#include "stopwatch.hpp"
 
 namespace railtab {
 
@@ -20,24 +21,32 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 // The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
 class Integrator {
  public:
-  Integrator(const VsiModel& model, const IntegrationParameters& p) : model_(model), parameters_(p), workspace_(model) {
+  Integrator(const VsiModel& model, const IntegrationParameters& p, double& seconds_setup)
+      : model_(model), parameters_(p), workspace_(model) {
     // The tolerance counts relative to a contact displacement of 1 mm.
     limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
-    static_cast<void>(operators(0));
+    static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 
   bool step(VsiState& state, RunSummary& summary) { return step(0, state, summary); }
 
  private:
-  const StepOperators& operators(int level) {
-    const auto found = operators_.find(level);
-    if (found != operators_.end()) return found->second;
-    const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
-    return operators_.emplace(level, StepOperators(model_, scheme)).first->second;
+  // Operators of a step that ends at `time`.
+  const StepOperators& operators(int level, double time, double& seconds_setup) {
+    const Stopwatch watch(seconds_setup);
+    auto found = operators_.find(level);
+    if (found == operators_.end()) {
+      const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
+      found = operators_.emplace(level, StepOperators(model_, scheme)).first;
+    }
+    found->second.follow(model_, time);
+    return found->second;
   }
 
   bool step(int level, VsiState& state, RunSummary& summary) {
-    const StepReport report = advance(model_, operators(level), limits_, state, workspace_);
+    const double end = state.time + std::ldexp(parameters_.time_step, -level);
+    const StepOperators& step_operators = operators(level, end, summary.seconds_setup);
+    const StepReport report = advance(model_, step_operators, limits_, state, workspace_);
     summary.newton_iterations += report.newton_iterations;
     summary.back_substitutions += report.back_substitutions;
     summary.contact_queries += report.queries;
@@ -123,8 +132,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
                     VsiState& state, const RunObserver& observer, long first_step) {
   RunSummary summary;
   const Clock::time_point begin = Clock::now();
-  Integrator integrator(model, integration);
-  summary.seconds_setup = seconds_since(begin);
+  Integrator integrator(model, integration, summary.seconds_setup);
   const auto steps = std::lround(duration / integration.time_step);
   StepRecord record;
   const auto emit = [&] {

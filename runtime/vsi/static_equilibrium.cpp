@@ -20,7 +20,7 @@ constexpr double pitch_rate_compliance =
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-std::vector<RailCoupling> all_couplings(const StructureResponse& response, const std::vector<RailContact>& contacts) {
+std::vector<RailCoupling> all_couplings(StructureResponse& response, const std::vector<RailContact>& contacts) {
   const Eigen::MatrixXd compliance = response.compliance_at(contacts);
   std::vector<RailCoupling> rail;
   const int wheels = static_cast<int>(contacts.size());
@@ -41,7 +41,7 @@ void clear_pitch(const VsiModel& model, Eigen::VectorXd& dofs) {
   }
 }
 
-ContactProblem rest_problem(const VsiModel& model, const VehicleResponse& vehicle, const StructureResponse* structure,
+ContactProblem rest_problem(const VsiModel& model, const VehicleResponse& vehicle, StructureResponse* structure,
                             const std::vector<RailContact>& contacts) {
   ContactProblem problem;
   problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
@@ -113,7 +113,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
                               VsiState& state) {
   EquilibriumReport report;
   const VehicleResponse& vehicle = rest.vehicle;
-  const StructureResponse* structure = rest.structure.get();
+  StructureResponse* structure = rest.structure.get();
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   ContactProblem problem = rest_problem(model, vehicle, structure, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
@@ -132,7 +132,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     for (int w = 0; w < model.wheelsets(); ++w) {
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
     }
-    if (report.iterations == 0 && state.contact.displacement.isZero()) {
+    if (model.normal_contact == NormalContact::hertz && report.iterations == 0 && state.contact.displacement.isZero()) {
       set_down(model, problem, state.contact.displacement);
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;

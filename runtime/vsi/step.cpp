@@ -84,7 +84,17 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   if (model.normal_contact == NormalContact::rigid) rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
-  structure->tabulate_compliance(*model.structure, compliance_window);
+}
+
+void StepOperators::follow(const VsiModel& model, double time) {
+  constexpr double ahead = 10.0;  // m
+  const double front = model.wheelset_x(0, time);
+  const double rear = model.wheelset_x(model.wheelsets() - 1, time);
+  if (!structure || (rear >= covered_from_ && front <= covered_to_)) return;
+  // A step that is repeated as halves looks back by at most one step.
+  covered_from_ = rear - model.contact.speed * scheme.time_step;
+  covered_to_ = front + ahead;
+  structure->tabulate_compliance(*model.structure, compliance_window, covered_from_, covered_to_);
 }
 
 StepWorkspace::StepWorkspace(const VsiModel& model) {

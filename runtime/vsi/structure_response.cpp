@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string_view>
 
@@ -40,14 +41,6 @@ std::unique_ptr<Factor> factorise(const Sparse& effective) {
     throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
   }
   return factor;
-}
-
-// The unknowns of nodes in the factor's order, held ones left out.
-void append_rows(const DofIndices& dof, const Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>& order,
-                 std::vector<int>& rows) {
-  for (int d : dof) {
-    if (d != held) rows.push_back(order.indices()[d]);
-  }
 }
 
 // The three rows of a contact over its element's 12 dofs.
@@ -92,6 +85,14 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
   }
 }
 
+struct StructureResponse::Entries {
+  std::unique_ptr<LowFactor> factor;
+  SelectedSolve solve;  // refers to the factor's numbers
+  explicit Entries(const Sparse& effective)
+      : factor(factorise<LowFactor>(effective)), solve(factor->matrixL().nestedExpression(), factor->vectorD()) {}
+  [[nodiscard]] int row(int dof) const { return factor->permutationP().indices()[dof]; }
+};
+
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : dofs_(structure.dofs()) {
   require_finite(structure);
@@ -104,11 +105,13 @@ StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(st
   require_finite(structure);
   effective_ = structure.stiffness;
   factor_ = factorise<SmallFactor>(effective_);
-  low_factor_ = low_factor();
 }
 
-std::shared_ptr<const StructureResponse::LowFactor> StructureResponse::low_factor() const {
-  return low_factor_ ? low_factor_ : std::shared_ptr<const LowFactor>(factorise<LowFactor>(effective_));
+StructureResponse::~StructureResponse() = default;
+
+StructureResponse::Entries& StructureResponse::entries() {
+  if (!entries_) entries_ = std::make_unique<Entries>(effective_);
+  return *entries_;
 }
 
 void StructureResponse::free_increment(const StructureModel& structure, const HhtScheme& scheme,
@@ -120,49 +123,60 @@ void StructureResponse::free_increment(const StructureModel& structure, const Hh
   increment = factor_->solve(load);
 }
 
-void StructureResponse::tabulate_compliance(const StructureModel& structure, double window) {
-  // A wheel is always coupled to both nodes of its own element, however long that is.
-  for (const RailLine& rail : structure.rail) {
-    for (std::size_t i = 1; i < rail.x.size(); ++i) window = std::max(window, rail.x[i] - rail.x[i - 1]);
-  }
-  const std::shared_ptr<const LowFactor> factor = low_factor();
-  const auto& order = factor->permutationP();
-  const Sparse& L = factor->matrixL().nestedExpression();  // below the diagonal; the diagonal is one
-  SelectedSolve solve(L, factor->vectorD());
-  SelectedSolve::Columns loads;
+StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,
+                                                       std::size_t node) {
+  Entries& e = entries();
+  const RailLine& rail = structure.rail[side];
+  Column column;
+  std::array<std::size_t, 2> last{};  // of the window on each rail
   std::vector<int> loaded, wanted;
+  for (std::size_t other = 0; other < 2; ++other) {
+    const RailLine& to = structure.rail[other];
+    const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window) - to.x.begin();
+    last[other] =
+        static_cast<std::size_t>(std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin());
+    column.first[other] = static_cast<int>(begin);
+    for (auto n = static_cast<std::size_t>(begin); n < last[other]; ++n) {
+      for (int dof : to.dof[n]) {
+        if (dof != held) wanted.push_back(e.row(dof));
+      }
+    }
+  }
+  SelectedSolve::Columns loads = SelectedSolve::Columns::Zero(6, 6);
+  for (int k = 0; k < 6; ++k) {
+    const int dof = rail.dof[node][static_cast<std::size_t>(k)];
+    if (dof == held) continue;
+    loads(static_cast<Eigen::Index>(loaded.size()), k) = 1.0;
+    loaded.push_back(e.row(dof));
+  }
+  e.solve.want(wanted);
+  e.solve.solve(loaded, loads);
+  for (std::size_t other = 0; other < 2; ++other) {
+    for (auto n = static_cast<std::size_t>(column.first[other]); n < last[other]; ++n) {
+      Block block = Block::Zero();
+      for (std::size_t k = 0; k < 6; ++k) {
+        const int dof = structure.rail[other].dof[n][k];
+        if (dof != held) block.row(static_cast<Eigen::Index>(k)) = e.solve.x(e.row(dof));
+      }
+      column.rows[other].push_back(block);
+    }
+  }
+  return column;
+}
+
+void StructureResponse::tabulate_compliance(const StructureModel& structure, double window, double from, double to) {
   for (std::size_t side = 0; side < 2; ++side) {
     const RailLine& rail = structure.rail[side];
-    column_[side].assign(rail.x.size(), {});
+    column_[side].resize(rail.x.size());
+    // A wheel loads both nodes of its element, and is always coupled to them, however long the element is.
+    double longest = 0.0;
+    for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
     for (std::size_t node = 0; node < rail.x.size(); ++node) {
       Column& column = column_[side][node];
-      std::array<std::size_t, 2> last{};  // of the window on each rail
-      wanted.clear();
-      for (std::size_t other = 0; other < 2; ++other) {
-        const RailLine& to = structure.rail[other];
-        const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window) - to.x.begin();
-        const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin();
-        column.first[other] = static_cast<int>(begin);
-        last[other] = static_cast<std::size_t>(end);
-        for (auto n = begin; n < end; ++n) append_rows(to.dof[static_cast<std::size_t>(n)], order, wanted);
-      }
-      loaded.clear();
-      append_rows(rail.dof[node], order, loaded);
-      loads.setZero(static_cast<Eigen::Index>(loaded.size()), 6);
-      for (int k = 0, i = 0; k < 6; ++k) {
-        if (rail.dof[node][static_cast<std::size_t>(k)] != held) loads(i++, k) = 1.0;
-      }
-      solve.want(wanted);
-      solve.solve(loaded, loads);
-      for (std::size_t other = 0; other < 2; ++other) {
-        for (auto n = static_cast<std::size_t>(column.first[other]); n < last[other]; ++n) {
-          Block block = Block::Zero();
-          for (std::size_t k = 0; k < 6; ++k) {
-            const int dof = structure.rail[other].dof[n][k];
-            if (dof != held) block.row(static_cast<Eigen::Index>(k)) = solve.x(order.indices()[dof]);
-          }
-          column.rows[other].push_back(block);
-        }
+      if (rail.x[node] < from - longest || rail.x[node] > to + longest) {
+        column = {};
+      } else if (column.rows[side].empty()) {
+        column = column_of(structure, std::max(window, longest), side, node);
       }
     }
   }
@@ -177,6 +191,7 @@ auto StructureResponse::between(const RailContact& i, const Rows& row, const Rai
   const auto row_side = static_cast<std::size_t>(i.side);
   for (int q = 0; q < 2; ++q) {
     const Column& from = column_[static_cast<std::size_t>(j.side)][static_cast<std::size_t>(j.element + q)];
+    assert(!from.rows[static_cast<std::size_t>(j.side)].empty() && "the table does not cover this position");
     const auto count = static_cast<int>(from.rows[row_side].size());
     for (int p = 0; p < 2; ++p) {
       const int offset = i.element + p - from.first[row_side];
@@ -202,21 +217,18 @@ Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, con
   return between(i, rows, j, Row(Row::Map(j.rows.z.data())));
 }
 
-Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) const {
+Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  const std::shared_ptr<const LowFactor> factor = low_factor();
-  const auto& order = factor->permutationP().indices();
-  const Sparse& L = factor->matrixL().nestedExpression();
-  SelectedSolve solve(L, factor->vectorD());
+  Entries& e = entries();
   std::vector<int> rows;
   const auto append = [&](const RailContact& contact) {
     if (!contact.on_rail) return;
     for (int dof : contact.rows.dof) {
-      if (dof != held) rows.push_back(order[dof]);
+      if (dof != held) rows.push_back(e.row(dof));
     }
   };
   for (const RailContact& contact : contacts) append(contact);
-  solve.want(rows);
+  e.solve.want(rows);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   SelectedSolve::Columns loads;
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -228,13 +240,13 @@ Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>&
       if (from.rows.dof[k] == held) continue;
       loads.row(static_cast<Eigen::Index>(i++)).head<3>() << from.rows.y[k], from.rows.z[k], from.rows.roll[k];
     }
-    solve.solve(rows, loads);
+    e.solve.solve(rows, loads);
     for (Eigen::Index i = 0; i < n; ++i) {
       const RailContact& to = contacts[static_cast<std::size_t>(i)];
       for (std::size_t k = 0; k < 12 && to.on_rail; ++k) {
         if (to.rows.dof[k] == held) continue;
         result.block<3, 3>(3 * i, 3 * j) +=
-            Eigen::Vector3d(to.rows.y[k], to.rows.z[k], to.rows.roll[k]) * solve.x(order[to.rows.dof[k]]).head<3>();
+            Eigen::Vector3d(to.rows.y[k], to.rows.z[k], to.rows.roll[k]) * e.solve.x(e.row(to.rows.dof[k])).head<3>();
       }
     }
   }

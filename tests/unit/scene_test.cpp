@@ -127,7 +127,17 @@ TEST_F(Scene, UnknownKeyNamesItsLineAndTheNearestKey) {
             "scene.toml:2: unknown key 'track.pad.stiffness_in_the_vertical_directi");
   EXPECT_EQ(message("[weather]\n"),
             "scene.toml:1: unknown key 'weather'; the sections are train, contact, track, "
-            "bridge, irregularity, integration and output");
+            "bridge, structure, irregularity, integration and output");
+}
+
+TEST_F(Scene, RigidWheelsNeedNoTableAndAnImportedStructureAllItsFiles) {
+  const SceneParameters scene = read("[contact]\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n");
+  EXPECT_EQ(scene.contact.normal, NormalContact::rigid);
+  EXPECT_TRUE(scene.contact.table.empty());
+  EXPECT_NE(message("[contact]\nnormal = \"rigid\"\n[track]\nkind = \"imported\"\n").find("structure.stiffness"),
+            std::string::npos);
+  EXPECT_NE(message(std::string(online) + "[track]\nkind = \"imported\"\n[[bridge]]\n").find("[[bridge]]"),
+            std::string::npos);
 }
 
 TEST_F(Scene, FirstWrongLineOfTheFileIsNamed) {

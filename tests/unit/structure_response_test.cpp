@@ -27,7 +27,7 @@ StructureModel short_bridge() {
 TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
   const StructureModel structure = short_bridge();
   StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
-  response.tabulate_compliance(structure, 100.0);  // all of it: nothing is left to the far field
+  response.tabulate_compliance(structure, 100.0, -100.0, 100.0);  // all of it: nothing is left to the far field
   std::vector<RailContact> contacts;
   for (const double x : {-3.21, 0.1, 2.345, 5.99}) {
     contacts.push_back(rail_contact(structure, RailSide::left, x));
@@ -62,7 +62,7 @@ TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
 TEST(StructureResponse, VerticalComplianceHasTheLinesSlopeAndCurvature) {
   const StructureModel structure = short_bridge();
   StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
-  response.tabulate_compliance(structure, 100.0);
+  response.tabulate_compliance(structure, 100.0, -100.0, 100.0);
   const RailContact load = rail_contact(structure, RailSide::left, 2.345);
   for (const RailSide side : {RailSide::left, RailSide::right}) {
     const auto at = [&](double x) { return response.vertical_compliance(rail_contact(structure, side, x), load); };

@@ -36,8 +36,10 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   line(text, "wheel unloading", headline.unloading, 100.0, "%");
   line(text, "largest Q", headline.largest_Q, 1e-3, "kN");
   line(text, "smallest Q", headline.smallest_Q, 1e-3, "kN");
-  fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
-                 summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
+  if (summary.contact_queries > 0) {
+    fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
+                   summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
+  }
   const double total = summary.seconds_total;
   const std::string speed =
       headline.real_time_factor > 0.0 ? fmt::format(", {:.3g} times real time", headline.real_time_factor) : "";

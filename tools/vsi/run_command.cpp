@@ -33,10 +33,6 @@ ContactMode contact_mode(const std::string& name) {
   throw input_error("--contact", name, "table, online or paper");
 }
 
-std::string_view contact_mode_name(ContactMode mode) {
-  return mode == ContactMode::table ? "table" : mode == ContactMode::online ? "online" : "paper";
-}
-
 int print_plan(const SceneParameters& scene, const RunOptions& options) {
   const RunPlan plan = plan_run(scene);
   if (options.json) {
@@ -140,7 +136,7 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
                       "results of railtab " RAILTAB_VERSION);
   }
   const std::string& mode = before.summary.contact_mode;  // not known of a run that was killed
-  if (!mode.empty() && mode != contact_mode_name(scene.contact.mode)) {
+  if (!mode.empty() && mode != contact_mode_name(scene.contact)) {
     throw input_error(file, fmt::format("results of --contact {}", mode), "results of the same contact mode to resume");
   }
 }

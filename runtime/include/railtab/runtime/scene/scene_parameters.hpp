@@ -3,17 +3,20 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
+#include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vsi/normal_contact.hpp"
 
 namespace railtab {
 
 enum class ContactMode { table, online, paper };
-enum class TrackKind { rigid, flexible };
+enum class TrackKind { rigid, flexible, imported };
 
 struct TrainParameters {
   std::string vehicle = "manchester-coach";  ///< a published vehicle
@@ -27,6 +30,7 @@ struct TrainParameters {
 
 struct ContactParameters {
   ContactMode mode = ContactMode::table;
+  NormalContact normal = NormalContact::hertz;
   std::filesystem::path table;  ///< geometry table; also gives the profiles
   std::string wheel = "S1002";  ///< where no table is named (online, paper)
   std::string rail = "60E1";
@@ -39,6 +43,9 @@ struct ContactParameters {
   double damping = 0.0;           ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
   double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]
 };
+
+/// "table", "online", "paper", or "rigid": what results say of how they were made.
+[[nodiscard]] std::string_view contact_mode_name(const ContactParameters& contact) noexcept;
 
 struct IntegrationParameters {
   double time_step = 5e-4;  ///< [s]
@@ -63,6 +70,7 @@ struct SceneParameters {
   TrackKind track_kind = TrackKind::flexible;
   TrackParameters track;
   std::vector<BridgeParameters> spans;  ///< none: no bridge
+  StructureFiles structure;             ///< for TrackKind::imported
   std::optional<std::filesystem::path> irregularity;
   IntegrationParameters integration;
   OutputParameters output;

@@ -47,7 +47,6 @@ class RigidWheelResponse {
 /// Buffers of a step with rigid wheels.
 struct RigidWheelWorkspace {
   std::vector<Eigen::VectorXd> R;  ///< per vehicle
-  std::vector<Eigen::Vector3d> compliance;
   Eigen::MatrixXd system;
   Eigen::VectorXd force;
 };

@@ -7,9 +7,10 @@
 
 namespace railtab {
 
-/// What one time-step size needs, made once: the factor of the structure, the inverse of a vehicle, the compliance of
-/// the rails.
-struct StepOperators {
+/// What one time-step size needs: the factor of the structure and the inverse of a vehicle, made once, and the
+/// compliance of the rails where the train is.
+class StepOperators {
+ public:
   HhtScheme scheme;
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
@@ -17,6 +18,12 @@ struct StepOperators {
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);
+
+  /// Take the table of the rails' compliance along, so that it covers the train up to `time` and some way ahead.
+  void follow(const VsiModel& model, double time);
+
+ private:
+  double covered_from_ = 0.0, covered_to_ = -1.0;  ///< positions along the track [m]; none at first
 };
 
 struct StepLimits {

@@ -34,6 +34,7 @@ class StructureResponse {
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
   /// At rest: K̄ = K.
   explicit StructureResponse(const StructureModel& structure);
+  ~StructureResponse();
 
   /// Increment over the predictor without contact forces at the end of the step; one back-substitution.
   void free_increment(const StructureModel& structure, const HhtScheme& scheme, const LinearMotion& motion,
@@ -41,11 +42,13 @@ class StructureResponse {
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
-  /// Fill the node-by-node compliance of the rails within `window` [m] on either side (at least one element), at a
-  /// price linear in their length.
-  void tabulate_compliance(const StructureModel& structure, double window);
+  /// Make the table of node-by-node compliances cover loads on the rails between positions `from` and `to` [m], coupled
+  /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
+  /// dropped: a moving train takes its table along, at a price that does not depend on the track's length.
+  void tabulate_compliance(const StructureModel& structure, double window, double from, double to);
   /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
+  /// @pre the table covers `j`
   [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
 
   /// Vertical displacement z, slope dz/dx and curvature d²z/dx² of rail `i` from a unit vertical load on rail `j`, from
@@ -53,10 +56,15 @@ class StructureResponse {
   [[nodiscard]] Eigen::Vector3d vertical_compliance(const RailContact& i, const RailContact& j) const noexcept;
 
   /// The same without tabulation, by solving for the columns of every contact (3n × 3n): exact, for few positions.
-  [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts) const;
+  [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts);
 
  private:
   using Block = Eigen::Matrix<double, 6, 6>;
+  /// Compliances of one node; empty where the table does not cover it.
+  struct Column {
+    std::array<int, 2> first{};              // first node of the window on each rail
+    std::array<std::vector<Block>, 2> rows;  // displacement of the window's nodes from unit loads on this node
+  };
   /// rows · (tabulated compliance between the elements of i and j) · columnsᵀ.
   template <class Rows, class Columns>
   [[nodiscard]] auto between(const RailContact& i, const Rows& row, const RailContact& j,
@@ -65,18 +73,17 @@ class StructureResponse {
   /// twice as large, gives single entries of the inverse (SelectedSolve).
   using SmallFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
-  [[nodiscard]] std::shared_ptr<const LowFactor> low_factor() const;
+
+  [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
   std::unique_ptr<SmallFactor> factor_;
-  std::shared_ptr<const LowFactor> low_factor_;  ///< kept at rest, where compliance_at() is called again and again
+  /// Made when first needed.
+  struct Entries;
+  [[nodiscard]] Entries& entries();
+  std::unique_ptr<Entries> entries_;
   Eigen::Index dofs_ = 0;
-  // compliance_[node column][window offset]; columns: left rail's nodes, then the right's; rows likewise in pairs.
-  struct Column {
-    std::array<int, 2> first{};              // first node of the window on each rail
-    std::array<std::vector<Block>, 2> rows;  // displacement of the window's nodes from unit loads on this node
-  };
-  std::array<std::vector<Column>, 2> column_;
+  std::array<std::vector<Column>, 2> column_;  ///< per rail and node
 };
 
 }  // namespace railtab
