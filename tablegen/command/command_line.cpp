@@ -1,10 +1,15 @@
 #include "command_line.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 
 #include <charconv>
+#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string_view>
@@ -37,7 +42,10 @@ CommandLine::CommandLine(std::string usage, const po::options_description& own,
       ("json", "print one JSON object on stdout");
   all_.add(own).add(shared);
   po::positional_options_description places;
-  for (const std::string& name : positional) places.add(name.c_str(), 1);
+  for (const std::string& name : positional) {
+    const bool all_left = name.ends_with("...");
+    places.add(name.substr(0, name.size() - (all_left ? 3 : 0)).c_str(), all_left ? -1 : 1);
+  }
   const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
   try {
     po::store(po::command_line_parser(arguments).options(all_).positional(places).style(style).run(), values_);
@@ -60,6 +68,11 @@ bool CommandLine::help_printed() const {
 std::string CommandLine::required(const std::string& name) const {
   if (!given(name)) throw InputError(fmt::format("{} is missing; usage: {}", name, usage_));
   return text(name);
+}
+
+std::vector<std::string> CommandLine::required_many(const std::string& name) const {
+  if (!given(name)) throw InputError(fmt::format("{} is missing; usage: {}", name, usage_));
+  return values_[name].as<std::vector<std::string>>();
 }
 
 double CommandLine::number(const std::string& name) const {
@@ -88,6 +101,21 @@ Interval CommandLine::interval(const std::string& name) const {
   throw input_error("--" + name, fmt::format("\"{}\"", found), "LO:HI, two numbers in SI units with LO not above HI");
 }
 
+Shard CommandLine::shard(const std::string& name) const {
+  const std::string found = text(name);
+  const std::size_t stroke = found.find('/');
+  if (stroke != std::string::npos) {
+    const std::string_view view = found;
+    const std::optional<double> index = parse_number(view.substr(0, stroke));
+    const std::optional<double> count = parse_number(view.substr(stroke + 1));
+    if (index && count && *index == std::floor(*index) && *count == std::floor(*count) && *count <= 1e5 &&
+        *index >= 1 && *index <= *count) {
+      return {static_cast<int>(*index), static_cast<int>(*count)};
+    }
+  }
+  throw input_error("--" + name, fmt::format("\"{}\"", found), "I/N, whole numbers with 1 <= I <= N <= 100000");
+}
+
 double CommandLine::slope(const std::string& name) const {
   const std::string found = text(name);
   const std::size_t colon = found.find(':');
@@ -100,6 +128,19 @@ double CommandLine::slope(const std::string& name) const {
     if (rise && run && *run != 0) return *rise / *run;
   }
   throw input_error("--" + name, fmt::format("\"{}\"", found), "a slope such as 1:40 or 0.025");
+}
+
+TableProvenance provenance(const std::string& command, const std::vector<std::string>& arguments) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return {RAILTAB_VERSION, fmt::format("tablegen {} {}", command, fmt::join(arguments, " ")),
+          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
+}
+
+void require_folder(const std::string& output) {
+  const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+  if (!std::filesystem::is_directory(folder)) {
+    throw input_error("--output " + output, "no folder " + folder.string(), "a file in an existing folder");
+  }
 }
 
 }  // namespace railtab

@@ -13,6 +13,9 @@ namespace {
 constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
 
   geometry   make a contact geometry table of a wheel and a rail profile
+  batch      make the geometry tables of a list of wheel and rail pairs
+  creep      make a table of creep forces by exact rolling contact, or one shard of it
+  merge      put the shards of a table together
   contact    one exact rolling-contact solution: creep force and its proof
   conicity   rolling radius difference and equivalent conicity (EN 15302) from a geometry table
   info       tell what a table holds
@@ -24,28 +27,26 @@ Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
 
 int run(const std::vector<std::string>& arguments) {
   using namespace railtab;
-  const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
-      {"conicity", conicity_command},
-      {"contact", contact_command},
-      {"geometry", geometry_command},
-      {"info", info_command},
-      {"verify", verify_command}};
-  if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
-  if (arguments[0] == "--help" || arguments[0] == "-h") {
-    fmt::print("{}", usage);
+  const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands {
+    {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command}, {"creep", creep_command},
+        {"geometry", geometry_command}, {"info", info_command}, {"merge", merge_command},
+        if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
+    if (arguments[0] == "--help" || arguments[0] == "-h") {
+      fmt::print("{}", usage);
+      return 0;
+    }
+    if (arguments[0] == "--version") {
+      fmt::print("railtab {}\n", RAILTAB_VERSION);
+      return 0;
+    }
+    const auto command = commands.find(arguments[0]);
+    if (command == commands.end()) {
+      throw input_error("command", fmt::format("\"{}\"", arguments[0]),
+                        "geometry, batch, creep, merge, contact, conicity, info or verify");
+    }
+    command->second({arguments.begin() + 1, arguments.end()});
     return 0;
   }
-  if (arguments[0] == "--version") {
-    fmt::print("railtab {}\n", RAILTAB_VERSION);
-    return 0;
-  }
-  const auto command = commands.find(arguments[0]);
-  if (command == commands.end()) {
-    throw input_error("command", fmt::format("\"{}\"", arguments[0]), "geometry, contact, conicity, info or verify");
-  }
-  command->second({arguments.begin() + 1, arguments.end()});
-  return 0;
-}
 
 }  // namespace
 

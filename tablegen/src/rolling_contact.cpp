@@ -10,6 +10,7 @@
 #include "railtab/tables/input_error.hpp"
 #include "rolling_contact_newton.hpp"
 #include "rolling_contact_transient.hpp"
+#include "slip_average.hpp"
 
 namespace railtab {
 
@@ -36,7 +37,7 @@ struct RollingContact::Impl {
 
   void set_rigid_slip(const Creepage& creepage);
   [[nodiscard]] ElementField start(const std::vector<double>* given) const;
-  void describe(const ElementField& traction, RollingContactSolution& solution) const;
+  void describe(const ElementField& traction, const ElementField& slip, RollingContactSolution& solution) const;
 
   RollingContactOptions options;
   double nu;
@@ -70,8 +71,10 @@ ElementField RollingContact::Impl::start(const std::vector<double>* given) const
   return traction;
 }
 
-void RollingContact::Impl::describe(const ElementField& traction, RollingContactSolution& solution) const {
+void RollingContact::Impl::describe(const ElementField& traction, const ElementField& slip,
+                                    RollingContactSolution& solution) const {
   const int n = grid.n, m = n * n;
+  double against = 0.0, work = 0.0;
   for (const int k : grid.inside) {
     const double px = traction[k], py = traction[m + k];
     solution.force.x += px * grid.area;
@@ -80,7 +83,11 @@ void RollingContact::Impl::describe(const ElementField& traction, RollingContact
     const double excess = std::hypot(px, py) / grid.bound[k] - 1.0;
     solution.bound_excess = std::max(solution.bound_excess, excess);
     ++(excess > -1e-9 ? solution.slip : solution.adhesion);
+    if (excess <= -1e-9) continue;
+    against += std::hypot(px, py) * std::hypot(slip[k], slip[m + k]);
+    work += px * slip[k] + py * slip[m + k];
   }
+  solution.slip_deviation = against > 0.0 ? 1.0 + work / against : 0.0;
   solution.traction.assign(traction.begin(), traction.end());
 }
 
@@ -114,7 +121,17 @@ RollingContactSolution RollingContact::solve(const Creepage& creepage, const std
   solution.iterations = outcome.iterations;
   solution.products = outcome.products;
   solution.converged = outcome.converged;
-  impl_->describe(traction, solution);
+  ElementField slip(traction.size());
+  impl_->newton.product().apply(traction, slip);
+  slip += impl_->rigid_slip;
+  impl_->describe(traction, slip, solution);
+  if (options.direction == RollingContactOptions::SlipDirection::averaged) {
+    const double rigid_gradient = creepage.spin * impl_->grid.dx;
+    const CreepForce correction = slip_average_correction(impl_->grid, traction, slip, rigid_gradient);
+    solution.force.x += correction.x;
+    solution.force.y += correction.y;
+    solution.force.moment += correction.moment;
+  }
   return solution;
 }
 

@@ -13,6 +13,7 @@ RollingContactOptions equal_area(RollingContactOptions options, int divisor) {
   }
   options.elements /= divisor;
   options.size = RollingContactOptions::ElementSize::equal_area;
+  options.direction = RollingContactOptions::SlipDirection::averaged;
   return options;
 }
 
@@ -21,9 +22,10 @@ RollingContactOptions equal_area(RollingContactOptions options, int divisor) {
 ExtrapolatedRollingContact::ExtrapolatedRollingContact(double ratio, double nu, const RollingContactOptions& options)
     : coarse_(ratio, nu, equal_area(options, 2)), fine_(ratio, nu, equal_area(options, 1)) {}
 
-ExtrapolatedContactSolution ExtrapolatedRollingContact::solve(const Creepage& creepage) {
+ExtrapolatedContactSolution ExtrapolatedRollingContact::solve(const Creepage& creepage,
+                                                              const std::vector<double>* coarse_start) {
   ExtrapolatedContactSolution s;
-  s.coarse = coarse_.solve(creepage);
+  s.coarse = coarse_.solve(creepage, coarse_start);
   const std::vector<double> start = fine_.refined(s.coarse.traction);
   s.fine = fine_.solve(creepage, &start);
   for (const auto part : {&CreepForce::x, &CreepForce::y, &CreepForce::moment}) {

@@ -3,10 +3,12 @@
 #include <vector>
 
 #include "rolling_contact_grid.hpp"
+#include "rolling_contact_linear.hpp"
 
 namespace railtab {
 
-/// Newton's method on the friction law over the elements, the linear systems by preconditioned GMRES.
+/// Newton's method on the friction law over the elements. Slip, law and residual are in double precision, the linear
+/// systems in single.
 class RollingContactNewton {
  public:
   RollingContactNewton(const RollingContactGrid& grid, double nu);
@@ -24,24 +26,14 @@ class RollingContactNewton {
   RollingContactProduct& product() { return product_; }
 
  private:
-  enum class State : unsigned char { outside, adhesion, slip };
-
   void classify(const ElementField& traction, const ElementField& slip);
-  void direction_step(const ElementField& unknown, ElementField& traction) const;
-  void linear_operator(const ElementField& unknown, ElementField& result);
-  void precondition(const ElementField& residual, ElementField& unknown) const;
-  int solve_linear(double tolerance);
-  void update(ElementField& traction);
+  void update(ElementField& traction) const;
 
   const RollingContactGrid& grid_;
   RollingContactProduct product_;
-  std::vector<Eigen::MatrixXd> run_inverse_[2];  ///< by length−1: inverse of B on a run of elements of one row
-  double diagonal_[2], ahead_[2];                ///< B of an element on itself, of the next one ahead on it
-  std::vector<State> state_;
-  Eigen::VectorXd tangent_x_, tangent_y_,
-      stiffness_;  ///< of slip elements: direction of p turned by 90°, −p·s/(μ p_n)²
-  ElementField right_side_, solution_, expanded_, scratch_;
-  std::vector<ElementField> basis_;
+  RollingContactLinear linear_;
+  std::vector<bool> slips_;
+  ElementField slip_, step_;
 };
 
 }  // namespace railtab

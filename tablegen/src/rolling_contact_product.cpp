@@ -1,19 +1,12 @@
 #include "rolling_contact_product.hpp"
 
 #include <algorithm>
-#include <mutex>
 
 #include "influence_numbers.hpp"
 
 namespace railtab {
 
 namespace {
-
-/// FFTW's planner is the one part of it that threads may not enter together.
-std::mutex& planner() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 /// Smallest even size from `low` with no prime factor above 5.
 int fast_size(int low) {
@@ -30,9 +23,14 @@ fftw_complex* raw(std::complex<double>* p) { return reinterpret_cast<fftw_comple
 
 }  // namespace
 
+std::mutex& fftw_planner() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 RollingContactProduct::RollingContactProduct(int n, double dx, double dy, double nu)
     : n_(n), padded_(fast_size(2 * n)), columns_(padded_ / 2 + 1) {
-  const std::lock_guard lock(planner());
+  const std::lock_guard lock(fftw_planner());
   const int plane = padded_ * columns_;
   real_ = fftw_alloc_real(static_cast<std::size_t>(padded_) * padded_);
   spectrum_ = reinterpret_cast<std::complex<double>*>(fftw_alloc_complex(static_cast<std::size_t>(2) * plane));
@@ -51,10 +49,19 @@ RollingContactProduct::RollingContactProduct(int n, double dx, double dy, double
 }
 
 RollingContactProduct::~RollingContactProduct() {
-  const std::lock_guard lock(planner());
+  const std::lock_guard lock(fftw_planner());
   for (fftw_plan plan : {rows_forward_, columns_forward_, columns_backward_, rows_backward_}) fftw_destroy_plan(plan);
   fftw_free(real_);
   fftw_free(spectrum_);
+}
+
+RollingContactProduct::Spectrum RollingContactProduct::spectrum(int kx, int ky) const {
+  // B is real: the half of the spectrum that is not stored is the conjugate of the other
+  const bool stored = kx < columns_;
+  const int row = stored ? ky : (padded_ - ky) % padded_;
+  const std::size_t k = static_cast<std::size_t>(row * columns_ + (stored ? kx : padded_ - kx));
+  if (stored) return {xx_[k], xy_[k], yy_[k]};
+  return {std::conj(xx_[k]), std::conj(xy_[k]), std::conj(yy_[k])};
 }
 
 void RollingContactProduct::tabulate(double dx, double dy, double nu) {

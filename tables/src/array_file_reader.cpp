@@ -259,12 +259,20 @@ std::vector<std::string> ArrayFileReader::attribute_names(std::string_view path)
 
 std::size_t ArrayFileReader::records() const noexcept { return impl_->records; }
 
-std::string array_file_type(const std::filesystem::path& file) {
+namespace {
+
+std::string root_text(const std::filesystem::path& file, const char* attribute) {
   const Section section;
   const hdf5::FileState state = hdf5::inspect_file(file);
   const hdf5::File handle = open_for_reading(file, state);
   const hdf5::Object root = hdf5::open_object(handle.get(), file, "");
-  return hdf5::text_attribute(root.get(), place(file, "", "filetype"), "filetype");
+  return hdf5::text_attribute(root.get(), place(file, "", attribute), attribute);
 }
+
+}  // namespace
+
+std::string array_file_type(const std::filesystem::path& file) { return root_text(file, "filetype"); }
+
+std::string array_file_checksum(const std::filesystem::path& file) { return root_text(file, "checksum"); }
 
 }  // namespace railtab

@@ -14,7 +14,7 @@
 namespace railtab {
 namespace {
 
-constexpr std::string_view filetype = "railtab-geometry-table";
+constexpr std::string_view filetype = geometry_table_filetype;
 constexpr int format_version = 3;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.

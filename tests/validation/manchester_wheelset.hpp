@@ -58,7 +58,7 @@ class ManchesterWheelset {
     const PatchLoads loads = patch_loads(model_, geometry_, pose, patches);
     double force = 0.0;
     for (int i = 0; i < patches.count; ++i)
-      force += loads[index(i)].elastic_force * std::cos(patches.patch[index(i)].angle);
+      force += loads[index(i)].elastic_force * std::cos(loads[index(i)].contact.angle);
     return force;
   }
 
@@ -69,12 +69,12 @@ class ManchesterWheelset {
     wheel.z = pose.z;
     double most = 0.0;
     for (int i = 0; i < patches.count; ++i) {
-      const ContactPatch& p = patches.patch[index(i)];
+      const ContactPatch& p = loads[index(i)].contact;
       const double force = loads[index(i)].elastic_force;
       wheel.normal_force += force;
       wheel.y_rail += force * p.y_rail;
       wheel.y_wheel += force * p.y_wheel;
-      wheel.penetration = std::max(wheel.penetration, p.penetration);
+      wheel.penetration = std::max(wheel.penetration, patches.patch[index(i)].penetration);
       wheel.patches += force > 0.01 * load ? 1 : 0;
       if (force <= most) continue;
       most = force;

@@ -18,6 +18,9 @@ struct RollingContactOptions {
   /// Elements of the ellipse's rectangle (2a/n, 2b/n), as CONTACT; or scaled so that those with their centre inside the
   /// ellipse have its area together, so that the error is smooth in 1/n.
   enum class ElementSize { rectangle, equal_area } size = ElementSize::rectangle;
+  /// Force of a slipping element: the bound against the slip at one place of it, as CONTACT, or its mean over the
+  /// element, which counts where the slip turns within elements. The tractions are the same.
+  enum class SlipDirection { sampled, averaged } direction = SlipDirection::sampled;
 
   /// @throws InputError
   void validate() const;
@@ -31,12 +34,14 @@ struct RollingContactSolution {
   /// Σ|p − P(p − s/b0)| over that of p = 0: P the projection on the friction circle, b0 an element's own influence.
   double residual = 0.0;
   double bound_excess = 0.0;  ///< largest |p|/(μ p_n) − 1, zero (to rounding) where friction is not exceeded
-  int iterations = 0;         ///< of Newton's method, or steps rolled by the safe one
-  int products = 0;           ///< with the influence matrix
-  int adhesion = 0;           ///< elements that stick
-  int slip = 0;               ///< elements that slip
-  bool safe_method = false;   ///< Newton's method failed, the slow one was used
-  bool converged = false;     ///< the residual is below the tolerance
+  /// Σ(|p||s| + p·s)/Σ|p||s| over the slipping elements: zero where slip opposes traction, 2 where it goes along.
+  double slip_deviation = 0.0;
+  int iterations = 0;        ///< of Newton's method, or steps rolled by the safe one
+  int products = 0;          ///< with the influence matrix
+  int adhesion = 0;          ///< elements that stick
+  int slip = 0;              ///< elements that slip
+  bool safe_method = false;  ///< Newton's method failed, the slow one was used
+  bool converged = false;    ///< the residual is below the tolerance
 };
 
 /// Kalker's exact theory of steady rolling [Kalker1990, Ch. 4]: two half-spaces of the same material, a Hertzian
@@ -75,9 +80,12 @@ struct ExtrapolatedContactSolution {
 /// solution starts the fine one.
 class ExtrapolatedRollingContact {
  public:
-  /// As RollingContact; options.elements is the fine grid's, even and at least 8, options.size is not used.
+  /// As RollingContact; options.elements is the fine grid's, even and at least 8; of equal area with averaged slip
+  /// direction whatever the options say.
   ExtrapolatedRollingContact(double ratio, double nu, const RollingContactOptions& options = {});
-  [[nodiscard]] ExtrapolatedContactSolution solve(const Creepage& creepage);
+  /// @param coarse_start tractions on the coarse grid to begin with, those of a neighbouring creepage; nullptr for none
+  [[nodiscard]] ExtrapolatedContactSolution solve(const Creepage& creepage,
+                                                  const std::vector<double>* coarse_start = nullptr);
 
  private:
   RollingContact coarse_, fine_;

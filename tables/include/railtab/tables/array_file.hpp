@@ -46,6 +46,9 @@ class ArrayFileWriter {
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
   void write(std::string_view path, std::span<const double> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
+  /// Stored with 32 bits.
+  void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
+             std::string_view unit, std::string_view description);
   void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
   /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
@@ -118,6 +121,10 @@ class ArrayFileReader {
 
 /// The filetype attribute of a railtab file, to tell tables from results. @throws InputError if it is none.
 [[nodiscard]] std::string array_file_type(const std::filesystem::path& file);
+
+/// The attribute "checksum" that a table's writer stored: two tables with one checksum hold the same numbers, whenever
+/// they were made. @throws InputError where there is none.
+[[nodiscard]] std::string array_file_checksum(const std::filesystem::path& file);
 
 /// 64-bit FNV-1a over the little-endian bytes: the checksum of what a table stores.
 [[nodiscard]] std::uint64_t checksum(std::span<const double> values,

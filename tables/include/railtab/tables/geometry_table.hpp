@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "railtab/tables/profile_knots.hpp"
+#include "railtab/tables/provenance.hpp"
 
 namespace railtab {
 
@@ -35,13 +36,6 @@ struct CellNode {
   [[nodiscard]] static constexpr bool is_leaf(std::uint32_t node) noexcept { return (node & 3U) == leaf_mark; }
   [[nodiscard]] static constexpr std::uint32_t axis(std::uint32_t node) noexcept { return node & 3U; }
   [[nodiscard]] static constexpr std::uint32_t index(std::uint32_t node) noexcept { return node >> 2; }
-};
-
-/// What the offline side stored beside the numbers.
-struct TableProvenance {
-  std::string program_version;
-  std::string command_line;
-  std::string created;  ///< ISO 8601, UTC
 };
 
 /// The slab of a table that one job makes: root cells of equal share, counted from 1.

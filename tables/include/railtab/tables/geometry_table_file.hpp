@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "railtab/tables/geometry_table.hpp"
 
 namespace railtab {
+
+inline constexpr std::string_view geometry_table_filetype = "railtab-geometry-table";
 
 /// Write a table: to a temporary name beside `file`, then renamed, so that `file` is always whole.
 /// @throws InputError where the folder cannot be written.

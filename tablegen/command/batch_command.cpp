@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <sstream>
+
+#include "batch_list.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "geometry_request.hpp"
+#include "progress_bar.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+namespace po = boost::program_options;
+
+enum class State { waiting, done, made, failed };
+
+struct Job {
+  BatchPair pair;
+  State state = State::waiting;
+  std::string message;
+};
+
+std::string_view state_name(State state) {
+  switch (state) {
+    case State::waiting:
+      return "to do";
+    case State::done:
+      return "done before";
+    case State::made:
+      return "made";
+    case State::failed:
+      break;
+  }
+  return "failed";
+}
+
+bool same_profile(const ProfileKnots& a, const ProfileKnots& b) {
+  return a.s == b.s && a.y == b.y && a.z == b.z && a.dy == b.dy && a.dz == b.dz;
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// The words of `text` that are not in `other`.
+std::string words_beyond(const std::string& text, const std::string& other) {
+  const std::vector<std::string> known = words(other);
+  std::string beyond;
+  for (const std::string& word : words(text)) {
+    if (std::find(known.begin(), known.end(), word) == known.end()) beyond += (beyond.empty() ? "" : " ") + word;
+  }
+  return beyond.empty() ? text : beyond;
+}
+
+/// The options that the table in a job's place was made with, where they are not what the job asks for; empty where
+/// it is the job's own table. @throws InputError where the file is no geometry table
+std::string other_options(const BatchPair& pair, const GeometryRequest& request) {
+  const GeometryTableData table = read_geometry_table(pair.output);
+  if (!same_profile(table.wheel, request.search.pair().wheel().knots())) return "another wheel profile";
+  if (!same_profile(table.rail, request.search.pair().rail().knots())) return "another rail profile";
+  std::string found;
+  try {
+    found = geometry_options_text(words(table.provenance.command_line));
+  } catch (const po::error&) {
+    found = table.provenance.command_line;  // of a version with other options
+  }
+  return found == geometry_options_text(pair.arguments) ? "" : found;
+}
+
+GeometryRequest request_of(const BatchPair& pair) {
+  return geometry_request(CommandLine("tablegen geometry", geometry_options(), {}, pair.arguments));
+}
+
+/// Reads every pair before the first is made: what is wrong with the input is said at once.
+std::vector<Job> read_jobs(const CommandLine& line) {
+  std::vector<Job> jobs;
+  for (BatchPair& pair : read_batch_list(line.required("list"))) {
+    Job job{std::move(pair), State::waiting, ""};
+    try {
+      const GeometryRequest request = request_of(job.pair);
+      if (!line.given("overwrite") && std::filesystem::exists(job.pair.output)) {
+        const std::string found = other_options(job.pair, request);
+        if (!found.empty()) {
+          const std::string wanted = geometry_options_text(job.pair.arguments);
+          throw input_error(job.pair.output.string(), "a table made with " + words_beyond(found, wanted),
+                            words_beyond(wanted, found) + "; --overwrite makes it anew");
+        }
+        job.state = State::done;
+      }
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("{}: {}", job.pair.place, e.what()));
+    }
+    jobs.push_back(std::move(job));
+  }
+  if (!line.given("only")) return jobs;
+  const Shard part = line.shard("only");
+  std::vector<Job> own;
+  for (std::size_t i = static_cast<std::size_t>(part.index - 1); i < jobs.size();
+       i += static_cast<std::size_t>(part.count)) {
+    own.push_back(jobs[i]);
+  }
+  return own;
+}
+
+void make(Job& job, const std::string& title, const CommandLine& line) {
+  try {
+    const GeometryRequest request = request_of(job.pair);
+    if (!line.quiet()) print_notes(request);
+    ProgressBar bar(title, !line.quiet());
+    GeometryTableData table =
+        generate_geometry_table(request.search, request.options, [&](double share) { bar.show(share); });
+    table.provenance = provenance("geometry", job.pair.arguments);
+    write_geometry_table(request.file, table);
+    job.state = State::made;
+  } catch (const std::exception& e) {
+    // the other tables do not need this one
+    job.state = State::failed;
+    job.message = e.what();
+  }
+}
+
+void print_json(const std::vector<Job>& jobs) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Job& job : jobs) {
+    nlohmann::ordered_json j{
+        {"place", job.pair.place}, {"file", job.pair.output.string()}, {"state", state_name(job.state)}};
+    if (job.state == State::done || job.state == State::made) j["checksum"] = array_file_checksum(job.pair.output);
+    if (!job.message.empty()) j["message"] = job.message;
+    list.push_back(std::move(j));
+  }
+  fmt::print("{}\n", nlohmann::ordered_json{{"kind", "batch"}, {"pairs", std::move(list)}}.dump(2));
+}
+
+po::options_description batch_options() {
+  po::options_description own("Arguments");
+  own.add_options()("list", po::value<std::string>()->value_name("LIST.toml"), "one [[pair]] per table, [defaults]")  //
+      ("only", po::value<std::string>()->value_name("I/N"), "every N-th pair only, from the I-th on (job arrays)")    //
+      ("overwrite", "make every table anew, also where one stands")                                                   //
+      ("plan", "tell what there is to do, and do nothing");
+  return own;
+}
+
+}  // namespace
+
+void batch_command(const std::vector<std::string>& arguments) {
+  const CommandLine line("tablegen batch LIST.toml [--only I/N] [--overwrite] [--plan]", batch_options(), {"list"},
+                         arguments);
+  if (line.help_printed()) return;
+  std::vector<Job> jobs = read_jobs(line);
+  const bool text = !line.json() && !line.quiet();
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    Job& job = jobs[i];
+    if (job.state == State::waiting && !line.given("plan")) {
+      make(job, fmt::format("table {} of {}", i + 1, jobs.size()), line);
+    }
+    if (text && job.state != State::failed) fmt::print("{}: {}\n", job.pair.output.string(), state_name(job.state));
+    if (job.state != State::failed) continue;
+    fmt::print(stderr, "{}: {}: failed: {}\n", job.pair.place, job.pair.output.string(), job.message);
+    ++failed;
+  }
+  if (line.json()) print_json(jobs);
+  if (failed > 0) throw ComputationError(fmt::format("{} of {} tables failed", failed, jobs.size()));
+}
+
+}  // namespace railtab

@@ -1,0 +1,153 @@
+#include "batch_list.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <sstream>
+
+#include "geometry_request.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace po = boost::program_options;
+
+namespace {
+
+/// Text of an option and where it was said.
+struct Setting {
+  std::string text;
+  unsigned line = 0;
+};
+using Settings = std::map<std::string, Setting, std::less<>>;
+
+std::vector<std::string> option_names() {
+  const po::options_description described = geometry_options();
+  std::vector<std::string> names;
+  for (const auto& option : described.options()) {
+    // a pair of a list is always a whole table
+    if (option->long_name() != "shard") names.push_back(option->long_name());
+  }
+  return names;
+}
+
+/// "pairs.toml:12"
+std::string place(const std::filesystem::path& file, unsigned line) {
+  return fmt::format("{}:{}", file.string(), line);
+}
+
+/// As it would stand on the command line. @throws InputError
+std::string option_text(const toml::node& node, const std::string& where) {
+  if (const toml::value<std::string>* text = node.as_string()) return text->get();
+  if (const auto number = node.value<double>(); number && node.is_number()) return fmt::format("{}", *number);
+  if (const toml::array* list = node.as_array(); list && list->size() == 2) {
+    const auto low = (*list)[0].value<double>(), high = (*list)[1].value<double>();
+    if (low && high) return fmt::format("{}:{}", *low, *high);
+  }
+  std::ostringstream found;
+  found << node.type();
+  throw input_error(where, "a value of type " + found.str(), "a number, a text, or [low, high]");
+}
+
+/// @param settings the defaults, overwritten by what `table` says
+void read_settings(const toml::table& table, const std::filesystem::path& file, bool defaults, Settings& settings) {
+  static const std::vector<std::string> names = option_names();
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    const std::string where = fmt::format("{}: {}", place(file, key.source().begin.line), name);
+    if (std::find(names.begin(), names.end(), name) == names.end() || (defaults && name == "output")) {
+      std::string known;
+      for (const std::string& n : names) {
+        if (!defaults || n != "output") known += (known.empty() ? "" : ", ") + n;
+      }
+      throw input_error(where, "an unknown key", "one of " + known);
+    }
+    settings[name] = {option_text(node, where), key.source().begin.line};
+  }
+}
+
+BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file, unsigned line) {
+  for (const char* needed : {"wheel", "rail", "output"}) {
+    if (!settings.contains(needed)) throw input_error(place(file, line), fmt::format("no {}", needed), "one per pair");
+  }
+  const std::filesystem::path folder = file.parent_path();
+  BatchPair pair{place(file, line), folder / settings.at("output").text, {}};
+  for (const std::string& name : option_names()) {
+    const auto setting = settings.find(name);
+    if (setting == settings.end() || name == "output") continue;
+    std::string text = setting->second.text;
+    const bool profile = name == "wheel" || name == "rail";
+    if (profile && std::filesystem::is_regular_file(folder / text)) text = (folder / text).string();
+    pair.arguments.push_back(fmt::format("--{}={}", name, text));
+  }
+  pair.arguments.push_back("--output=" + pair.output.string());
+  return pair;
+}
+
+toml::table parsed(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) throw input_error(file.string(), "no file", "a list of pairs in TOML");
+  try {
+    return toml::parse_file(file.string());
+  } catch (const toml::parse_error& wrong) {
+    throw InputError(fmt::format("{}: {}", place(file, wrong.source().begin.line), wrong.description()));
+  }
+}
+
+/// "1e-8" and "0.00000001" alike; what is no number stays.
+std::string shortest(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon != std::string::npos) return shortest(text.substr(0, colon)) + ":" + shortest(text.substr(colon + 1));
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() ? fmt::format("{}", value) : text;
+}
+
+}  // namespace
+
+std::vector<BatchPair> read_batch_list(const std::filesystem::path& file) {
+  const toml::table root = parsed(file);
+  Settings defaults;
+  const toml::array* list = nullptr;
+  for (const auto& [key, node] : root) {
+    const std::string where = fmt::format("{}: {}", place(file, key.source().begin.line), key.str());
+    if (key.str() == "defaults" && node.is_table()) {
+      read_settings(*node.as_table(), file, true, defaults);
+    } else if (key.str() == "pair" && node.is_array() && node.as_array()->is_homogeneous(toml::node_type::table)) {
+      list = node.as_array();
+    } else {
+      throw input_error(where, "something else", "[defaults] and one [[pair]] per table");
+    }
+  }
+  if (!list || list->empty()) throw input_error(file.string(), "no [[pair]]", "one [[pair]] per table");
+  std::vector<BatchPair> pairs;
+  std::map<std::filesystem::path, std::string> outputs;
+  for (const toml::node& entry : *list) {
+    Settings settings = defaults;
+    read_settings(*entry.as_table(), file, false, settings);
+    pairs.push_back(batch_pair(settings, file, entry.source().begin.line));
+    const BatchPair& pair = pairs.back();
+    const auto [first, fresh] = outputs.emplace(std::filesystem::absolute(pair.output).lexically_normal(), pair.place);
+    if (!fresh) {
+      throw input_error(place(file, settings["output"].line) + ": output", pair.output.string(),
+                        fmt::format("another file than that of the pair at {}", first->second));
+    }
+  }
+  return pairs;
+}
+
+std::string geometry_options_text(const std::vector<std::string>& arguments) {
+  const po::options_description options = geometry_options();
+  po::variables_map values;
+  po::store(po::command_line_parser(arguments).options(options).allow_unregistered().run(), values);
+  std::string text;
+  for (const std::string& name : option_names()) {
+    if (name == "wheel" || name == "rail" || name == "output" || !values.count(name)) continue;
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, shortest(values[name].as<std::string>()));
+  }
+  return text;
+}
+
+}  // namespace railtab

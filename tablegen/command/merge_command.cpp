@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "railtab/tablegen/creep_job.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Files = std::vector<std::filesystem::path>;
+
+/// The file type that all shards have. @throws InputError
+std::string shard_type(const Files& shards) {
+  std::string type;
+  for (const std::filesystem::path& shard : shards) {
+    const std::string found = array_file_type(shard);
+    if (found == creep_partial_filetype) {
+      throw input_error(shard.string(), "an unfinished shard", "a finished one; run its tablegen command again");
+    }
+    if (found != creep_shard_filetype && found != geometry_table_filetype) {
+      throw input_error(shard.string(), found, "a shard of a table");
+    }
+    if (type.empty()) type = found;
+    if (type != found) throw input_error(shard.string(), found, type + ", as the first");
+  }
+  return type;
+}
+
+/// The merged table is certified as one made in one piece.
+void merge_geometry(const Files& shards, const std::string& file, const std::vector<std::string>& arguments) {
+  std::vector<GeometryTableData> parts;
+  for (const std::filesystem::path& shard : shards) parts.push_back(read_geometry_table(shard));
+  GeometryTableData table = merge_geometry_tables(std::move(parts));
+  if (!certify_geometry_table(table)) {
+    throw ComputationError(file + ": the merged table misses its tolerance; a finer one is made in one piece only");
+  }
+  table.provenance = provenance("merge", arguments);
+  write_geometry_table(file, table);
+}
+
+void merge_creep(const Files& shards, const std::string& file, const std::vector<std::string>& arguments) {
+  CreepTableData table = merge_creep_shards(shards);
+  table.provenance = provenance("merge", arguments);
+  write_creep_table(file, table);
+}
+
+}  // namespace
+
+void merge_command(const std::vector<std::string>& arguments) {
+  namespace po = boost::program_options;
+  po::options_description own("Arguments");
+  own.add_options()("shard", po::value<std::vector<std::string>>()->value_name("SHARD.h5"), "all shards of a table")  //
+      ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table");
+  const CommandLine line("tablegen merge SHARD.h5... -o FILE.h5", own, {"shard..."}, arguments);
+  if (line.help_printed()) return;
+  const std::string file = line.required("output");
+  const std::vector<std::string> names = line.required_many("shard");
+  const Files shards(names.begin(), names.end());
+  require_folder(file);
+  for (const std::filesystem::path& shard : shards) require_no_input(file, {shard});
+  const bool geometry = shard_type(shards) == geometry_table_filetype;
+  (geometry ? merge_geometry : merge_creep)(shards, file, arguments);
+  if (line.json()) {
+    const nlohmann::ordered_json j{{"kind", geometry ? "geometry" : "creep"},
+                                   {"file", file},
+                                   {"shards", shards.size()},
+                                   {"checksum", array_file_checksum(file)},
+                                   {"file_bytes", std::filesystem::file_size(file)}};
+    fmt::print("{}\n", j.dump(2));
+  } else if (!line.quiet()) {
+    fmt::print("{}: merged from {} shards\n", file, shards.size());
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "railtab/tables/creep_table.hpp"
+
+namespace railtab {
+
+/// Write a table: to a temporary name beside `file`, then renamed, so that `file` is always whole. Values are stored
+/// with 32 bits. @throws InputError where the folder cannot be written.
+void write_creep_table(const std::filesystem::path& file, const CreepTableData& table);
+
+/// Read a table. Type and format version are checked before anything else, then shapes, then the checksum.
+/// @throws InputError with file and place: missing, not HDF5, truncated, of another type or version, checksum wrong.
+[[nodiscard]] CreepTableData read_creep_table(const std::filesystem::path& file);
+
+}  // namespace railtab

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "railtab/tables/creep_table_file.hpp"
+
+namespace railtab {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exit_code;
+  std::string out, err;
+};
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Runs the built tablegen in a folder of its own.
+class CreepCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              (std::string("creep_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] Outcome tablegen(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" TABLEGEN_COMMAND "' " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
+            contents(folder_ / "stderr.txt")};
+  }
+  void made(const std::string& arguments) const {
+    const Outcome outcome = tablegen(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+  }
+  void expect_refused(const std::string& arguments, const std::vector<std::string>& texts) const {
+    const Outcome outcome = tablegen(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
+    for (const std::string& text : texts) {
+      EXPECT_NE(outcome.err.find(text), std::string::npos) << arguments << "\n" << outcome.err << "\nlacks " << text;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "out.h5")) << arguments;
+  }
+
+  /// All but who made the tables and when.
+  void expect_equal(const std::string& one, const std::string& other) const {
+    const CreepTableData a = read_creep_table(folder_ / one), b = read_creep_table(folder_ / other);
+    EXPECT_EQ(a.values, b.values);
+    EXPECT_EQ(a.nodes, b.nodes);
+    EXPECT_EQ(a.statistics, b.statistics);
+    EXPECT_EQ(a.poisson, b.poisson);
+    EXPECT_EQ(a.elements, b.elements);
+  }
+
+  /// Starts the command and kills it after a time. @returns true where it had not ended by then
+  [[nodiscard]] bool killed(const std::vector<std::string>& arguments, std::chrono::milliseconds after) const {
+    std::vector<char*> argv{const_cast<char*>(TABLEGEN_COMMAND)};
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
+      _exit(127);
+    }
+    std::this_thread::sleep_for(after);
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (WIFSIGNALED(status)) return true;
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+    return false;
+  }
+
+  fs::path folder_;
+};
+
+// 510 cases, a tenth of a second
+const std::string small = "creep --nodes 5,5,5,8 --elements 12 ";
+
+TEST_F(CreepCommand, KilledAtAnyTimeItGoesOnToTheSameBits) {
+  const std::vector<std::string> arguments{"creep",   "--nodes",   "7,8,6,10", "--elements", "16",
+                                           "--quiet", "--threads", "2",        "-o",         "killed.h5"};
+  std::string command;
+  for (const std::string& a : arguments) command += a + " ";
+  const auto start = std::chrono::steady_clock::now();
+  made(command.substr(0, command.find("-o")) + "-o whole.h5");
+  const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  std::mt19937 random(20241);
+  std::uniform_real_distribution<double> share(0.03, 0.2);
+  int kills = 0;
+  bool partial_seen = false;
+  while (kills < 8 &&
+         killed(arguments, std::chrono::milliseconds(1 + static_cast<long>(1e3 * whole * share(random))))) {
+    ++kills;
+    partial_seen = partial_seen || fs::exists(folder_ / "killed.h5.partial");
+    EXPECT_FALSE(fs::exists(folder_ / "killed.h5")) << "an unfinished table has its final name";
+  }
+  EXPECT_GE(kills, 2);
+  EXPECT_TRUE(partial_seen);
+  if (!fs::exists(folder_ / "killed.h5")) {
+    const Outcome last = tablegen(command + "--json");
+    ASSERT_EQ(last.exit_code, 0) << last.err;
+    const nlohmann::json j = nlohmann::json::parse(last.out);
+    EXPECT_GT(j["cases_resumed"], 0);
+    EXPECT_LE(j["cases_resumed"], j["cases"]);
+  }
+  expect_equal("whole.h5", "killed.h5");
+  EXPECT_FALSE(fs::exists(folder_ / "killed.h5.partial"));
+}
+
+TEST_F(CreepCommand, ThreadsAndShardsDoNotChangeABit) {
+  made(small + "--threads 1 -o one.h5");
+  made(small + "--threads 3 -o three.h5");
+  expect_equal("one.h5", "three.h5");
+  for (const char* i : {"1", "2", "3"}) made(small + "--shard " + i + "/3 -o " + i + ".h5");
+  made("merge 3.h5 1.h5 2.h5 -o merged.h5");
+  expect_equal("one.h5", "merged.h5");
+}
+
+TEST_F(CreepCommand, ShardsThatDoNotBelongTogetherAreRefused) {
+  for (const char* i : {"1", "2", "3"}) made(small + "--shard " + i + "/3 -o " + i + ".h5");
+  expect_refused("merge 1.h5 3.h5 -o out.h5", {"none with number 2", "1 to 3"});
+  expect_refused("merge 1.h5 2.h5 3.h5 2.h5 -o out.h5", {"2.h5", "shard 2/3", "already"});
+  made(small + "--poisson 0.3 --shard 2/3 -o poisson.h5");
+  expect_refused("merge 1.h5 poisson.h5 3.h5 -o out.h5",
+                 {"poisson.h5", "poisson: found 0.3, expected 0.28 as in 1.h5"});
+  made(small + "--shard 2/4 -o four.h5");
+  expect_refused("merge 1.h5 four.h5 3.h5 -o out.h5", {"four.h5", "number of shards", "4", "3"});
+  made("creep --nodes 5,5,5,9 --elements 12 --shard 2/3 -o nodes.h5");
+  expect_refused("merge 1.h5 nodes.h5 3.h5 -o out.h5", {"nodes.h5: nodes: found 5,5,5,9, expected 5,5,5,8"});
+  made("creep --nodes 5,5,5,8 --elements 16 --shard 2/3 -o elements.h5");
+  expect_refused("merge 1.h5 elements.h5 3.h5 -o out.h5", {"elements.h5: elements: found 16, expected 12"});
+  made(small + "-o whole.h5");
+  expect_refused("merge 1.h5 whole.h5 3.h5 -o out.h5", {"whole.h5", "a shard of a table"});
+  expect_refused("merge 1.h5 none.h5 3.h5 -o out.h5", {"none.h5"});
+  fs::resize_file(folder_ / "2.h5", fs::file_size(folder_ / "2.h5") - 100);
+  expect_refused("merge 1.h5 2.h5 3.h5 -o out.h5", {"2.h5"});
+  expect_refused("merge 1.h5 2.h5 3.h5 -o 1.h5", {"1.h5", "a file that this command reads"});
+  expect_refused("merge -o out.h5", {"shard is missing"});
+}
+
+TEST_F(CreepCommand, APartialFileBelongsToItsJob) {
+  const std::vector<std::string> long_job{"creep", "--quiet", "--shard", "2/5", "-o", "shard.h5"};
+  ASSERT_TRUE(killed(long_job, std::chrono::milliseconds(700)));
+  ASSERT_TRUE(fs::exists(folder_ / "shard.h5.partial"));
+  expect_refused("creep --shard 2/5 --poisson 0.3 -o shard.h5", {"shard.h5.partial: poisson: found 0.28", "0.3"});
+  expect_refused("creep --shard 3/5 -o shard.h5", {"shard.h5.partial: shard: found 2", "3"});
+  expect_refused("creep --layout paper --shard 2/5 -o shard.h5", {"shard.h5.partial: layout"});
+  expect_refused("creep -o shard.h5", {"shard.h5.partial: number of shards"});
+  expect_refused("merge shard.h5.partial -o out.h5", {"shard.h5.partial", "unfinished"});
+  fs::resize_file(folder_ / "shard.h5.partial", 1000);
+  expect_refused("creep --shard 2/5 -o shard.h5", {"shard.h5.partial"});
+}
+
+TEST_F(CreepCommand, WrongOptions) {
+  expect_refused("creep", {"output is missing"});
+  expect_refused("creep -o none/out.h5", {"none"});
+  expect_refused("creep --poisson 0.6 -o out.h5", {"0.6", "0..0.5"});
+  expect_refused("creep --elements 41 -o out.h5", {"41", "even"});
+  expect_refused("creep --elements 4 -o out.h5", {"--elements"});
+  expect_refused("creep --layout fine -o out.h5", {"fine"});
+  expect_refused("creep --nodes 5,5,5 -o out.h5", {"--nodes", "5,5,5"});
+  expect_refused("creep --layout paper --nodes 5,5,5,8 -o out.h5", {"--nodes", "paper"});
+  for (const char* wrong : {"0/3", "4/3", "1", "1/3/5", "a/3", "1.5/3"}) {
+    expect_refused(std::string("creep -o out.h5 --shard ") + wrong, {"--shard", "I/N"});
+  }
+}
+
+}  // namespace
+}  // namespace railtab
