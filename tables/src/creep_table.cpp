@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "creep_spline.hpp"
-#include "grid_axis.hpp"
 #include "railtab/tables/creep_coordinates.hpp"
+#include "railtab/tables/grid_axis.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {

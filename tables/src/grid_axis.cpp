@@ -1,10 +1,9 @@
-#include "grid_axis.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/tables/grid_axis.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {

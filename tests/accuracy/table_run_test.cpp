@@ -22,8 +22,8 @@ std::filesystem::path made_table() {
   options.lateral = {-0.010, 0.010};
   options.yaw = {-0.010, 0.010};
   options.roll = {-0.004, 0.004};
-  options.iterated_cell = 2e-4;  // coarse: for a test in seconds
-  options.fallback_cell = 1e-5;
+  options.iterated_cell = 1e-3;  // coarse: for a test in seconds
+  options.fallback_cell = 1e-4;
   write_geometry_table(file, generate_geometry_table(search, options));
   return file;
 }

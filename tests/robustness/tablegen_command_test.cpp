@@ -107,7 +107,7 @@ TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
 }
 
 TEST_F(TablegenCommand, APartSaysSoAndIsNoTable) {
-  for (const char* shard : {"2", "0/2", "3/2", "1/x", "1/2/3", "/2", ""}) {
+  for (const char* shard : {"2", "0/2", "3/2", "1/x", "1/2/3", "/2"}) {
     expect_refused(std::string(small) + "--shard '" + shard + "'", "shard");
   }
   const Outcome made = tablegen(std::string(small) + "--shard 2/8 --json");
@@ -115,6 +115,10 @@ TEST_F(TablegenCommand, APartSaysSoAndIsNoTable) {
   EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["index"], 2);
   EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["count"], 8);
   expect_refused_with_table("verify out.h5", "part 2 of 8");
+  EXPECT_EQ(tablegen("info out.h5").exit_code, 0);
+  const Outcome merged = tablegen("merge out.h5 -o whole.h5");
+  EXPECT_EQ(merged.exit_code, 2);
+  EXPECT_NE(merged.err.find("part"), std::string::npos) << merged.err;
 }
 
 TEST_F(TablegenCommand, GeometryInfoVerify) {
