@@ -74,6 +74,13 @@ void ArrayFileWriter::write(std::string_view path, std::span<const std::int64_t>
   impl_->write_dataset(path, H5T_STD_I64LE, H5T_NATIVE_INT64, values.data(), shape, unit, description);
 }
 
+void ArrayFileWriter::write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
+                            std::string_view unit, std::string_view description) {
+  assert(values.size() == product(shape));
+  const Section section;
+  impl_->write_dataset(path, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values.data(), shape, unit, description);
+}
+
 void ArrayFileWriter::write(std::string_view path, std::span<const std::uint32_t> values,
                             const std::vector<std::size_t>& shape, std::string_view unit,
                             std::string_view description) {

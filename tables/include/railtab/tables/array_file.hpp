@@ -49,6 +49,9 @@ class ArrayFileWriter {
   void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
   /// Stored with 32 bits; read_integers() reads them.
+  /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
+  void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
+             std::string_view unit, std::string_view description);
   void write(std::string_view path, std::span<const std::uint32_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);
