@@ -76,8 +76,7 @@ TEST(GeometryTableAccuracy, EqualsTheOnlineSearchWithRoll) {
   options.roll = {-2e-3, 2e-3};
   options.lateral = {3e-3, 8e-3};
   options.yaw = {-10e-3, 10e-3};
-  options.iterated_cell = 1e-3;
-  options.fallback_cell = 1e-4;
+  options.fallback_cell = 2e-5;
   const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), options))};
   const GeometryVerification v = verify(contact, 5000);
   expect_exact(v);

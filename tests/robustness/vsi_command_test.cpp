@@ -189,7 +189,8 @@ TEST_F(VsiCommand, CreepForcesOfEveryLawInTheColumnsOfTheContract) {
   for (const char* law : {"linear", "polach", "fastsim"}) {
     const Outcome outcome = vsi(std::string("creep --query q.csv -o r.csv --json --law ") + law);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    EXPECT_EQ(outcome.output, "{\"queries\": 2, \"law\": \"" + std::string(law) + "\", \"output\": \"r.csv\"}\n");
+    EXPECT_EQ(outcome.output,
+              "{\"queries\": 2, \"law\": \"" + std::string(law) + "\", \"outside_table\": 0, \"output\": \"r.csv\"}\n");
     std::ifstream result(folder_ / "r.csv");
     std::string header, small;
     std::getline(result, header);

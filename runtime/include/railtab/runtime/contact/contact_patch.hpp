@@ -21,7 +21,7 @@ struct WheelsetPose {
 
 /// Which route gave a contact patch.
 enum class PatchSource : std::uint8_t {
-  table,           ///< a branch or a search window of the geometry table, polished on the stored profiles
+  table,           ///< a branch of the geometry table, polished on the stored profiles
   online_convex,   ///< online search, common-normal Newton (Eqs. 1-4)
   online_concave,  ///< online search, overlap of the discretised profiles (Eqs. 5-10)
 };

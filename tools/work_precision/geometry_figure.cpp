@@ -1,0 +1,124 @@
+#include "geometry_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+
+#include "interleaved_timing.hpp"
+#include "railtab/runtime/contact/paper_search.hpp"
+#include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
+
+namespace railtab::work_precision {
+
+namespace {
+
+struct Query {
+  WheelsetPose pose;
+  double penetration;  ///< of the deepest patch, by the search with a scan of 0.02 mm [m]
+};
+
+double deepest(const ContactPatches& patches) {
+  double d = 0.0;
+  for (const ContactPatch& p : patches) d = std::max(d, p.penetration);
+  return d;
+}
+
+std::vector<Query> random_queries(const WheelRailPair& pair, int count) {
+  const ContactSearch reference(pair, 0.02e-3);
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Query> queries;
+  while (static_cast<int>(queries.size()) < count) {
+    WheelsetPose pose{-12e-3 + 24e-3 * uniform(generator), 0.0, 0.0, -0.03 + 0.06 * uniform(generator)};
+    const double lowering = 3e-4 * uniform(generator);
+    const double touch = reference.touch_height(pose.y, pose.roll, pose.yaw);
+    if (!std::isfinite(touch)) continue;
+    pose.z = touch + lowering;
+    queries.push_back({pose, deepest(reference.patches(pose))});
+  }
+  return queries;
+}
+
+/// A way to the deepest patch's penetration.
+struct Method {
+  std::string name, setting, note;
+  std::function<double(const WheelsetPose&)> penetration;
+};
+
+/// Polynomials alone: the largest distance to the touch curves of a leaf's branches.
+double polynomial_penetration(const GeometryTable& table, const WheelsetPose& pose) {
+  const GeometryTable::Lookup lookup = table.lookup(pose.y, pose.z, pose.yaw, pose.roll);
+  double d = 0.0;
+  for (int n = 0; n < lookup.count; ++n) d = std::max(d, lookup.branch[static_cast<std::size_t>(n)].distance);
+  return d;
+}
+
+std::vector<Method> methods(const ContactSearch& search, bool quick) {
+  std::vector<Method> result;
+  const auto online = std::make_shared<const ContactSearch>(search);
+  for (const double root : quick ? std::vector{0.2e-3} : std::vector{0.8e-3, 0.4e-3, 0.2e-3, 0.1e-3}) {
+    GeometrySweepOptions options;
+    options.lateral_root = root;
+    const auto table = std::make_shared<const TableContact>(GeometryTable(generate_geometry_table(search, options)));
+    const std::string setting = fmt::format("{:g} mm", root * 1e3);
+    const std::string note = fmt::format("{:.0f} KiB", static_cast<double>(table->table().bytes()) / 1024.0);
+    result.push_back({"table, polynomials alone", setting, note,
+                      [table](const WheelsetPose& p) { return polynomial_penetration(table->table(), p); }});
+    result.push_back({"table, pair polished (default 0.2 mm)", setting, note,
+                      [table](const WheelsetPose& p) { return deepest(table->patches(p)); }});
+  }
+  result.push_back(
+      {"online search", "0.25 mm scan", "", [online](const WheelsetPose& p) { return deepest(online->patches(p)); }});
+  for (const int points : {500, 1000, 2000}) {
+    const auto paper = std::make_shared<const PaperSearch>(search.pair(), points);
+    result.push_back({"published search", fmt::format("{} points", points), "",
+                      [paper](const WheelsetPose& p) { return deepest(paper->patches(p)); }});
+  }
+  return result;
+}
+
+}  // namespace
+
+WorkFigure geometry_figure(bool quick) {
+  WorkFigure figure;
+  figure.name = "geometry";
+  figure.title = "Contact geometry: penetration of the deepest patch";
+  figure.error_label = "error of penetration, 99.9 % point [m]";
+  figure.least_error = 1e-15;
+  figure.advice =
+      "Take the table with its default grid: it gives the online search's own answer, to rounding, at a small share of "
+      "its time, and no grid is both faster and better. The polynomials alone are what the table starts from; they are "
+      "shown for what polishing the pair on the stored profiles buys. The published search with discretised profiles "
+      "is slower than the online search and off by the spacing of its points.";
+  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
+                                           PairDimensions{}));
+  const std::vector<Query> queries = random_queries(search.pair(), quick ? 4000 : 50000);
+  const std::vector<Method> all = methods(search, quick);
+  std::vector<std::function<double()>> passes;
+  for (const Method& method : all) {
+    passes.push_back([&] {
+      double sum = 0.0;
+      for (const Query& query : queries) sum += method.penetration(query.pose);
+      return sum;
+    });
+  }
+  const std::vector<double> seconds = interleaved_medians(passes, quick ? 3 : 9);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<double> errors;
+    for (const Query& query : queries) errors.push_back(std::abs(all[i].penetration(query.pose) - query.penetration));
+    std::sort(errors.begin(), errors.end());
+    const auto at = static_cast<std::size_t>(0.999 * static_cast<double>(errors.size() - 1));
+    figure.points.push_back({all[i].name, all[i].setting, 1e9 * seconds[i] / static_cast<double>(queries.size()),
+                             errors[at], errors.back(), all[i].note});
+  }
+  return figure;
+}
+
+}  // namespace railtab::work_precision
