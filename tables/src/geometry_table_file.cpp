@@ -124,7 +124,8 @@ void write_cells(ArrayFileWriter& file, const GeometryTableData& table) {
 /// One table file being read; every error names the file and the dataset.
 class Reading {
  public:
-  explicit Reading(const std::filesystem::path& name) : name_(name), file_(name, geometry_table_filetype, format_version) {}
+  explicit Reading(const std::filesystem::path& name)
+      : name_(name), file_(name, geometry_table_filetype, format_version) {}
 
   [[nodiscard]] GeometryTableData table() const {
     GeometryTableData table;
