@@ -25,7 +25,7 @@ SceneParameters coach_on(TrackKind track) {
   scene.track.length_after = length_ahead;
   scene.train.start = -60.0;
   scene.integration.time_step = 5e-4;
-  scene.integration.duration = 2.5;
+  scene.integration.duration = 1.2;
   return scene;
 }
 
