@@ -8,7 +8,7 @@ namespace railtab::result_columns {
 
 /// What the results file holds and under which name: one list for the writer and the reader.
 inline constexpr const char* filetype = "railtab-results";
-inline constexpr int format_version = 1;
+inline constexpr int format_version = 2;
 
 template <typename Owner, typename Value>
 struct Column {
@@ -96,6 +96,7 @@ inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSumma
                                            SummaryEntry<long>{"vehicle_dofs", &RunSummary::vehicle_dofs}};
 inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},
                                             SummaryEntry<double>{"seconds_setup", &RunSummary::seconds_setup},
+                                            SummaryEntry<double>{"seconds_lookup", &RunSummary::seconds_lookup},
                                             SummaryEntry<double>{"seconds_contact", &RunSummary::seconds_contact},
                                             SummaryEntry<double>{"seconds_structure", &RunSummary::seconds_structure},
                                             SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},

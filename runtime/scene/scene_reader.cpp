@@ -155,6 +155,19 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
   if (span >= 0) finish_span(draft);
 }
 
+/// A table holds its own profiles and dimensions: keys that name others would be read and not used.
+void refuse_profiles_beside_table(const SceneDraft& draft, const std::filesystem::path& file,
+                                  const std::vector<Leaf>& leaves) {
+  if (draft.parameters.contact.table.empty()) return;
+  for (const Leaf& leaf : leaves) {
+    if (leaf.path == "contact.wheel" || leaf.path == "contact.rail" || leaf.path == "contact.rail_inclination" ||
+        leaf.path.starts_with("contact.dimensions.")) {
+      throw leaf_error(file, leaf, "contact.table too",
+                       "either contact.table, which has profiles and dimensions of its own, or keys that name them");
+    }
+  }
+}
+
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
   if (draft.speed_kmh) {
@@ -165,6 +178,7 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     }
     draft.parameters.train.speed = *draft.speed_kmh / 3.6;
   }
+  refuse_profiles_beside_table(draft, file, leaves);
   if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
   if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();
   try {

@@ -1,15 +1,15 @@
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+
+#include "stopwatch.hpp"
 
 namespace railtab {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Matrix12 = NewtonWorkspace::Matrix12;
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
@@ -19,7 +19,6 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Contact forces at q, and with `tangents` their derivative per wheelset.
 void evaluate(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& s,
               std::vector<Matrix12>* tangents, NewtonReport& report) {
-  const Clock::time_point begin = Clock::now();
   const int wheelsets = static_cast<int>(s.displacement.size()) / wheelset_unknowns;
   for (int w = 0; w < wheelsets; ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
@@ -30,7 +29,10 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Con
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
       const WheelSide wheel_side = sides[index(side)];
       ContactPatches& patches = s.patches[index(2 * w + side)];
-      patches = model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+      {
+        const Stopwatch watch(report.seconds_lookup);
+        patches = model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+      }
       ++report.queries;
       if (patches.from_table) ++report.table_queries;
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, patches);
@@ -49,7 +51,6 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Con
       tangent.block<3, 3>(r, r) += t.bottomRightCorner<3, 3>();
     }
   }
-  report.seconds_contact += std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
 // q_free + C f − q
@@ -146,7 +147,7 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
   NewtonReport report;
   ws.tangent.resize(static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns));
   double previous = std::numeric_limits<double>::infinity();
-  bool new_tangent = true;
+  bool new_tangent = ws.factor.empty();  // that of the step before serves as long as it is good enough
   double part = 1.0;
 
   while (report.iterations < limits.max_iterations) {

@@ -135,7 +135,7 @@ Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState&
   if (!model.structure) return lines;
   const Prediction& p = ws.structure_prediction;
   predict(op.scheme, state.structure, ws.structure_prediction);
-  op.structure->free_increment(*model.structure, op.scheme, state.structure, p, ws.structure_free);
+  op.structure->free_increment(op.scheme, state.structure, p, ws.structure_free);
   lines.couplings = line_couplings(op, lines.contacts);
   for (int w = 0; w < model.wheelsets(); ++w) {
     const RailContact* contact = &lines.contacts[index(2 * w)];

@@ -157,6 +157,41 @@ void add_contact(const ContactParameters& contact, VsiModel& model) {
   }
 }
 
+// Time that a train runs before its scene begins, so that what the steady start leaves out, the rhythm of the sleepers,
+// is there: as long as the modelled track reaches back, for where the rails are rigid there is none.
+long run_in_steps(const SceneParameters& scene, const VsiModel& model) {
+  constexpr double enough = 0.2;  // s: the wheelsets' bouncing on the track has decayed to less than 1e-3
+  if (!model.structure) return 0;
+  const double rear = model.wheelset_x(model.wheelsets() - 1, 0.0);
+  const double track = rear - std::max(model.structure->rail[0].x.front(), model.structure->rail[1].x.front());
+  const double time = std::min(enough, 0.8 * track / scene.train.speed);
+  return time > 0.0 ? static_cast<long>(time / scene.integration.time_step) : 0;
+}
+
+// State at t = 0: steady, and run in where there is track for it. A run-in that fails is left out.
+EquilibriumReport start(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
+  const long before = run_in_steps(scene, model);
+  if (before > 0) {
+    VsiState early(model);
+    early.time = -static_cast<double>(before) * scene.integration.time_step;
+    const EquilibriumReport rest = steady_start(model, early);
+    if (rest.converged && simulate(model, scene.integration, 0.0, 1, early, {}, -before).complete) {
+      state = std::move(early);
+      return rest;
+    }
+  }
+  return steady_start(model, state);
+}
+
+// What was done to the points of measured profiles.
+void note_repairs(const VsiModel& model, const RunObserver& observer) {
+  if (!model.geometry) return;
+  const WheelRailPair& pair = model.geometry->pair();
+  for (const ProfileKnots* profile : {&pair.wheel().knots(), &pair.rail().knots()}) {
+    for (const std::string& note : profile->notes) observer.note(note);
+  }
+}
+
 }  // namespace
 
 VsiModel build_model(const SceneParameters& scene) {
@@ -221,7 +256,12 @@ RunPlan plan_run(const SceneParameters& scene) {
 RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
                      const std::optional<RunCheckpoint>& resume) {
   const auto begin = std::chrono::steady_clock::now();
+  const auto setup = [&](std::string_view part) {
+    if (observer.setup) observer.setup(part);
+  };
+  setup("building the model");
   const VsiModel model = build_model(scene);
+  if (observer.note) note_repairs(model, observer);
   const double duration = run_duration(scene, model);
   static_cast<void>(step_count(scene, duration));
   VsiState state(model);
@@ -230,7 +270,8 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     unpack(resume->state, state);
     rest.converged = true;
   } else {
-    rest = steady_start(model, state);
+    setup("state of rest");
+    rest = start(scene, model, state);
   }
   if (observer.start) observer.start(result_header(scene, model));
   RunSummary summary;
@@ -240,6 +281,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     return summary;
   }
   if (!resume) displace(scene, model, state);
+  setup("factorising");
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   summary =
       simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);

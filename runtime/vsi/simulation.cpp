@@ -29,6 +29,8 @@ class Integrator {
   }
 
   bool step(VsiState& state, RunSummary& summary) { return step(0, state, summary); }
+  /// From here on as a run that begins here: nothing of earlier steps but the state.
+  void forget() { workspace_.newton.factor.clear(); }
 
  private:
   // Operators of a step that ends at `time`.
@@ -51,6 +53,7 @@ class Integrator {
     summary.back_substitutions += report.back_substitutions;
     summary.contact_queries += report.queries;
     summary.table_queries += report.table_queries;
+    summary.seconds_lookup += report.seconds_lookup;
     summary.seconds_contact += report.seconds_contact;
     summary.seconds_structure += report.seconds_structure;
     summary.seconds_vehicle += report.seconds_vehicle;
@@ -143,6 +146,8 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
     summary.seconds_output += seconds_since(output_begin);
   };
 
+  if (observer.ready) observer.ready();
+  bool recorded = true;  // what has been reached
   summary.steps = first_step;
   if (first_step == 0) emit();
   while (summary.steps < steps) {
@@ -156,12 +161,20 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
     ++summary.steps;
     state.time = static_cast<double>(summary.steps) * integration.time_step;  // no drift over long runs
     record.newton_iterations = static_cast<int>(summary.newton_iterations - iterations_before);
-    if (summary.steps % record_every == 0) emit();
-    if (observer.checkpoint && summary.steps % observer.checkpoint_every == 0) {
+    recorded = summary.steps % record_every == 0;
+    if (recorded) emit();
+    summary.interrupted = observer.stop && observer.stop() && summary.steps < steps;
+    if (observer.checkpoint && (summary.interrupted || summary.steps % observer.checkpoint_every == 0)) {
       observer.checkpoint(summary.steps, packed(state));
+    }
+    if (summary.steps % observer.checkpoint_every == 0) integrator.forget();
+    if (summary.interrupted) {
+      summary.message = "interrupted";
+      break;
     }
     if (observer.progress) observer.progress(static_cast<double>(summary.steps) / static_cast<double>(steps));
   }
+  if (!recorded) emit();  // after a checkpoint: a resumed run leaves the record away again
   summary.complete = summary.steps == steps;
   summary.seconds_total = seconds_since(begin);
   summary.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());

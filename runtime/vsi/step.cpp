@@ -30,17 +30,29 @@ void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiStat
   }
 }
 
-// The structure likewise; one back-substitution.
+// The structure likewise, under the wheels only: the forward half of its back-substitution.
 void free_structure(const VsiModel& model, const StepOperators& op, const VsiState& state,
                     const std::vector<RailContact>& contacts, StepWorkspace& ws) {
   Prediction& p = ws.structure_prediction;
   predict(op.scheme, state.structure, p);
-  op.structure->free_increment(*model.structure, op.scheme, state.structure, p, ws.structure_free);
+  op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
+  ws.rail_dofs.clear();
+  for (const RailContact& contact : contacts) append_dofs(contact, ws.rail_dofs);
+  ws.structure_load.setZero();
+  ws.structure_free.resize(model.structure->dofs());
+  ws.structure_solution.begin(op.structure->factor(), ws.structure_increment, ws.rail_dofs);
+  ws.structure_solution.respond(op.structure->factor(), 0.0, ws.structure_load, ws.structure_free);
   gather_rails(contacts, p.displacement, ws.problem.predicted);
   gather_rails(contacts, p.velocity, ws.problem.predicted_velocity);
-  gather_rails(contacts, p.displacement + ws.structure_free, ws.problem.free);
-  gather_rails(contacts, p.displacement + state.structure.acceleration / op.scheme.acceleration_rate(),
-               ws.solution.displacement);
+  gather_rails(contacts, ws.structure_free, ws.problem.free);
+  gather_rails(contacts, state.structure.acceleration, ws.solution.displacement);
+  for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
+    const int k = rail_unknown(wheel);
+    const Vector3 predicted = ws.problem.predicted.segment<3>(k);
+    ws.problem.free.segment<3>(k) += predicted + state.far_field.segment<3>(3 * wheel);
+    ws.solution.displacement.segment<3>(k) =
+        predicted + ws.solution.displacement.segment<3>(k) / op.scheme.acceleration_rate();
+  }
 }
 
 void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts,
@@ -61,17 +73,17 @@ void rail_couplings(const StepOperators& op, const std::vector<RailContact>& con
   }
 }
 
-// Full response of the structure to the contact forces; returns what the contact solution had missed of it.
-double full_structure(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
+// The structure's own answer to the contact forces, under the wheels; returns what the contact solution had missed.
+double answer_under_wheels(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
   scatter_rail_forces(contacts, ws.solution.force, ws.structure_load);
-  ws.structure_increment = ws.structure_free + op.scheme.load_weight() * op.structure->solve(ws.structure_load);
+  ws.structure_solution.respond(op.structure->factor(), op.scheme.load_weight(), ws.structure_load, ws.structure_free);
   double missed = 0.0;
-  const Eigen::VectorXd displacement = ws.structure_prediction.displacement + ws.structure_increment;
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
-    const auto q = ws.solution.displacement.segment<3>(rail_unknown(wheel));
-    const Vector3 miss = rail_head(contacts[index(wheel)], displacement) - q;
+    const int k = rail_unknown(wheel);
+    const Vector3 miss = ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) -
+                         ws.solution.displacement.segment<3>(k);
     missed = std::max(missed, miss.cwiseAbs().maxCoeff());
-    ws.problem.free.segment<3>(rail_unknown(wheel)) += miss;
+    ws.problem.free.segment<3>(k) += miss;
     ws.far_field.segment<3>(3 * wheel) += miss;
   }
   return missed;
@@ -115,20 +127,18 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   StepReport report;
   const HhtScheme& hht = op.scheme;
   const double time = state.time + hht.time_step;
-  const std::vector<RailContact> contacts = place_wheels(model, time);
   ws.far_field = state.far_field;
 
   // Right-hand side of Eq. 13 without the contact forces at t + dt.
+  std::vector<RailContact> contacts;
   {
     const Stopwatch watch(report.seconds_vehicle);
+    contacts = place_wheels(model, time);
     free_vehicles(model, op, state, ws);
   }
   if (model.structure) {
     const Stopwatch watch(report.seconds_structure);
     free_structure(model, op, state, contacts, ws);
-    for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
-      ws.problem.free.segment<3>(rail_unknown(wheel)) += state.far_field.segment<3>(3 * wheel);
-    }
     ++report.back_substitutions;
     rail_couplings(op, contacts, ws.problem.rail);
   }
@@ -139,19 +149,24 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
 
   // Eq. 16, condensed to the contacts; the structure's answer closes it.
   for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
-    const NewtonReport newton = solve_contact(model.contact, ws.problem, limits.newton, ws.solution, ws.newton);
+    NewtonReport newton;
+    double seconds_newton = 0.0;
+    {
+      const Stopwatch watch(seconds_newton);
+      newton = solve_contact(model.contact, ws.problem, limits.newton, ws.solution, ws.newton);
+    }
     report.newton_iterations += newton.iterations;
     report.queries += newton.queries;
     report.table_queries += newton.table_queries;
-    report.seconds_contact += newton.seconds_contact;
+    report.seconds_lookup += newton.seconds_lookup;
+    report.seconds_contact += seconds_newton - newton.seconds_lookup;
     if (!newton.converged) break;
     if (!model.structure) {
       report.converged = true;
       break;
     }
     const Stopwatch watch(report.seconds_structure);
-    report.converged = full_structure(op, contacts, ws) < limits.far_field_tolerance;
-    ++report.back_substitutions;
+    report.converged = answer_under_wheels(op, contacts, ws) < limits.far_field_tolerance;
   }
   if (!report.converged) return report;
 
@@ -166,6 +181,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   }
   if (model.structure) {
     const Stopwatch watch(report.seconds_structure);
+    ws.structure_solution.finish(op.structure->factor(), ws.structure_increment);
     state.structure.contact_load = ws.structure_load;
     update(hht, ws.structure_prediction, ws.structure_increment, state.structure);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "railtab/runtime/structure/interval_search.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "selected_solve.hpp"
 
@@ -59,11 +60,17 @@ RailContact rail_contact(const StructureModel& structure, RailSide side, double 
   const RailLine& rail = structure.rail[static_cast<std::size_t>(side)];
   contact.on_rail = contains(rail, x);
   if (!contact.on_rail) return contact;
-  const auto after = std::upper_bound(rail.x.begin(), rail.x.end(), x);
-  const auto last = static_cast<int>(rail.x.size()) - 2;
-  contact.element = std::clamp(static_cast<int>(after - rail.x.begin()) - 1, 0, last);
+  // The very element of the interpolation: at a node, rounding must not choose twice.
+  contact.element = static_cast<int>(interval_at(rail.x, x));
   contact.rows = rail_interpolation(rail, x);
   return contact;
+}
+
+void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
+  if (!contact.on_rail) return;
+  for (int dof : contact.rows.dof) {
+    if (dof != held) dofs.push_back(dof);
+  }
 }
 
 Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
@@ -98,13 +105,35 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   require_finite(structure);
   effective_ = scheme.acceleration_rate() * structure.mass +
                scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
-  factor_ = factorise<SmallFactor>(effective_);
+  factor_ = std::make_unique<StructureFactor>(effective_);
+  // The union of both patterns: a zero times one keeps an entry's place.
+  const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
+  entry_begin_.push_back(0);
+  for (int j = 0; j < pattern.outerSize(); ++j) {
+    for (Sparse::InnerIterator entry(pattern, j); entry; ++entry) {
+      entry_row_.push_back(static_cast<int>(entry.row()));
+      entry_.push_back({0.0, 0.0});
+    }
+    entry_begin_.push_back(static_cast<int>(entry_.size()));
+  }
+  const auto fill = [&](const Sparse& matrix, double Entry::*value) {
+    for (int j = 0; j < matrix.outerSize(); ++j) {
+      int p = entry_begin_[static_cast<std::size_t>(j)];
+      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
+        if (entry.row() < j) continue;
+        while (entry_row_[static_cast<std::size_t>(p)] != entry.row()) ++p;
+        entry_[static_cast<std::size_t>(p)].*value = entry.value();
+      }
+    }
+  };
+  fill(structure.stiffness, &Entry::stiffness);
+  fill(structure.damping, &Entry::damping);
 }
 
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  factor_ = factorise<SmallFactor>(effective_);
+  factor_ = std::make_unique<StructureFactor>(effective_);
 }
 
 StructureResponse::~StructureResponse() = default;
@@ -114,12 +143,29 @@ StructureResponse::Entries& StructureResponse::entries() {
   return *entries_;
 }
 
-void StructureResponse::free_increment(const StructureModel& structure, const HhtScheme& scheme,
-                                       const LinearMotion& motion, const Prediction& prediction,
-                                       Eigen::VectorXd& increment) const {
-  Eigen::VectorXd load = -scheme.alpha * motion.contact_load;
-  load.noalias() -= structure.damping.selfadjointView<Eigen::Lower>() * prediction.weighted_velocity;
-  load.noalias() -= structure.stiffness.selfadjointView<Eigen::Lower>() * prediction.weighted_displacement;
+void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
+                                  Eigen::VectorXd& load) const {
+  load = -scheme.alpha * motion.contact_load;
+  const double* const u = prediction.weighted_displacement.data();
+  const double* const v = prediction.weighted_velocity.data();
+  double* const f = load.data();
+  for (Eigen::Index j = 0; j < dofs_; ++j) {
+    double sum = 0.0;
+    for (int p = entry_begin_[static_cast<std::size_t>(j)], end = entry_begin_[static_cast<std::size_t>(j + 1)];
+         p < end; ++p) {
+      const Entry& e = entry_[static_cast<std::size_t>(p)];
+      const int i = entry_row_[static_cast<std::size_t>(p)];
+      sum += e.stiffness * u[i] + e.damping * v[i];
+      if (i != j) f[i] -= e.stiffness * u[j] + e.damping * v[j];
+    }
+    f[j] -= sum;
+  }
+}
+
+void StructureResponse::free_increment(const HhtScheme& scheme, const LinearMotion& motion,
+                                       const Prediction& prediction, Eigen::VectorXd& increment) const {
+  Eigen::VectorXd load;
+  step_load(scheme, motion, prediction, load);
   increment = factor_->solve(load);
 }
 

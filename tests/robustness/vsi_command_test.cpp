@@ -202,4 +202,54 @@ TEST_F(VsiCommand, CreepForcesOfEveryLawInTheColumnsOfTheContract) {
   }
 }
 
+// A scene on rigid track that takes a few milliseconds per simulated second.
+constexpr const char* rigid_scene = "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\n";
+
+TEST_F(VsiCommand, ATableAndProfilesAreTwoPairs) {
+  write("two.toml", "[contact]\ntable = \"t.h5\"\nrail_inclination = \"1:20\"\n");
+  write("t.h5", "");
+  expect_refused("run two.toml -o out", "two.toml:3: contact.rail_inclination: found contact.table too");
+  write("gauge.toml", "[contact]\nmode = \"online\"\ntable = \"t.h5\"\ndimensions.track_gauge = 1.432\n");
+  expect_refused("run gauge.toml -o out", "gauge.toml:4: contact.dimensions.track_gauge: found contact.table too");
+}
+
+TEST_F(VsiCommand, RunSaysWhereItsTimeWent) {
+  write("scene.toml", std::string(rigid_scene) + "duration = 0.05\n");
+  const Outcome outcome = vsi("run scene.toml -o r.h5");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  for (const char* part :
+       {"set-up", "structure", "contact look-ups", "contact forces, tangents", "vehicle", "output"}) {
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << part << '\n' << outcome.output;
+  }
+}
+
+TEST_F(VsiCommand, RepairsOfAMeasuredProfileAreSaid) {
+  // A cone of 1:40, one of its points twice.
+  write("wheel.txt", "# units: mm\n-70 1.75\n-35 0.875\n0 0\n0 0\n30 -0.75\n60 -1.5\n");
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\nwheel = \"wheel.txt\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = "
+        "0.01\n");
+  const Outcome outcome = vsi("run scene.toml -o r.h5 --json");
+  EXPECT_NE(outcome.output.find("vsi run: note: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("wheel.txt"), std::string::npos) << outcome.output;
+}
+
+// The signal goes to the program alone, once its results file is there.
+TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
+  write("scene.toml", std::string(rigid_scene) + "duration = 4.0\n[output]\nevery = 3\n");
+  const std::string interrupted =
+      "--version; '" VSI_COMMAND
+      "' run scene.toml -o r.h5 --json 2>&1 & pid=$!; while [ ! -e r.h5 ] && kill -0 $pid; do "
+      "sleep 0.01; done; kill -INT $pid; wait $pid; echo \"code $?\"";
+  const Outcome outcome = vsi(interrupted);
+  ASSERT_NE(outcome.output.find("code 130"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("--resume"), std::string::npos) << outcome.output;
+
+  const Outcome resumed = vsi("run scene.toml -o r.h5 --json --resume");
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.output;
+  EXPECT_NE(resumed.output.find("resumed at t = "), std::string::npos) << resumed.output;
+  // First and last record, the last at the end of the run though no multiple of output.every.
+  EXPECT_NE(resumed.output.find("\"simulated_time\": 4"), std::string::npos) << resumed.output;
+}
+
 }  // namespace

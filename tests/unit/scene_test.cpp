@@ -57,10 +57,8 @@ initial_lateral_shift = 0.002
 [contact]
 mode = "table"
 table = "pair.h5"
-rail_inclination = "1:20"
 creep_law = "fastsim"
 friction = 0.4
-dimensions.track_gauge = 1.437
 material = { E = 206e9, nu = 0.3 }
 [track]
 kind = "flexible"
@@ -86,10 +84,8 @@ every = 5
   EXPECT_EQ(scene.train.initial_lateral_shift, 0.002);
   EXPECT_EQ(scene.contact.mode, ContactMode::table);
   EXPECT_EQ(scene.contact.table, folder_ / "pair.h5");
-  EXPECT_DOUBLE_EQ(scene.contact.rail_inclination, 0.05);
   EXPECT_EQ(scene.contact.creep_law, "fastsim");
   EXPECT_EQ(scene.contact.friction, 0.4);
-  EXPECT_EQ(scene.contact.dimensions.track_gauge, 1.437);
   EXPECT_EQ(scene.contact.material.E, 206e9);
   EXPECT_EQ(scene.contact.material.nu, 0.3);
   EXPECT_EQ(scene.track_kind, TrackKind::flexible);
@@ -106,6 +102,13 @@ every = 5
   EXPECT_EQ(scene.integration.max_halvings, 3);
   EXPECT_EQ(scene.output.every, 5);
   EXPECT_FALSE(scene.irregularity.has_value());
+}
+
+TEST_F(Scene, ProfilesAndDimensionsCountWithoutATable) {
+  const SceneParameters scene =
+      read(std::string(online) + "rail_inclination = \"1:20\"\ndimensions.track_gauge = 1.437\n");
+  EXPECT_DOUBLE_EQ(scene.contact.rail_inclination, 0.05);
+  EXPECT_EQ(scene.contact.dimensions.track_gauge, 1.437);
 }
 
 TEST_F(Scene, KeepsItsTextAndTakesItsNameFromTheFile) {

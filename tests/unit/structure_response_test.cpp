@@ -57,6 +57,28 @@ TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
   }
 }
 
+// Positions that come near a node, as positions of a moving train do: within rounding of it, on either side.
+TEST(StructureResponse, TabulatedComplianceHoldsAtNodes) {
+  TrackParameters track;
+  track.length_before = track.length_after = 60.0;
+  const StructureModel structure = build_track_bridge(track, {});
+  StructureResponse response(structure, HhtScheme{.alpha = -0.05, .time_step = 5e-4});
+  response.tabulate_compliance(structure, 5.0, -60.0, 60.0);
+  const RailLine& rail = structure.rail[0];
+  for (std::size_t node = 1; node + 1 < rail.x.size(); ++node) {
+    const auto at = [&](double x) {
+      const RailContact contact = rail_contact(structure, RailSide::left, x);
+      return response.compliance(contact, contact)(1, 1);
+    };
+    const double x = rail.x[node];
+    const double own = at(x + 1e-6);
+    for (const double near :
+         {std::nextafter(x, -INFINITY), x, std::nextafter(x, INFINITY), 0.1 * std::round(10.0 * x)}) {
+      EXPECT_NEAR(at(near), own, 1e-4 * own) << node;
+    }
+  }
+}
+
 // Displacement, slope and curvature of the rail's line under a load on the other rail: slope and curvature by
 // differences.
 TEST(StructureResponse, VerticalComplianceHasTheLinesSlopeAndCurvature) {

@@ -41,7 +41,7 @@ std::string tiles(const Headline& headline, const RunSummary& summary) {
     html += tile("Served by the table", shown(100.0 * headline.table_share, 4), "%",
                  fmt::format("of {} contact queries", summary.contact_queries));
   }
-  html += tile("Contact time", shown(summary.seconds_contact), "s",
+  html += tile("Contact time", shown(summary.seconds_lookup + summary.seconds_contact), "s",
                fmt::format("of {} s in all", shown(summary.seconds_total)));
   if (headline.real_time_factor > 0.0) {
     html += tile("Real-time factor", shown(headline.real_time_factor), "×", "simulated time over run time");
@@ -57,8 +57,9 @@ struct Share {
 
 /// Where the run's wall time went: a stacked bar and its table.
 std::string time_figure(const RunSummary& summary) {
-  std::array<Share, 6> shares{{{"set-up", summary.seconds_setup, "#8795a6"},
-                               {"contact", summary.seconds_contact, "#c8442f"},
+  std::array<Share, 7> shares{{{"set-up", summary.seconds_setup, "#8795a6"},
+                               {"contact look-ups", summary.seconds_lookup, "#e58a6f"},
+                               {"contact forces", summary.seconds_contact, "#c8442f"},
                                {"structure", summary.seconds_structure, "#0b6aa2"},
                                {"vehicle", summary.seconds_vehicle, "#2e7d52"},
                                {"output", summary.seconds_output, "#d98e04"},

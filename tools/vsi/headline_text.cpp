@@ -14,10 +14,23 @@ void line(std::string& text, std::string_view name, const report::Extreme& extre
                  unit, extreme.where, extreme.time);
 }
 
-void time_line(std::string& text, std::string_view name, double seconds, double total) {
-  fmt::format_to(std::back_inserter(text), "  {:<28}{:>10.3f} s      {:.1f} %\n", name, seconds,
-                 total > 0.0 ? 100.0 * seconds / total : 0.0);
-}
+/// Where a run's time went, in all and per step.
+class TimeTable {
+ public:
+  TimeTable(std::string& text, double total, double steps) : text_(text), total_(total), steps_(steps) {}
+  void once(std::string_view name, double seconds) { line(name, seconds, ""); }
+  void every_step(std::string_view name, double seconds) {
+    line(name, seconds, steps_ > 0.0 ? fmt::format("{:10.4f} ms per step", 1e3 * seconds / steps_) : "");
+  }
+
+ private:
+  void line(std::string_view name, double seconds, std::string_view per_step) {
+    fmt::format_to(std::back_inserter(text_), "  {:<28}{:>10.3f} s {:6.1f} %{}\n", name, seconds,
+                   total_ > 0.0 ? 100.0 * seconds / total_ : 0.0, per_step);
+  }
+  std::string& text_;
+  double total_, steps_;
+};
 
 void member(JsonObject& json, std::string_view name, const report::Extreme& extreme) {
   if (!extreme.found()) return;
@@ -44,14 +57,21 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   const std::string speed =
       headline.real_time_factor > 0.0 ? fmt::format(", {:.3g} times real time", headline.real_time_factor) : "";
   fmt::format_to(std::back_inserter(text), "Where the time went ({:.3f} s{}):\n", total, speed);
-  time_line(text, "set-up", summary.seconds_setup, total);
-  time_line(text, "contact", summary.seconds_contact, total);
-  time_line(text, "structure", summary.seconds_structure, total);
-  time_line(text, "vehicle", summary.seconds_vehicle, total);
-  time_line(text, "output", summary.seconds_output, total);
-  const double named = summary.seconds_setup + summary.seconds_contact + summary.seconds_structure +
-                       summary.seconds_vehicle + summary.seconds_output;
-  time_line(text, "other", total - named, total);
+  TimeTable times(text, total, static_cast<double>(summary.steps));
+  times.once("set-up", summary.seconds_setup);
+  times.every_step("structure", summary.seconds_structure);
+  times.every_step("contact look-ups", summary.seconds_lookup);
+  times.every_step("contact forces, tangents", summary.seconds_contact);
+  times.every_step("vehicle", summary.seconds_vehicle);
+  times.once("output", summary.seconds_output);
+  const double named = summary.seconds_setup + summary.seconds_lookup + summary.seconds_contact +
+                       summary.seconds_structure + summary.seconds_vehicle + summary.seconds_output;
+  times.every_step("other", total - named);
+  if (summary.structure_dofs > 0 && summary.steps > 0) {
+    fmt::format_to(std::back_inserter(text), "  {:.3g} back-substitutions and {:.3g} Newton iterations per step\n",
+                   static_cast<double>(summary.back_substitutions) / static_cast<double>(summary.steps),
+                   static_cast<double>(summary.newton_iterations) / static_cast<double>(summary.steps));
+  }
   if (summary.complete && !summary.message.empty()) text += summary.message + "\n";
   return text;
 }
@@ -71,11 +91,12 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
   json.add("contact_mode", summary.contact_mode).add("contact_queries", summary.contact_queries);
   json.add("table_queries", summary.table_queries).add("table_share", headline.table_share);
   json.add("steps", summary.steps).add("newton_iterations", summary.newton_iterations);
-  json.add("halved_steps", summary.halved_steps);
+  json.add("halved_steps", summary.halved_steps).add("back_substitutions", summary.back_substitutions);
   json.add("structure_dofs", summary.structure_dofs).add("vehicle_dofs", summary.vehicle_dofs);
   json.add("seconds", JsonObject()
                           .add("total", summary.seconds_total)
                           .add("setup", summary.seconds_setup)
+                          .add("lookup", summary.seconds_lookup)
                           .add("contact", summary.seconds_contact)
                           .add("structure", summary.seconds_structure)
                           .add("vehicle", summary.seconds_vehicle)

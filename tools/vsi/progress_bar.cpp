@@ -31,4 +31,37 @@ void ProgressBar::show(double fraction) {
   std::fflush(stderr);
 }
 
+SetupProgress::SetupProgress(bool quiet) {
+  if (!quiet && isatty(STDERR_FILENO) == 1) thread_ = std::thread([this] { draw(); });
+}
+
+void SetupProgress::show(std::string_view part) {
+  const std::lock_guard lock(mutex_);
+  part_ = part;
+}
+
+void SetupProgress::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SetupProgress::draw() {
+  using namespace std::chrono_literals;
+  const auto begin = std::chrono::steady_clock::now();
+  std::unique_lock lock(mutex_);
+  for (bool drawn = false;; drawn = true) {
+    if (changed_.wait_for(lock, drawn ? 500ms : 2000ms, [this] { return ended_; })) {
+      if (drawn) fmt::print(stderr, "\r\033[K");
+      return;
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    fmt::print(stderr, "\r\033[Kset-up: {}, {:.0f} s", part_, elapsed.count());
+    std::fflush(stderr);
+  }
+}
+
 }  // namespace railtab::vsi

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -61,8 +62,24 @@ void warn_of_uncovered_queries(const RunSummary& summary) {
       100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
 }
 
+/// Ctrl-C while steps are made: a first one asks the run to end after its step, a second one ends the program.
+class Interrupt {
+ public:
+  static void listen() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { asked_ = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+  }
+  [[nodiscard]] static bool asked() { return asked_ != 0; }
+
+ private:
+  static inline volatile std::sig_atomic_t asked_ = 0;
+};
+
 /// What a run that has ended says, and its exit code.
 int conclude(const report::Headline& headline, const RunSummary& summary, const RunOptions& options) {
+  constexpr int interrupted = 130;  // as a shell says of a program that Ctrl-C has ended
   if (options.json) {
     fmt::print("{}\n", headline_json(headline, summary).add("results", options.output).text());
   } else if (!options.quiet && headline.largest_Q.found()) {
@@ -70,6 +87,13 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
   }
   if (!options.quiet) warn_of_uncovered_queries(summary);
   if (summary.complete) return 0;
+  if (summary.interrupted) {
+    fmt::print(stderr,
+               "vsi run: interrupted at t = {:.6g} s; everything up to there is in {}; the same command with --resume "
+               "goes on from there\n",
+               headline.simulated_time, options.output);
+    return interrupted;
+  }
   fmt::print(stderr, "vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
              headline.simulated_time, summary.message, options.output);
   return 1;
@@ -78,7 +102,8 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
 /// Results, headline and progress of a run, from its first record or from a checkpoint of its results file.
 class RunRecorder {
  public:
-  explicit RunRecorder(const RunOptions& options) : options_(options), progress_(options.quiet || options.json) {}
+  explicit RunRecorder(const RunOptions& options)
+      : options_(options), setup_(options.quiet || options.json), progress_(options.quiet || options.json) {}
 
   /// Take up what the file holds up to its last checkpoint, if it has one.
   [[nodiscard]] std::optional<RunCheckpoint> take_up(const RunResults& before) {
@@ -93,6 +118,15 @@ class RunRecorder {
 
   [[nodiscard]] RunObserver observer() {
     RunObserver observer;
+    observer.setup = [this](std::string_view part) { setup_.show(part); };
+    observer.note = [this](std::string_view note) {
+      if (!options_.quiet) fmt::print(stderr, "vsi run: note: {}\n", note);
+    };
+    observer.ready = [this] {
+      setup_.end();
+      Interrupt::listen();
+    };
+    observer.stop = [] { return Interrupt::asked(); };
     observer.start = [this](const ResultHeader& header) {
       if (writer_) return;  // taken up
       writer_.emplace(options_.output, header);
@@ -109,6 +143,7 @@ class RunRecorder {
 
   /// @return exit code
   [[nodiscard]] int finish(RunSummary summary) {
+    setup_.end();
     progress_.wipe();
     if (resumed_at_ && summary.complete) {
       summary.message =
@@ -120,6 +155,7 @@ class RunRecorder {
 
  private:
   const RunOptions& options_;
+  SetupProgress setup_;
   ProgressBar progress_;
   std::optional<ResultWriter> writer_;
   std::optional<report::HeadlineCollector> collector_;

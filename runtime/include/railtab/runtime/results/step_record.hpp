@@ -54,12 +54,14 @@ struct ResultHeader {
 /// How the run ended and where its time went.
 struct RunSummary {
   bool complete = false;
-  std::string message;  ///< empty, or why the run ended early
+  bool interrupted = false;  ///< ended by RunObserver::stop; not stored
+  std::string message;       ///< empty, or why the run ended early
   long steps = 0, newton_iterations = 0, halved_steps = 0;
   long back_substitutions = 0;                  ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
-  double seconds_total = 0, seconds_setup = 0, seconds_contact = 0, seconds_structure = 0, seconds_vehicle = 0,
-         seconds_output = 0;
+  /// Set-up; look-ups of the contact geometry; the contact solution besides (forces, tangents, Newton); and so on.
+  double seconds_total = 0, seconds_setup = 0, seconds_lookup = 0, seconds_contact = 0, seconds_structure = 0,
+         seconds_vehicle = 0, seconds_output = 0;
   long structure_dofs = 0, vehicle_dofs = 0;
   std::string contact_mode;  ///< table, online, paper
 };

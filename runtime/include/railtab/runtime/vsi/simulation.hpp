@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/results/step_record.hpp"
@@ -23,11 +24,16 @@ struct RunPlan {
 
 /// Who listens to a run. Every member may be empty.
 struct RunObserver {
-  std::function<void(const ResultHeader&)> start;  ///< once, before the first record
-  std::function<void(const StepRecord&)> record;   ///< the initial state, then every output.every steps
-  std::function<void(double fraction)> progress;   ///< 0..1
+  std::function<void(std::string_view part)> setup;  ///< every part of the set-up as it begins
+  std::function<void(std::string_view note)> note;   ///< what was repaired in measured profiles, sentence by sentence
+  std::function<void(const ResultHeader&)> start;    ///< once, before the first record
+  std::function<void()> ready;                       ///< once, when the set-up is over and the first step begins
+  /// The initial state, then every output.every steps, and the last step in any case.
+  std::function<void(const StepRecord&)> record;
+  std::function<void(double fraction)> progress;                             ///< 0..1
   std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
   long checkpoint_every = 2000;
+  std::function<bool()> stop;  ///< asked after every step: true ends the run there, with a checkpoint
 };
 
 /// Where an interrupted run goes on: the step and the packed state of its last checkpoint.

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "railtab/runtime/vsi/divided_substitution.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -29,14 +30,16 @@ class StepOperators {
 struct StepLimits {
   NewtonLimits newton;
   double far_field_tolerance = 1e-9;  ///< largest rail displacement the contact solution may miss [m, rad]
-  int max_passes = 6;                 ///< contact solutions per step, each one back-substitution
+  int max_passes = 6;                 ///< contact solutions per step
 };
 
 struct StepReport {
   bool converged = false;
-  int newton_iterations = 0, back_substitutions = 0;
+  int newton_iterations = 0;
+  int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
   long queries = 0, table_queries = 0;
-  double seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
+  /// Contact: look-ups of the geometry, and all that the contact solution does besides.
+  double seconds_lookup = 0.0, seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
 };
 
 /// Buffers of a step, reused.
@@ -44,6 +47,8 @@ struct StepWorkspace {
   std::vector<Prediction> vehicle_prediction;
   Prediction structure_prediction;
   std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
+  DividedSubstitution structure_solution;
+  std::vector<int> rail_dofs;  ///< dofs of the structure that the wheels load
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
   ContactSolution solution;

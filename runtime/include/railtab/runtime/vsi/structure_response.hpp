@@ -8,6 +8,7 @@
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 #include "railtab/runtime/vsi/nested_dissection.hpp"
+#include "railtab/runtime/vsi/structure_factor.hpp"
 
 namespace railtab {
 
@@ -19,6 +20,9 @@ struct RailContact {
   RailInterpolation rows{};
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
+
+/// Append the structure's dofs under a wheel.
+void append_dofs(const RailContact& contact, std::vector<int>& dofs);
 
 /// Displacement (y, z, roll) of a rail head from a vector of structure dofs.
 [[nodiscard]] Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept;
@@ -36,9 +40,16 @@ class StructureResponse {
   explicit StructureResponse(const StructureModel& structure);
   ~StructureResponse();
 
+  [[nodiscard]] const StructureFactor& factor() const noexcept { return *factor_; }
+
+  /// Right-hand side of Eq. 13 without contact forces at the end of the step. Not at rest.
+  void step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
+                 Eigen::VectorXd& load) const;
+  /// What step_load() reads of the matrices [bytes].
+  [[nodiscard]] std::size_t load_bytes() const noexcept { return entry_.size() * (sizeof(Entry) + sizeof(int)); }
   /// Increment over the predictor without contact forces at the end of the step; one back-substitution.
-  void free_increment(const StructureModel& structure, const HhtScheme& scheme, const LinearMotion& motion,
-                      const Prediction& prediction, Eigen::VectorXd& increment) const;
+  void free_increment(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
+                      Eigen::VectorXd& increment) const;
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
@@ -70,14 +81,19 @@ class StructureResponse {
   [[nodiscard]] auto between(const RailContact& i, const Rows& row, const RailContact& j,
                              const Columns& column) const noexcept;
   /// The factor with the fewest entries serves the steps' back-substitutions; the one with the lowest elimination tree,
-  /// twice as large, gives single entries of the inverse (SelectedSolve).
-  using SmallFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+  /// three times as large, gives single entries of the inverse (SelectedSolve).
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
 
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
-  std::unique_ptr<SmallFactor> factor_;
+  std::unique_ptr<StructureFactor> factor_;
+  /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
+  struct Entry {
+    double stiffness, damping;
+  };
+  std::vector<Entry> entry_;
+  std::vector<int> entry_row_, entry_begin_;
   /// Made when first needed.
   struct Entries;
   [[nodiscard]] Entries& entries();

@@ -1,0 +1,136 @@
+// The price of a converged step: eight coaches (64 wheels) on a viaduct of 50 spans, more than 50 000 unknowns of track
+// and bridge. Says where the time goes, how many back-substitutions a step needs, and how near the step is to the limit
+// that the memory sets: the bytes that it has to read over the bandwidth of a large triad in the same run.
+//
+//     step_benchmark [TABLE.h5 [spans [smooth]]]     without a table the contact is searched online
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/step.hpp"
+
+namespace {
+
+using namespace railtab;
+using Clock = std::chrono::steady_clock;
+using Sparse = Eigen::SparseMatrix<double>;
+
+double median_seconds(int repetitions, const std::function<void()>& work) {
+  std::vector<double> seconds;
+  for (int i = 0; i < repetitions; ++i) {
+    const Clock::time_point begin = Clock::now();
+    work();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + repetitions / 2, seconds.end());
+  return seconds[static_cast<std::size_t>(repetitions / 2)];
+}
+
+/// a = b + c·d over `bytes` in three arrays; reads and writes counted, [bytes/s].
+double triad_bandwidth(std::size_t bytes) {
+  const std::size_t n = bytes / (3 * sizeof(double));
+  std::vector<double> a(n, 0.0), b(n, 1.0), c(n, 2.0);
+  const double seconds = median_seconds(7, [&] {
+    for (std::size_t i = 0; i < n; ++i) a[i] = b[i] + 3.0 * c[i];
+  });
+  return static_cast<double>(bytes) / seconds * (a[n / 2] > 0.0 ? 1.0 : 0.0);
+}
+
+SceneParameters viaduct(const std::string& table, int spans) {
+  SceneParameters scene;
+  scene.name = "viaduct";
+  scene.train.count = 8;
+  scene.train.start = 20.0;
+  scene.contact.mode = table.empty() ? ContactMode::online : ContactMode::table;
+  scene.contact.table = table;
+  scene.track.length_before = 220.0;
+  scene.track.length_after = 60.0;
+  scene.spans.resize(static_cast<std::size_t>(spans));
+  scene.irregularity = std::string(RAILTAB_SOURCE_DIR) + "/docs/examples/demo_irregularity.csv";
+  scene.integration.duration = 0.2;
+  return scene;
+}
+
+/// Ways to substitute: Eigen's scalar factor in two orders, and the supernodal one of the steps.
+void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
+  const StructureModel& s = *model.structure;
+  const Sparse effective =
+      scheme.acceleration_rate() * s.mass + scheme.load_weight() * (scheme.velocity_rate() * s.damping + s.stiffness);
+  const Eigen::VectorXd load = Eigen::VectorXd::Ones(s.dofs());
+  Eigen::VectorXd x(s.dofs()), y(s.dofs());
+  const Eigen::SimplicialLDLT<Sparse> minimum_degree(effective);
+  const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, NestedDissection> dissected(effective);
+  const StructureFactor blocks(effective);
+  constexpr int repetitions = 21;
+  const double scalar = median_seconds(repetitions, [&] { x = minimum_degree.solve(load); });
+  const double scalar_dissected = median_seconds(repetitions, [&] { x = dissected.solve(load); });
+  const double block = median_seconds(repetitions, [&] {
+    blocks.into(load, y);
+    blocks.forward(y);
+    blocks.backward(y);
+    blocks.out_of(y, x);
+  });
+  const auto line = [&](const char* name, double seconds, std::size_t bytes) {
+    fmt::print("  {:<34}{:8.2f} ms {:8.1f} MB {:8.1f} GB/s\n", name, 1e3 * seconds, 1e-6 * static_cast<double>(bytes),
+               2e-9 * static_cast<double>(bytes) / seconds);
+  };
+  const auto bytes = [](const auto& factor) {
+    return static_cast<std::size_t>(factor.matrixL().nestedExpression().nonZeros()) * (sizeof(double) + sizeof(int));
+  };
+  fmt::print("one back-substitution\n");
+  line("entries, nested dissection", scalar_dissected, bytes(dissected));
+  line("entries, minimum degree", scalar, bytes(minimum_degree));
+  line("supernodes, minimum degree", block, blocks.bytes());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  SceneParameters scene = viaduct(argc > 1 ? argv[1] : "", argc > 2 ? std::atoi(argv[2]) : 50);
+  if (argc > 3) scene.irregularity.reset();
+  const VsiModel model = build_model(scene);
+  const HhtScheme scheme{.alpha = scene.integration.alpha, .time_step = scene.integration.time_step};
+  const double bandwidth = triad_bandwidth(std::size_t{768} << 20);
+  fmt::print("{} unknowns of the structure, {} wheels, contact: {}\n", model.structure->dofs(), 2 * model.wheelsets(),
+             scene.contact.table.empty() ? "online" : "table");
+  fmt::print("memory, triad of 768 MiB: {:.1f} GB/s\n", 1e-9 * bandwidth);
+  compare_factors(model, scheme);
+
+  VsiState state(model);
+  if (!steady_start(model, state).converged) return 1;
+  RunSummary s = simulate(model, scene.integration, scene.integration.duration, 1, state, {});
+  if (!s.complete) return 1;
+  const auto steps = static_cast<double>(s.steps);
+  const double total = s.seconds_total - s.seconds_setup;
+  const auto line = [&](const char* name, double seconds) {
+    fmt::print("  {:<34}{:8.3f} ms {:7.1f} %\n", name, 1e3 * seconds / steps, 100.0 * seconds / total);
+  };
+  fmt::print("a step ({} steps, {:.2f} Newton iterations, {:.2f} back-substitutions, {:.3f} halved)\n", s.steps,
+             static_cast<double>(s.newton_iterations) / steps, static_cast<double>(s.back_substitutions) / steps,
+             static_cast<double>(s.halved_steps) / steps);
+  line("structure", s.seconds_structure);
+  line("contact look-ups", s.seconds_lookup);
+  line("contact forces, tangents, Newton", s.seconds_contact);
+  line("vehicle", s.seconds_vehicle);
+  line("other",
+       total - s.seconds_structure - s.seconds_lookup - s.seconds_contact - s.seconds_vehicle - s.seconds_output);
+  line("all", total);
+
+  // Once through the memory: the factor twice, the lower triangles of K and C beside each other, and the vectors of the
+  // structure that a step reads or writes: 3 of the motion and its load, 4 predictors, the load, the increment.
+  const StructureResponse response(*model.structure, scheme);
+  const double least = 2.0 * static_cast<double>(response.factor().bytes()) +
+                       static_cast<double>(response.load_bytes()) + 20.0 * sizeof(double) * model.structure->dofs();
+  fmt::print("memory limit of the structure's part: {:.1f} MB per step, {:.3f} ms, {:.0f} % of its time\n",
+             1e-6 * least, 1e3 * least / bandwidth, 100.0 * least / bandwidth * steps / s.seconds_structure);
+  return 0;
+}

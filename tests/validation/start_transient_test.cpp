@@ -1,0 +1,108 @@
+// A run starts from the steady state of the moving train: what its first second shows beyond the steady passage of the
+// sleepers is a transient of the start. On a smooth track it must stay below 0.1 % of the wheel load.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "railtab/runtime/vsi/simulation.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr double speed = 60.0;        // m/s
+constexpr int steps_per_bay = 20;     // of 0.6 m in steps of 0.5 ms
+constexpr double length_ahead = 150;  // m
+
+SceneParameters coach_on(TrackKind track) {
+  SceneParameters scene;
+  scene.train.speed = speed;
+  scene.contact.mode = ContactMode::online;
+  scene.track_kind = track;
+  scene.track.length_before = 120.0;
+  scene.track.length_after = length_ahead;
+  scene.train.start = -60.0;
+  scene.integration.time_step = 5e-4;
+  scene.integration.duration = 1.2;
+  return scene;
+}
+
+std::vector<StepRecord> run(const SceneParameters& scene) {
+  std::vector<StepRecord> steps;
+  RunObserver observer;
+  observer.record = [&](const StepRecord& step) { steps.push_back(step); };
+  const RunSummary summary = run_scene(scene, observer);
+  EXPECT_TRUE(summary.complete) << summary.message;
+  return steps;
+}
+
+// Q and Y of one wheel over one bay, the mean of the last bays of a long run.
+struct SteadyBay {
+  std::vector<std::array<double, 2>> force;  // by step of the bay
+
+  SteadyBay(const std::vector<StepRecord>& steps, std::size_t wheel) : force(steps_per_bay) {
+    constexpr std::size_t bays = 10;
+    const std::size_t begin = (steps.size() / steps_per_bay - bays) * steps_per_bay;
+    for (std::size_t i = begin; i < begin + bays * steps_per_bay; ++i) {
+      force[i % steps_per_bay][0] += steps[i].wheels[wheel].Q / bays;
+      force[i % steps_per_bay][1] += steps[i].wheels[wheel].Y / bays;
+    }
+  }
+};
+
+// Largest deviation from the steady passage in the first second, over the static wheel load.
+double transient(const std::vector<StepRecord>& start, const std::vector<StepRecord>& steady, double static_load) {
+  double largest = 0.0;
+  for (std::size_t wheel = 0; wheel < start.front().wheels.size(); ++wheel) {
+    const SteadyBay bay(steady, wheel);
+    for (std::size_t i = 0; i < start.size() && start[i].time <= 1.0; ++i) {
+      const WheelRecord& w = start[i].wheels[wheel];
+      largest = std::max(
+          {largest, std::abs(w.Q - bay.force[i % steps_per_bay][0]), std::abs(w.Y - bay.force[i % steps_per_bay][1])});
+    }
+  }
+  return largest / static_load;
+}
+
+double static_load(const std::vector<StepRecord>& steps) {
+  double sum = 0.0;
+  for (const WheelRecord& wheel : steps.front().wheels) sum += wheel.Q;
+  return sum / static_cast<double>(steps.front().wheels.size());
+}
+
+TEST(StartTransient, RigidTrack) {
+  SceneParameters scene = coach_on(TrackKind::rigid);
+  const std::vector<StepRecord> steps = run(scene);
+  const double largest = transient(steps, steps, static_load(steps));
+  std::printf("largest transient on a rigid track: %.2g of the wheel load\n", largest);
+  EXPECT_LT(largest, 1e-3);
+}
+
+TEST(StartTransient, BallastedTrackAndBridgeApproach) {
+  const SceneParameters open_track = coach_on(TrackKind::flexible);
+  const std::vector<StepRecord> plain = run(open_track);
+  const double load = static_load(plain);
+  const double on_track = transient(plain, plain, load);
+  double low = INFINITY, high = 0.0;
+  for (const std::array<double, 2>& force : SteadyBay(plain, 0).force) {
+    low = std::min(low, force[0]);
+    high = std::max(high, force[0]);
+  }
+  // The first wheelset comes within 8 m of the bridge by the end of the second.
+  SceneParameters approach = open_track;
+  approach.spans.resize(1);
+  approach.train.start = -69.0;
+  approach.integration.duration = 1.0;
+  const double before_bridge = transient(run(approach), plain, load);
+  std::printf(
+      "largest transient: ballasted track %.2g, bridge approach %.2g of the wheel load; the passage of the sleepers "
+      "makes %.2g\n",
+      on_track, before_bridge, (high - low) / load);
+  EXPECT_LT(on_track, 1e-3);
+  EXPECT_LT(before_bridge, 1e-3);
+}
+
+}  // namespace
+}  // namespace railtab
