@@ -98,7 +98,7 @@ const std::string small = "creep --nodes 5,5,5,8 --elements 12 ";
 
 TEST_F(CreepCommand, KilledAtAnyTimeItGoesOnToTheSameBits) {
   const std::vector<std::string> arguments{"creep",   "--nodes",   "9,10,8,12", "--elements", "20",
-                                           "--quiet", "--threads", "2",        "-o",         "killed.h5"};
+                                           "--quiet", "--threads", "2",         "-o",         "killed.h5"};
   std::string command;
   for (const std::string& a : arguments) command += a + " ";
   const auto start = std::chrono::steady_clock::now();
