@@ -93,6 +93,7 @@ std::string log_figure(const WorkFigure& figure) {
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const char* colour = colours[m % colours.size()];
     std::string line;
+    int labels = 0;  // those of neighbours stand above each other
     for (std::size_t i = 0; i < figure.points.size(); ++i) {
       const WorkPoint& p = figure.points[i];
       if (p.method != methods[m]) continue;
@@ -101,7 +102,7 @@ std::string log_figure(const WorkFigure& figure) {
       fmt::format_to(std::back_inserter(svg),
                      "<circle stroke=\"{0}\" fill=\"{1}\" cx=\"{2:.1f}\" cy=\"{3:.1f}\" r=\"4\"/>", colour,
                      front[i] ? colour : "#fff", x, y);
-      svg += text(x + 7, y - 5, "start", p.setting, 9);
+      svg += text(x + 7, y - 5 - 10 * (labels++ % 4), "start", p.setting, 9);
     }
     fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" d=\"{}\"/>\n", colour, line);
     const double legend_y = above + 10 + 20.0 * static_cast<double>(m);
