@@ -174,6 +174,7 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
       factorise(problem, ws);
       new_tangent = false;
     }
+    const bool gains = size < 0.5 * previous;
     previous = size;
     part = 1.0;
     correct(problem, ws);
@@ -182,7 +183,7 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
     limit_moves(problem, ws.correction);
     ws.start = solution.displacement;
     solution.displacement += ws.correction;
-    if (report.correction < limits.tolerance) {
+    if (report.correction < limits.tolerance || (!gains && report.correction < limits.rounding)) {
       report.converged = true;
       break;
     }

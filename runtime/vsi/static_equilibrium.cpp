@@ -12,9 +12,13 @@ namespace {
 constexpr double regularisation = 0.05;  // eps [1/s²]: far below the square of any suspended mode (2π·0.5 Hz)² = 10
 constexpr double travel_between = 0.025;  // m: between the equilibria that velocity and acceleration are taken from
 constexpr int max_iterations = 60;
+constexpr double newton_tolerance = 1e-12;   // m, rad
 constexpr double contact_tolerance = 1e-10;  // m, rad: of the contact unknowns
 // Of the dofs: what rounding leaves of the wheel loads, over the weak eps M, moves them by some nm.
 constexpr double dof_tolerance = 1e-7;  // m, rad
+// The creep table has 32-bit numbers. Where iterations no longer gain, what they leave of the forces is the end: it
+// moves the contact unknowns by some 1e-9 and, over the weak eps M, the dofs by some 1e-7.
+constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
 
@@ -118,7 +122,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   ContactProblem problem = rest_problem(model, vehicle, structure, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
   NewtonWorkspace workspace;
-  const NewtonLimits limits{.tolerance = 1e-12, .max_iterations = 100};
+  const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
 
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
@@ -142,6 +146,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
       return report;
     }
 
+    const double change_before = report.change;
     report.change = 0.0;
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
@@ -159,7 +164,9 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
       state.structure.displacement = next;
     }
     const double contact_change = (state.contact.displacement - contact_before).cwiseAbs().maxCoeff();
-    report.converged = contact_change < contact_tolerance && report.change < dof_tolerance;
+    const bool gains = report.change < 0.5 * change_before;
+    report.converged = (contact_change < contact_tolerance && report.change < dof_tolerance) ||
+                       (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
   }
   // The pitch unknowns are rates: hand them to the vehicles as such.
   for (int w = 0; w < model.wheelsets(); ++w) {

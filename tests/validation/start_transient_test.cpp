@@ -104,5 +104,18 @@ TEST(StartTransient, BallastedTrackAndBridgeApproach) {
   EXPECT_LT(before_bridge, 1e-3);
 }
 
+// The creep table's numbers have 32 bits: the state of rest is found to what they leave, and rougher starts are not.
+TEST(StartTransient, TheCreepTableStartsFromRestOnBothTracks) {
+  for (const TrackKind track : {TrackKind::rigid, TrackKind::flexible}) {
+    SceneParameters scene = coach_on(track);
+    scene.contact.creep_law = "table";
+    scene.integration.duration = 0.05;
+    const std::vector<StepRecord> steps = run(scene);
+    ASSERT_GT(steps.size(), 50u);
+    const double rest = steps.front().wheels.front().Q;
+    for (const StepRecord& step : steps) EXPECT_NEAR(step.wheels.front().Q, rest, 0.02 * rest);
+  }
+}
+
 }  // namespace
 }  // namespace railtab

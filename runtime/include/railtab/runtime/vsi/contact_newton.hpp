@@ -60,6 +60,9 @@ struct NewtonReport {
 struct NewtonLimits {
   double tolerance = 1e-11;  ///< of the correction [m, rad]
   int max_iterations = 20;
+  /// A correction this small ends the iteration where it no longer gains: what is left is rounding of the forces [m or
+  /// rad].
+  double rounding = 0.0;
 };
 
 /// Tangents and factors, reused from step to step so that Newton allocates nothing.
