@@ -115,8 +115,9 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   out.attribute(columns::summary_group, "complete", static_cast<std::int64_t>(summary.complete));
 }
 
-RunSummary unfinished() {
+RunSummary unfinished(const ResultHeader& header) {
   RunSummary summary;
+  summary.contact_mode = header.contact_mode;
   summary.message = "the run is going on, or was ended from outside";
   return summary;
 }
@@ -158,7 +159,7 @@ ResultWriter::ResultWriter(const std::filesystem::path& file, const ResultHeader
           flush_every, header)) {
   write_header(impl_->out, header);
   create_histories(impl_->out, header);
-  write_summary(impl_->out, unfinished());
+  write_summary(impl_->out, unfinished(header));
   for (const char* slot : columns::checkpoint_slots) {
     impl_->out.create_slot(
         slot, "1",
@@ -174,6 +175,7 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
   {
     const ArrayFileReader in = open_results(file);
     header = read_header(in);
+    header.contact_mode = in.text(columns::summary_group, "contact_mode");
     for (const CheckpointSlot& slot : whole_checkpoints(in)) checkpoints = std::max(checkpoints, slot.sequence);
   }
   ArrayFileWriter out = ArrayFileWriter::reopen(file, columns::filetype, columns::format_version);
@@ -182,7 +184,7 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
                       fmt::format("the {} of its checkpoint", from.records));
   }
   out.truncate(from.records);
-  write_summary(out, unfinished());
+  write_summary(out, unfinished(header));
   auto impl = std::make_unique<Impl>(std::move(out), flush_every, header);
   impl->checkpoints = checkpoints;
   return ResultWriter(std::move(impl));

@@ -51,7 +51,7 @@ std::vector<KeyBinding> contact_keys() {
       {"contact.damping", "s/m", "contact damping c of F_n·(1 + c·d'), d' the rate of penetration",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.damping; }, not_negative}},
       {"contact.curvature_floor", "1/m", "smallest relative lateral curvature of the Hertz ellipse",
-       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.curvature_floor; }, positive}},
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.curvature_floor; }, {0.0, 1e4, true}}},
       {"contact.dimensions.track_gauge", "m", "between the gauge points, where no table is named",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.dimensions.track_gauge; }, {0.5, 2.0}}},
       {"contact.dimensions.gauge_height", "m", "depth of the gauge points below the rail-head tops",

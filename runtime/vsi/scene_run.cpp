@@ -96,6 +96,7 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
   header.scene_name = scene.name;
   header.scene_text = scene.text;
   header.program_version = RAILTAB_VERSION;
+  header.contact_mode = contact_mode_name(scene.contact);
   header.speed = scene.train.speed;
   for (int w = 0; w < model.wheelsets(); ++w) {
     const auto body =

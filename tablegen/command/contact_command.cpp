@@ -28,6 +28,10 @@ Creepage parse_creepage(const std::string& text) {
     values.push_back(value);
     at = stop == end ? stop : stop + 1;
   }
+  constexpr double most = 1e100;  // its square is still a number
+  for (const double value : values) {
+    if (std::abs(value) > most) throw input_error("--creepage", text, fmt::format("normalised creepages to {}", most));
+  }
   if (at != end || values.size() != 3) {
     throw input_error("--creepage", fmt::format("\"{}\"", text), "X,Y,PHI, three normalised creepages");
   }

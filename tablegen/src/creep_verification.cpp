@@ -136,9 +136,9 @@ void validate(const CreepVerificationOptions& o) {
     throw input_error("creep verification: samples", fmt::format("{}", o.samples), "a number in 1..10000000");
   }
   for (const auto& [name, interval] : {std::pair{"ratio", o.ratio}, std::pair{"creepage", o.creepage}}) {
-    if (!(interval.low > 0.0 && interval.low <= interval.high && interval.high <= 1e4)) {
+    if (!(interval.low >= 1e-4 && interval.low <= interval.high && interval.high <= 1e4)) {
       throw input_error(fmt::format("creep verification: {}", name), fmt::format("{}:{}", interval.low, interval.high),
-                        "low:high with 0 < low <= high <= 10000");
+                        "low:high with 1e-4 <= low <= high <= 10000");
     }
   }
 }

@@ -12,6 +12,7 @@
 
 #include "array_file_seal.hpp"
 #include "array_file_writer.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab {
 
@@ -64,6 +65,7 @@ ArrayFileWriter::Impl::~Impl() {
 }
 
 void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version) {
+  file = output_file(file);
   if (mode == Mode::growing && std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
   temporary = temporary_name(file);
   const hdf5::Properties access = hdf5::file_access();

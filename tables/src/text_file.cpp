@@ -7,7 +7,19 @@
 
 namespace railtab {
 
-void write_text_file(const std::filesystem::path& file, std::string_view text) {
+std::filesystem::path output_file(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (std::filesystem::exists(file, failed) && !std::filesystem::is_regular_file(file, failed)) {
+    throw input_error(file.string(), std::filesystem::is_directory(file, failed) ? "a folder" : "no regular file",
+                      "the name of a file");
+  }
+  if (!std::filesystem::is_symlink(file, failed)) return file;
+  const std::filesystem::path target = std::filesystem::weakly_canonical(file, failed);
+  return failed ? file : target;
+}
+
+void write_text_file(const std::filesystem::path& named, std::string_view text) {
+  const std::filesystem::path file = output_file(named);
   std::filesystem::path unfinished = file;
   unfinished += ".part";
   std::ofstream stream(unfinished, std::ios::binary);

@@ -68,6 +68,7 @@ TEST(ContactCommand, RefusesBadInput) {
   expect_refused("--ratio 1 --creepage 0,0", "X,Y,PHI");
   expect_refused("--ratio 1 --creepage 0,0,0,", "X,Y,PHI");
   expect_refused("--ratio 1 --creepage 0,0,inf", "X,Y,PHI");
+  expect_refused("--ratio 1 --creepage 1e155,0,0", "creepages to");
   expect_refused("--ratio 1 --creepage 0,0,0 --elements 41", "an even number");
   expect_refused("--ratio 1 --creepage 0,0,0 --poisson 0.6", "0..0.5");
 }

@@ -44,7 +44,10 @@ std::string answer(const TableContact& contact, const CsvTable& queries, const s
   for (std::size_t i = 0; i < queries.rows.size(); ++i) {
     const std::vector<double>& q = queries.rows[i];
     const std::string place = fmt::format("{}:{}", file, queries.line[i]);
-    if (q[3] < 0.0) throw input_error(place, fmt::format("dz = {}", q[3]), "dz >= 0 m below first touch");
+    constexpr double deepest = 0.01;  // m: beyond, the profiles are through each other
+    if (!(q[3] >= 0.0 && q[3] <= deepest)) {
+      throw input_error(place, fmt::format("dz = {}", q[3]), fmt::format("0 to {} m below first touch", deepest));
+    }
     WheelsetPose pose{q[0], 0.0, q[2], q[1]};
     const double touch = contact.search().touch_height(pose.y, pose.roll, pose.yaw);
     if (!std::isfinite(touch)) {

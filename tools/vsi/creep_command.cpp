@@ -32,8 +32,10 @@ Answer answer(const CreepLaw& law, const CsvTable& queries, const std::string& f
   Answer result;
   for (std::size_t i = 0; i < queries.rows.size(); ++i) {
     const std::vector<double>& q = queries.rows[i];
-    if (!(q[0] > 0.0)) {
-      throw input_error(fmt::format("{}:{}", file, queries.line[i]), fmt::format("ratio = {}", q[0]), "a/b > 0");
+    constexpr double most = 1e6;
+    if (!(q[0] > 0.0 && q[0] <= most && q[0] * most >= 1.0)) {
+      throw input_error(fmt::format("{}:{}", file, queries.line[i]), fmt::format("ratio = {}", q[0]),
+                        "a/b > 0, from 1e-06 to 1e+06");
     }
     const Creepage creepage{q[1], q[2], q[3]};
     const CreepForce force = creep_force(law, q[0], creepage);

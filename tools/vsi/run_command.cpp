@@ -171,7 +171,7 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
     throw input_error(file, "results of railtab " + before.header.program_version,
                       "results of railtab " RAILTAB_VERSION);
   }
-  const std::string& mode = before.summary.contact_mode;  // not known of a run that was killed
+  const std::string& mode = before.summary.contact_mode;
   if (!mode.empty() && mode != contact_mode_name(scene.contact)) {
     throw input_error(file, fmt::format("results of --contact {}", mode), "results of the same contact mode to resume");
   }

@@ -6,6 +6,10 @@
 
 namespace railtab {
 
+/// The file that an output named `file` becomes: where `file` is a symbolic link, what it points to.
+/// @throws InputError where there is something other than a regular file: a folder, a device, a pipe
+[[nodiscard]] std::filesystem::path output_file(const std::filesystem::path& file);
+
 /// Write a text file whole or not at all: to a temporary name beside `file`, then renamed.
 /// @throws InputError where the folder cannot be written.
 void write_text_file(const std::filesystem::path& file, std::string_view text);

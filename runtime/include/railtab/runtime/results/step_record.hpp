@@ -41,6 +41,7 @@ struct ResultHeader {
   std::string scene_name;
   std::string scene_text;  ///< the TOML that was run
   std::string program_version;
+  std::string contact_mode;               ///< table, online, paper; in the summary of a file that is read
   double speed = 0;                       ///< [m/s]
   std::vector<double> wheel_x;            ///< offset of each wheel behind the first wheelset (<= 0) [m]
   std::vector<double> static_wheel_load;  ///< [N] per wheel
