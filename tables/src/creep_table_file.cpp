@@ -6,6 +6,7 @@
 
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "table_statements.hpp"
 
 namespace railtab {
 namespace {
@@ -85,19 +86,9 @@ class Reading {
       table.ratio_stretch = option("ratio_stretch", 1e-3, 1e3);
       table.radius_unit = option("radius_unit", 1e-3, 1e3);
     }
-    if (file_.contains("statistics")) {
-      for (const std::string& name : file_.attribute_names("statistics")) {
-        table.statistics.emplace_back(name, file_.number("statistics", name));
-      }
-    }
-    table.provenance = {file_.text("provenance", "program_version"), file_.text("provenance", "command_line"),
-                        file_.text("provenance", "created")};
-    const std::string expected = file_.text("", "checksum");
-    const std::string found = content_checksum(table);
-    if (found != expected) {
-      throw input_error(name_.string(), fmt::format("contents with checksum {}", found),
-                        fmt::format("{}: the file is damaged", expected));
-    }
+    table.statistics = read_statistics(file_);
+    table.provenance = read_provenance(file_);
+    require_checksum(file_, name_, content_checksum(table));
     return table;
   }
 
@@ -156,11 +147,7 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
     out.attribute("options", "ratio_stretch", table.ratio_stretch);
     out.attribute("options", "radius_unit", table.radius_unit);
   }
-  out.attribute("provenance", "program_version", table.provenance.program_version);
-  out.attribute("provenance", "command_line", table.provenance.command_line);
-  out.attribute("provenance", "created", table.provenance.created);
-  for (const auto& [name, value] : table.statistics) out.attribute("statistics", name, value);
-  out.attribute("", "checksum", content_checksum(stored));
+  write_statements(out, table.provenance, table.statistics, content_checksum(stored));
   out.close();
 }
 

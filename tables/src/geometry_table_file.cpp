@@ -10,6 +10,7 @@
 
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "table_statements.hpp"
 
 namespace railtab {
 namespace {
@@ -140,19 +141,9 @@ class Reading {
     table.leaf_branch = counts("cells/leaf_branches");
     table.trusted_lowering = floats("cells/trusted_lowering", {static_cast<long>(table.leaf_branch.size())});
     table.coefficient = floats("branches/coefficient", {-1, static_cast<long>(terms_of(table)), 4});
-    if (file_.contains("statistics")) {
-      for (const std::string& name : file_.attribute_names("statistics")) {
-        table.statistics.emplace_back(name, file_.number("statistics", name));
-      }
-    }
-    table.provenance = {file_.text("provenance", "program_version"), file_.text("provenance", "command_line"),
-                        file_.text("provenance", "created")};
-    const std::string expected = file_.text("", "checksum");
-    const std::string found = content_checksum(table);
-    if (found != expected) {
-      throw input_error(name_.string(), fmt::format("contents with checksum {}", found),
-                        fmt::format("{}: the file is damaged", expected));
-    }
+    table.statistics = read_statistics(file_);
+    table.provenance = read_provenance(file_);
+    require_checksum(file_, name_, content_checksum(table));
     return table;
   }
 
@@ -243,11 +234,7 @@ void write_geometry_table(const std::filesystem::path& file, const GeometryTable
   out.attribute("cells", "shard_index", static_cast<std::int64_t>(table.shard.index));
   out.attribute("cells", "shard_count", static_cast<std::int64_t>(table.shard.count));
   write_cells(out, table);
-  out.attribute("provenance", "program_version", table.provenance.program_version);
-  out.attribute("provenance", "command_line", table.provenance.command_line);
-  out.attribute("provenance", "created", table.provenance.created);
-  for (const auto& [name, value] : table.statistics) out.attribute("statistics", name, value);
-  out.attribute("", "checksum", content_checksum(table));
+  write_statements(out, table.provenance, table.statistics, content_checksum(table));
   out.close();
 }
 
