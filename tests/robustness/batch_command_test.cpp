@@ -1,45 +1,29 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tablegen_fixture.hpp"
+
+namespace railtab {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exit_code;
-  std::string out, err;
-};
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-class BatchCommand : public ::testing::Test {
+class BatchCommand : public TablegenFixture {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              (std::string("batch_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
+    TablegenFixture::SetUp();
     fs::create_directories(folder_ / "lists");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// Runs `tablegen batch lists/list.toml`: outputs stand beside the list, not in the working folder.
   [[nodiscard]] Outcome batch(const std::string& list, const std::string& arguments = "") const {
     std::ofstream(folder_ / "lists/list.toml") << list;
-    const std::string command = "cd '" + folder_.string() + "' && '" TABLEGEN_COMMAND "' batch lists/list.toml " +
-                                arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
-            contents(folder_ / "stderr.txt")};
+    return tablegen("batch lists/list.toml " + arguments);
   }
   void expect_refused(const std::string& list, const std::vector<std::string>& texts) const {
     const Outcome outcome = batch(list);
@@ -59,8 +43,6 @@ class BatchCommand : public ::testing::Test {
     }
     return result;
   }
-
-  fs::path folder_;
 };
 
 using States = std::vector<std::string>;
@@ -129,3 +111,4 @@ TEST_F(BatchCommand, WrongLists) {
 }
 
 }  // namespace
+}  // namespace railtab

@@ -14,40 +14,15 @@
 #include <vector>
 
 #include "railtab/tables/creep_table_file.hpp"
+#include "tablegen_fixture.hpp"
 
 namespace railtab {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exit_code;
-  std::string out, err;
-};
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Runs the built tablegen in a folder of its own.
-class CreepCommand : public ::testing::Test {
+class CreepCommand : public TablegenFixture {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              (std::string("creep_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] Outcome tablegen(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" TABLEGEN_COMMAND "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
-            contents(folder_ / "stderr.txt")};
-  }
   void made(const std::string& arguments) const {
     const Outcome outcome = tablegen(arguments);
     ASSERT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
@@ -89,8 +64,6 @@ class CreepCommand : public ::testing::Test {
     EXPECT_EQ(WEXITSTATUS(status), 0);
     return false;
   }
-
-  fs::path folder_;
 };
 
 // 510 cases, a tenth of a second

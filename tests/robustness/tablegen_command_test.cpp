@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,39 +8,13 @@
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/equivalent_conicity.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "tablegen_fixture.hpp"
 
 namespace railtab {
 namespace {
 
-struct Outcome {
-  int exit_code;  // 128 + signal where the program was killed
-  std::string out, err;
-};
-
-std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Runs the built tablegen in a folder of its own.
-class TablegenCommand : public ::testing::Test {
+class TablegenCommand : public TablegenFixture {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("tablegen_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] Outcome tablegen(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" TABLEGEN_COMMAND "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
-            contents(folder_ / "stderr.txt")};
-  }
-
   /// Exit code 2, nothing on stdout, one message on stderr with this text in it, and no file out.h5.
   void expect_refused(const std::string& arguments, const std::string& text) const {
     expect_refused_with_table(arguments, text);
@@ -57,8 +29,6 @@ class TablegenCommand : public ::testing::Test {
     EXPECT_TRUE(outcome.err.starts_with("tablegen: ")) << outcome.err;
     EXPECT_NE(outcome.err.find(text), std::string::npos) << arguments << "\n" << outcome.err;
   }
-
-  std::filesystem::path folder_;
 };
 
 constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
