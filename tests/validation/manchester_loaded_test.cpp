@@ -10,18 +10,15 @@
 #include <vector>
 
 #include "../reference_table.hpp"
-#include "railtab/runtime/contact/patch_loads.hpp"
-#include "railtab/runtime/profile/standard_profiles.hpp"
+#include "manchester_wheelset.hpp"
 
 namespace railtab {
 namespace {
 
 TEST(ManchesterLoaded, NormalForceOfAllPositionsAgainstContact) {
-  const ContactGeometry geometry{ContactSearch(
-      WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
-                    ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), PairDimensions{}))};
-  NormalContactModel model;
-  model.material.E = 2.0 * 82e9 * (1.0 + model.material.nu);
+  const ManchesterWheelset wheelset;
+  const ContactGeometry& geometry = wheelset.geometry();
+  const NormalContactModel& model = wheelset.model();
 
   const auto reference = testing::read_reference("manchester_loaded.csv");
   const auto value = [&](const char* column, std::size_t row) { return reference.at(column)[row]; };

@@ -13,9 +13,9 @@
 #include <numbers>
 
 #include "../reference_table.hpp"
+#include "manchester_wheelset.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
-#include "railtab/runtime/contact/patch_loads.hpp"
-#include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/contact/wheel_contact.hpp"
 
 namespace railtab {
 namespace {
@@ -28,6 +28,7 @@ constexpr double friction = 0.3;
 struct Rolling {
   PatchCreepage creepage;  // of a right wheel, wheel against rail, by (V + |Ω| r)/2
   double fx, fy;           // on the wheel, of friction times the normal force
+  double fx_of_run;        // the same of all patches by wheel_force(), as a run has it: creepage by V
 };
 
 // The wheel's largest patch at a pose of the right wheel, rotating at `pitch_rate` about its axle.
@@ -57,6 +58,17 @@ Rolling rolling(const ContactGeometry& geometry, const NormalContactModel& model
                                                            a, b, model.material.shear_modulus(), bound));
   result.fx = force.x;
   result.fy = force.y;
+
+  WheelContactModel run;
+  run.geometry = &geometry;
+  run.normal = model;
+  run.creep_law = law;
+  run.friction = friction;
+  run.speed = speed;
+  WheelsetMotion wheelset;
+  wheelset.displacement << 0.0, pose.y, pose.z, pose.roll, 0.0, pose.yaw;
+  wheelset.velocity[4] = pitch_rate + speed / pair.nominal_radius();  // against nominal rolling
+  result.fx_of_run = -wheel_force(run, WheelSide::right, wheelset, {}, patches).rail_x / bound;
   return result;
 }
 
@@ -71,12 +83,9 @@ struct Largest {
 };
 
 TEST(ManchesterRolling, CreepagesAndCreepForcesOfBothCases) {
-  const ContactGeometry geometry{ContactSearch(
-      WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
-                    ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), PairDimensions{}))};
-  NormalContactModel model;
-  model.material.nu = 0.28;
-  model.material.E = 2.0 * 82e9 * (1.0 + model.material.nu);
+  const ManchesterWheelset wheelset;
+  const ContactGeometry& geometry = wheelset.geometry();
+  const NormalContactModel& model = wheelset.model();
   const CreepLaw law = creep_law("table", model.material.nu);
 
   const auto reference = testing::read_reference("manchester_rolling.csv");
@@ -116,6 +125,7 @@ TEST(ManchesterRolling, CreepagesAndCreepForcesOfBothCases) {
     EXPECT_LE(spin, 4e-3);
     EXPECT_LE(force, 0.05);
     EXPECT_LE(direction, 3.0);
+    EXPECT_NEAR(own.fx_of_run, own.fx, 0.02);
   }
   std::printf(
       "%zu wheels: creepages within %.1e, spin %.4f 1/m, force %.3f of friction, direction %.2f degrees; %d left "

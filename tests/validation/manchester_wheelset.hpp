@@ -38,6 +38,8 @@ class ManchesterWheelset {
   }
 
   [[nodiscard]] const ContactSearch& search() const { return search_; }
+  [[nodiscard]] const ContactGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] const NormalContactModel& model() const { return model_; }
 
   /// Lowers the wheelset until the vertical parts of the patches' normal forces add up to the load.
   /// @param side 1 right, -1 left

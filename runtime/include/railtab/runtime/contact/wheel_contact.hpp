@@ -60,8 +60,8 @@ struct WheelForce {
 enum class WheelSide { left, right };
 
 /// Forces of given patches. The patches are those of the pose that relative_pose() returns.
-/// Normal force by Hertz (Eq. 11) with the ellipse of the patch's curvatures, creep forces by the model's law from the
-/// relative velocity of the wheel's and the rail's particles at the contact point. Never pulls.
+/// Normal forces are those of patch_loads() (Eq. 11), creep forces come by the model's law from the relative velocity
+/// of the wheel's and the rail's particles where each patch's force acts. Never pulls.
 [[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                      const RailHeadMotion& rail, const ContactPatches& patches) noexcept;
 
