@@ -68,8 +68,8 @@ TrackNodes place_nodes(const TrackParameters& track, const std::vector<BridgePar
   return nodes;
 }
 
-/// Numbers the free dofs in the order of x, so that the matrices are banded as they stand; returns their count.
-int number_dofs(TrackNodes& nodes) {
+/// Numbers the free dofs in the order of x, so that the matrices are banded as they stand; returns their positions.
+std::vector<double> number_dofs(TrackNodes& nodes) {
   std::vector<std::pair<double, DofIndices*>> order;
   auto enlist = [&order](NodeLine& line) {
     for (size_t i = 0; i < line.x.size(); ++i) order.emplace_back(line.x[i], &line.dof[i]);
@@ -78,13 +78,15 @@ int number_dofs(TrackNodes& nodes) {
   enlist(nodes.sleeper);
   for (NodeLine& rail : nodes.rail) enlist(rail);
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  int count = 0;
+  std::vector<double> dof_x;
   for (const auto& [x, dof] : order) {
     for (int& index : *dof) {
-      if (index != held) index = count++;
+      if (index == held) continue;
+      index = static_cast<int>(dof_x.size());
+      dof_x.push_back(x);
     }
   }
-  return count;
+  return dof_x;
 }
 
 void add_beam(MatrixAssembly& assembly, const NodeLine& line, const BeamSection& section,
@@ -237,7 +239,7 @@ StructureModel build_track_bridge(const TrackParameters& track, const std::vecto
   track.validate();
   for (const BridgeParameters& span : spans) span.validate();
   TrackNodes nodes = place_nodes(track, spans);
-  const int dofs = number_dofs(nodes);
+  std::vector<double> dof_x = number_dofs(nodes);
 
   MatrixAssembly assembly;
   add_rails(assembly, nodes, track.rail);
@@ -245,7 +247,9 @@ StructureModel build_track_bridge(const TrackParameters& track, const std::vecto
   add_sleepers(assembly, nodes, track, spans);
 
   StructureModel model;
-  build_matrices(assembly, dofs, model);
+  build_matrices(assembly, static_cast<int>(dof_x.size()), model);
+  model.dof_x = std::move(dof_x);
+  for (const NodeLine& deck : nodes.deck) model.spans.push_back({deck.x.front(), deck.x.back()});
   for (size_t side = 0; side < 2; ++side) {
     model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, track.rail.head_height};
   }

@@ -34,13 +34,14 @@ void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiStat
 void free_structure(const VsiModel& model, const StepOperators& op, const VsiState& state,
                     const std::vector<RailContact>& contacts, StepWorkspace& ws) {
   Prediction& p = ws.structure_prediction;
-  predict(op.scheme, state.structure, p);
+  const ActivePart& active = op.structure->active();
+  predict(op.scheme, state.structure, active.dofs, p);
   op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
   ws.rail_dofs.clear();
   for (const RailContact& contact : contacts) append_dofs(contact, ws.rail_dofs);
-  ws.structure_load.setZero();
+  active.dofs.of(ws.structure_load).setZero();
   ws.structure_free.resize(model.structure->dofs());
-  ws.structure_solution.begin(op.structure->factor(), ws.structure_increment, ws.rail_dofs);
+  ws.structure_solution.begin(op.structure->factor(), active, ws.structure_increment, ws.rail_dofs);
   ws.structure_solution.respond(op.structure->factor(), 0.0, ws.structure_load, ws.structure_free);
   gather_rails(contacts, p.displacement, ws.problem.predicted);
   gather_rails(contacts, p.velocity, ws.problem.predicted_velocity);
@@ -75,7 +76,8 @@ void rail_couplings(const StepOperators& op, const std::vector<RailContact>& con
 
 // The structure's own answer to the contact forces, under the wheels; returns what the contact solution had missed.
 double answer_under_wheels(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
-  scatter_rail_forces(contacts, ws.solution.force, ws.structure_load);
+  for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
+  add_rail_forces(contacts, ws.solution.force, ws.structure_load);
   ws.structure_solution.respond(op.structure->factor(), op.scheme.load_weight(), ws.structure_load, ws.structure_free);
   double missed = 0.0;
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
@@ -181,9 +183,10 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   }
   if (model.structure) {
     const Stopwatch watch(report.seconds_structure);
-    ws.structure_solution.finish(op.structure->factor(), ws.structure_increment);
-    state.structure.contact_load = ws.structure_load;
-    update(hht, ws.structure_prediction, ws.structure_increment, state.structure);
+    const ActivePart& active = op.structure->active();
+    ws.structure_solution.finish(op.structure->factor(), active, ws.structure_increment);
+    active.dofs.of(state.structure.contact_load) = active.dofs.of(ws.structure_load);
+    update(hht, ws.structure_prediction, ws.structure_increment, active.dofs, state.structure);
   }
   std::swap(state.contact, ws.solution);
   state.far_field = ws.far_field;

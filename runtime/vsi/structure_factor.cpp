@@ -54,19 +54,39 @@ std::vector<Columns> supernodes(const Sparse& L) {
   return blocks;
 }
 
+template <class Simplicial>
+Eigen::VectorXd inverse_diagonal(const Simplicial& simplicial) {
+  if (simplicial.info() != Eigen::Success || !(simplicial.vectorD().minCoeff() > 0.0)) {
+    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
+  }
+  return simplicial.vectorD().cwiseInverse();
+}
+
 }  // namespace
 
 StructureFactor::StructureFactor(const Sparse& matrix) {
   const Eigen::SimplicialLDLT<Sparse> simplicial(matrix);  // minimum degree: the fewest entries
-  if (simplicial.info() != Eigen::Success || !(simplicial.vectorD().minCoeff() > 0.0)) {
-    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
-  }
-  inverse_D_ = simplicial.vectorD().cwiseInverse();
+  inverse_D_ = inverse_diagonal(simplicial);
   const auto& order = simplicial.permutationP().indices();
   position_.assign(order.data(), order.data() + order.size());
-  Sparse L = simplicial.matrixL().nestedExpression();  // below the diagonal, rows ascending
-  L.makeCompressed();
+  store(simplicial.matrixL().nestedExpression());
+}
 
+StructureFactor::StructureFactor(const Sparse& matrix, std::span<const int> order) {
+  position_.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) position_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  const Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(
+      Eigen::Map<const Eigen::VectorXi>(position_.data(), matrix.rows()));
+  Sparse ordered(matrix.rows(), matrix.cols());
+  ordered.selfadjointView<Eigen::Lower>() = matrix.selfadjointView<Eigen::Lower>().twistedBy(permutation);
+  const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> simplicial(ordered);
+  inverse_D_ = inverse_diagonal(simplicial);
+  store(simplicial.matrixL().nestedExpression());
+}
+
+// L: below the diagonal, rows ascending.
+void StructureFactor::store(Sparse L) {
+  L.makeCompressed();
   const std::vector<Columns> found = supernodes(L);
   block_of_.resize(position_.size());
   for (const Columns& columns : found) {
@@ -119,14 +139,16 @@ void StructureFactor::find_path(std::span<const int> unknowns, Path& path) const
   std::sort(path.blocks_.begin(), path.blocks_.end());
 }
 
-void StructureFactor::into(const Vector& natural, Vector& ordered) const {
+void StructureFactor::into(const Vector& natural, const DofRange& range, Vector& ordered) const {
   ordered.resize(size());
-  for (Eigen::Index i = 0; i < size(); ++i) ordered[position_[static_cast<std::size_t>(i)]] = natural[i];
+  for (Eigen::Index i = range.begin; i < range.end(); ++i)
+    ordered[position_[static_cast<std::size_t>(i)]] = natural[i];
 }
 
-void StructureFactor::out_of(const Vector& ordered, Vector& natural) const {
+void StructureFactor::out_of(const Vector& ordered, const DofRange& range, Vector& natural) const {
   natural.resize(size());
-  for (Eigen::Index i = 0; i < size(); ++i) natural[i] = ordered[position_[static_cast<std::size_t>(i)]];
+  for (Eigen::Index i = range.begin; i < range.end(); ++i)
+    natural[i] = ordered[position_[static_cast<std::size_t>(i)]];
 }
 
 void StructureFactor::forward(double* y, const Block& block, double* scratch) const {

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <string_view>
 
 #include "railtab/runtime/structure/interval_search.hpp"
+#include "railtab/runtime/vsi/cell_order.hpp"
+#include "railtab/runtime/vsi/divided_substitution.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "selected_solve.hpp"
 
@@ -105,7 +108,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   require_finite(structure);
   effective_ = scheme.acceleration_rate() * structure.mass +
                scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
-  factor_ = std::make_unique<StructureFactor>(effective_);
+  make_factor(structure);
   // The union of both patterns: a zero times one keeps an entry's place.
   const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
   entry_begin_.push_back(0);
@@ -133,10 +136,37 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  factor_ = std::make_unique<StructureFactor>(effective_);
+  make_factor(structure);
 }
 
 StructureResponse::~StructureResponse() = default;
+
+void StructureResponse::make_factor(const StructureModel& structure) {
+  constexpr double cell_length = 20.0;  // m: some hundred unknowns, so that joints are few
+  if (structure.dof_x.empty()) {
+    factor_ = std::make_unique<StructureFactor>(effective_);
+  } else {
+    const std::vector<double> ends = line_cells(structure.dof_x, structure.spans, cell_length);
+    factor_ = std::make_unique<StructureFactor>(effective_, cell_order(effective_, structure.dof_x, ends));
+  }
+  activate({0, dofs_});
+}
+
+void StructureResponse::activate(const DofRange& dofs) {
+  if (active_.dofs == dofs) return;
+  active_.dofs = dofs;
+  std::vector<int> all(static_cast<std::size_t>(dofs.count));
+  std::iota(all.begin(), all.end(), static_cast<int>(dofs.begin));
+  factor_->find_path(all, active_.path);
+}
+
+Eigen::VectorXd StructureResponse::solve(const Eigen::VectorXd& load) const {
+  DividedSubstitution substitution;
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(dofs_);
+  substitution.begin(*factor_, active_, load, {});
+  substitution.finish(*factor_, active_, solution);
+  return solution;
+}
 
 StructureResponse::Entries& StructureResponse::entries() {
   if (!entries_) entries_ = std::make_unique<Entries>(effective_);
@@ -145,16 +175,19 @@ StructureResponse::Entries& StructureResponse::entries() {
 
 void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
                                   Eigen::VectorXd& load) const {
-  load = -scheme.alpha * motion.contact_load;
+  load.resize(dofs_);
+  const Eigen::Index first = active_.dofs.begin, last = active_.dofs.end();
+  active_.dofs.of(load) = -scheme.alpha * active_.dofs.of(motion.contact_load);
   const double* const u = prediction.weighted_displacement.data();
   const double* const v = prediction.weighted_velocity.data();
   double* const f = load.data();
-  for (Eigen::Index j = 0; j < dofs_; ++j) {
+  for (Eigen::Index j = first; j < last; ++j) {
     double sum = 0.0;
     for (int p = entry_begin_[static_cast<std::size_t>(j)], end = entry_begin_[static_cast<std::size_t>(j + 1)];
          p < end; ++p) {
       const Entry& e = entry_[static_cast<std::size_t>(p)];
       const int i = entry_row_[static_cast<std::size_t>(p)];
+      if (i >= last) continue;
       sum += e.stiffness * u[i] + e.damping * v[i];
       if (i != j) f[i] -= e.stiffness * u[j] + e.damping * v[j];
     }
@@ -166,7 +199,7 @@ void StructureResponse::free_increment(const HhtScheme& scheme, const LinearMoti
                                        const Prediction& prediction, Eigen::VectorXd& increment) const {
   Eigen::VectorXd load;
   step_load(scheme, motion, prediction, load);
-  increment = factor_->solve(load);
+  increment = solve(load);
 }
 
 StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,

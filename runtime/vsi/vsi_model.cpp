@@ -169,6 +169,11 @@ void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorX
 void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
                          Eigen::VectorXd& load) noexcept {
   load.setZero();
+  add_rail_forces(contacts, force, load);
+}
+
+void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                     Eigen::VectorXd& load) noexcept {
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
     add_rail_load(contacts[index(wheel)], force.segment<3>(rail_unknown(wheel)), load);
   }

@@ -45,6 +45,10 @@ struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide
   std::vector<StructureNode> nodes;  ///< nodes of interest
+  /// Position along the track of every unknown [m], not decreasing; empty where it is not known.
+  std::vector<double> dof_x;
+  /// Parts that move as wholes, from and to [m]: the spans of a bridge.
+  std::vector<std::array<double, 2>> spans;
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 

@@ -24,20 +24,42 @@ struct Prediction {
   Eigen::VectorXd weighted_displacement, weighted_velocity;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
 };
 
-inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
+/// Unknowns `begin` to `begin + count`: those that take part in a step.
+struct DofRange {
+  Eigen::Index begin = 0, count = 0;
+  [[nodiscard]] Eigen::Index end() const noexcept { return begin + count; }
+  [[nodiscard]] auto of(Eigen::VectorXd& vector) const { return vector.segment(begin, count); }
+  [[nodiscard]] auto of(const Eigen::VectorXd& vector) const { return vector.segment(begin, count); }
+  bool operator==(const DofRange&) const = default;
+};
+
+/// Predictors of the unknowns in `range`; those of others keep what they had.
+inline void predict(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range, Prediction& p) {
   const double dt = scheme.time_step;
-  p.displacement = motion.displacement + dt * motion.velocity + dt * dt * (0.5 - scheme.beta()) * motion.acceleration;
-  p.velocity = motion.velocity + dt * (1.0 - scheme.gamma()) * motion.acceleration;
-  p.weighted_displacement = scheme.load_weight() * p.displacement - scheme.alpha * motion.displacement;
-  p.weighted_velocity = scheme.load_weight() * p.velocity - scheme.alpha * motion.velocity;
+  const auto a = range.of(motion.displacement);
+  const auto v = range.of(motion.velocity);
+  const auto acceleration = range.of(motion.acceleration);
+  for (Eigen::VectorXd* vector : {&p.displacement, &p.velocity, &p.weighted_displacement, &p.weighted_velocity})
+    vector->resize(motion.displacement.size());
+  range.of(p.displacement) = a + dt * v + dt * dt * (0.5 - scheme.beta()) * acceleration;
+  range.of(p.velocity) = v + dt * (1.0 - scheme.gamma()) * acceleration;
+  range.of(p.weighted_displacement) = scheme.load_weight() * range.of(p.displacement) - scheme.alpha * a;
+  range.of(p.weighted_velocity) = scheme.load_weight() * range.of(p.velocity) - scheme.alpha * v;
+}
+inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
+  predict(scheme, motion, {0, motion.displacement.size()}, p);
 }
 
-/// Close the step with the increment Δ over the predictor.
+/// Close the step of the unknowns in `range` with the increment Δ over the predictor.
+inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
+                   const DofRange& range, LinearMotion& motion) {
+  range.of(motion.displacement) = range.of(p.displacement) + range.of(increment);
+  range.of(motion.velocity) = range.of(p.velocity) + scheme.velocity_rate() * range.of(increment);
+  range.of(motion.acceleration) = scheme.acceleration_rate() * range.of(increment);
+}
 inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
                    LinearMotion& motion) {
-  motion.displacement = p.displacement + increment;
-  motion.velocity = p.velocity + scheme.velocity_rate() * increment;
-  motion.acceleration = scheme.acceleration_rate() * increment;
+  update(scheme, p, increment, {0, increment.size()}, motion);
 }
 
 }  // namespace railtab

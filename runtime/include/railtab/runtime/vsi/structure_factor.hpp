@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "railtab/runtime/vsi/linear_motion.hpp"
+
 namespace railtab {
 
 /// Cholesky factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
@@ -21,6 +23,8 @@ class StructureFactor {
 
   /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
   explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix);
+  /// The same with a given order of elimination (the unknown that is eliminated k-th, for each k).
+  StructureFactor(const Eigen::SparseMatrix<double>& matrix, std::span<const int> order);
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
   /// What one half of a back-substitution reads [bytes].
@@ -43,8 +47,11 @@ class StructureFactor {
   }
 
   [[nodiscard]] int position(int unknown) const noexcept { return position_[static_cast<std::size_t>(unknown)]; }
-  void into(const Vector& natural, Vector& ordered) const;
-  void out_of(const Vector& ordered, Vector& natural) const;
+  void into(const Vector& natural, Vector& ordered) const { into(natural, {0, size()}, ordered); }
+  void out_of(const Vector& ordered, Vector& natural) const { out_of(ordered, {0, size()}, natural); }
+  /// The unknowns in `range` only.
+  void into(const Vector& natural, const DofRange& range, Vector& ordered) const;
+  void out_of(const Vector& ordered, const DofRange& range, Vector& natural) const;
 
   /// y <- L⁻¹ y.
   void forward(Vector& y) const;
@@ -58,6 +65,7 @@ class StructureFactor {
   [[nodiscard]] Vector solve(const Vector& load) const;
 
  private:
+  void store(Eigen::SparseMatrix<double> L);
   struct Block {
     int first, columns;  // first column and number of columns
     int below, rows;     // rows below the triangle: number, and place of the first in rows_
@@ -74,6 +82,12 @@ class StructureFactor {
   std::vector<int> position_;  // of an unknown in the factor's order
   Vector inverse_D_;
   int most_below_ = 0;
+};
+
+/// Unknowns that take part in a step, and the blocks of the factor that they need.
+struct ActivePart {
+  DofRange dofs;
+  StructureFactor::Path path;
 };
 
 }  // namespace railtab

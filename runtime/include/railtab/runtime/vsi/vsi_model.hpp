@@ -94,5 +94,8 @@ void scatter_wheelset_forces(const VsiModel& model, int vehicle, const Eigen::Ve
 void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
 void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
                          Eigen::VectorXd& load) noexcept;
+/// The transpose added to loads that are there.
+void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                     Eigen::VectorXd& load) noexcept;
 
 }  // namespace railtab
