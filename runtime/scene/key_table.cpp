@@ -65,6 +65,8 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                  [&](const ContactModeKey&) { set("choice", "table, online, paper", "table"); },
                  [&](const TrackKindKey&) { set("choice", "rigid, flexible, imported", "flexible"); },
                  [&](const NormalContactKey&) { set("choice", "hertz, rigid", "hertz"); },
+                 [&](const ReductionKey&) { set("choice", "none, modal, craig-bampton, window", "none"); },
+                 [&](const SwitchKey& k) { set("choice", "true, false", k.member(standard) ? "true" : "false"); },
              },
              key.value);
   return result;

@@ -73,6 +73,11 @@ struct ProfileKey {
 struct ContactModeKey {};
 struct TrackKindKey {};
 struct NormalContactKey {};
+struct ReductionKey {};
+/// true or false.
+struct SwitchKey {
+  Member<bool> member;
+};
 
 /// The one place that says which key goes to which member, in which unit and range.
 struct KeyBinding {
@@ -80,7 +85,7 @@ struct KeyBinding {
   std::string_view unit;
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ContactModeKey,
-               TrackKindKey, NormalContactKey>
+               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey>
       value;
 };
 

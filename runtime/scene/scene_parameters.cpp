@@ -53,6 +53,11 @@ void SceneParameters::validate() const {
   if (train.count < 1) throw input_error(place, fmt::format("train.count = {}", train.count), ">= 1");
   require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");
   integration.validate();
+  reduction.validate();
+  if (reduction.kind == Reduction::modal && contact.normal == NormalContact::rigid) {
+    throw input_error(place, "structure.reduction = \"modal\" with contact.normal = \"rigid\"",
+                      "another reduction: wheels that follow the rails need their curvature, which few modes have not");
+  }
   if (track_kind == TrackKind::flexible) {
     track.validate();
     for (const BridgeParameters& span : spans) span.validate();

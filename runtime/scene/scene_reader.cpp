@@ -50,6 +50,17 @@ struct Assign {
                                   : name == "flexible" ? TrackKind::flexible
                                                        : TrackKind::imported;
   }
+  void operator()(const ReductionKey&) const {
+    const std::string name = one_of({"none", "modal", "craig-bampton", "window"});
+    for (const Reduction kind : {Reduction::none, Reduction::modal, Reduction::craig_bampton, Reduction::window}) {
+      if (reduction_name(kind) == name) draft.parameters.reduction.kind = kind;
+    }
+  }
+  void operator()(const SwitchKey& key) const {
+    const toml::value<bool>* value = leaf.node->as_boolean();
+    if (!value) throw error("true or false");
+    key.member(draft) = value->get();
+  }
   void operator()(const NormalContactKey&) const {
     draft.parameters.contact.normal =
         one_of({"hertz", "rigid"}) == "rigid" ? NormalContact::rigid : NormalContact::hertz;

@@ -121,6 +121,19 @@ std::vector<KeyBinding> span_keys() {
   };
 }
 
+std::vector<KeyBinding> reduction_keys() {
+  return {
+      {"structure.reduction", "", "how the structure is made smaller for the steps", ReductionKey{}},
+      {"structure.modes", "1", "modal: of the structure; craig-bampton: of each part between the rails",
+       IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.reduction.modes; }, 1, 2000}},
+      {"structure.static_correction", "", "modal: modes left out answer without inertia", SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.reduction.static_correction; }}},
+      {"structure.window_ahead", "m", "window: track that takes part before the first wheelset",
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.ahead; }, {5.0, 1e5}}},
+      {"structure.window_behind", "m", "window: track that takes part behind the last wheelset",
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.behind; }, {5.0, 1e5}}},
+  };
+}
+
 std::vector<KeyBinding> import_keys() {
   return {
       {"structure.mass", "", "Matrix Market file of the mass matrix",
@@ -148,7 +161,7 @@ const std::vector<KeyBinding>& structure_keys() {
                              support_keys<&TrackParameters::ballast_deck>(
                                  {"track.ballast_deck.kx", "track.ballast_deck.ky", "track.ballast_deck.kz",
                                   "track.ballast_deck.cx", "track.ballast_deck.cy", "track.ballast_deck.cz"}),
-                             span_keys(), import_keys()}) {
+                             span_keys(), import_keys(), reduction_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

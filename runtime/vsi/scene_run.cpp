@@ -184,6 +184,31 @@ EquilibriumReport start(const SceneParameters& scene, const VsiModel& model, Vsi
   return steady_start(model, state);
 }
 
+// The structure as the steps will have it.
+void reduce(const ReductionParameters& reduction, VsiModel& model) {
+  if (!model.structure) return;
+  switch (reduction.kind) {
+    case Reduction::modal: {
+      auto unreduced = std::make_shared<const StructureModel>(std::move(*model.structure));
+      model.structure = reduce_to_modes(*unreduced, reduction.modes);
+      if (reduction.static_correction) model.unreduced = std::move(unreduced);
+      break;
+    }
+    case Reduction::craig_bampton:
+      model.structure = reduce_parts(*model.structure, reduction.modes);
+      break;
+    case Reduction::window:
+      if (model.structure->dof_x.empty()) {
+        throw input_error("scene: structure.reduction", "\"window\" of an imported structure",
+                          "another reduction: where its unknowns are along the track is not known");
+      }
+      model.window = make_window(*model.structure, reduction);
+      break;
+    case Reduction::none:
+      break;
+  }
+}
+
 // What was done to the points of measured profiles.
 void note_repairs(const VsiModel& model, const RunObserver& observer) {
   if (!model.geometry) return;
@@ -207,6 +232,7 @@ VsiModel build_model(const SceneParameters& scene) {
   if (scene.track_kind == TrackKind::imported) model.structure = import_structure(scene.structure);
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   check_on_track(scene, model);
+  reduce(scene.reduction, model);
   return model;
 }
 

@@ -23,12 +23,19 @@ class Integrator {
  public:
   Integrator(const VsiModel& model, const IntegrationParameters& p, double& seconds_setup)
       : model_(model), parameters_(p), workspace_(model) {
+    if (model.structure) active_ = {0, model.structure->dofs()};
+    if (model.window) window_.emplace(model, p.time_step);
     // The tolerance counts relative to a contact displacement of 1 mm.
     limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
     static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 
-  bool step(VsiState& state, RunSummary& summary) { return step(0, state, summary); }
+  bool step(VsiState& state, RunSummary& summary) {
+    if (window_) active_ = window_->move(state);
+    if (!step(0, state, summary)) return false;
+    if (window_) window_->vibrate(state);
+    return true;
+  }
   /// From here on as a run that begins here: nothing of earlier steps but the state.
   void forget() { workspace_.newton.factor.clear(); }
 
@@ -41,7 +48,7 @@ class Integrator {
       const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
       found = operators_.emplace(level, StepOperators(model_, scheme)).first;
     }
-    found->second.follow(model_, time);
+    found->second.follow(model_, time, active_);
     return found->second;
   }
 
@@ -68,6 +75,8 @@ class Integrator {
   StepLimits limits_;
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
+  DofRange active_;  // unknowns of the structure that take part
+  std::optional<MovingWindow> window_;
 };
 
 void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord& record) {
@@ -76,6 +85,22 @@ void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord
     record.displacement[k] = free ? motion.displacement[dof[k]] : 0.0;
     record.velocity[k] = free ? motion.velocity[dof[k]] : 0.0;
     record.acceleration[k] = free ? motion.acceleration[dof[k]] : 0.0;
+  }
+}
+
+// Nodes whose motion is a combination of the unknowns.
+void fill_combined_nodes(const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows, const VsiState& state,
+                         StepRecord& record) {
+  const Eigen::VectorXd displacement = rows * state.structure.displacement;
+  const Eigen::VectorXd velocity = rows * state.structure.velocity;
+  const Eigen::VectorXd acceleration = rows * state.structure.acceleration;
+  for (std::size_t n = 0; n < record.nodes.size(); ++n) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto row = static_cast<Eigen::Index>(6 * n + k);
+      record.nodes[n].displacement[k] = displacement[row];
+      record.nodes[n].velocity[k] = velocity[row];
+      record.nodes[n].acceleration[k] = acceleration[row];
+    }
   }
 }
 
@@ -127,6 +152,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   }
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
+  if (model.structure->node_rows.rows() > 0) return fill_combined_nodes(model.structure->node_rows, state, record);
   for (std::size_t n = 0; n < record.nodes.size(); ++n)
     fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
 namespace railtab {
@@ -24,12 +25,27 @@ constexpr double pitch_rate_compliance =
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-std::vector<RailCoupling> all_couplings(StructureResponse& response, const std::vector<RailContact>& contacts) {
+// The linear parts at rest, made once.
+struct RestOperators {
+  VehicleResponse vehicle;
+  std::unique_ptr<StructureResponse> structure;
+  std::unique_ptr<LocalFlexibility> local;
+  explicit RestOperators(const VsiModel& model) : vehicle(model.vehicle, regularisation) {
+    if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
+    if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
+  }
+};
+
+std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::vector<RailContact>& contacts) {
+  StructureResponse& response = *rest.structure;
   const Eigen::MatrixXd compliance = response.compliance_at(contacts);
   std::vector<RailCoupling> rail;
   const int wheels = static_cast<int>(contacts.size());
   for (int i = 0; i < wheels; ++i) {
-    for (int j = 0; j < wheels; ++j) rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
+    for (int j = 0; j < wheels; ++j) {
+      rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
+      if (rest.local) rail.back().compliance += (*rest.local)(contacts[index(i)], contacts[index(j)]);
+    }
   }
   return rail;
 }
@@ -45,8 +61,9 @@ void clear_pitch(const VsiModel& model, Eigen::VectorXd& dofs) {
   }
 }
 
-ContactProblem rest_problem(const VsiModel& model, const VehicleResponse& vehicle, StructureResponse* structure,
+ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
                             const std::vector<RailContact>& contacts) {
+  const VehicleResponse& vehicle = rest.vehicle;
   ContactProblem problem;
   problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
   problem.free = problem.predicted = problem.predicted_velocity =
@@ -60,19 +77,10 @@ ContactProblem rest_problem(const VsiModel& model, const VehicleResponse& vehicl
     problem.vehicle_compliance.col(k).setZero();
     if (free_pitch) problem.vehicle_compliance(k, k) = pitch_rate_compliance;
   }
-  if (structure) problem.rail = all_couplings(*structure, contacts);
+  if (rest.structure) problem.rail = all_couplings(rest, contacts);
   problem.largest_move = 1e-3;
   return problem;
 }
-
-// The linear parts at rest, made once.
-struct RestOperators {
-  VehicleResponse vehicle;
-  std::unique_ptr<StructureResponse> structure;
-  explicit RestOperators(const VsiModel& model) : vehicle(model.vehicle, regularisation) {
-    if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
-  }
-};
 
 // Vertical force of one rail on wheelset w, down [N].
 double vertical_force(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement, int w,
@@ -112,6 +120,17 @@ void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::Vecto
   }
 }
 
+// What the static correction adds to the rail heads' displacement.
+void local_at_rest(const LocalFlexibility& local, const std::vector<RailContact>& contacts, VsiState& state) {
+  state.local.displacement.setZero();
+  const int wheels = static_cast<int>(contacts.size());
+  for (int i = 0; i < wheels; ++i) {
+    for (int j = 0; j < wheels; ++j)
+      state.local.displacement.segment<3>(3 * i) +=
+          local(contacts[index(i)], contacts[index(j)]) * state.contact.force.segment<3>(rail_unknown(j));
+  }
+}
+
 // Equilibrium at state.time with `structure_load` on the structure besides the wheels.
 EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
                               VsiState& state) {
@@ -119,7 +138,8 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   const VehicleResponse& vehicle = rest.vehicle;
   StructureResponse* structure = rest.structure.get();
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
-  ContactProblem problem = rest_problem(model, vehicle, structure, contacts);
+  if (rest.local) rest.local->follow(model.wheelset_x(model.wheelsets() - 1, state.time), model.wheelset_x(0, state.time));
+  ContactProblem problem = rest_problem(model, rest, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
   NewtonWorkspace workspace;
   const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
@@ -168,6 +188,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     report.converged = (contact_change < contact_tolerance && report.change < dof_tolerance) ||
                        (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
   }
+  if (rest.local) local_at_rest(*rest.local, contacts, state);
   // The pitch unknowns are rates: hand them to the vehicles as such.
   for (int w = 0; w < model.wheelsets(); ++w) {
     const int per_vehicle = model.wheelsets_per_vehicle();

@@ -56,17 +56,36 @@ void free_structure(const VsiModel& model, const StepOperators& op, const VsiSta
   }
 }
 
-void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts,
-                    std::vector<RailCoupling>& rail) {
+// What the static correction adds under the wheels.
+void predict_local(const StepOperators& op, const VsiState& state, StepWorkspace& ws) {
+  predict(op.scheme, state.local, ws.local_prediction);
+  const Prediction& p = ws.local_prediction;
+  for (int wheel = 0; wheel < static_cast<int>(p.displacement.size()) / 3; ++wheel) {
+    const int k = rail_unknown(wheel);
+    ws.problem.predicted.segment<3>(k) += p.displacement.segment<3>(3 * wheel);
+    ws.problem.predicted_velocity.segment<3>(k) += p.velocity.segment<3>(3 * wheel);
+    ws.solution.displacement.segment<3>(k) += state.local.displacement.segment<3>(3 * wheel);
+  }
+}
+
+void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
+  std::vector<RailCoupling>& rail = ws.problem.rail;
   rail.clear();
+  ws.local.clear();
   const int wheels = static_cast<int>(contacts.size());
   for (int j = 0; j < wheels; ++j) {
     if (!contacts[index(j)].on_rail) continue;
     // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
     // symmetric.
     for (int i = j; i < wheels; ++i) {
-      const Eigen::Matrix3d c =
+      Eigen::Matrix3d c =
           op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
+      if (op.local) {
+        const Eigen::Matrix3d local = (*op.local)(contacts[index(i)], contacts[index(j)]);
+        c += local;
+        ws.local.push_back({i, j, local});
+        if (i != j) ws.local.push_back({j, i, local.transpose()});
+      }
       if (c.isZero(0.0)) break;
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
@@ -79,11 +98,18 @@ double answer_under_wheels(const StepOperators& op, const std::vector<RailContac
   for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   add_rail_forces(contacts, ws.solution.force, ws.structure_load);
   ws.structure_solution.respond(op.structure->factor(), op.scheme.load_weight(), ws.structure_load, ws.structure_free);
+  if (op.local) {
+    ws.local_displacement = -ws.local_prediction.displacement;
+    for (const RailCoupling& c : ws.local) {
+      ws.local_displacement.segment<3>(3 * c.i) += c.compliance * ws.solution.force.segment<3>(rail_unknown(c.j));
+    }
+  }
   double missed = 0.0;
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
     const int k = rail_unknown(wheel);
-    const Vector3 miss = ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) -
-                         ws.solution.displacement.segment<3>(k);
+    Vector3 miss = ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) -
+                   ws.solution.displacement.segment<3>(k);
+    if (op.local) miss += ws.local_displacement.segment<3>(3 * wheel);
     missed = std::max(missed, miss.cwiseAbs().maxCoeff());
     ws.problem.free.segment<3>(k) += miss;
     ws.far_field.segment<3>(3 * wheel) += miss;
@@ -98,17 +124,20 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   if (model.normal_contact == NormalContact::rigid) rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
+  if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
 }
 
-void StepOperators::follow(const VsiModel& model, double time) {
+void StepOperators::follow(const VsiModel& model, double time, const DofRange& active) {
   constexpr double ahead = 10.0;  // m
   const double front = model.wheelset_x(0, time);
   const double rear = model.wheelset_x(model.wheelsets() - 1, time);
+  if (structure) structure->activate(active);
   if (!structure || (rear >= covered_from_ && front <= covered_to_)) return;
   // A step that is repeated as halves looks back by at most one step.
   covered_from_ = rear - model.contact.speed * scheme.time_step;
   covered_to_ = front + ahead;
   structure->tabulate_compliance(*model.structure, compliance_window, covered_from_, covered_to_);
+  if (local) local->follow(covered_from_, covered_to_);
 }
 
 StepWorkspace::StepWorkspace(const VsiModel& model) {
@@ -142,7 +171,8 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     const Stopwatch watch(report.seconds_structure);
     free_structure(model, op, state, contacts, ws);
     ++report.back_substitutions;
-    rail_couplings(op, contacts, ws.problem.rail);
+    if (op.local) predict_local(op, state, ws);
+    rail_couplings(op, contacts, ws);
   }
   rail_deviation(model, contacts, time, ws.structure_prediction.displacement, ws.problem.deviation);
   ws.problem.velocity_rate = Vector6::Constant(hht.velocity_rate());
@@ -187,6 +217,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     ws.structure_solution.finish(op.structure->factor(), active, ws.structure_increment);
     active.dofs.of(state.structure.contact_load) = active.dofs.of(ws.structure_load);
     update(hht, ws.structure_prediction, ws.structure_increment, active.dofs, state.structure);
+    if (op.local) update(hht, ws.local_prediction, ws.local_displacement, state.local);
   }
   std::swap(state.contact, ws.solution);
   state.far_field = ws.far_field;

@@ -36,6 +36,8 @@ VsiState::VsiState(const VsiModel& model)
   contact.patches.resize(index(2 * wheelsets));
   contact.normal.resize(index(2 * wheelsets));
   far_field = Eigen::VectorXd::Zero(6 * wheelsets);
+  if (model.unreduced) local = LinearMotion(6 * wheelsets);
+  if (model.window) left_behind = Eigen::VectorXd::Zero(model.window->numbers());
 }
 
 namespace {
@@ -53,6 +55,8 @@ void visit_numbers(State& state, Visitor&& visit) {
   };
   for (auto& motion : state.vehicle) visit_motion(motion);
   visit_motion(state.structure);
+  visit_motion(state.local);
+  visit_vector(state.left_behind);
   visit_vector(state.contact.displacement);
   visit_vector(state.contact.force);
   visit_vector(state.contact.rail_x);
@@ -107,13 +111,9 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
       head = RailHeadMotion{{d.y, d.z, 0.0}, Vector3::Zero(), d.dy_dx, d.dz_dx};
       if (contacts.empty()) continue;
       const RailContact& contact = contacts[index(2 * w + side)];
-      if (!contact.on_rail) continue;
-      for (std::size_t k = 0; k < 12; ++k) {
-        if (contact.rows.dof[k] == held) continue;
-        const double a = structure_displacement[contact.rows.dof[k]];
-        head.yaw += contact.rows.yaw[k] * a;
-        head.slope -= contact.rows.pitch[k] * a;
-      }
+      const Eigen::Vector2d slopes = rail_slopes(contact, structure_displacement);
+      head.yaw += slopes[0];
+      head.slope -= slopes[1];
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
+#include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
@@ -71,6 +72,7 @@ struct SceneParameters {
   TrackParameters track;
   std::vector<BridgeParameters> spans;  ///< none: no bridge
   StructureFiles structure;             ///< for TrackKind::imported
+  ReductionParameters reduction;
   std::optional<std::filesystem::path> irregularity;
   IntegrationParameters integration;
   OutputParameters output;

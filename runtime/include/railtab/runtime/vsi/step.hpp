@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "railtab/runtime/vsi/divided_substitution.hpp"
+#include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -16,12 +17,14 @@ class StepOperators {
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
   std::unique_ptr<StructureResponse> structure;    ///< null on rigid track
+  std::unique_ptr<LocalFlexibility> local;         ///< static correction of a modal structure; null without
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);
 
-  /// Take the table of the rails' compliance along, so that it covers the train up to `time` and some way ahead.
-  void follow(const VsiModel& model, double time);
+  /// Take the table of the rails' compliance along, so that it covers the train up to `time` and some way ahead, and
+  /// let the unknowns in `active` take part.
+  void follow(const VsiModel& model, double time, const DofRange& active);
 
  private:
   double covered_from_ = 0.0, covered_to_ = -1.0;  ///< positions along the track [m]; none at first
@@ -45,10 +48,12 @@ struct StepReport {
 /// Buffers of a step, reused.
 struct StepWorkspace {
   std::vector<Prediction> vehicle_prediction;
-  Prediction structure_prediction;
+  Prediction structure_prediction, local_prediction;
   std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
   DividedSubstitution structure_solution;
-  std::vector<int> rail_dofs;  ///< dofs of the structure that the wheels load
+  std::vector<int> rail_dofs;  ///< unknowns of the structure that the wheels load
+  std::vector<RailCoupling> local;  ///< static correction
+  Eigen::VectorXd local_displacement;  ///< of it, 3 per wheel
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
   ContactSolution solution;

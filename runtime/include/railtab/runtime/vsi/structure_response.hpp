@@ -17,15 +17,20 @@ struct RailContact {
   RailSide side = RailSide::left;
   bool on_rail = false;
   int element = 0;  ///< left node of the beam element
+  double x = 0.0;   ///< along the track [m]
   RailInterpolation rows{};
+  /// The rows y, z, roll, yaw and pitch over modal coordinates, where the structure is in them.
+  Eigen::Matrix<double, 5, Eigen::Dynamic> modal;
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
 
-/// Append the structure's dofs under a wheel.
+/// Append the structure's unknowns that a wheel loads.
 void append_dofs(const RailContact& contact, std::vector<int>& dofs);
 
 /// Displacement (y, z, roll) of a rail head from a vector of structure dofs.
 [[nodiscard]] Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept;
+/// Slopes yaw = dy/dx and pitch = -dz/dx of a rail head.
+[[nodiscard]] Eigen::Vector2d rail_slopes(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept;
 /// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
 void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
 
@@ -90,6 +95,7 @@ class StructureResponse {
   /// three times as large, gives single entries of the inverse (SelectedSolve).
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
 
+  [[nodiscard]] Eigen::Matrix3d modal(const RailContact& i, const RailContact& j) const noexcept;
   void make_factor(const StructureModel& structure);
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
@@ -108,6 +114,9 @@ class StructureResponse {
   std::unique_ptr<Entries> entries_;
   Eigen::Index dofs_ = 0;
   std::array<std::vector<Column>, 2> column_;  ///< per rail and node
+  /// In modal coordinates, in place of the table: 1/K̄ by its diagonal, from which damping alone makes it differ.
+  Eigen::VectorXd modal_compliance_;
+  double modal_window_ = 0.0;  ///< [m]
 };
 
 }  // namespace railtab

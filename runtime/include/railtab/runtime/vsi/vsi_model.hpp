@@ -11,6 +11,7 @@
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
+#include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
 
 namespace railtab {
@@ -35,7 +36,10 @@ struct DeviationHistory {
 struct VsiModel {
   VehicleModel vehicle;
   std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
-  std::optional<StructureModel> structure;
+  std::optional<StructureModel> structure;  ///< reduced, where a reduction is chosen
+  /// Of a modal structure whose left-out modes answer without inertia: all of it.
+  std::shared_ptr<const StructureModel> unreduced;
+  std::optional<WindowModel> window;  ///< for Reduction::window
   Irregularity irregularity;
   std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`
   NormalContact normal_contact = NormalContact::hertz;
@@ -59,6 +63,8 @@ struct VsiState {
   double time = 0.0;
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
+  LinearMotion local;         ///< of rail heads, 3 per wheel, by the modes left out; empty without static correction
+  Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
   ContactSolution contact;
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/vsi/linear_motion.hpp"
+
+namespace railtab {
+
+struct VsiModel;
+struct VsiState;
+
+/// A span with the track on it, rails cut at its ends, in its lowest modes: what it does once the train has left it.
+struct SpanModes {
+  double from = 0.0, to = 0.0;      ///< [m]
+  DofRange dofs;                    ///< of the structure
+  Eigen::MatrixXd shape;            ///< Φ, those dofs × modes, ΦᵀMΦ = I
+  Eigen::VectorXd omega2, damping;  ///< diagonals of ΦᵀKΦ and ΦᵀCΦ
+};
+
+/// A structure that takes part in the steps only where the train is.
+struct WindowModel {
+  double ahead = 20.0, behind = 20.0;  ///< of the first and last wheelset [m]
+  std::vector<SpanModes> spans;
+  [[nodiscard]] Eigen::Index numbers() const noexcept;  ///< of VsiState::left_behind
+};
+
+/// @pre the structure says where its unknowns are (dof_x). @throws ComputationError where a span is not held
+[[nodiscard]] WindowModel make_window(const StructureModel& structure, const ReductionParameters& parameters);
+
+/// Takes the part of the structure that takes part along with the train, in strides, whole spans at a time. Where the
+/// window is depends on the time alone, so that a resumed run finds it again.
+class MovingWindow {
+ public:
+  MovingWindow(const VsiModel& model, double time_step);
+
+  /// The unknowns that take part in the step from state.time. What is outside is put to rest; spans that fall behind
+  /// vibrate on in their own modes.
+  DofRange move(VsiState& state);
+  /// One time step of the spans behind; their nodes of interest are written into the state.
+  void vibrate(VsiState& state) const;
+
+ private:
+  struct Ends {
+    double from, to;
+    bool operator==(const Ends&) const = default;
+  };
+  [[nodiscard]] Ends ends(long step) const;
+
+  const VsiModel& model_;
+  HhtScheme scheme_;
+  bool placed_ = false;
+  double from_ = 0.0;
+};
+
+}  // namespace railtab

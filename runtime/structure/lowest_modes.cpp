@@ -1,0 +1,130 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/vsi/structure_factor.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Basis of the Krylov space of K⁻¹ M, M-orthonormal, with the projection of K⁻¹ M on it.
+class BlockLanczos {
+ public:
+  BlockLanczos(const Sparse& stiffness, const Sparse& mass, Eigen::Index block)
+      : mass_(mass), factor_(stiffness), block_(block) {
+    Matrix start(mass.rows(), block);
+    for (double& value : start.reshaped()) value = random();
+    append(solved(start), nullptr);
+  }
+
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+
+  /// One more block; false where the space cannot grow.
+  bool extend() {
+    const Eigen::Index last = size_ - added_, columns = added_;
+    Matrix next(mass_.rows(), columns);
+    for (Eigen::Index k = 0; k < columns; ++k) next.col(k) = factor_.solve(mass_basis_.col(last + k));
+    Matrix projected = Matrix::Zero(size_, columns);
+    append(next, &projected);
+    projection_.conservativeResize(size_, size_);
+    projection_.rightCols(added_).setZero();
+    projection_.bottomRows(added_).setZero();
+    projection_.block(0, last, projected.rows(), columns) = projected;
+    projection_.block(last, 0, columns, projected.rows()) = projected.transpose();
+    return added_ > 0;
+  }
+
+  /// Ritz vectors of the largest `modes` eigenvalues of K⁻¹ M, and whether their residuals are below the tolerance.
+  bool ritz(Eigen::Index modes, double tolerance, ModalBasis& basis) const {
+    const Eigen::Index known = size_ - added_;  // columns of the projection that are complete
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(projection_.topLeftCorner(known, known));
+    const Eigen::Index count = std::min(modes, known);
+    const Matrix vectors = eigen.eigenvectors().rightCols(count).rowwise().reverse();
+    const Eigen::VectorXd theta = eigen.eigenvalues().tail(count).reverse();
+    const Matrix residual = projection_.block(known, 0, added_, known) * vectors;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (!(residual.col(k).norm() <= tolerance * theta[k])) return false;
+    }
+    basis.shape = basis_.leftCols(known) * vectors;
+    basis.omega2 = theta.cwiseInverse();
+    return count == modes || added_ == 0;
+  }
+
+ private:
+  double random() { return std::uniform_real_distribution<double>(-1.0, 1.0)(generator_); }
+
+  Matrix solved(const Matrix& load) const {
+    Matrix result(load.rows(), load.cols());
+    const Matrix weighted = mass_ * load;
+    for (Eigen::Index k = 0; k < load.cols(); ++k) result.col(k) = factor_.solve(weighted.col(k));
+    return result;
+  }
+
+  // Takes the block's components in the basis out (twice: once loses digits), then orthonormalises it column by column.
+  void append(Matrix block, Matrix* projected) {
+    const Eigen::Index before = size_;
+    for (int pass = 0; pass < 2 && before > 0; ++pass) {
+      const Matrix part = mass_basis_.leftCols(before).transpose() * block;
+      block.noalias() -= basis_.leftCols(before) * part;
+      if (projected) *projected += part;
+    }
+    if (size_ + block.cols() > basis_.cols()) {
+      const Eigen::Index room = std::max(2 * basis_.cols(), size_ + 8 * block_);
+      basis_.conservativeResize(mass_.rows(), room);
+      mass_basis_.conservativeResize(mass_.rows(), room);
+    }
+    const double scale = block.cwiseAbs().maxCoeff();
+    Matrix inner = Matrix::Zero(block.cols(), block.cols());
+    added_ = 0;
+    for (Eigen::Index k = 0; k < block.cols(); ++k) {
+      Eigen::VectorXd column = block.col(k);
+      for (int pass = 0; pass < 2; ++pass) {
+        for (Eigen::Index i = 0; i < added_; ++i) {
+          const double part = mass_basis_.col(before + i).dot(column);
+          column -= part * basis_.col(before + i);
+          inner(i, k) += part;
+        }
+      }
+      const Eigen::VectorXd weighted = mass_ * column;
+      const double norm = std::sqrt(std::max(0.0, column.dot(weighted)));
+      if (!(norm > 1e-12 * scale) || before + added_ == mass_.rows()) continue;  // nothing new in this direction
+      basis_.col(before + added_) = column / norm;
+      mass_basis_.col(before + added_) = weighted / norm;
+      inner(added_++, k) = norm;
+    }
+    size_ = before + added_;
+    if (!projected) return;
+    projected->conservativeResize(size_, block.cols());
+    projected->bottomRows(added_) = inner.topRows(added_);
+  }
+
+  const Sparse& mass_;
+  StructureFactor factor_;
+  Eigen::Index block_, size_ = 0, added_ = 0;
+  Matrix basis_, mass_basis_, projection_;
+  std::mt19937_64 generator_{20240607};
+};
+
+}  // namespace
+
+ModalBasis lowest_modes(const Sparse& stiffness, const Sparse& mass, int modes, double tolerance) {
+  const Eigen::Index wanted = std::min<Eigen::Index>(modes, mass.rows());
+  BlockLanczos lanczos(stiffness, mass, std::min<Eigen::Index>(8, wanted));
+  ModalBasis basis;
+  Eigen::Index next_look = wanted + wanted / 2 + 24;
+  while (lanczos.extend()) {
+    if (lanczos.size() < next_look) continue;
+    if (lanczos.ritz(wanted, tolerance, basis)) return basis;
+    next_look = lanczos.size() + lanczos.size() / 4;
+  }
+  lanczos.ritz(wanted, std::numeric_limits<double>::infinity(), basis);
+  return basis;
+}
+
+}  // namespace railtab

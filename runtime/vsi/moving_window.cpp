@@ -1,0 +1,135 @@
+#include "railtab/runtime/vsi/moving_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+constexpr int span_modes = 16;  // of a span with its track: those of the deck that matter after a train
+constexpr double stride = 10.0;  // m: the window moves on by as much at a time
+
+// Unknowns with from <= x <= to.
+DofRange dofs_between(const std::vector<double>& x, double from, double to) {
+  const auto begin = std::lower_bound(x.begin(), x.end(), from) - x.begin();
+  return {begin, std::upper_bound(x.begin(), x.end(), to) - x.begin() - begin};
+}
+
+Sparse block(const Sparse& matrix, const DofRange& dofs) {
+  return matrix.block(dofs.begin, dofs.begin, dofs.count, dofs.count);
+}
+
+// Coordinates (0), velocities (1) or accelerations (2) of a span in VsiState::left_behind.
+auto of_span(Eigen::VectorXd& numbers, Eigen::Index first, Eigen::Index modes, int derivative) {
+  return numbers.segment(first + derivative * modes, modes);
+}
+
+void to_rest(LinearMotion& motion, Eigen::Index begin, Eigen::Index count) {
+  for (Eigen::VectorXd* vector :
+       {&motion.displacement, &motion.velocity, &motion.acceleration, &motion.contact_load})
+    vector->segment(begin, count).setZero();
+}
+
+}  // namespace
+
+Eigen::Index WindowModel::numbers() const noexcept {
+  Eigen::Index sum = 0;
+  for (const SpanModes& span : spans) sum += 3 * span.omega2.size();
+  return sum;
+}
+
+WindowModel make_window(const StructureModel& structure, const ReductionParameters& parameters) {
+  WindowModel window{parameters.ahead, parameters.behind, {}};
+  for (const auto& [from, to] : structure.spans) {
+    SpanModes span{from, to, dofs_between(structure.dof_x, from, to), {}, {}, {}};
+    ModalBasis basis =
+        lowest_modes(block(structure.stiffness, span.dofs), block(structure.mass, span.dofs), span_modes, 1e-6);
+    span.damping = (basis.shape.transpose() * (block(structure.damping, span.dofs) * basis.shape)).diagonal();
+    span.shape = std::move(basis.shape);
+    span.omega2 = std::move(basis.omega2);
+    window.spans.push_back(std::move(span));
+  }
+  return window;
+}
+
+MovingWindow::MovingWindow(const VsiModel& model, double time_step)
+    : model_(model), scheme_{.alpha = 0.0, .time_step = time_step} {}
+
+MovingWindow::Ends MovingWindow::ends(long step) const {
+  const WindowModel& window = *model_.window;
+  const double time = static_cast<double>(step) * scheme_.time_step;
+  const double rear = model_.wheelset_x(model_.wheelsets() - 1, time) - window.behind;
+  const double front = model_.wheelset_x(0, time) + window.ahead;
+  Ends ends{stride * std::floor(rear / stride), stride * std::ceil(front / stride)};
+  for (const SpanModes& span : window.spans) {
+    if (span.from < ends.from && ends.from < span.to) ends.from = span.from;
+    if (span.from < ends.to && ends.to < span.to) ends.to = span.to;
+  }
+  return ends;
+}
+
+DofRange MovingWindow::move(VsiState& state) {
+  const long step = std::lround(state.time / scheme_.time_step);
+  const Ends now = ends(step);
+  const Ends before = ends(step - 1);
+  const DofRange range = dofs_between(model_.structure->dof_x, now.from, now.to);
+  from_ = now.from;
+  if (placed_ && now == before) return range;
+  Eigen::Index first = 0;
+  for (const SpanModes& span : model_.window->spans) {
+    const Eigen::Index modes = span.omega2.size();
+    if (before.from < span.to && span.to <= now.from) {
+      const Sparse mass = block(model_.structure->mass, span.dofs);
+      int derivative = 0;
+      for (const Eigen::VectorXd* motion :
+           {&state.structure.displacement, &state.structure.velocity, &state.structure.acceleration}) {
+        const Eigen::VectorXd momentum = mass * span.dofs.of(*motion);
+        of_span(state.left_behind, first, modes, derivative++) = span.shape.transpose() * momentum;
+      }
+    }
+    first += 3 * modes;
+  }
+  to_rest(state.structure, 0, range.begin);
+  to_rest(state.structure, range.end(), state.structure.displacement.size() - range.end());
+  placed_ = true;
+  return range;
+}
+
+void MovingWindow::vibrate(VsiState& state) const {
+  const double dt = scheme_.time_step;
+  Eigen::Index first = 0;
+  for (const SpanModes& span : model_.window->spans) {
+    if (span.to > from_) break;
+    const Eigen::Index modes = span.omega2.size();
+    auto q = of_span(state.left_behind, first, modes, 0);
+    auto v = of_span(state.left_behind, first, modes, 1);
+    auto a = of_span(state.left_behind, first, modes, 2);
+    first += 3 * modes;
+    // Eq. 12 mode by mode, without load.
+    const Eigen::ArrayXd predicted = q.array() + dt * v.array() + dt * dt * (0.5 - scheme_.beta()) * a.array();
+    const Eigen::ArrayXd velocity = v.array() + dt * (1.0 - scheme_.gamma()) * a.array();
+    const Eigen::ArrayXd increment =
+        -(span.damping.array() * velocity + span.omega2.array() * predicted) /
+        (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array());
+    q.array() = predicted + increment;
+    v.array() = velocity + scheme_.velocity_rate() * increment;
+    a.array() = scheme_.acceleration_rate() * increment;
+    for (const StructureNode& node : model_.structure->nodes) {
+      if (node.x < span.from || node.x > span.to) continue;
+      for (int dof : node.dof) {
+        if (dof == held || dof < span.dofs.begin || dof >= span.dofs.end()) continue;
+        const auto row = span.shape.row(dof - span.dofs.begin);
+        state.structure.displacement[dof] = row * q;
+        state.structure.velocity[dof] = row * v;
+        state.structure.acceleration[dof] = row * a;
+      }
+    }
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,98 @@
+#include "railtab/runtime/vsi/reduction_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+struct Difference {
+  double max = 0.0, square = 0.0;
+  long count = 0;
+  void add(double value) {
+    max = std::max(max, std::abs(value));
+    square += value * value;
+    ++count;
+  }
+  [[nodiscard]] double rms() const { return count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0.0; }
+};
+
+double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+
+}  // namespace
+
+ComparedHistory compared_history(const SceneParameters& scene, double duration) {
+  SceneParameters stretch = scene;
+  stretch.integration.duration = duration;
+  stretch.output.every = 1;
+  ComparedHistory history;
+  std::vector<std::size_t> deck;
+  RunObserver observer;
+  observer.start = [&](const ResultHeader& header) {
+    history.static_load = header.static_wheel_load;
+    for (std::size_t n = 0; n < header.node_names.size(); ++n) {
+      if (header.node_names[n].starts_with("deck")) deck.push_back(n);
+    }
+  };
+  observer.record = [&](const StepRecord& record) {
+    std::vector<float>& force = history.force.emplace_back();
+    for (const WheelRecord& wheel : record.wheels) force.push_back(static_cast<float>(wheel.Q));
+    std::vector<float>& acceleration = history.deck.emplace_back();
+    for (std::size_t n : deck) acceleration.push_back(static_cast<float>(record.nodes[n].acceleration[2]));
+  };
+  history.summary = run_scene(stretch, observer);
+  if (!history.summary.complete) {
+    throw ComputationError(
+        fmt::format("comparison with reduction \"{}\": {}", reduction_name(scene.reduction.kind), history.summary.message));
+  }
+  return history;
+}
+
+ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& whole) {
+  ReductionError error;
+  error.reduced = reduced.summary;
+  error.whole = whole.summary;
+  Difference force, deck;
+  double dynamic = 0.0, largest_load = 0.0, largest_acceleration = 0.0, peak = 0.0, peak_reduced = 0.0,
+         peak_acceleration = 0.0;
+  for (std::size_t step = 0; step < std::min(whole.force.size(), reduced.force.size()); ++step) {
+    for (std::size_t w = 0; w < whole.static_load.size(); ++w) {
+      const double Q = whole.force[step][w], other = reduced.force[step][w];
+      force.add(other - Q);
+      dynamic = std::max(dynamic, std::abs(Q - whole.static_load[w]));
+      largest_load = std::max(largest_load, whole.static_load[w]);
+      peak = std::max(peak, Q);
+      peak_reduced = std::max(peak_reduced, other);
+    }
+    for (std::size_t n = 0; n < whole.deck[step].size(); ++n) {
+      const double a = whole.deck[step][n], other = reduced.deck[step][n];
+      deck.add(other - a);
+      largest_acceleration = std::max(largest_acceleration, std::abs(a));
+      peak_acceleration = std::max(peak_acceleration, std::abs(other));
+    }
+  }
+  error.force_max = ratio(force.max, dynamic);
+  error.force_rms = ratio(force.rms(), dynamic);
+  error.force_static = ratio(force.max, largest_load);
+  error.deck_max = ratio(deck.max, largest_acceleration);
+  error.deck_rms = ratio(deck.rms(), largest_acceleration);
+  error.peak_force = ratio(std::abs(peak_reduced - peak), peak);
+  error.peak_deck = ratio(std::abs(peak_acceleration - largest_acceleration), largest_acceleration);
+  return error;
+}
+
+ReductionError check_reduction(const SceneParameters& scene, double duration) {
+  SceneParameters none = scene;
+  none.reduction.kind = Reduction::none;
+  const ComparedHistory whole = compared_history(none, duration);
+  ReductionError error = compare(compared_history(scene, duration), whole);
+  error.duration = duration;
+  return error;
+}
+
+}  // namespace railtab
