@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
 #include <vector>
 
-#include "railtab/runtime/structure/structure_model.hpp"
+#include "railtab/runtime/structure/beam_element.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
 
 namespace railtab {
 
@@ -12,13 +14,12 @@ struct MatrixAssembly {
   std::vector<Eigen::Triplet<double>> mass, damping, stiffness;
 };
 
-/// Adds a dense element matrix; held dofs and zero entries are left out.
-template <size_t N>
-void add_element(std::vector<Eigen::Triplet<double>>& entries, const std::array<int, N>& dof,
-                 const Eigen::Matrix<double, static_cast<int>(N), static_cast<int>(N)>& element) {
-  for (size_t i = 0; i < N; ++i) {
+/// Adds a dense element matrix, as many rows as dofs; held dofs and zero entries are left out.
+template <class Element>
+void add_element(std::vector<Eigen::Triplet<double>>& entries, std::span<const int> dof, const Element& element) {
+  for (size_t i = 0; i < dof.size(); ++i) {
     if (dof[i] == held) continue;
-    for (size_t j = 0; j < N; ++j) {
+    for (size_t j = 0; j < dof.size(); ++j) {
       const double value = element(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
       if (dof[j] != held && value != 0.0) entries.emplace_back(dof[i], dof[j], value);
     }
@@ -28,6 +29,21 @@ void add_element(std::vector<Eigen::Triplet<double>>& entries, const std::array<
 /// The dofs of two nodes as those of one element.
 inline std::array<int, 12> joined(const DofIndices& a, const DofIndices& b) noexcept {
   return {a[0], a[1], a[2], a[3], a[4], a[5], b[0], b[1], b[2], b[3], b[4], b[5]};
+}
+
+/// Adds a line of beam elements between neighbouring nodes.
+inline void add_beam(MatrixAssembly& assembly, const std::vector<double>& x, const std::vector<DofIndices>& dof,
+                     const BeamSection& section, const RayleighDamping& damping) {
+  for (size_t e = 0; e + 1 < x.size(); ++e) {
+    const double length = x[e + 1] - x[e];
+    const BeamMatrix K = beam_stiffness(section, length);
+    const BeamMatrix M = beam_mass(section, length);
+    const BeamMatrix C = damping.mass_factor * M + damping.stiffness_factor * K;
+    const std::array<int, 12> dofs = joined(dof[e], dof[e + 1]);
+    add_element(assembly.stiffness, dofs, K);
+    add_element(assembly.mass, dofs, M);
+    add_element(assembly.damping, dofs, C);
+  }
 }
 
 /// Sets the model's three matrices, dofs × dofs.

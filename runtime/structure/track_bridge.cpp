@@ -1,23 +1,18 @@
 #include "railtab/runtime/structure/track_bridge.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <string_view>
 #include <utility>
 
-#include "matrix_assembly.hpp"
-#include "railtab/runtime/structure/beam_element.hpp"
-#include "railtab/runtime/structure/interval_search.hpp"
+#include "bridge.hpp"
 #include "railtab/runtime/vehicle/spring_damper.hpp"
 
 namespace railtab {
 namespace {
 
-constexpr int to_number = 0;  // a free dof before the dofs are numbered
-constexpr DofIndices all_free{to_number, to_number, to_number, to_number, to_number, to_number};
-
-/// A line of nodes along x: a rail, the sleepers, or a deck.
+/// A line of nodes along x: a rail, or the sleepers.
 struct NodeLine {
   std::vector<double> x;
   std::vector<DofIndices> dof;
@@ -26,30 +21,13 @@ struct NodeLine {
 struct TrackNodes {
   std::array<NodeLine, 2> rail;  // indexed by RailSide
   NodeLine sleeper;              // sleeper i stands at rail node i·elements_per_bay
-  std::vector<NodeLine> deck;    // per span
 };
 
-std::vector<NodeLine> deck_lines(const std::vector<BridgeParameters>& spans) {
-  std::vector<NodeLine> decks;
-  double start = 0;
-  for (const BridgeParameters& span : spans) {
-    NodeLine deck;
-    for (int i = 0; i <= span.elements; ++i) {
-      deck.x.push_back(start + span.length * i / span.elements);
-      deck.dof.push_back(all_free);
-    }
-    deck.dof.front() = {held, held, held, held, to_number, to_number};
-    deck.dof.back() = {to_number, held, held, held, to_number, to_number};
-    start = deck.x.back();
-    decks.push_back(std::move(deck));
-  }
-  return decks;
-}
-
-TrackNodes place_nodes(const TrackParameters& track, const std::vector<BridgeParameters>& spans) {
+/// Nodes of a track that reaches over a bridge up to `bridge_end`, their dofs not yet numbered.
+TrackNodes place_nodes(const TrackParameters& track, double bridge_end) {
+  constexpr int to_number = 0;
+  constexpr DofIndices all_free{to_number, to_number, to_number, to_number, to_number, to_number};
   TrackNodes nodes;
-  nodes.deck = deck_lines(spans);
-  const double bridge_end = nodes.deck.empty() ? 0.0 : nodes.deck.back().x.back();
   // a length that is a whole number of bays but for rounding must not get one more
   constexpr double rounding = 1e-9;
   const int first = -static_cast<int>(std::ceil(track.length_before / track.sleeper_spacing - rounding));
@@ -68,54 +46,14 @@ TrackNodes place_nodes(const TrackParameters& track, const std::vector<BridgePar
   return nodes;
 }
 
-/// Numbers the free dofs in the order of x, so that the matrices are banded as they stand; returns their positions.
-std::vector<double> number_dofs(TrackNodes& nodes) {
-  std::vector<std::pair<double, DofIndices*>> order;
-  auto enlist = [&order](NodeLine& line) {
-    for (size_t i = 0; i < line.x.size(); ++i) order.emplace_back(line.x[i], &line.dof[i]);
-  };
-  for (NodeLine& deck : nodes.deck) enlist(deck);
-  enlist(nodes.sleeper);
-  for (NodeLine& rail : nodes.rail) enlist(rail);
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<double> dof_x;
-  for (const auto& [x, dof] : order) {
-    for (int& index : *dof) {
+/// Numbers of the track's dofs, after those of the bridge.
+void number_dofs(NodeLine& line, std::vector<double>& dof_x) {
+  for (size_t i = 0; i < line.x.size(); ++i) {
+    for (int& index : line.dof[i]) {
       if (index == held) continue;
       index = static_cast<int>(dof_x.size());
-      dof_x.push_back(x);
+      dof_x.push_back(line.x[i]);
     }
-  }
-  return dof_x;
-}
-
-void add_beam(MatrixAssembly& assembly, const NodeLine& line, const BeamSection& section,
-              const RayleighDamping& damping) {
-  for (size_t e = 0; e + 1 < line.x.size(); ++e) {
-    const double length = line.x[e + 1] - line.x[e];
-    const BeamMatrix K = beam_stiffness(section, length);
-    const BeamMatrix M = beam_mass(section, length);
-    const BeamMatrix C = damping.mass_factor * M + damping.stiffness_factor * K;
-    const std::array<int, 12> dof = joined(line.dof[e], line.dof[e + 1]);
-    add_element(assembly.stiffness, dof, K);
-    add_element(assembly.mass, dof, M);
-    add_element(assembly.damping, dof, C);
-  }
-}
-
-void add_rails(MatrixAssembly& assembly, const TrackNodes& nodes, const RailBeamParameters& rail) {
-  const BeamSection section{rail.E, rail.A, rail.Iy, rail.Iz, rail.GJ, rail.mass, rail.rotary_inertia};
-  for (const NodeLine& line : nodes.rail)
-    add_beam(assembly, line, section, {rail.mass_damping, rail.stiffness_damping});
-}
-
-void add_decks(MatrixAssembly& assembly, const TrackNodes& nodes, const std::vector<BridgeParameters>& spans) {
-  for (size_t s = 0; s < spans.size(); ++s) {
-    const BridgeParameters& span = spans[s];
-    const BeamSection section{span.E, span.A, span.Iy, span.Iz, span.G * span.J, span.mass, span.rotary_inertia};
-    const double omega_1 = simply_supported_frequency(section, span.length, 1);
-    const double omega_2 = simply_supported_frequency(section, span.length, 2);
-    add_beam(assembly, nodes.deck[s], section, rayleigh_damping(span.damping_ratio, omega_1, omega_2));
   }
 }
 
@@ -159,38 +97,27 @@ void add_ballast_on_ground(MatrixAssembly& assembly, const TrackParameters& trac
   add_element(assembly.damping, sleeper, C);
 }
 
-/// Ballast between the sleeper at `x` and the deck: the deck's end is the beam axis at x, expressed by the element's
-/// nodes, and a rigid arm from there.
-void add_ballast_on_deck(MatrixAssembly& assembly, const TrackParameters& track, const BridgeParameters& span,
-                         const NodeLine& deck, const DofIndices& sleeper, double x, double y) {
+/// Ballast between a sleeper and the bridge.
+void add_ballast_on_deck(MatrixAssembly& assembly, const TrackParameters& track, const DofIndices& sleeper, double y,
+                         const DeckAttachment& deck) {
   const SpringDamper ballast(track.ballast_deck, 0, 0);
-  const double sleeper_bottom = track.rail.height + track.sleeper.height;  // below the rail-head top
   const Eigen::Vector3d arm_sleeper(0, y, 0.5 * track.sleeper.height);
-  const Eigen::Vector3d arm_deck(0, span.track_offset + y, sleeper_bottom - span.axis_depth);
-  const size_t e = interval_at(deck.x, x);
-
-  using DeckPair = Eigen::Matrix<double, 18, 18>;
-  Eigen::Matrix<double, 12, 18> T = Eigen::Matrix<double, 12, 18>::Zero();
+  Eigen::MatrixXd T = Eigen::MatrixXd::Zero(12, 6 + deck.rows.cols());
   T.topLeftCorner<6, 6>().setIdentity();
-  T.bottomRightCorner<6, 12>() = beam_shape(deck.x[e + 1] - deck.x[e], x - deck.x[e]);
-  const DeckPair K = T.transpose() * spring_matrix(arm_sleeper, arm_deck, ballast.k, ballast.k_about) * T;
-  const DeckPair C = T.transpose() * spring_matrix(arm_sleeper, arm_deck, ballast.c, ballast.c_about) * T;
-
-  std::array<int, 18> dof;
-  const std::array<int, 12> deck_dof = joined(deck.dof[e], deck.dof[e + 1]);
-  std::copy(sleeper.begin(), sleeper.end(), dof.begin());
-  std::copy(deck_dof.begin(), deck_dof.end(), dof.begin() + 6);
+  T.bottomRightCorner(6, deck.rows.cols()) = deck.rows;
+  const Eigen::MatrixXd K = T.transpose() * spring_matrix(arm_sleeper, deck.arm, ballast.k, ballast.k_about) * T;
+  const Eigen::MatrixXd C = T.transpose() * spring_matrix(arm_sleeper, deck.arm, ballast.c, ballast.c_about) * T;
+  std::vector<int> dof(sleeper.begin(), sleeper.end());
+  dof.insert(dof.end(), deck.dof.begin(), deck.dof.end());
   add_element(assembly.stiffness, dof, K);
   add_element(assembly.damping, dof, C);
 }
 
 void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const TrackParameters& track,
-                  const std::vector<BridgeParameters>& spans) {
+                  const Bridge& bridge) {
+  const double bottom = track.rail.height + track.sleeper.height;  // below the rail-head top
   for (size_t i = 0; i < nodes.sleeper.x.size(); ++i) {
-    const double x = nodes.sleeper.x[i];
     const DofIndices& sleeper = nodes.sleeper.dof[i];
-    const auto deck = std::find_if(nodes.deck.begin(), nodes.deck.end(),
-                                   [x](const NodeLine& line) { return line.x.front() <= x && x < line.x.back(); });
     add_sleeper_mass(assembly, sleeper, track.sleeper);
     for (const RailSide side : {RailSide::left, RailSide::right}) {
       const double sign = side == RailSide::left ? -1.0 : 1.0;
@@ -198,11 +125,10 @@ void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const Track
       const DofIndices& rail_dof = rail.dof[i * static_cast<size_t>(track.elements_per_bay)];
       const double ballast_y = sign * track.half_ballast_distance;
       add_pad(assembly, track, sleeper, rail_dof, sign * track.half_rail_distance);
-      if (deck == nodes.deck.end()) {
-        add_ballast_on_ground(assembly, track, sleeper, ballast_y);
+      if (const auto deck = bridge.attach(nodes.sleeper.x[i], ballast_y, bottom)) {
+        add_ballast_on_deck(assembly, track, sleeper, ballast_y, *deck);
       } else {
-        const BridgeParameters& span = spans[static_cast<size_t>(deck - nodes.deck.begin())];
-        add_ballast_on_deck(assembly, track, span, *deck, sleeper, x, ballast_y);
+        add_ballast_on_ground(assembly, track, sleeper, ballast_y);
       }
     }
   }
@@ -216,45 +142,85 @@ StructureNode nearest_node(std::string name, const NodeLine& line, double x) {
   return {std::move(name), line.x[nearest], line.dof[nearest]};
 }
 
-std::vector<StructureNode> named_nodes(const TrackNodes& nodes) {
+/// The bridge's nodes of interest, each with the rails above it; without a bridge the rails at the origin.
+std::vector<StructureNode> named_nodes(const TrackNodes& nodes, const Bridge& bridge) {
+  constexpr std::string_view deck = "deck-";
   std::vector<StructureNode> named;
   const auto& [left, right] = nodes.rail;
-  for (size_t s = 0; s < nodes.deck.size(); ++s) {
-    const NodeLine& deck = nodes.deck[s];
-    const size_t middle = deck.x.size() / 2;
-    named.push_back({fmt::format("deck-midspan-{}", s + 1), deck.x[middle], deck.dof[middle]});
-    named.push_back(nearest_node(fmt::format("rail-left-midspan-{}", s + 1), left, deck.x[middle]));
-    named.push_back(nearest_node(fmt::format("rail-right-midspan-{}", s + 1), right, deck.x[middle]));
+  for (const StructureNode& node : bridge.nodes) {
+    named.push_back(node);
+    if (!node.name.starts_with(deck)) continue;
+    const std::string place = node.name.substr(deck.size());
+    named.push_back(nearest_node("rail-left-" + place, left, node.x));
+    named.push_back(nearest_node("rail-right-" + place, right, node.x));
   }
-  if (nodes.deck.empty()) {
+  if (bridge.nodes.empty()) {
     named.push_back(nearest_node("rail-left-origin", left, 0.0));
     named.push_back(nearest_node("rail-right-origin", right, 0.0));
   }
   return named;
 }
 
+/// Renumbers all unknowns in the order of x, so that the matrices are banded as they stand.
+class OrderAlongTrack {
+ public:
+  explicit OrderAlongTrack(const std::vector<double>& dof_x) : number_(dof_x.size()) {
+    std::vector<int> order(dof_x.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&dof_x](int a, int b) { return dof_x[static_cast<size_t>(a)] < dof_x[static_cast<size_t>(b)]; });
+    for (size_t i = 0; i < order.size(); ++i) number_[static_cast<size_t>(order[i])] = static_cast<int>(i);
+  }
+  void renumber(DofIndices& dof) const {
+    for (int& index : dof) {
+      if (index != held) index = number_[static_cast<size_t>(index)];
+    }
+  }
+  void renumber(std::vector<Eigen::Triplet<double>>& entries) const {
+    for (auto& e : entries) {
+      e = {number_[static_cast<size_t>(e.row())], number_[static_cast<size_t>(e.col())], e.value()};
+    }
+  }
+
+ private:
+  std::vector<int> number_;
+};
+
 }  // namespace
 
-StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans) {
+StructureModel lay_track(const TrackParameters& track, Bridge bridge) {
   track.validate();
-  for (const BridgeParameters& span : spans) span.validate();
-  TrackNodes nodes = place_nodes(track, spans);
-  std::vector<double> dof_x = number_dofs(nodes);
+  TrackNodes nodes = place_nodes(track, bridge.end);
+  number_dofs(nodes.sleeper, bridge.dof_x);
+  for (NodeLine& rail : nodes.rail) number_dofs(rail, bridge.dof_x);
 
-  MatrixAssembly assembly;
-  add_rails(assembly, nodes, track.rail);
-  add_decks(assembly, nodes, spans);
-  add_sleepers(assembly, nodes, track, spans);
+  MatrixAssembly& assembly = bridge.matrices;
+  const RailBeamParameters& rail = track.rail;
+  const BeamSection section{rail.E, rail.A, rail.Iy, rail.Iz, rail.GJ, rail.mass, rail.rotary_inertia};
+  for (const NodeLine& line : nodes.rail)
+    add_beam(assembly, line.x, line.dof, section, {rail.mass_damping, rail.stiffness_damping});
+  add_sleepers(assembly, nodes, track, bridge);
 
   StructureModel model;
-  build_matrices(assembly, static_cast<int>(dof_x.size()), model);
-  model.dof_x = std::move(dof_x);
-  for (const NodeLine& deck : nodes.deck) model.spans.push_back({deck.x.front(), deck.x.back()});
-  for (size_t side = 0; side < 2; ++side) {
-    model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, track.rail.head_height};
+  model.nodes = named_nodes(nodes, bridge);
+  const OrderAlongTrack order(bridge.dof_x);
+  for (auto* entries : {&assembly.mass, &assembly.damping, &assembly.stiffness}) order.renumber(*entries);
+  for (StructureNode& node : model.nodes) order.renumber(node.dof);
+  for (NodeLine& line : nodes.rail) {
+    for (DofIndices& dof : line.dof) order.renumber(dof);
   }
-  model.nodes = named_nodes(nodes);
+  build_matrices(assembly, static_cast<int>(bridge.dof_x.size()), model);
+  std::sort(bridge.dof_x.begin(), bridge.dof_x.end());
+  model.dof_x = std::move(bridge.dof_x);
+  model.spans = std::move(bridge.spans);
+  for (size_t side = 0; side < 2; ++side) {
+    model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, rail.head_height};
+  }
   return model;
+}
+
+StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans) {
+  return lay_track(track, beam_bridge(spans));
 }
 
 }  // namespace railtab

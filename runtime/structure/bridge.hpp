@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "matrix_assembly.hpp"
+
+namespace railtab {
+
+/// Where a spring of the ballast ends on a bridge: the motions x, y, z, roll, pitch, yaw of a point of the bridge are
+/// rows·a[dof] (held dofs count as zero), and a rigid arm leads from that point to the end of the spring.
+struct DeckAttachment {
+  std::vector<int> dof;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> rows;
+  Eigen::Vector3d arm;  // [m]
+};
+
+/// A bridge without its track, in railtab's axes and SI units; x = 0 and the track's centre are those of the track.
+struct Bridge {
+  MatrixAssembly matrices;
+  std::vector<double> dof_x;                 // position along the track of each unknown [m]
+  std::vector<std::array<double, 2>> spans;  // from and to [m]
+  double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
+  std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
+  /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;
+  /// empty where the bridge does not carry the track.
+  std::function<std::optional<DeckAttachment>(double x, double y, double z)> attach;
+};
+
+/// Simply supported beam spans from x = 0. @throws InputError naming the key
+[[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans);
+
+/// Rails on pads, sleepers and ballast, laid over a bridge and on to the ground before and after it. The one place
+/// where track and bridge are put together. @throws InputError naming the key
+[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge);
+
+}  // namespace railtab
