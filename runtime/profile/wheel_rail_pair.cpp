@@ -67,11 +67,11 @@ double gauge_point(const ProfileCurve& rail, double height) {
 }  // namespace
 
 void PairDimensions::validate() const {
-  require(track_gauge > 0.5 && track_gauge < 2.0, "track gauge", track_gauge, "more than 0.5 and less than 2");
-  require(gauge_height >= 0.0 && gauge_height < 0.05, "gauge height", gauge_height, "from 0 to less than 0.05");
-  require(flange_back > 0.4 && flange_back < 2.0, "flange-back distance", flange_back, "more than 0.4 and less than 2");
-  require(nominal_radius > 0.1 && nominal_radius < 1.0, "nominal radius", nominal_radius,
-          "more than 0.1 and less than 1");
+  require(track_gauge >= 0.5 && track_gauge <= 2.0, "track gauge", track_gauge, "0.5 to 2");
+  require(gauge_height >= 0.0 && gauge_height <= 0.05, "gauge height", gauge_height, "0 to 0.05");
+  require(flange_back >= 0.4 && flange_back <= 2.0, "flange-back distance", flange_back, "0.4 to 2");
+  require(nominal_radius >= 0.1 && nominal_radius <= 1.0, "nominal radius", nominal_radius,
+          "0.1 to 1");
 }
 
 WheelRailPair::WheelRailPair(ProfileCurve wheel, ProfileCurve rail, PairDimensions dimensions)

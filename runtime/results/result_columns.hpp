@@ -7,8 +7,7 @@
 namespace railtab::result_columns {
 
 /// What the results file holds and under which name: one list for the writer and the reader.
-inline constexpr const char* filetype = "railtab-results";
-inline constexpr int format_version = 2;
+inline constexpr int format_version = 3;
 
 template <typename Owner, typename Value>
 struct Column {
@@ -68,6 +67,15 @@ struct HeaderText {
 inline constexpr std::array header_texts{
     HeaderText{"scene_name", &ResultHeader::scene_name}, HeaderText{"program_version", &ResultHeader::program_version},
     HeaderText{"wheel_profile", &ResultHeader::wheel_profile}, HeaderText{"rail_profile", &ResultHeader::rail_profile}};
+
+struct HeaderTexts {
+  const char* path;
+  const char* description;
+  std::vector<std::string> ResultHeader::*values;
+};
+inline constexpr std::array header_text_lists{
+    HeaderTexts{"header/input_files", "files that the scene names", &ResultHeader::input_files},
+    HeaderTexts{"header/input_checksums", "of their contents when the run began", &ResultHeader::input_checksums}};
 
 using HeaderColumn = Column<ResultHeader, std::vector<double>>;
 inline constexpr std::array header{

@@ -32,7 +32,7 @@ std::string motion_path(const columns::MotionGroup& group, const columns::Motion
 }
 
 ArrayFileReader open_results(const std::filesystem::path& file) {
-  return ArrayFileReader(file, columns::filetype, columns::format_version);
+  return ArrayFileReader(file, results_filetype, columns::format_version);
 }
 
 ResultHeader read_header(const ArrayFileReader& in) {
@@ -40,6 +40,7 @@ ResultHeader read_header(const ArrayFileReader& in) {
   for (const columns::HeaderText& text : columns::header_texts) header.*text.value = in.text("header", text.name);
   const std::vector<std::string> scene = in.read_strings("header/scene_text");
   if (!scene.empty()) header.scene_text = scene.front();
+  for (const columns::HeaderTexts& list : columns::header_text_lists) header.*list.values = in.read_strings(list.path);
   header.speed = in.read("header/speed", {}).front();
   for (const columns::HeaderColumn& column : columns::header) header.*column.value = in.read(column.path, {-1});
   for (const columns::MotionGroup& group : columns::motion_groups) {
@@ -69,6 +70,9 @@ void write_header(ArrayFileWriter& out, const ResultHeader& header) {
       "Layout: docs/file_formats/results.md");
   for (const columns::HeaderText& text : columns::header_texts) out.attribute("header", text.name, header.*text.value);
   out.write("header/scene_text", std::vector<std::string>{header.scene_text}, "the scene that was run, TOML");
+  for (const columns::HeaderTexts& list : columns::header_text_lists) {
+    out.write(list.path, header.*list.values, list.description);
+  }
   out.write("header/speed", {&header.speed, 1}, {}, "m/s", "speed of the train");
   for (const columns::HeaderColumn& column : columns::header) {
     const std::vector<double>& values = header.*column.value;
@@ -155,8 +159,8 @@ struct ResultWriter::Impl {
 
 ResultWriter::ResultWriter(const std::filesystem::path& file, const ResultHeader& header, int flush_every)
     : impl_(std::make_unique<Impl>(
-          ArrayFileWriter(file, columns::filetype, columns::format_version, ArrayFileWriter::Mode::growing),
-          flush_every, header)) {
+          ArrayFileWriter(file, results_filetype, columns::format_version, ArrayFileWriter::Mode::growing), flush_every,
+          header)) {
   write_header(impl_->out, header);
   create_histories(impl_->out, header);
   write_summary(impl_->out, unfinished(header));
@@ -178,7 +182,7 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
     header.contact_mode = in.text(columns::summary_group, "contact_mode");
     for (const CheckpointSlot& slot : whole_checkpoints(in)) checkpoints = std::max(checkpoints, slot.sequence);
   }
-  ArrayFileWriter out = ArrayFileWriter::reopen(file, columns::filetype, columns::format_version);
+  ArrayFileWriter out = ArrayFileWriter::reopen(file, results_filetype, columns::format_version);
   if (from.records > out.records()) {
     throw input_error(file.string(), fmt::format("{} records", out.records()),
                       fmt::format("the {} of its checkpoint", from.records));

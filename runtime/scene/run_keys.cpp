@@ -41,7 +41,7 @@ std::vector<KeyBinding> contact_keys() {
       {"contact.rail", "", "rail profile where no table is named",
        ProfileKey{[](SceneDraft& d) -> std::string& { return d.parameters.contact.rail; }, ProfileKind::rail}},
       {"contact.rail_inclination", "1", "of a built-in rail towards the track centre, as a number or \"1:40\"",
-       RatioKey{[](SceneDraft& d) -> double& { return d.parameters.contact.rail_inclination; }, {0.0, 0.2}}},
+       RatioKey{[](SceneDraft& d) -> double& { return d.parameters.contact.rail_inclination; }, {0.0, 0.1}}},
       {"contact.creep_law", "", "creep law",
        TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.contact.creep_law; }, creep_law_names}},
       {"contact.creep_table", "", "creep table of the law \"table\" (the shipped one, for nu = 0.28, where absent)",

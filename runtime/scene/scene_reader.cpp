@@ -35,6 +35,7 @@ struct Assign {
     if (!std::filesystem::is_regular_file(named)) {
       throw leaf_error(file, leaf, "no file " + named.string(), "an existing file, relative to the scene");
     }
+    draft.parameters.files.push_back(named);
     key.member(draft) = named;
   }
   void operator()(const ProfileKey& key) const { key.member(draft) = profile(key.kind); }
@@ -110,7 +111,10 @@ struct Assign {
         fmt::format("a built-in profile ({}) or an existing profile file", joined(standard_profile_names(kind)));
     const std::string name = text(expected);
     const std::filesystem::path named = file.parent_path() / name;
-    if (std::filesystem::is_regular_file(named)) return named.string();
+    if (std::filesystem::is_regular_file(named)) {
+      draft.parameters.files.push_back(named);
+      return named.string();
+    }
     try {
       static_cast<void>(standard_profile(kind, name, 0.0));  // knows other spellings of the names too
     } catch (const InputError&) {
@@ -179,6 +183,17 @@ void refuse_profiles_beside_table(const SceneDraft& draft, const std::filesystem
   }
 }
 
+/// ":12" of the key that a message begins with, where the scene names it once.
+std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
+  std::string line;
+  for (const Leaf& leaf : leaves) {
+    if (!message.starts_with(leaf.path + ":")) continue;
+    if (!line.empty()) return {};
+    line = fmt::format(":{}", leaf.line);
+  }
+  return line;
+}
+
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
   if (draft.speed_kmh) {
@@ -195,7 +210,7 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
   try {
     draft.parameters.validate();
   } catch (const InputError& wrong) {
-    throw InputError(fmt::format("{}: {}", file.string(), wrong.what()));
+    throw InputError(fmt::format("{}{}: {}", file.string(), line_of(wrong.what(), leaves), wrong.what()));
   }
   return std::move(draft.parameters);
 }

@@ -24,7 +24,7 @@ std::vector<KeyBinding> track_keys() {
       {"track.sleeper_spacing", "m", "distance of the sleepers",
        NumberKey{of_track<&TrackParameters::sleeper_spacing>, {0.2, 5.0}}},
       {"track.half_rail_distance", "m", "track centre to rail-head centre",
-       NumberKey{of_track<&TrackParameters::half_rail_distance>, positive}},
+       NumberKey{of_track<&TrackParameters::half_rail_distance>, {0.25, 1.1}}},
       {"track.elements_per_bay", "1", "rail elements between sleepers",
        IntegerKey{of_track<&TrackParameters::elements_per_bay>, 1, 20}},
       {"track.length_before", "m", "track before x = 0, rounded up to whole bays",
@@ -32,11 +32,11 @@ std::vector<KeyBinding> track_keys() {
       {"track.length_after", "m", "track after the last span, or after x = 0 where there is none",
        NumberKey{of_track<&TrackParameters::length_after>, {0.0, 1e4, true}}},
       {"track.pad_roll_stiffness", "N m/rad", "of one pad about x",
-       NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, not_negative}},
+       NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, positive}},
       {"track.pad_roll_damping", "N m s/rad", "of one pad about x",
        NumberKey{of_track<&TrackParameters::pad_roll_damping>, not_negative}},
       {"track.half_ballast_distance", "m", "track centre to the ballast spring under each sleeper half",
-       NumberKey{of_track<&TrackParameters::half_ballast_distance>, positive}},
+       NumberKey{of_track<&TrackParameters::half_ballast_distance>, {0.1, 3.0}}},
   };
 }
 
@@ -58,7 +58,7 @@ std::vector<KeyBinding> rail_keys() {
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::rotary_inertia>, positive}},
       {"track.rail.height", "m", "rail-head top to rail foot",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::height>, positive}},
-      {"track.rail.head_height", "m", "rail-head top above the centroid",
+      {"track.rail.head_height", "m", "rail-head top above the centroid, at most track.rail.height",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::head_height>, positive}},
       {"track.rail.mass_damping", "1/s", "Rayleigh damping, times the mass",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass_damping>, not_negative}},
@@ -114,10 +114,10 @@ std::vector<KeyBinding> span_keys() {
        NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}}},
       {"bridge.elements", "1", "beam elements of the span, even",
        IntegerKey{of_span<&BridgeParameters::elements>, 2, 1000}},
-      {"bridge.axis_depth", "m", "rail-head top down to the beam axis",
-       NumberKey{of_span<&BridgeParameters::axis_depth>, not_negative}},
+      {"bridge.axis_depth", "m", "rail-head top down to the beam axis, negative where the axis is above",
+       NumberKey{of_span<&BridgeParameters::axis_depth>, {-100.0, 100.0}}},
       {"bridge.track_offset", "m", "track centre right of the beam axis",
-       NumberKey{of_span<&BridgeParameters::track_offset>, any_number}},
+       NumberKey{of_span<&BridgeParameters::track_offset>, {-100.0, 100.0}}},
   };
 }
 

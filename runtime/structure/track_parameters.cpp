@@ -7,7 +7,7 @@
 namespace railtab {
 namespace {
 
-constexpr double longest = 1e5;  // [m]: 100 km of track is more than any run needs and would fill the memory
+constexpr double longest_track = 1e4, longest_span = 1e3;  // [m]: more than any run needs
 
 void check_support(const std::string& place, const SupportParameters& support) {
   require_positive(place + ".kx", support.kx, "N/m");
@@ -27,6 +27,7 @@ void check_rail(const RailBeamParameters& rail) {
   require_positive("track.rail.mass", rail.mass, "kg/m");
   require_positive("track.rail.rotary_inertia", rail.rotary_inertia, "kg m²/m");
   require_positive("track.rail.height", rail.height, "m");
+  require_positive("track.rail.head_height", rail.head_height, "m");
   require_between("track.rail.head_height", rail.head_height, 0.0, rail.height, "m");
   require_not_negative("track.rail.mass_damping", rail.mass_damping, "1/s");
   require_not_negative("track.rail.stiffness_damping", rail.stiffness_damping, "s");
@@ -46,21 +47,23 @@ void TrackParameters::validate() const {
   check_rail(rail);
   check_sleeper(sleeper);
   require_between("track.sleeper_spacing", sleeper_spacing, 0.05, 10.0, "m");
-  require_positive("track.half_rail_distance", half_rail_distance, "m");
+  require_between("track.half_rail_distance", half_rail_distance, 0.25, 1.1, "m");
   require_between("track.elements_per_bay", elements_per_bay, 1, 20, "-");
-  require_between("track.length_before", length_before, sleeper_spacing, longest, "m");
-  require_between("track.length_after", length_after, sleeper_spacing, longest, "m");
+  require_positive("track.length_before", length_before, "m");
+  require_between("track.length_before", length_before, 0.0, longest_track, "m");
+  require_positive("track.length_after", length_after, "m");
+  require_between("track.length_after", length_after, 0.0, longest_track, "m");
   check_support("track.pad", pad);
   require_positive("track.pad_roll_stiffness", pad_roll_stiffness, "N m/rad");
   require_not_negative("track.pad_roll_damping", pad_roll_damping, "N m s/rad");
-  require_positive("track.half_ballast_distance", half_ballast_distance, "m");
+  require_between("track.half_ballast_distance", half_ballast_distance, 0.1, 3.0, "m");
   check_support("track.ballast_ground", ballast_ground);
   check_support("track.ballast_deck", ballast_deck);
 }
 
 void BridgeParameters::validate() const {
   require_positive("bridge.length", length, "m");
-  require_between("bridge.length", length, 0.0, longest, "m");
+  require_between("bridge.length", length, 0.0, longest_span, "m");
   require_positive("bridge.E", E, "Pa");
   require_positive("bridge.G", G, "Pa");
   require_positive("bridge.A", A, "m²");

@@ -6,6 +6,7 @@
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
@@ -95,6 +96,10 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
   ResultHeader header;
   header.scene_name = scene.name;
   header.scene_text = scene.text;
+  for (const std::filesystem::path& file : scene.files) {
+    header.input_files.push_back(file.string());
+    header.input_checksums.push_back(file_checksum(file));
+  }
   header.program_version = RAILTAB_VERSION;
   header.contact_mode = contact_mode_name(scene.contact);
   header.speed = scene.train.speed;
@@ -153,7 +158,8 @@ void add_contact(const ContactParameters& contact, VsiModel& model) {
   model.contact.damping = contact.damping;
   const double radius = model.geometry->pair().nominal_radius();
   if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
-    throw input_error("scene: contact", fmt::format("wheels of nominal radius {} m", radius),
+    throw input_error(contact.table.empty() ? "scene: contact.dimensions.nominal_radius" : "scene: contact.table",
+                      fmt::format("{} m{}", radius, contact.table.empty() ? "" : " as the wheels' nominal radius"),
                       fmt::format("{} m, the wheels of {}", model.vehicle.nominal_radius, model.vehicle.name));
   }
 }

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string_view>
 
+#include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -136,11 +137,12 @@ TableProvenance provenance(const std::string& command, const std::vector<std::st
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
 }
 
-void require_folder(const std::string& output) {
+void require_output(const std::string& output, std::initializer_list<std::string_view> filetypes) {
   const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
   if (!std::filesystem::is_directory(folder)) {
     throw input_error("--output " + output, "no folder " + folder.string(), "a file in an existing folder");
   }
+  require_replaceable(output, filetypes);
 }
 
 }  // namespace railtab

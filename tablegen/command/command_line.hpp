@@ -52,8 +52,8 @@ class CommandLine {
 /// Where, when and by which command a table is made.
 [[nodiscard]] TableProvenance provenance(const std::string& command, const std::vector<std::string>& arguments);
 
-/// @throws InputError where the folder of an output file is not there.
-void require_folder(const std::string& output);
+/// @throws InputError where the folder of an output file is not there, or the file is there and of none of these types.
+void require_output(const std::string& output, std::initializer_list<std::string_view> filetypes);
 
 /// A flag that takes a text, checked by CommandLine's functions where it is used.
 [[nodiscard]] inline boost::program_options::typed_value<std::string>* text_value(const std::string& standard) {

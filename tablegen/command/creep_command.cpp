@@ -9,6 +9,7 @@
 #include "progress_bar.hpp"
 #include "railtab/tablegen/creep_job.hpp"
 #include "railtab/tables/array_file.hpp"
+#include "railtab/tables/creep_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -71,7 +72,7 @@ void creep_command(const std::vector<std::string>& arguments) {
   const CommandLine line("tablegen creep [options] -o FILE.h5", creep_options(), {}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("output");
-  require_folder(file);
+  require_output(file, {creep_table_filetype, creep_shard_filetype});
   const CreepJob job = creep_job(line);
   ProgressBar bar("creep table", !line.quiet());
   const CreepJobOutcome done =

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "railtab/runtime/profile/profile_file.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
 
@@ -47,7 +48,7 @@ GeometryRequest geometry_request(const CommandLine& line) {
   const std::string file = line.required("output");
   const std::string wheel_name = line.required("wheel");
   const std::string rail_name = line.required("rail");
-  require_folder(file);
+  require_output(file, {geometry_table_filetype});
   require_no_input(file, {wheel_name, rail_name});
   GeometrySweepOptions options;
   options.lateral = line.interval("lateral");

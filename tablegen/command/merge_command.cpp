@@ -64,9 +64,9 @@ void merge_command(const std::vector<std::string>& arguments) {
   const std::string file = line.required("output");
   const std::vector<std::string> names = line.required_many("shard");
   const Files shards(names.begin(), names.end());
-  require_folder(file);
   for (const std::filesystem::path& shard : shards) require_no_input(file, {shard});
   const bool geometry = shard_type(shards) == geometry_table_filetype;
+  require_output(file, {geometry ? geometry_table_filetype : creep_table_filetype});
   (geometry ? merge_geometry : merge_creep)(shards, file, provenance("merge", arguments));
   if (line.json()) {
     const nlohmann::ordered_json j{{"kind", geometry ? "geometry" : "creep"},

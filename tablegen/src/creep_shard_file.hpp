@@ -46,6 +46,6 @@ struct CreepShard {
 /// @param filetype creep_shard_filetype or creep_partial_filetype. @throws InputError
 [[nodiscard]] CreepShard read_creep_shard(const std::filesystem::path& file, std::string_view filetype);
 
-inline constexpr int creep_shard_format_version = 1;
+inline constexpr int creep_shard_format_version = 2;
 
 }  // namespace railtab

@@ -143,7 +143,6 @@ FileState inspect_file(const std::filesystem::path& file) {
   }
   std::array<char, 36> head{};
   stream.read(head.data(), head.size());
-  constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
   if (std::string_view(head.data(), signature.size()) != signature) {
     throw input_error(file.string(), state.bytes == 0 ? "an empty file" : "no HDF5 signature", "an HDF5 file");
   }

@@ -88,6 +88,9 @@ void set_page_alignment(const Properties& access, const std::filesystem::path& f
 [[nodiscard]] double number_attribute(hid_t object, const std::string& at, std::string_view name);
 [[nodiscard]] std::string text_attribute(hid_t object, const std::string& at, std::string_view name);
 
+/// The first eight bytes of an HDF5 file.
+inline constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
+
 /// What the first bytes of a file say ([HDF5 file format specification 3.0, section II.A]).
 struct FileState {
   std::uint64_t bytes = 0;
@@ -102,5 +105,11 @@ void check_type(hid_t file, const std::filesystem::path& name, std::string_view 
 /// Growing datasets have this attribute, with the name of the dataset that counts their rows.
 inline constexpr const char* rows_attribute = "rows";
 inline constexpr const char* records_dataset = "records";
+/// One row for each flush that brought records: their number by then, and a checksum of the new rows of each growing
+/// dataset, in the column that its attribute checksum_column names.
+inline constexpr const char* blocks_dataset = "block_checksums";
+inline constexpr const char* column_attribute = "checksum_column";
+/// Of a dataset that does not grow, in a growing file: the checksum of its bytes. Whole files have a seal.
+inline constexpr const char* checksum_attribute = "checksum";
 
 }  // namespace railtab::hdf5

@@ -1,10 +1,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <fstream>
 #include <limits>
+#include <system_error>
 
 #include "array_file_hdf5.hpp"
+#include "array_file_seal.hpp"
 #include "railtab/tables/array_file.hpp"
+#include "railtab/tables/file_checksum.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab {
 
@@ -117,6 +123,10 @@ struct ArrayFileReader::Impl {
   hdf5::FileState state;
   hdf5::File handle;
   std::size_t records = 0;
+  /// Records by the end of each block, and the checksums of its rows by column; of growing files.
+  std::vector<std::size_t> block_ends;
+  std::vector<std::uint64_t> block_sums;
+  std::size_t block_width = 0;  ///< columns
 
   /// Type, shape and storage are checked before any value is read.
   [[nodiscard]] Source open(std::string_view path, H5T_class_t expected) const {
@@ -150,7 +160,86 @@ struct ArrayFileReader::Impl {
     }
     source.extent[0] = records;
   }
+
+  /// "records" and the blocks that make them up.
+  void read_records();
+  void read_blocks();
+  /// Compares what was read with the checksums of a growing file.
+  void check_rows(const Source& source, std::span<const double> values, const std::string& at) const;
+  void check_whole(const Source& source, const std::string& at) const;
 };
+
+namespace {
+
+InputError damaged(const std::string& at) {
+  return input_error(at, "values that do not agree with their checksum", "undamaged ones");
+}
+
+}  // namespace
+
+void ArrayFileReader::Impl::read_records() {
+  const std::string at = place(file, hdf5::records_dataset);
+  const Source source = open(hdf5::records_dataset, H5T_INTEGER);
+  std::vector<std::int64_t> found(source.count);
+  read_values(source, H5T_NATIVE_INT64, found.data(), at);
+  if (found.size() != 2 || found[0] < 0 || found[1] != -1 - found[0]) {
+    throw input_error(at, fmt::format("{}", fmt::join(found, ", ")), "a number N, not negative, and -1 - N");
+  }
+  records = static_cast<std::size_t>(found[0]);
+  if (records > 0) read_blocks();
+}
+
+void ArrayFileReader::Impl::read_blocks() {
+  const std::string at = place(file, hdf5::blocks_dataset);
+  const Source source = open(hdf5::blocks_dataset, H5T_INTEGER);
+  if (source.extent.size() != 2 || source.extent[1] < 2) {
+    throw input_error(at, fmt::format("the shape ({})", fmt::join(source.extent, ", ")), "rows of checksums");
+  }
+  block_sums.resize(source.count);
+  read_values(source, H5T_NATIVE_UINT64, block_sums.data(), at);
+  block_width = source.extent[1];
+  std::size_t end = 0;
+  for (std::size_t row = 0; end < records && row < source.extent[0]; ++row) {
+    const std::uint64_t next = block_sums[row * block_width];
+    if (next <= end || next > records) break;
+    end = next;
+    block_ends.push_back(end);
+  }
+  if (end != records) {
+    throw input_error(at, fmt::format("blocks that end at record {}", end), fmt::format("the {} records", records));
+  }
+}
+
+void ArrayFileReader::Impl::check_rows(const Source& source, std::span<const double> values,
+                                       const std::string& at) const {
+  if (source.extent.empty() || records == 0 || H5Aexists(source.dataset.get(), hdf5::rows_attribute) <= 0) {
+    check_whole(source, at);
+    return;
+  }
+  const std::int64_t column = hdf5::integer_attribute(source.dataset.get(), at, hdf5::column_attribute);
+  if (column < 1 || static_cast<std::size_t>(column) >= block_width) {
+    throw input_error(at, fmt::format("{} {}", hdf5::column_attribute, column),
+                      fmt::format("1 to {}", block_width - 1));
+  }
+  const std::size_t row_size = source.count / records;
+  std::size_t begin = 0;
+  for (std::size_t block = 0; block < block_ends.size(); begin = block_ends[block++]) {
+    const auto rows = values.subspan(begin * row_size, (block_ends[block] - begin) * row_size);
+    if (word_checksum(std::as_bytes(rows)) != block_sums[block * block_width + static_cast<std::size_t>(column)]) {
+      throw damaged(fmt::format("{}, records {} to {}", at, begin, block_ends[block] - 1));
+    }
+  }
+}
+
+void ArrayFileReader::Impl::check_whole(const Source& source, const std::string& at) const {
+  const hid_t dataset = source.dataset.get();
+  if (H5Aexists(dataset, hdf5::checksum_attribute) <= 0) return;
+  const auto expected = static_cast<std::uint64_t>(hdf5::integer_attribute(dataset, at, hdf5::checksum_attribute));
+  const hdf5::Type type(H5Dget_type(dataset));
+  std::vector<std::byte> bytes(source.count * source.value_bytes);
+  read_values(source, type.get(), bytes.data(), at);
+  if (word_checksum(bytes) != expected) throw damaged(at);
+}
 
 ArrayFileReader::ArrayFileReader(std::filesystem::path file, std::string_view filetype, int format_version)
     : impl_(std::make_unique<Impl>()) {
@@ -160,14 +249,8 @@ ArrayFileReader::ArrayFileReader(std::filesystem::path file, std::string_view fi
     impl_->state = hdf5::inspect_file(impl_->file);
     impl_->handle = open_for_reading(impl_->file, impl_->state);
     hdf5::check_type(impl_->handle.get(), impl_->file, filetype, format_version);
+    if (hdf5::contains(impl_->handle.get(), hdf5::records_dataset)) impl_->read_records();
   }
-  if (!contains(hdf5::records_dataset)) return;
-  const std::vector<std::int64_t> records = read_integers(hdf5::records_dataset);
-  if (records.size() != 1 || records[0] < 0) {
-    throw input_error(place(impl_->file, hdf5::records_dataset), fmt::format("{}", fmt::join(records, ", ")),
-                      "one number, not negative");
-  }
-  impl_->records = static_cast<std::size_t>(records[0]);
 }
 
 ArrayFileReader::~ArrayFileReader() {
@@ -187,7 +270,9 @@ Array ArrayFileReader::read(std::string_view path) const {
   const Section section;
   const Source source = impl_->open(path, H5T_FLOAT);
   Array array{{source.extent.begin(), source.extent.end()}, std::vector<double>(source.count)};
-  read_values(source, H5T_NATIVE_DOUBLE, array.values.data(), place(impl_->file, path));
+  const std::string at = place(impl_->file, path);
+  read_values(source, H5T_NATIVE_DOUBLE, array.values.data(), at);
+  impl_->check_rows(source, array.values, at);
   return array;
 }
 
@@ -209,6 +294,7 @@ std::vector<std::int64_t> ArrayFileReader::read_integers(std::string_view path) 
   const Source source = impl_->open(path, H5T_INTEGER);
   std::vector<std::int64_t> values(source.count);
   read_values(source, H5T_NATIVE_INT64, values.data(), place(impl_->file, path));
+  impl_->check_whole(source, place(impl_->file, path));
   return values;
 }
 
@@ -218,6 +304,7 @@ std::vector<std::string> ArrayFileReader::read_strings(std::string_view path) co
   const hdf5::Type type(H5Dget_type(source.dataset.get()));
   std::string bytes(source.count * source.value_bytes, '\0');
   read_values(source, type.get(), bytes.data(), place(impl_->file, path));
+  impl_->check_whole(source, place(impl_->file, path));
   std::vector<std::string> values(source.count);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = bytes.substr(i * source.value_bytes, source.value_bytes);
@@ -270,6 +357,32 @@ std::string root_text(const std::filesystem::path& file, const char* attribute) 
 }
 
 }  // namespace
+
+bool is_array_file(const std::filesystem::path& file) {
+  if (is_sealed(file)) return true;
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(hdf5::signature.size(), '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return stream && head == hdf5::signature;
+}
+
+void require_replaceable(const std::filesystem::path& named, std::initializer_list<std::string_view> filetypes) {
+  const std::filesystem::path file = output_file(named);
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed) || std::filesystem::file_size(file, failed) == 0) return;
+  std::string found = "a file of another kind";
+  if (is_array_file(file)) {
+    try {
+      found = array_file_type(file);
+      if (std::find(filetypes.begin(), filetypes.end(), found) != filetypes.end()) return;
+      found = "a file of type " + found;
+    } catch (const InputError&) {
+      found = "a damaged file";
+    }
+  }
+  throw input_error("-o " + named.string(), found,
+                    fmt::format("a new name, or a file of type {} to replace", fmt::join(filetypes, " or ")));
+}
 
 std::string array_file_type(const std::filesystem::path& file) { return root_text(file, "filetype"); }
 

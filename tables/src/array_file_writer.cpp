@@ -127,9 +127,11 @@ void ArrayFileWriter::create_growing(std::string_view path, const std::vector<st
   Impl::Growing entry;
   entry.extent.assign(1, 0);
   entry.extent.insert(entry.extent.end(), row_shape.begin(), row_shape.end());
-  entry.row_size = product(row_shape);
-  entry.dataset = impl_->create_extendible(path, entry.extent, unit, description);
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  entry.dataset = impl_->create_extendible(path, H5T_IEEE_F64LE, &missing, entry.extent, unit, description);
   impl_->write_text(path, hdf5::rows_attribute, hdf5::records_dataset, 0);
+  const auto column = static_cast<std::int64_t>(1 + impl_->growing.size());
+  impl_->write_attribute(path, hdf5::column_attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &column);
   impl_->growing.emplace(path, std::move(entry));
 }
 
@@ -140,28 +142,20 @@ void ArrayFileWriter::append(std::string_view path, std::span<const double> valu
   assert(found != impl_->growing.end() && values.size() % found->second.row_size == 0);
   auto& [name, entry] = *found;
   if (values.empty()) return;
-  const std::string at = place(impl_->file, path);
-  std::vector<hsize_t> start(entry.extent.size(), 0);
-  start[0] = entry.rows;
-  std::vector<hsize_t> count = entry.extent;
-  count[0] = values.size() / entry.row_size;
-  impl_->make_room(name, entry, entry.rows + count[0]);
-
-  const hdf5::Space target(H5Dget_space(entry.dataset.get()));
-  const hdf5::Space source(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr));
-  const bool done =
-      H5Sselect_hyperslab(target.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
-      H5Dwrite(entry.dataset.get(), H5T_NATIVE_DOUBLE, source.get(), target.get(), H5P_DEFAULT, values.data()) >= 0;
-  require(done, at, "room for more rows");
-  entry.rows += count[0];
+  impl_->append_rows(name, entry, H5T_NATIVE_DOUBLE, values.data(), values.size() / entry.row_size);
+  entry.sum = word_checksum(std::as_bytes(values), entry.sum);
 }
 
 void ArrayFileWriter::truncate(std::size_t rows) {
   assert(impl_->mode == Mode::growing && rows <= impl_->records);
   const Section section;
   impl_->begin_records();
+  impl_->cut_blocks(rows);
   impl_->records = rows;
-  for (auto& [path, entry] : impl_->growing) entry.rows = rows;
+  for (auto& [path, entry] : impl_->growing) {
+    entry.rows = rows;
+    entry.sum = word_checksum({});
+  }
   impl_->commit();
 }
 
@@ -170,7 +164,8 @@ std::size_t ArrayFileWriter::records() const { return impl_->records; }
 void ArrayFileWriter::create_slot(std::string_view path, std::string_view unit, std::string_view description) {
   assert(impl_->mode == Mode::growing);
   const Section section;
-  static_cast<void>(impl_->create_extendible(path, {0}, unit, description));
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  static_cast<void>(impl_->create_extendible(path, H5T_IEEE_F64LE, &missing, {0}, unit, description));
 }
 
 void ArrayFileWriter::replace(std::string_view path, std::span<const double> values) {
@@ -193,10 +188,7 @@ void ArrayFileWriter::flush() {
   assert(impl_->mode == Mode::growing);
   const Section section;
   impl_->begin_records();
-  if (!impl_->growing.empty()) {
-    impl_->records = impl_->growing.begin()->second.rows;
-    for ([[maybe_unused]] const auto& [path, entry] : impl_->growing) assert(entry.rows == impl_->records);
-  }
+  impl_->append_block();
   require(H5Fflush(impl_->handle.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.string(), "a file that can be written");
   impl_->commit();
 }
@@ -207,6 +199,7 @@ void ArrayFileWriter::close() {
   impl_->cut_to_rows();
   impl_->records_dataset = {};
   impl_->growing.clear();
+  impl_->blocks = {};
   require(impl_->handle.reset(), impl_->file.string(), "a file that can be written to its end");
   if (!impl_->temporary.empty()) impl_->publish();
   impl_->lock = {};

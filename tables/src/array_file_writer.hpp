@@ -1,13 +1,21 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 
 #include "array_file_hdf5.hpp"
 #include "array_file_lock.hpp"
 #include "railtab/tables/array_file.hpp"
+#include "railtab/tables/file_checksum.hpp"
 
 namespace railtab {
+
+/// The number of records as it is stored: a change of either shows, for their sum is -1.
+inline std::array<std::int64_t, 2> records_and_complement(std::size_t records) {
+  const auto count = static_cast<std::int64_t>(records);
+  return {count, -1 - count};
+}
 
 /// State of a file being written. Its members call HDF5 without taking a Section: the public functions do.
 struct ArrayFileWriter::Impl {
@@ -22,8 +30,11 @@ struct ArrayFileWriter::Impl {
     std::vector<hsize_t> extent;  ///< rows that there is room for, then the shape of a row
     std::size_t rows = 0;         ///< rows that are written
     std::size_t row_size = 1;
+    std::size_t column = 0;                 ///< in the checksums of blocks
+    std::uint64_t sum = word_checksum({});  ///< of the rows since the last block
   };
   std::map<std::string, Growing, std::less<>> growing;
+  Growing blocks;  ///< checksums; its rows count blocks, not records
   hdf5::Dataset records_dataset;
   std::size_t records = 0;
 
@@ -38,7 +49,9 @@ struct ArrayFileWriter::Impl {
   hdf5::Dataset create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
   void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
                      const std::vector<std::size_t>& shape, std::string_view unit, std::string_view description);
-  hdf5::Dataset create_extendible(std::string_view path, const std::vector<hsize_t>& extent, std::string_view unit,
+  /// @param fill of rows that were never written; null: zeros
+  hdf5::Dataset create_extendible(std::string_view path, hid_t file_type, const double* fill,
+                                  const std::vector<hsize_t>& extent, std::string_view unit,
                                   std::string_view description);
   void write_attribute(std::string_view path, std::string_view name, hid_t file_type, hid_t memory_type,
                        const void* value);
@@ -47,11 +60,19 @@ struct ArrayFileWriter::Impl {
   /// Gives a growing file its name and opens it for single-writer-multiple-reader writing.
   void begin_records();
   void open_records();
+  void create_blocks();
+  [[nodiscard]] Growing open_growing(const std::string& path) const;
   /// Also of a file whose writer was killed.
   void open_for_writing();
   /// Never less than there is: a chunk given back could be used again before the file stops naming its old place, and
   /// a process that ends in between leaves two owners of one place.
   void make_room(const std::string& path, Growing& dataset, std::size_t rows) const;
+  void append_rows(const std::string& path, Growing& dataset, hid_t memory_type, const void* values,
+                   std::size_t rows) const;
+  /// The checksums of what came since the last block.
+  void append_block();
+  /// Forget the blocks beyond the one that ends at `rows`. @throws InputError where none does.
+  void cut_blocks(std::size_t rows);
   /// Gives back what a shorter history left over; only before closing, when nothing more is allocated.
   void cut_to_rows();
   void commit();

@@ -3,11 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
-#include <limits>
 #include <system_error>
 
 #include "array_file_seal.hpp"
@@ -84,9 +84,9 @@ void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version
   const std::int64_t version = format_version;
   write_attribute("", "format_version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version);
   if (mode == Mode::whole_or_nothing) return;
-  const std::int64_t none = 0;
-  write_dataset(hdf5::records_dataset, H5T_STD_I64LE, H5T_NATIVE_INT64, &none, {}, "1",
-                "rows of the growing datasets that are valid");
+  const std::array<std::int64_t, 2> none = records_and_complement(0);
+  write_dataset(hdf5::records_dataset, H5T_STD_I64LE, H5T_NATIVE_INT64, none.data(), {none.size()}, "1",
+                "rows of the growing datasets that are valid; minus one minus that number");
 }
 
 void ArrayFileWriter::Impl::create_groups_of(std::string_view path) {
@@ -124,10 +124,16 @@ void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t file_type
   }
   write_text(path, "unit", unit, 0);
   write_text(path, "description", description, 0);
+  if (mode != Mode::growing || path == hdf5::records_dataset) return;
+  std::size_t bytes = H5Tget_size(memory_type);
+  for (const std::size_t length : shape) bytes *= length;
+  const auto sum = static_cast<std::int64_t>(word_checksum({static_cast<const std::byte*>(values), bytes}));
+  write_attribute(path, hdf5::checksum_attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &sum);
 }
 
-hdf5::Dataset ArrayFileWriter::Impl::create_extendible(std::string_view path, const std::vector<hsize_t>& extent,
-                                                       std::string_view unit, std::string_view description) {
+hdf5::Dataset ArrayFileWriter::Impl::create_extendible(std::string_view path, hid_t file_type, const double* fill,
+                                                       const std::vector<hsize_t>& extent, std::string_view unit,
+                                                       std::string_view description) {
   std::vector<hsize_t> limit = extent;
   limit[0] = H5S_UNLIMITED;
   std::vector<hsize_t> chunk = extent;
@@ -137,11 +143,10 @@ hdf5::Dataset ArrayFileWriter::Impl::create_extendible(std::string_view path, co
   const int rank = static_cast<int>(extent.size());
   const hdf5::Space space(H5Screate_simple(rank, extent.data(), limit.data()));
   const hdf5::Properties properties(H5Pcreate(H5P_DATASET_CREATE));
-  const double missing = std::numeric_limits<double>::quiet_NaN();
   const bool done = H5Pset_chunk(properties.get(), rank, chunk.data()) >= 0 &&
-                    H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing) >= 0;
+                    (fill == nullptr || H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, fill) >= 0);
   require(done, place(file, path), "chunks");
-  hdf5::Dataset dataset = create_dataset(path, H5T_IEEE_F64LE, space.get(), properties.get());
+  hdf5::Dataset dataset = create_dataset(path, file_type, space.get(), properties.get());
   write_text(path, "unit", unit, 0);
   write_text(path, "description", description, 0);
   return dataset;
@@ -188,92 +193,6 @@ void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view n
                     H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
   require(done, place(file, path, name), "a text type");
   write_attribute(path, name, type.get(), type.get(), bytes.data());
-}
-
-void ArrayFileWriter::Impl::begin_records() {
-  assert(mode == Mode::growing);
-  if (temporary.empty()) return;
-  growing.clear();
-  require(handle.reset(), file.string(), "a file that can be written");
-  if (std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
-  lock = WriterLock(temporary);
-  publish();
-  open_records();
-}
-
-namespace {
-
-herr_t keep_growing(hid_t group, const char* name, const H5L_info_t* link, void* paths) {
-  if (link->type != H5L_TYPE_HARD) return 0;
-  if (H5Aexists_by_name(group, name, hdf5::rows_attribute, H5P_DEFAULT) > 0) {
-    static_cast<std::vector<std::string>*>(paths)->emplace_back(name);
-  }
-  return 0;
-}
-
-}  // namespace
-
-void ArrayFileWriter::Impl::open_for_writing() {
-  const hdf5::Properties access = hdf5::file_access();
-  hdf5::set_page_alignment(access, file);
-  // What h5clear does to the file of a killed writer: forget that it is being written, and take its size from the file
-  // system, since the superblock, written last, may not know of the newest chunks yet.
-  const hbool_t yes = true;
-  const bool set =
-      H5Pset(access.get(), "clear_status_flags", &yes) >= 0 && H5Pset(access.get(), "skip_eof_check", &yes) >= 0;
-  require(set, file.string(), "HDF5 1.10 or later");
-  handle = hdf5::File(H5Fopen(file.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access.get()));
-  require(handle.valid() && H5Fincrement_filesize(handle.get(), 0) >= 0, file.string(), "a file that can be written");
-}
-
-void ArrayFileWriter::Impl::open_records() {
-  open_for_writing();
-  records_dataset = hdf5::Dataset(H5Dopen2(handle.get(), hdf5::records_dataset, H5P_DEFAULT));
-  std::int64_t count = -1;
-  const bool read = records_dataset.valid() &&
-                    H5Dread(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count) >= 0;
-  require(read && count >= 0, place(file, hdf5::records_dataset), "the number of records");
-  records = static_cast<std::size_t>(count);
-
-  std::vector<std::string> paths;
-  require(H5Lvisit(handle.get(), H5_INDEX_NAME, H5_ITER_INC, keep_growing, &paths) >= 0, file.string(), "its datasets");
-  for (const std::string& path : paths) {
-    Growing entry;
-    entry.dataset = hdf5::Dataset(H5Dopen2(handle.get(), path.c_str(), H5P_DEFAULT));
-    const hdf5::Space space(entry.dataset.valid() ? H5Dget_space(entry.dataset.get()) : -1);
-    const int rank = space.valid() ? H5Sget_simple_extent_ndims(space.get()) : 0;
-    require(rank > 0, place(file, path), "a growing dataset");
-    entry.extent.resize(static_cast<std::size_t>(rank));
-    H5Sget_simple_extent_dims(space.get(), entry.extent.data(), nullptr);
-    for (std::size_t i = 1; i < entry.extent.size(); ++i) entry.row_size *= entry.extent[i];
-    if (entry.extent[0] < records) {
-      throw input_error(place(file, path), fmt::format("{} rows", entry.extent[0]), fmt::format("{} rows", records));
-    }
-    entry.rows = records;
-    growing.emplace(path, std::move(entry));
-  }
-}
-
-void ArrayFileWriter::Impl::make_room(const std::string& path, Growing& dataset, std::size_t rows) const {
-  if (dataset.extent[0] >= rows) return;
-  dataset.extent[0] = rows;
-  require(H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0, place(file, path), "room for more rows");
-}
-
-void ArrayFileWriter::Impl::cut_to_rows() {
-  for (auto& [path, entry] : growing) {
-    if (entry.extent[0] == entry.rows) continue;
-    entry.extent[0] = entry.rows;
-    require(H5Dset_extent(entry.dataset.get(), entry.extent.data()) >= 0, place(file, path),
-            "rows that can be cut off");
-  }
-}
-
-void ArrayFileWriter::Impl::commit() {
-  const std::int64_t count = static_cast<std::int64_t>(records);
-  const bool done = H5Dwrite(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count) >= 0 &&
-                    H5Fflush(handle.get(), H5F_SCOPE_LOCAL) >= 0;
-  require(done, place(file, hdf5::records_dataset), "a file that can be written");
 }
 
 void ArrayFileWriter::Impl::publish() {

@@ -11,7 +11,6 @@
 namespace railtab {
 namespace {
 
-constexpr std::string_view filetype = "railtab-creep-table";
 constexpr int format_version = 1;
 
 struct AxisText {
@@ -64,7 +63,8 @@ std::vector<float> rounded(const std::vector<double>& values) {
 
 class Reading {
  public:
-  explicit Reading(const std::filesystem::path& name) : name_(name), file_(name, filetype, format_version) {}
+  explicit Reading(const std::filesystem::path& name)
+      : name_(name), file_(name, creep_table_filetype, format_version) {}
 
   [[nodiscard]] CreepTableData table() const {
     CreepTableData table;
@@ -124,7 +124,7 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
   const std::vector<float> values = rounded(table.values);
   CreepTableData stored = table;  // as it will be read, for the checksum
   stored.values.assign(values.begin(), values.end());
-  ArrayFileWriter out(file, filetype, format_version);
+  ArrayFileWriter out(file, creep_table_filetype, format_version);
   out.attribute("", "description",
                 "Forces of exact rolling contact (Kalker), normalised: G = 1, mu F_n = 1, sqrt(ab) = 1; on the wheel, "
                 "x forward, y right, z down. Layout: docs/file_formats/creep_table.md");

@@ -3,23 +3,29 @@
 #include <fstream>
 #include <system_error>
 
+#include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 
-std::filesystem::path output_file(const std::filesystem::path& file) {
+std::filesystem::path output_file(const std::filesystem::path& named) {
   std::error_code failed;
+  std::filesystem::path file = named;
+  constexpr int most_links = 40;  // as Linux follows
+  for (int i = 0; std::filesystem::is_symlink(file, failed); ++i) {
+    if (i == most_links) throw input_error(named.string(), "links in a circle", "the name of a file");
+    file = file.parent_path() / std::filesystem::read_symlink(file, failed);
+  }
   if (std::filesystem::exists(file, failed) && !std::filesystem::is_regular_file(file, failed)) {
-    throw input_error(file.string(), std::filesystem::is_directory(file, failed) ? "a folder" : "no regular file",
+    throw input_error(named.string(), std::filesystem::is_directory(file, failed) ? "a folder" : "no regular file",
                       "the name of a file");
   }
-  if (!std::filesystem::is_symlink(file, failed)) return file;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(file, failed);
-  return failed ? file : target;
+  return file;
 }
 
 void write_text_file(const std::filesystem::path& named, std::string_view text) {
   const std::filesystem::path file = output_file(named);
+  if (is_array_file(file)) throw input_error(named.string(), "a table or results of railtab, or HDF5", "another name");
   std::filesystem::path unfinished = file;
   unfinished += ".part";
   std::ofstream stream(unfinished, std::ios::binary);

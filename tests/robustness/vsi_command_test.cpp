@@ -252,4 +252,51 @@ TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
   EXPECT_NE(resumed.output.find("\"simulated_time\": 4"), std::string::npos) << resumed.output;
 }
 
+// What stands in the way of results must be results; a link is followed, to where there is nothing yet, too.
+TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
+  write("scene.toml", std::string(rigid_scene) + "duration = 0.01\n");
+  std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/tables/data/creep_table_nu028.h5", folder_ / "table.h5");
+  const std::uintmax_t bytes = std::filesystem::file_size(folder_ / "table.h5");
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Outcome outcome = vsi(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.output.find(words), std::string::npos) << outcome.output;
+  };
+  refused("run scene.toml -o table.h5", "-o table.h5: found a file of type railtab-creep-table, expected a new name");
+  write("notes.txt", "mine");
+  refused("run scene.toml -o notes.txt", "a file of another kind");
+  write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
+  refused("creep --law polach --query q.csv -o table.h5", "a table or results of railtab");
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "table.h5"), bytes);
+
+  write("empty.h5", "");
+  EXPECT_EQ(vsi("run scene.toml -o empty.h5 -q").exit_code, 0) << "nothing is lost";
+  EXPECT_EQ(vsi("run scene.toml -o empty.h5 -q").exit_code, 0) << "results replace results";
+  std::filesystem::create_directory(folder_ / "elsewhere");
+  std::filesystem::create_symlink("elsewhere/r.h5", folder_ / "link.h5");
+  EXPECT_EQ(vsi("run scene.toml -o link.h5 -q").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.h5"));
+  EXPECT_EQ(vsi("report elsewhere/r.h5 -o link.html -q").exit_code, 0);
+  std::filesystem::create_symlink("circle.h5", folder_ / "circle.h5");
+  refused("run scene.toml -o circle.h5", "links in a circle");
+}
+
+TEST_F(VsiCommand, ARunIsNotResumedWithOtherInputFiles) {
+  std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv", folder_ / "rough.csv");
+  write("scene.toml", std::string(rigid_scene) + "duration = 0.02\n[irregularity]\nfile = \"rough.csv\"\n");
+  ASSERT_EQ(vsi("run scene.toml -o r.h5 -q").exit_code, 0);
+  EXPECT_EQ(vsi("run scene.toml -o r.h5 -q --resume").exit_code, 0);
+  std::ofstream(folder_ / "rough.csv", std::ios::app) << "\n";
+  const Outcome outcome = vsi("run scene.toml -o r.h5 --resume");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.output.find("r.h5: found results made with other contents of rough.csv"), std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(VsiCommand, WhatTheModelRefusesNamesTheScene) {
+  write("wheels.toml",
+        "[train]\nvehicle = \"chinese-high-speed-car\"\n" + std::string(rigid_scene) + "duration = 1.0\n");
+  expect_refused("run wheels.toml -o out", "wheels.toml: contact.dimensions.nominal_radius: found 0.46 m");
+}
+
 }  // namespace

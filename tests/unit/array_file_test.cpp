@@ -200,13 +200,16 @@ TEST_F(ArrayFile, ReopensTruncatesAndContinues) {
     out.create_growing("x", {2}, "m", "positions");
     out.create_slot("slot", "1", "a slot");
     out.attribute("state", "complete", std::int64_t{0});
-    out.append("x", rows(0, 3000, 2));
+    out.append("x", rows(0, 1234, 2));
+    out.flush();
+    out.append("x", rows(1234, 1766, 2));
     out.replace("slot", std::vector<double>{1, 2, 3});
     out.close();
   }
   {
     ArrayFileWriter out = ArrayFileWriter::reopen(file(), "test-file", 1);
     EXPECT_EQ(out.records(), 3000U);
+    EXPECT_THROW(out.truncate(1235), InputError) << "no flush ended there";
     out.truncate(1234);
     EXPECT_EQ(ArrayFileReader(file(), "test-file", 1).read("x").values, rows(0, 1234, 2));
     out.append("x", rows(1234, 100, 2));

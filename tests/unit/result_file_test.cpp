@@ -267,6 +267,87 @@ TEST_F(ResultFile, ACutOrForeignFileIsAnInputError) {
   EXPECT_THROW(static_cast<void>(read_results(file_)), InputError);
 }
 
+/// Everything that a reader returns, as bytes.
+std::string all_read(const std::filesystem::path& file) {
+  const RunResults r = read_results(file);
+  std::string all = r.header.scene_text + r.header.scene_name + r.header.program_version + r.header.wheel_profile +
+                    r.header.rail_profile + r.summary.message + r.summary.contact_mode;
+  for (const auto* names :
+       {&r.header.body_names, &r.header.node_names, &r.header.input_files, &r.header.input_checksums}) {
+    for (const std::string& name : *names) all += name + '\n';
+  }
+  std::vector<double> numbers{r.header.speed, r.summary.complete ? 1.0 : 0.0, static_cast<double>(r.summary.steps),
+                              r.summary.seconds_total};
+  for (const auto* values : {&r.header.wheel_x, &r.header.static_wheel_load, &r.header.node_x, &r.header.wheel_y,
+                             &r.header.wheel_z, &r.header.rail_y, &r.header.rail_z}) {
+    numbers.insert(numbers.end(), values->begin(), values->end());
+  }
+  for (const StepRecord& step : r.steps) {
+    const std::vector<double> more = numbers_of(step);
+    numbers.insert(numbers.end(), more.begin(), more.end());
+  }
+  return all + std::string(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+}
+
+class DamagedResults : public ResultFile {
+ protected:
+  void SetUp() override {
+    header_.scene_text.resize(200);
+    header_.input_files = {"irregularity.csv"};
+    header_.input_checksums = {"0123456789abcdef"};
+  }
+
+  /// Changes one byte after the other and expects an InputError or what was there before; in steps, for speed.
+  void expect_changes_found(std::size_t every) {
+    const std::string whole = all_read(file_);
+    std::string bytes;
+    {
+      std::ifstream stream(file_, std::ios::binary);
+      bytes.assign(std::istreambuf_iterator<char>(stream), {});
+    }
+    std::mt19937 random(7);
+    std::uniform_int_distribution<int> mask(1, 255);
+    long refused = 0, tried = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      // what lies between the objects is zero and means nothing
+      if (bytes[i] == 0 ? i % 49999 != 0 : i % every != 0) continue;
+      const char was = bytes[i];
+      std::fstream stream(file_, std::ios::binary | std::ios::in | std::ios::out);
+      stream.seekp(static_cast<std::streamoff>(i)).put(static_cast<char>(was ^ mask(random)));
+      stream.close();
+      ++tried;
+      try {
+        EXPECT_TRUE(all_read(file_) == whole) << "byte " << i << " was changed and believed";
+      } catch (const InputError& error) {
+        ++refused;
+        EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
+      }
+      stream.open(file_, std::ios::binary | std::ios::in | std::ios::out);
+      stream.seekp(static_cast<std::streamoff>(i)).put(was);
+    }
+    EXPECT_GT(refused, tried / 10) << "the others: room for rows that are not written";
+    EXPECT_TRUE(all_read(file_) == whole);
+  }
+};
+
+TEST_F(DamagedResults, OfAFinishedRunAreRefused) {
+  {
+    ResultWriter out(file_, header_, 3);
+    for (long i = 0; i < 8; ++i) out.append(made_up_record(i, header_));
+    out.finish(complete_summary());
+  }
+  expect_changes_found(97);
+}
+
+TEST_F(DamagedResults, OfAnEndedRunWithCheckpointsAreRefused) {
+  {
+    ResultWriter out(file_, header_, 3);
+    for (long i = 0; i < 8; ++i) out.append(made_up_record(i, header_));
+    out.checkpoint(made_up_state(8), 8);
+  }
+  expect_changes_found(293);
+}
+
 /// Number of kills; more for a longer search: RAILTAB_KILLS=1000.
 int kills() {
   const char* text = std::getenv("RAILTAB_KILLS");

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -207,6 +208,79 @@ TEST_F(Scene, PartsThatDoNotFitTogetherAreRefused) {
 TEST_F(Scene, TomlErrorsNameTheLine) {
   EXPECT_TRUE(message("[train]\nspeed = = 3\n").starts_with("scene.toml:2: "));
   EXPECT_TRUE(message("[train]\nspeed = 3\nspeed = 4\n").starts_with("scene.toml:3: "));
+}
+
+/// The ends of "0.2 to 5", "> 0, <= 1000", ">= 0"; nothing where there is none.
+struct Ends {
+  std::optional<double> low, high;
+  bool open_low = false;
+};
+Ends ends_of(const std::string& range) {
+  Ends ends;
+  double low = 0, high = 0;
+  if (std::sscanf(range.c_str(), "> %lf, <= %lf", &low, &high) == 2) return {low, high, true};
+  if (std::sscanf(range.c_str(), "%lf to %lf", &low, &high) == 2) return {low, high, false};
+  if (std::sscanf(range.c_str(), ">= %lf", &low) == 1) return {low, {}, false};
+  if (std::sscanf(range.c_str(), "> %lf", &low) == 1) return {low, {}, true};
+  return ends;
+}
+
+/// A scene with one key set; `key` is a path under a section or a [[bridge]].
+std::string scene_with(const std::string& key, double value, bool integer) {
+  std::string contact = "mode = \"online\"\n", bridge = "[[bridge]]\n", rest;
+  const std::string number = integer ? fmt::format("{}", static_cast<long>(value)) : fmt::format("{:.17e}", value);
+  const auto line = [&](std::size_t prefix) { return key.substr(prefix) + " = " + number + "\n"; };
+  if (key.starts_with("contact."))
+    contact += line(8);
+  else if (key.starts_with("bridge."))
+    bridge += line(7);
+  else
+    rest = line(0);
+  return rest + "[contact]\n" + contact + bridge;
+}
+
+/// What the guide says of a range holds to its ends, through every check that a scene passes before it is built.
+TEST_F(Scene, RangesHoldToTheirEnds) {
+  // the rail's height and that of its head bound each other
+  int checked = 0;
+  for (const SceneKey& key : scene_keys()) {
+    if (key.type != "number" && key.type != "integer" && key.type != "ratio") continue;
+    const bool integer = key.type == "integer";
+    const Ends ends = ends_of(key.range);
+    const auto outcome = [&](double value) {
+      const std::string what = message(scene_with(key.path, value, integer));
+      if (what != "no error") return what;
+      try {
+        read_scene(folder_ / "scene.toml").contact.dimensions.validate();
+      } catch (const InputError& wrong) {
+        return std::string(wrong.what());
+      }
+      return what;
+    };
+    const auto beyond = [&](double end, double way) {
+      return integer ? end + way : end + way * std::max(1e-9, 1e-5 * std::abs(end));
+    };
+    // the printed ends have six digits, and a low end that is excluded may stand for a small number
+    if (ends.low) {
+      EXPECT_NE(outcome(beyond(*ends.low, -1.0)), "no error") << key.path;
+      const double in = ends.open_low ? beyond(*ends.low, 1.0) : *ends.low == -0.333333 ? -1.0 / 3.0 : *ends.low;
+      if (key.path != "track.rail.height") {
+        EXPECT_EQ(outcome(in), "no error") << key.path << ' ' << in;
+      }
+      ++checked;
+    }
+    if (ends.high && key.path != "track.rail.head_height") {
+      EXPECT_EQ(outcome(*ends.high), "no error") << key.path << ' ' << *ends.high;
+      EXPECT_NE(outcome(beyond(*ends.high, 1.0)), "no error") << key.path;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 80);
+}
+
+TEST_F(Scene, RulesOverSeveralKeysNameALine) {
+  EXPECT_EQ(message(std::string(online) + "[track]\nrail.head_height = 0.2\n").substr(0, 40),
+            "scene.toml:4: track.rail.head_height: fo");
 }
 
 /// The guide's key list is written from the reader's own table; a key, range or default that changes must change there.

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -61,10 +62,14 @@ std::optional<po::variables_map> parse_command_line(const CommandSyntax& syntax,
 void require_writable_place(const std::string& file, const std::string& option) {
   const std::filesystem::path path(file);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(folder)) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(folder, failed)) {
     throw input_error(option, fmt::format("no folder {}", folder.string()), "a file in an existing folder");
   }
-  if (std::filesystem::is_directory(path)) throw input_error(option, fmt::format("the folder {}", file), "a file");
+  if (std::filesystem::is_directory(path, failed)) {
+    throw input_error(option, fmt::format("the folder {}", file), "a file");
+  }
+  static_cast<void>(output_file(path));
 }
 
 }  // namespace railtab::vsi

@@ -15,6 +15,8 @@
 #include "progress_bar.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
 
@@ -167,6 +169,12 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
   if (before.header.scene_text != scene.text) {
     throw input_error(file, "results of another scene", "results of this scene to resume, or another -o");
   }
+  const std::vector<std::string>& sums = before.header.input_checksums;
+  for (std::size_t i = 0; i < scene.files.size(); ++i) {
+    if (i < sums.size() && file_checksum(scene.files[i]) == sums[i]) continue;
+    throw input_error(file, fmt::format("results made with other contents of {}", scene.files[i].string()),
+                      "the file as it was when the run began, or another -o");
+  }
   if (before.header.program_version != RAILTAB_VERSION) {
     throw input_error(file, "results of railtab " + before.header.program_version,
                       "results of railtab " RAILTAB_VERSION);
@@ -196,8 +204,17 @@ int run(const SceneParameters& scene, const RunOptions& options) {
 /// Results must not overwrite what the run reads.
 void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const std::string& output) {
   require_writable_place(output, "-o");
-  require_no_input(output, {scene_file, scene.contact.table, scene.contact.wheel, scene.contact.rail,
-                            scene.irregularity.value_or(std::filesystem::path())});
+  require_no_input(output, {scene_file});
+  for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
+  require_replaceable(output, {results_filetype});
+}
+
+/// The model says "scene: " of what no single key can tell; the user has a file.
+InputError named_scene(const InputError& wrong, const std::filesystem::path& file) {
+  constexpr std::string_view scene = "scene: ";
+  const std::string message = wrong.what();
+  if (!message.starts_with(scene)) return wrong;
+  return InputError(fmt::format("{}: {}", file.string(), message.substr(scene.size())));
 }
 
 }  // namespace
@@ -221,9 +238,13 @@ int run_command(const Arguments& arguments) {
   RunOptions options{file.stem().string() + ".results.h5", values->contains("json"), values->contains("quiet"),
                      values->contains("resume")};
   if (values->contains("output")) options.output = (*values)["output"].as<std::string>();
-  if (values->contains("plan")) return print_plan(scene, options);
-  check_output(scene, file, options.output);
-  return run(scene, options);
+  try {
+    if (values->contains("plan")) return print_plan(scene, options);
+    check_output(scene, file, options.output);
+    return run(scene, options);
+  } catch (const InputError& wrong) {
+    throw named_scene(wrong, file);
+  }
 }
 
 }  // namespace railtab::vsi

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,7 +25,9 @@ struct Array {
 ///
 /// A growing file is a table of records: all its growing datasets have the same number of rows at each flush(), and
 /// that number is written to the dataset "records" only after the rows themselves. So whatever ends the process, the
-/// file holds the records of the last flush, and a reader takes no row beyond them.
+/// file holds the records of the last flush, and a reader takes no row beyond them. Each flush adds a checksum of the
+/// new rows of every dataset, and what does not grow has one of its own, so that a reader finds every changed byte of
+/// what it reads. Slots are left to their owner.
 class ArrayFileWriter {
  public:
   enum class Mode { whole_or_nothing, growing };
@@ -67,8 +70,8 @@ class ArrayFileWriter {
                       std::string_view description);
   /// Append whole rows: values.size() is a multiple of the row size.
   void append(std::string_view path, std::span<const double> values);
-  /// Cut every growing dataset of a growing file back to `rows`, which is at most records() (resuming from a
-  /// checkpoint).
+  /// Cut every growing dataset of a growing file back to `rows`, the records() after one of its flushes (resuming from
+  /// a checkpoint). @throws InputError where none ended there.
   void truncate(std::size_t rows);
   /// Records of the last flush.
   [[nodiscard]] std::size_t records() const;
@@ -116,6 +119,13 @@ class ArrayFileReader {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Whether the file begins as HDF5 or as a sealed file does, whatever follows. False where there is none.
+[[nodiscard]] bool is_array_file(const std::filesystem::path& file);
+
+/// An output must replace nothing but its like. @throws InputError where `file` exists, is not empty and is of none of
+/// these types.
+void require_replaceable(const std::filesystem::path& file, std::initializer_list<std::string_view> filetypes);
 
 /// The filetype attribute of a railtab file, to tell tables from results. @throws InputError if it is none.
 [[nodiscard]] std::string array_file_type(const std::filesystem::path& file);

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "railtab/tables/creep_table.hpp"
 
 namespace railtab {
+
+inline constexpr std::string_view creep_table_filetype = "railtab-creep-table";
 
 /// Write a table: to a temporary name beside `file`, then renamed, so that `file` is always whole. Values are stored
 /// with 32 bits. @throws InputError where the folder cannot be written.

@@ -6,12 +6,13 @@
 
 namespace railtab {
 
-/// The file that an output named `file` becomes: where `file` is a symbolic link, what it points to.
-/// @throws InputError where there is something other than a regular file: a folder, a device, a pipe
+/// The file that an output named `file` becomes: where `file` is a symbolic link, what it points to, there or not.
+/// @throws InputError where there is something other than a regular file: a folder, a device, a pipe, links in a circle
 [[nodiscard]] std::filesystem::path output_file(const std::filesystem::path& file);
 
 /// Write a text file whole or not at all: to a temporary name beside `file`, then renamed.
-/// @throws InputError where the folder cannot be written.
+/// @throws InputError where the folder cannot be written, and where `file` is an HDF5 file: no text is meant to replace
+/// a table or results.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 /// An output must not destroy what is read. @throws InputError where `output` is one of the files `inputs` (names that

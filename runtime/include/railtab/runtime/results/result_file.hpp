@@ -4,11 +4,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/results/step_record.hpp"
 
 namespace railtab {
+
+inline constexpr std::string_view results_filetype = "railtab-results";
 
 /// Where a run can be taken up again.
 struct Checkpoint {

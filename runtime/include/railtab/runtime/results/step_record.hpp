@@ -40,6 +40,8 @@ struct StepRecord {
 struct ResultHeader {
   std::string scene_name;
   std::string scene_text;  ///< the TOML that was run
+  /// Files that the scene names, in their order, and their checksums (file_checksum()) when the run began.
+  std::vector<std::string> input_files, input_checksums;
   std::string program_version;
   std::string contact_mode;               ///< table, online, paper; in the summary of a file that is read
   double speed = 0;                       ///< [m/s]

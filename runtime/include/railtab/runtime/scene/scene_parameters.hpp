@@ -65,7 +65,8 @@ struct OutputParameters {
 /// Everything a run needs, read from a TOML scene. Paths are relative to the scene file.
 struct SceneParameters {
   std::string name;
-  std::string text;  ///< the TOML itself, kept with the results
+  std::string text;                          ///< the TOML itself, kept with the results
+  std::vector<std::filesystem::path> files;  ///< all that the scene names, in the order of their keys
   TrainParameters train;
   ContactParameters contact;
   TrackKind track_kind = TrackKind::flexible;
