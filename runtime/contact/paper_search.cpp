@@ -15,11 +15,31 @@ namespace railtab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// A wheel with less curvature is straight: its curvature's sign is rounding [1/m].
+constexpr double straight = 1e-6;
 
-// Points of one outline inside the other body.
-struct OverlapPoints {
-  std::array<double, PaperSearch::most_points> y, z;
-  std::array<int, PaperSearch::most_points> index;
+double between(double y, double y0, double z0, double y1, double z1) noexcept {
+  return z0 + (y - y0) * (z1 - z0) / (y1 - y0);
+}
+
+// Foot of a point on the line from 0 to 1: its place there, 0..1, and squared distance.
+struct Foot {
+  double share, distance2;
+};
+
+Foot foot_on_line(double y, double z, double y0, double z0, double y1, double z1) noexcept {
+  const double dy = y1 - y0, dz = z1 - z0;
+  const double share = std::clamp(((y - y0) * dy + (z - z0) * dz) / (dy * dy + dz * dz), 0.0, 1.0);
+  const double off_y = y0 + share * dy - y, off_z = z0 + share * dz - z;
+  return {share, off_y * off_y + off_z * off_z};
+}
+
+}  // namespace
+
+// The wheel's points inside the rail.
+struct PaperSearch::OverlapPoints {
+  std::array<double, most_points> y, z;
+  std::array<int, most_points> index;
   int count = 0;
 
   void add(double y_point, double z_point, int i) noexcept {
@@ -30,41 +50,13 @@ struct OverlapPoints {
   }
 };
 
-double between(double y, double y0, double z0, double y1, double z1) noexcept {
-  return z0 + (y - y0) * (z1 - z0) / (y1 - y0);
-}
-
-struct NearestPoint {
-  double distance2;
-  int position;
-};
-
-// Eq. 9: the nearest of the points. Two passes, the first a plain reduction that vectorises.
-NearestPoint nearest(const OverlapPoints& points, double y, double z) noexcept {
-  const auto n = static_cast<std::size_t>(points.count);
-  double least = infinity;
-  for (std::size_t j = 0; j < n; ++j) {
-    const double dy = points.y[j] - y;
-    const double dz = points.z[j] - z;
-    const double d2 = dy * dy + dz * dz;
-    least = d2 < least ? d2 : least;
-  }
-  for (std::size_t j = 0; j < n; ++j) {
-    const double dy = points.y[j] - y;
-    const double dz = points.z[j] - z;
-    if (dy * dy + dz * dz <= least) return {least, static_cast<int>(j)};
-  }
-  return {least, -1};
-}
-
-}  // namespace
-
 // The wheel's points at a pose, rail-head frame; z = -infinity where the section has no silhouette point.
 struct PaperSearch::Outline {
   std::array<double, most_points> y, z, gap;  // gap: vertical distance down to the rail, infinity beside it
 };
 
-PaperSearch::PaperSearch(WheelRailPair pair, int points) : pair_(std::move(pair)) {
+PaperSearch::PaperSearch(WheelRailPair pair, int points, PaperDistance distance)
+    : pair_(std::move(pair)), distance_(distance) {
   if (points < 10 || points > most_points) {
     throw input_error("points of the published contact search", fmt::format("{}", points),
                       fmt::format("10 to {}", most_points));
@@ -144,12 +136,49 @@ void PaperSearch::add_contact(const WheelsetPose& pose, const PoseTrigonometry& 
   const double s_first = wheel_[static_cast<std::size_t>(zone.first)].s;
   const double s_last = wheel_[static_cast<std::size_t>(zone.last)].s;
   const bool found = convex.status == PairStatus::converged && convex.patch.s_wheel >= s_first &&
-                     convex.patch.s_wheel <= s_last && convex.patch.curv_wheel > 0.0;  // Eq. 2
+                     convex.patch.s_wheel <= s_last && convex.patch.curv_wheel > -straight;  // Eq. 2
   if (!found) {
     add_overlap(pose, trig, wheel, zone, patches);
   } else if (convex.patch.penetration > 0.0) {  // Eq. 3
     patches.patch[static_cast<std::size_t>(patches.count++)] = convex.patch;
   }
+}
+
+// Eq. 9: the nearest of the points. Two passes, the first a plain reduction that vectorises.
+PaperSearch::WheelPair PaperSearch::nearest_point(const OverlapPoints& points, const RailSample& rail) const noexcept {
+  const auto n = static_cast<std::size_t>(points.count);
+  const auto distance2 = [&](std::size_t j) {
+    const double dy = points.y[j] - rail.y, dz = points.z[j] - rail.z;
+    return dy * dy + dz * dz;
+  };
+  double least = infinity;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double d2 = distance2(j);
+    least = d2 < least ? d2 : least;
+  }
+  std::size_t j = 0;
+  while (j + 1 < n && distance2(j) > least) ++j;
+  return {wheel_[static_cast<std::size_t>(points.index[j])].s, least};
+}
+
+// The nearest place on the wheel's lines, from wheel point w downhill.
+PaperSearch::WheelPair PaperSearch::nearest_on_outline(const Outline& wheel, Zone zone, std::size_t w,
+                                                       const RailSample& rail) const noexcept {
+  const auto first = static_cast<std::size_t>(zone.first), last = static_cast<std::size_t>(zone.last);
+  const auto distance2 = [&](std::size_t i) {
+    const double dy = wheel.y[i] - rail.y, dz = wheel.z[i] - rail.z;
+    return dy * dy + dz * dz;
+  };
+  while (w < last && distance2(w + 1) < distance2(w)) ++w;
+  while (w > first && distance2(w - 1) < distance2(w)) --w;
+  WheelPair best{wheel_[w].s, infinity};
+  for (std::size_t i = w > first ? w - 1 : w; i <= w && i < last; ++i) {
+    if (wheel.z[i] == -infinity || wheel.z[i + 1] == -infinity) continue;
+    const Foot foot = foot_on_line(rail.y, rail.z, wheel.y[i], wheel.z[i], wheel.y[i + 1], wheel.z[i + 1]);
+    if (foot.distance2 >= best.distance2) continue;
+    best = {wheel_[i].s + foot.share * (wheel_[i + 1].s - wheel_[i].s), foot.distance2};
+  }
+  return best;
 }
 
 void PaperSearch::add_overlap(const WheelsetPose& pose, const PoseTrigonometry& trig, const Outline& wheel, Zone zone,
@@ -159,9 +188,9 @@ void PaperSearch::add_overlap(const WheelsetPose& pose, const PoseTrigonometry& 
     const auto i = static_cast<std::size_t>(j);
     if (wheel.gap[i] < 0.0) inside.add(wheel.y[i], wheel.z[i], j);
   }
-  if (inside.count == 0) return;
+  if (distance_ == PaperDistance::points && inside.count == 0) return;
   double deepest2 = -1.0;
-  int wheel_index = 0;
+  double s_wheel = 0.0;
   std::size_t rail_index = 0;
   auto j = static_cast<std::size_t>(zone.first);
   for (std::size_t i = 0; i < rail_.size(); ++i) {
@@ -170,14 +199,14 @@ void PaperSearch::add_overlap(const WheelsetPose& pose, const PoseTrigonometry& 
     if (r.y < wheel.y[j] || r.y > wheel.y[j + 1]) continue;
     // Eqs. 5, 7: the rail's point lies inside the wheel where the wheel's outline is below it.
     if (!(between(r.y, wheel.y[j], wheel.z[j], wheel.y[j + 1], wheel.z[j + 1]) > r.z)) continue;
-    const NearestPoint point = nearest(inside, r.y, r.z);
-    if (point.distance2 <= deepest2) continue;  // Eq. 10
-    deepest2 = point.distance2;
-    wheel_index = inside.index[static_cast<std::size_t>(point.position)];
+    const WheelPair pair =
+        distance_ == PaperDistance::points ? nearest_point(inside, r) : nearest_on_outline(wheel, zone, j, r);
+    if (pair.distance2 == infinity || pair.distance2 <= deepest2) continue;  // Eq. 10
+    deepest2 = pair.distance2;
+    s_wheel = pair.s;
     rail_index = i;
   }
   if (deepest2 < 0.0) return;
-  const double s_wheel = wheel_[static_cast<std::size_t>(wheel_index)].s;
   ContactPatch patch = patch_of_pair(pair_, pose, trig, s_wheel, rail_[rail_index].s);
   patch.penetration = std::sqrt(deepest2);
   patch.source = PatchSource::online_concave;

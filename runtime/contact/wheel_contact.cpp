@@ -147,7 +147,7 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
   for (int i = 0; i < patches.count; ++i) {
     const ContactPatch& p = patches.patch[static_cast<std::size_t>(i)];
     ContactPatch& q = moved.patch[static_cast<std::size_t>(i)];
-    if (!geometry.is_paper()) {
+    if (!geometry.is_paper() || p.source == PatchSource::online_convex) {
       const RefinedPair refined = refine_pair(pair, to, trig, p.s_wheel, p.s_rail, 4);
       if (refined.status == PairStatus::converged) {
         q = refined.patch;

@@ -16,9 +16,24 @@ constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+// Evaluations of one contact solution in which the published method searches its pairs.
+constexpr int paper_searches = 4;
+
+// Where an evaluation has its contact pairs from.
+enum class Pairs { searched, held };
+
+ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
+                             NewtonWorkspace& ws) {
+  if (ws.found.empty()) return model.geometry->patches(pose);
+  if (pairs == Pairs::held) return moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
+  ws.found[wheel] = model.geometry->patches(pose);
+  ws.found_at[wheel] = pose;
+  return ws.found[wheel];
+}
+
 // Contact forces at q, and with `tangents` their derivative per wheelset.
-void evaluate(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& s,
-              std::vector<Matrix12>* tangents, NewtonReport& report) {
+void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, ContactSolution& s,
+              NewtonWorkspace& ws, std::vector<Matrix12>* tangents, NewtonReport& report) {
   const int wheelsets = static_cast<int>(s.displacement.size()) / wheelset_unknowns;
   for (int w = 0; w < wheelsets; ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
@@ -31,10 +46,13 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Con
       ContactPatches& patches = s.patches[index(2 * w + side)];
       {
         const Stopwatch watch(report.seconds_lookup);
-        patches = model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+        patches = wheel_patches(model, index(2 * w + side),
+                                relative_pose(model.geometry->pair(), wheel_side, motion, rail), pairs, ws);
       }
-      ++report.queries;
-      if (patches.from_table) ++report.table_queries;
+      if (pairs == Pairs::searched) {
+        ++report.queries;
+        if (patches.from_table) ++report.table_queries;
+      }
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, patches);
       const int r = 6 + 3 * side;
       force.head<6>() += wheel.wheelset;
@@ -146,12 +164,17 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
   constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
   NewtonReport report;
   ws.tangent.resize(static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns));
+  const bool paper = model.geometry->is_paper();
+  ws.found.resize(paper ? 2 * ws.tangent.size() : 0);
+  ws.found_at.resize(ws.found.size());
+  int evaluations = 0;
+  const auto pairs = [&] { return paper && ++evaluations > paper_searches ? Pairs::held : Pairs::searched; };
   double previous = std::numeric_limits<double>::infinity();
   bool new_tangent = ws.factor.empty();  // that of the step before serves as long as it is good enough
   double part = 1.0;
 
   while (report.iterations < limits.max_iterations) {
-    evaluate(model, problem, solution, new_tangent ? &ws.tangent : nullptr, report);
+    evaluate(model, problem, pairs(), solution, ws, new_tangent ? &ws.tangent : nullptr, report);
     residual(problem, solution, ws.residual);
     const double size = ws.residual.cwiseAbs().maxCoeff();
     if (!std::isfinite(size)) return report;
@@ -189,7 +212,7 @@ NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem&
     }
   }
   // Forces at the corrected displacement, so that motion and forces belong together.
-  evaluate(model, problem, solution, nullptr, report);
+  evaluate(model, problem, pairs(), solution, ws, nullptr, report);
   return report;
 }
 

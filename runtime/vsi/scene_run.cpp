@@ -31,7 +31,7 @@ ContactGeometry::Source geometry_source(const ContactParameters& contact) {
     case ContactMode::online:
       return ContactSearch(scene_pair(contact));
     case ContactMode::paper:
-      return PaperSearch(scene_pair(contact), paper_points);
+      return PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline);
   }
   throw InputError("contact.mode: unknown");
 }
@@ -80,12 +80,7 @@ long step_count(const SceneParameters& scene, double duration) {
   return std::lround(steps);
 }
 
-std::string no_equilibrium(const SceneParameters& scene, const EquilibriumReport& rest) {
-  if (scene.contact.mode == ContactMode::paper) {
-    return "no static equilibrium: the discretised pairs of the published contact search jump as the wheelset moves, "
-           "which "
-           "Newton cannot follow on this pair; use --contact table or online";
-  }
+std::string no_equilibrium(const EquilibriumReport& rest) {
   return fmt::format(
       "no static equilibrium after {} iterations (last change {:.3g} m): do the wheels fit on the rails "
       "(track gauge, flange-back distance, profiles' origins)?",
@@ -165,29 +160,45 @@ void add_contact(const ContactParameters& contact, VsiModel& model) {
 }
 
 // Time that a train runs before its scene begins, so that what the steady start leaves out, the rhythm of the sleepers,
-// is there: as long as the modelled track reaches back, for where the rails are rigid there is none.
+// is there: as long as the modelled track reaches back, for where the rails are rigid there is none. The published
+// method has its own state to settle to.
 long run_in_steps(const SceneParameters& scene, const VsiModel& model) {
   constexpr double enough = 0.2;  // s: the wheelsets' bouncing on the track has decayed to less than 1e-3
-  if (!model.structure) return 0;
+  const auto steps = [&](double time) {
+    return time > 0.0 ? static_cast<long>(time / scene.integration.time_step) : 0L;
+  };
+  if (!model.structure) return model.geometry && model.geometry->is_paper() ? steps(enough) : 0;
   const double rear = model.wheelset_x(model.wheelsets() - 1, 0.0);
   const double track = rear - std::max(model.structure->rail[0].x.front(), model.structure->rail[1].x.front());
-  const double time = std::min(enough, 0.8 * track / scene.train.speed);
-  return time > 0.0 ? static_cast<long>(time / scene.integration.time_step) : 0;
+  return steps(std::min(enough, 0.8 * track / scene.train.speed));
+}
+
+// The published search's pairs jump as a wheel moves, and at rest there is no inertia to hold it meanwhile: rest is
+// sought with the online search, and the run-in does the difference.
+std::optional<VsiModel> other_model_at_rest(const SceneParameters& scene, const VsiModel& model) {
+  if (!model.geometry || !model.geometry->is_paper()) return std::nullopt;
+  VsiModel rest = model;
+  rest.geometry = std::make_shared<const ContactGeometry>(ContactSearch(model.geometry->pair()));
+  rest.contact.geometry = rest.geometry.get();
+  rest.contact.normal.curvature_floor = scene.contact.curvature_floor;
+  return rest;
 }
 
 // State at t = 0: steady, and run in where there is track for it. A run-in that fails is left out.
 EquilibriumReport start(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
+  const std::optional<VsiModel> other = other_model_at_rest(scene, model);
+  const VsiModel& at_rest = other ? *other : model;
   const long before = run_in_steps(scene, model);
   if (before > 0) {
     VsiState early(model);
     early.time = -static_cast<double>(before) * scene.integration.time_step;
-    const EquilibriumReport rest = steady_start(model, early);
+    const EquilibriumReport rest = steady_start(at_rest, early);
     if (rest.converged && simulate(model, scene.integration, 0.0, 1, early, {}, -before).complete) {
       state = std::move(early);
       return rest;
     }
   }
-  return steady_start(model, state);
+  return steady_start(at_rest, state);
 }
 
 // The structure as the steps will have it.
@@ -309,7 +320,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   if (observer.start) observer.start(result_header(scene, model));
   RunSummary summary;
   if (!rest.converged) {
-    summary.message = no_equilibrium(scene, rest);
+    summary.message = no_equilibrium(rest);
     summary.contact_mode = contact_mode_name(scene.contact);
     return summary;
   }

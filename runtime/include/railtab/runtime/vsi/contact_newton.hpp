@@ -72,6 +72,8 @@ struct NewtonWorkspace {
   std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per vehicle, of I − C df/dq
   Eigen::MatrixXd compliance, jacobian;                      ///< of one vehicle
   Eigen::VectorXd residual, correction, start;
+  std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
+  std::vector<WheelsetPose> found_at;
 };
 
 [[nodiscard]] WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q,
@@ -83,6 +85,8 @@ struct NewtonWorkspace {
 /// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact) and kept
 /// while it makes the residual five times smaller per iteration, from one step to the next too: a tangent costs seven
 /// evaluations of the forces. Without factors in the workspace it is made first of all.
+/// The published method's pairs jump as a wheel moves: they are searched in the first evaluations and then held,
+/// each moving with its bodies' particles, so that Newton ends on forces that are smooth.
 /// Converged: the residual or the last correction is below the tolerance; the forces are those at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
