@@ -66,6 +66,9 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                  [&](const TrackKindKey&) { set("choice", "rigid, flexible, imported", "flexible"); },
                  [&](const NormalContactKey&) { set("choice", "hertz, rigid", "hertz"); },
                  [&](const ReductionKey&) { set("choice", "none, modal, craig-bampton, window", "none"); },
+                 [&](const TextListKey& k) {
+                   set("list of texts", "any", fmt::format("[\"{}\"]", fmt::join(k.member(standard), "\", \"")));
+                 },
                  [&](const SwitchKey& k) { set("choice", "true, false", k.member(standard) ? "true" : "false"); },
              },
              key.value);

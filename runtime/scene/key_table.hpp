@@ -19,6 +19,8 @@ struct SceneDraft {
   int span_count = 1;               ///< equal spans that this [[bridge]] stands for
   std::optional<double> speed_kmh;  ///< the other way to say train.speed
   std::filesystem::path irregularity;
+  std::string spectrum_name;    ///< empty: no random track
+  SpectrumParameters spectrum;  ///< the rest of it
 };
 
 /// Numbers a key accepts; `open_low` excludes the lower end.
@@ -74,6 +76,10 @@ struct ContactModeKey {};
 struct TrackKindKey {};
 struct NormalContactKey {};
 struct ReductionKey {};
+/// A list of texts.
+struct TextListKey {
+  Member<std::vector<std::string>> member;
+};
 /// true or false.
 struct SwitchKey {
   Member<bool> member;
@@ -85,7 +91,7 @@ struct KeyBinding {
   std::string_view unit;
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ContactModeKey,
-               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey>
+               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey, TextListKey>
       value;
 };
 

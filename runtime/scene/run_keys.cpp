@@ -71,6 +71,14 @@ std::vector<KeyBinding> integration_keys() {
   return {
       {"irregularity.file", "", "measured deviations of both rails over x",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.irregularity; }}},
+      {"irregularity.spectrum", "", "random deviations of this spectrum, in place of a file",
+       TextKey{[](SceneDraft& d) -> std::string& { return d.spectrum_name; }, spectrum_names}},
+      {"irregularity.seed", "1", "of the random track",
+       IntegerKey{[](SceneDraft& d) -> int& { return d.spectrum.seed; }, 0, 1000000000}},
+      {"irregularity.shortest_wave", "m", "shortest wavelength of the random track",
+       NumberKey{[](SceneDraft& d) -> double& { return d.spectrum.shortest; }, {0.1, 500.0}}},
+      {"irregularity.longest_wave", "m", "longest wavelength of the random track",
+       NumberKey{[](SceneDraft& d) -> double& { return d.spectrum.longest; }, {0.1, 500.0}}},
       {"integration.time_step", "s", "time step",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.time_step; }, {0.0, 0.1, true}}},
       {"integration.duration", "s", "simulated time; 0: until the last wheelset has left the last span",
@@ -85,6 +93,13 @@ std::vector<KeyBinding> integration_keys() {
        IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.integration.max_halvings; }, 0, 30}},
       {"output.every", "1", "steps between records",
        IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.output.every; }, 1, 1000000}},
+      {"output.wheels", "", "record contact forces and contact positions",
+       SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.output.wheels; }}},
+      {"output.bodies", "", "bodies to record, by name; * stands for any letters",
+       TextListKey{
+           [](SceneDraft& d) -> std::vector<std::string>& { return d.parameters.output.bodies; }}},
+      {"output.nodes", "", "nodes of the structure to record, by name",
+       TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.parameters.output.nodes; }}},
   };
 }
 

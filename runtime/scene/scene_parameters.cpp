@@ -54,6 +54,7 @@ void SceneParameters::validate() const {
   require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");
   integration.validate();
   reduction.validate();
+  if (spectrum) spectrum->validate();
   if (reduction.kind == Reduction::modal && contact.normal == NormalContact::rigid) {
     throw input_error(place, "structure.reduction = \"modal\" with contact.normal = \"rigid\"",
                       "another reduction: wheels that follow the rails need their curvature, which few modes have not");

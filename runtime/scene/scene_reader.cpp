@@ -57,6 +57,18 @@ struct Assign {
       if (reduction_name(kind) == name) draft.parameters.reduction.kind = kind;
     }
   }
+  void operator()(const TextListKey& key) const {
+    const std::string expected = "a list of texts, such as [\"deck-*\"]";
+    const toml::array* list = leaf.node->as_array();
+    if (!list) throw error(expected);
+    std::vector<std::string>& member = key.member(draft);
+    member.clear();
+    for (const toml::node& entry : *list) {
+      const toml::value<std::string>* text = entry.as_string();
+      if (!text || text->get().empty()) throw error(expected);
+      member.push_back(text->get());
+    }
+  }
   void operator()(const SwitchKey& key) const {
     const toml::value<bool>* value = leaf.node->as_boolean();
     if (!value) throw error("true or false");
@@ -205,6 +217,16 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     draft.parameters.train.speed = *draft.speed_kmh / 3.6;
   }
   refuse_profiles_beside_table(draft, file, leaves);
+  if (!draft.spectrum_name.empty()) {
+    if (!draft.irregularity.empty()) {
+      for (const Leaf& leaf : leaves) {
+        if (leaf.path == "irregularity.spectrum")
+          throw leaf_error(file, leaf, "irregularity.file too", "either irregularity.file or irregularity.spectrum");
+      }
+    }
+    draft.parameters.spectrum = draft.spectrum;
+    draft.parameters.spectrum->name = draft.spectrum_name;
+  }
   if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
   if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();
   try {

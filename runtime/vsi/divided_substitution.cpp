@@ -2,15 +2,11 @@
 
 namespace railtab {
 
-void DividedSubstitution::begin(const StructureFactor& factor, const ActivePart& active, const Eigen::VectorXd& known,
-                                std::span<const int> few) {
+void DividedSubstitution::begin(const StructureFactor& factor, const Eigen::VectorXd& known, std::span<const int> few) {
   few_.assign(few.begin(), few.end());
   factor.find_path(few_, path_);
-  known_.resize(factor.size());
-  // Blocks above the active unknowns are on the way without a load of their own.
-  factor.visit(active.path, [&](int first, int columns) { known_.segment(first, columns).setZero(); });
-  factor.into(known, active.dofs, known_);
-  factor.forward(known_, active.path);
+  factor.into(known, known_);
+  factor.forward(known_);
   work_.resize(factor.size());
   solved_.resize(factor.size());
 }
@@ -25,10 +21,10 @@ void DividedSubstitution::respond(const StructureFactor& factor, double weight, 
   for (int unknown : few_) solution[unknown] = solved_[factor.position(unknown)];
 }
 
-void DividedSubstitution::finish(const StructureFactor& factor, const ActivePart& active, Eigen::VectorXd& solution) {
+void DividedSubstitution::finish(const StructureFactor& factor, Eigen::VectorXd& solution) {
   factor.visit(path_, [&](int first, int columns) { known_.segment(first, columns) = work_.segment(first, columns); });
-  factor.backward(known_, solved_, active.path);
-  factor.out_of(solved_, active.dofs, solution);
+  factor.backward(known_);
+  factor.out_of(known_, solution);
 }
 
 }  // namespace railtab

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -29,7 +30,7 @@ double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 ComparedHistory compared_history(const SceneParameters& scene, double duration) {
   SceneParameters stretch = scene;
   stretch.integration.duration = duration;
-  stretch.output.every = 1;
+  stretch.output = {};
   ComparedHistory history;
   std::vector<std::size_t> deck;
   RunObserver observer;
@@ -45,7 +46,10 @@ ComparedHistory compared_history(const SceneParameters& scene, double duration) 
     std::vector<float>& acceleration = history.deck.emplace_back();
     for (std::size_t n : deck) acceleration.push_back(static_cast<float>(record.nodes[n].acceleration[2]));
   };
+  std::clock_t begin = std::clock();
+  observer.ready = [&] { begin = std::clock(); };
   history.summary = run_scene(stretch, observer);
+  history.seconds_steps = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   if (!history.summary.complete) {
     throw ComputationError(
         fmt::format("comparison with reduction \"{}\": {}", reduction_name(scene.reduction.kind), history.summary.message));

@@ -134,7 +134,7 @@ Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState&
   }
   if (!model.structure) return lines;
   const Prediction& p = ws.structure_prediction;
-  predict(op.scheme, state.structure, op.structure->active().dofs, ws.structure_prediction);
+  predict(op.scheme, state.structure, op.structure->active(), ws.structure_prediction);
   op.structure->free_increment(op.scheme, state.structure, p, ws.structure_free);
   lines.couplings = line_couplings(op, lines.contacts);
   for (int w = 0; w < model.wheelsets(); ++w) {
@@ -232,7 +232,7 @@ StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& op, 
   }
   if (model.structure) {
     const Stopwatch watch(report.seconds_structure);
-    const DofRange& active = op.structure->active().dofs;
+    const DofRange& active = op.structure->active();
     active.of(state.structure.contact_load) = active.of(ws.structure_load);
     update(op.scheme, ws.structure_prediction, ws.structure_increment, active, state.structure);
   }

@@ -201,6 +201,14 @@ EquilibriumReport start(const SceneParameters& scene, const VsiModel& model, Vsi
   return steady_start(at_rest, state);
 }
 
+// A random track as far as the train comes, its run-in included.
+Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
+  constexpr double margin = 50.0;  // m
+  const double end = run_duration(scene, model);
+  return random_irregularity(*scene.spectrum, model.wheelset_x(model.wheelsets() - 1, 0.0) - margin,
+                             model.wheelset_x(0, end) + margin);
+}
+
 // The structure as the steps will have it.
 void reduce(const ReductionParameters& reduction, VsiModel& model) {
   if (!model.structure) return;
@@ -248,6 +256,7 @@ VsiModel build_model(const SceneParameters& scene) {
   if (scene.track_kind == TrackKind::flexible) model.structure = build_track_bridge(scene.track, scene.spans);
   if (scene.track_kind == TrackKind::imported) model.structure = import_structure(scene.structure);
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
+  if (scene.spectrum) model.irregularity = random_track(scene, model);
   check_on_track(scene, model);
   reduce(scene.reduction, model);
   return model;
@@ -291,7 +300,8 @@ RunPlan plan_run(const SceneParameters& scene) {
   }
   if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
     plan.left_out.emplace_back("bridge: the scene names none");
-  if (!scene.irregularity) plan.left_out.emplace_back("irregularity: the scene names none");
+  if (scene.spectrum) plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+  if (!scene.irregularity && !scene.spectrum) plan.left_out.emplace_back("irregularity: the scene names none");
   if (model.geometry && scene.contact.mode != ContactMode::table)
     plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
   return plan;
@@ -317,7 +327,9 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     setup("state of rest");
     rest = start(scene, model, state);
   }
-  if (observer.start) observer.start(result_header(scene, model));
+  const ResultHeader header = result_header(scene, model);
+  const OutputSelection selection(scene.output, header);
+  if (observer.start) observer.start(selection.of(header));
   RunSummary summary;
   if (!rest.converged) {
     summary.message = no_equilibrium(rest);
@@ -325,10 +337,17 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     return summary;
   }
   if (!resume) displace(scene, model, state);
+  RunObserver selected = observer;
+  if (observer.record) {
+    selected.record = [&](StepRecord& record) {
+      selection.cut(record);
+      observer.record(record);
+    };
+  }
   setup("factorising");
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   summary =
-      simulate(model, scene.integration, duration, scene.output.every, state, observer, resume ? resume->step : 0);
+      simulate(model, scene.integration, duration, scene.output.every, state, selected, resume ? resume->step : 0);
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;
   summary.contact_mode = contact_mode_name(scene.contact);

@@ -34,14 +34,14 @@ void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiStat
 void free_structure(const VsiModel& model, const StepOperators& op, const VsiState& state,
                     const std::vector<RailContact>& contacts, StepWorkspace& ws) {
   Prediction& p = ws.structure_prediction;
-  const ActivePart& active = op.structure->active();
-  predict(op.scheme, state.structure, active.dofs, p);
+  const DofRange& active = op.structure->active();
+  predict(op.scheme, state.structure, active, p);
   op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
   ws.rail_dofs.clear();
   for (const RailContact& contact : contacts) append_dofs(contact, ws.rail_dofs);
-  active.dofs.of(ws.structure_load).setZero();
+  active.of(ws.structure_load).setZero();
   ws.structure_free.resize(model.structure->dofs());
-  ws.structure_solution.begin(op.structure->factor(), active, ws.structure_increment, ws.rail_dofs);
+  ws.structure_solution.begin(op.structure->factor(), ws.structure_increment, ws.rail_dofs);
   ws.structure_solution.respond(op.structure->factor(), 0.0, ws.structure_load, ws.structure_free);
   gather_rails(contacts, p.displacement, ws.problem.predicted);
   gather_rails(contacts, p.velocity, ws.problem.predicted_velocity);
@@ -213,10 +213,10 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   }
   if (model.structure) {
     const Stopwatch watch(report.seconds_structure);
-    const ActivePart& active = op.structure->active();
-    ws.structure_solution.finish(op.structure->factor(), active, ws.structure_increment);
-    active.dofs.of(state.structure.contact_load) = active.dofs.of(ws.structure_load);
-    update(hht, ws.structure_prediction, ws.structure_increment, active.dofs, state.structure);
+    const DofRange& active = op.structure->active();
+    ws.structure_solution.finish(op.structure->factor(), ws.structure_increment);
+    active.of(state.structure.contact_load) = active.of(ws.structure_load);
+    update(hht, ws.structure_prediction, ws.structure_increment, active, state.structure);
     if (op.local) update(hht, ws.local_prediction, ws.local_displacement, state.local);
   }
   std::swap(state.contact, ws.solution);

@@ -54,39 +54,21 @@ std::vector<Columns> supernodes(const Sparse& L) {
   return blocks;
 }
 
-template <class Simplicial>
-Eigen::VectorXd inverse_diagonal(const Simplicial& simplicial) {
+}  // namespace
+
+StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : first_(static_cast<int>(range.begin)) {
+  // minimum degree: the fewest entries
+  const Eigen::SimplicialLDLT<Sparse> simplicial(
+      range.count == matrix.rows() ? matrix : Sparse(matrix.block(range.begin, range.begin, range.count, range.count)));
   if (simplicial.info() != Eigen::Success || !(simplicial.vectorD().minCoeff() > 0.0)) {
     throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
   }
-  return simplicial.vectorD().cwiseInverse();
-}
-
-}  // namespace
-
-StructureFactor::StructureFactor(const Sparse& matrix) {
-  const Eigen::SimplicialLDLT<Sparse> simplicial(matrix);  // minimum degree: the fewest entries
-  inverse_D_ = inverse_diagonal(simplicial);
+  inverse_D_ = simplicial.vectorD().cwiseInverse();
   const auto& order = simplicial.permutationP().indices();
   position_.assign(order.data(), order.data() + order.size());
-  store(simplicial.matrixL().nestedExpression());
-}
-
-StructureFactor::StructureFactor(const Sparse& matrix, std::span<const int> order) {
-  position_.resize(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) position_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
-  const Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(
-      Eigen::Map<const Eigen::VectorXi>(position_.data(), matrix.rows()));
-  Sparse ordered(matrix.rows(), matrix.cols());
-  ordered.selfadjointView<Eigen::Lower>() = matrix.selfadjointView<Eigen::Lower>().twistedBy(permutation);
-  const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> simplicial(ordered);
-  inverse_D_ = inverse_diagonal(simplicial);
-  store(simplicial.matrixL().nestedExpression());
-}
-
-// L: below the diagonal, rows ascending.
-void StructureFactor::store(Sparse L) {
+  Sparse L = simplicial.matrixL().nestedExpression();  // below the diagonal, rows ascending
   L.makeCompressed();
+
   const std::vector<Columns> found = supernodes(L);
   block_of_.resize(position_.size());
   for (const Columns& columns : found) {
@@ -139,16 +121,14 @@ void StructureFactor::find_path(std::span<const int> unknowns, Path& path) const
   std::sort(path.blocks_.begin(), path.blocks_.end());
 }
 
-void StructureFactor::into(const Vector& natural, const DofRange& range, Vector& ordered) const {
+void StructureFactor::into(const Vector& natural, Vector& ordered) const {
   ordered.resize(size());
-  for (Eigen::Index i = range.begin; i < range.end(); ++i)
-    ordered[position_[static_cast<std::size_t>(i)]] = natural[i];
+  for (Eigen::Index i = 0; i < size(); ++i) ordered[position_[static_cast<std::size_t>(i)]] = natural[first_ + i];
 }
 
-void StructureFactor::out_of(const Vector& ordered, const DofRange& range, Vector& natural) const {
-  natural.resize(size());
-  for (Eigen::Index i = range.begin; i < range.end(); ++i)
-    natural[i] = ordered[position_[static_cast<std::size_t>(i)]];
+void StructureFactor::out_of(const Vector& ordered, Vector& natural) const {
+  natural.conservativeResize(std::max(natural.size(), first_ + size()));
+  for (Eigen::Index i = 0; i < size(); ++i) natural[first_ + i] = ordered[position_[static_cast<std::size_t>(i)]];
 }
 
 void StructureFactor::forward(double* y, const Block& block, double* scratch) const {
@@ -209,7 +189,7 @@ void StructureFactor::backward(const Vector& y, Vector& x, const Path& path) con
 }
 
 StructureFactor::Vector StructureFactor::solve(const Vector& load) const {
-  Vector ordered, natural;
+  Vector ordered, natural = Vector::Zero(load.size());
   into(load, ordered);
   forward(ordered);
   backward(ordered);

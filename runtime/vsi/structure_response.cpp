@@ -9,8 +9,6 @@
 #include <string_view>
 
 #include "railtab/runtime/structure/interval_search.hpp"
-#include "railtab/runtime/vsi/cell_order.hpp"
-#include "railtab/runtime/vsi/divided_substitution.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "selected_solve.hpp"
 
@@ -140,7 +138,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   require_finite(structure);
   effective_ = scheme.acceleration_rate() * structure.mass +
                scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
-  make_factor(structure);
+  prepare(structure);
   // The union of both patterns: a zero times one keeps an entry's place.
   const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
   entry_begin_.push_back(0);
@@ -168,37 +166,20 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  make_factor(structure);
+  prepare(structure);
 }
 
 StructureResponse::~StructureResponse() = default;
 
-void StructureResponse::make_factor(const StructureModel& structure) {
-  constexpr double cell_length = 20.0;  // m: some hundred unknowns, so that joints are few
-  if (structure.dof_x.empty()) {
-    factor_ = std::make_unique<StructureFactor>(effective_);
-  } else {
-    const std::vector<double> ends = line_cells(structure.dof_x, structure.spans, cell_length);
-    factor_ = std::make_unique<StructureFactor>(effective_, cell_order(effective_, structure.dof_x, ends));
-  }
+void StructureResponse::prepare(const StructureModel& structure) {
   if (structure.basis.size() > 0) modal_compliance_ = effective_.diagonal().cwiseInverse();
   activate({0, dofs_});
 }
 
 void StructureResponse::activate(const DofRange& dofs) {
-  if (active_.dofs == dofs) return;
-  active_.dofs = dofs;
-  std::vector<int> all(static_cast<std::size_t>(dofs.count));
-  std::iota(all.begin(), all.end(), static_cast<int>(dofs.begin));
-  factor_->find_path(all, active_.path);
-}
-
-Eigen::VectorXd StructureResponse::solve(const Eigen::VectorXd& load) const {
-  DividedSubstitution substitution;
-  Eigen::VectorXd solution = Eigen::VectorXd::Zero(dofs_);
-  substitution.begin(*factor_, active_, load, {});
-  substitution.finish(*factor_, active_, solution);
-  return solution;
+  if (factor_ && active_ == dofs) return;
+  active_ = dofs;
+  factor_ = std::make_unique<StructureFactor>(effective_, dofs);
 }
 
 StructureResponse::Entries& StructureResponse::entries() {
@@ -209,8 +190,8 @@ StructureResponse::Entries& StructureResponse::entries() {
 void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
                                   Eigen::VectorXd& load) const {
   load.resize(dofs_);
-  const Eigen::Index first = active_.dofs.begin, last = active_.dofs.end();
-  active_.dofs.of(load) = -scheme.alpha * active_.dofs.of(motion.contact_load);
+  const Eigen::Index first = active_.begin, last = active_.end();
+  active_.of(load) = -scheme.alpha * active_.of(motion.contact_load);
   const double* const u = prediction.weighted_displacement.data();
   const double* const v = prediction.weighted_velocity.data();
   double* const f = load.data();
@@ -232,7 +213,7 @@ void StructureResponse::free_increment(const HhtScheme& scheme, const LinearMoti
                                        const Prediction& prediction, Eigen::VectorXd& increment) const {
   Eigen::VectorXd load;
   step_load(scheme, motion, prediction, load);
-  increment = solve(load);
+  increment = factor_->solve(load);
 }
 
 StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,

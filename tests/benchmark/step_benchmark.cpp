@@ -2,7 +2,7 @@
 // and bridge. Says where the time goes, how many back-substitutions a step needs, and how near the step is to the limit
 // that the memory sets: the bytes that it has to read over the bandwidth of a large triad in the same run.
 //
-//     step_benchmark [TABLE.h5 [spans [smooth]]]     without a table the contact is searched online
+//     step_benchmark [TABLE.h5 [spans [smooth|rough [none|window]]]]     without a table the contact is searched online
 
 #include <fmt/format.h>
 
@@ -96,7 +96,8 @@ void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
 
 int main(int argc, char** argv) {
   SceneParameters scene = viaduct(argc > 1 ? argv[1] : "", argc > 2 ? std::atoi(argv[2]) : 50);
-  if (argc > 3) scene.irregularity.reset();
+  if (argc > 3 && std::string(argv[3]) == "smooth") scene.irregularity.reset();
+  if (argc > 4 && std::string(argv[4]) == "window") scene.reduction.kind = Reduction::window;
   const VsiModel model = build_model(scene);
   const HhtScheme scheme{.alpha = scene.integration.alpha, .time_step = scene.integration.time_step};
   const double bandwidth = triad_bandwidth(std::size_t{768} << 20);

@@ -12,6 +12,7 @@ using Arguments = std::vector<std::string>;
 int contact_command(const Arguments& arguments);
 int creep_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
+int sweep_command(const Arguments& arguments);
 int report_command(const Arguments& arguments);
 
 }  // namespace railtab::vsi

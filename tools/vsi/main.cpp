@@ -18,6 +18,7 @@ constexpr const char* usage =
     "  contact TABLE.h5 --query Q.csv -o R.csv [--online]     contact patches of a wheelset's positions\n"
     "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
+    "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
     "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n";
 
 int dispatch(const Arguments& arguments) {
@@ -27,6 +28,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "contact") return contact_command(rest);
   if (name == "creep") return creep_command(rest);
   if (name == "run") return run_command(rest);
+  if (name == "sweep") return sweep_command(rest);
   if (name == "report") return report_command(rest);
   if (name == "--help" || name == "-h") {
     fmt::print("{}", usage);

@@ -14,20 +14,17 @@
 #include "headline_text.hpp"
 #include "progress_bar.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/vsi/reduction_check.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
+#include "run_command.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
 namespace {
-
-struct RunOptions {
-  std::string output;
-  bool json = false, quiet = false, resume = false;
-};
 
 ContactMode contact_mode(const std::string& name) {
   if (name == "table") return ContactMode::table;
@@ -81,6 +78,7 @@ class Interrupt {
 
 /// What a run that has ended says, and its exit code.
 int conclude(const report::Headline& headline, const RunSummary& summary, const RunOptions& options) {
+  if (options.ended) options.ended(headline, summary);
   constexpr int interrupted = 130;  // as a shell says of a program that Ctrl-C has ended
   if (options.json) {
     fmt::print("{}\n", headline_json(headline, summary).add("results", options.output).text());
@@ -185,22 +183,6 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
   }
 }
 
-int run(const SceneParameters& scene, const RunOptions& options) {
-  RunRecorder recorder(options);
-  std::optional<RunCheckpoint> from;
-  if (options.resume && std::filesystem::exists(options.output)) {
-    const RunResults before = read_results(options.output);
-    check_same_run(before, scene, options.output);
-    if (before.summary.complete) {
-      report::HeadlineCollector collector(before.header);
-      for (const StepRecord& step : before.steps) collector.add(step);
-      return conclude(collector.result(before.summary), before.summary, options);
-    }
-    from = recorder.take_up(before);
-  }
-  return recorder.finish(run_scene(scene, recorder.observer(), from));
-}
-
 /// Results must not overwrite what the run reads.
 void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const std::string& output) {
   require_writable_place(output, "-o");
@@ -217,16 +199,75 @@ InputError named_scene(const InputError& wrong, const std::filesystem::path& fil
   return InputError(fmt::format("{}: {}", file.string(), message.substr(scene.size())));
 }
 
+/// The error of the scene's reduction over the first `seconds`.
+int print_reduction_error(const SceneParameters& scene, double seconds, const RunOptions& options) {
+  if (scene.reduction.kind == Reduction::none) {
+    throw input_error("--check-reduction", "a scene without structure.reduction", "one with a reduction to check");
+  }
+  const ReductionError e = check_reduction(scene, seconds);
+  const auto step_ms = [](const RunSummary& s) {
+    return 1e3 * (s.seconds_total - s.seconds_setup) / static_cast<double>(s.steps);
+  };
+  if (options.json) {
+    fmt::print("{}\n", JsonObject()
+                           .add("reduction", std::string(reduction_name(scene.reduction.kind)))
+                           .add("seconds", e.duration)
+                           .add("force_max", e.force_max)
+                           .add("force_rms", e.force_rms)
+                           .add("force_of_static", e.force_static)
+                           .add("deck_max", e.deck_max)
+                           .add("deck_rms", e.deck_rms)
+                           .add("peak_force", e.peak_force)
+                           .add("peak_deck", e.peak_deck)
+                           .add("unknowns", e.reduced.structure_dofs)
+                           .add("unknowns_none", e.whole.structure_dofs)
+                           .add("step_ms", step_ms(e.reduced))
+                           .add("step_ms_none", step_ms(e.whole))
+                           .text());
+    return 0;
+  }
+  fmt::print("{}: reduction \"{}\" against \"none\" over {} s\n", scene.name, reduction_name(scene.reduction.kind),
+             e.duration);
+  fmt::print("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its dynamic part; {:.3g} % of the static load\n",
+             "vertical contact force", 100.0 * e.force_max, 100.0 * e.force_rms, 100.0 * e.force_static);
+  fmt::print("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its largest value\n", "deck acceleration",
+             100.0 * e.deck_max, 100.0 * e.deck_rms);
+  fmt::print("  {:<28}{:>9.3g} % of the largest Q, {:.3g} % of the largest deck acceleration\n", "peaks",
+             100.0 * e.peak_force, 100.0 * e.peak_deck);
+  fmt::print("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
+             e.reduced.structure_dofs, step_ms(e.whole), e.whole.structure_dofs);
+  return 0;
+}
+
 }  // namespace
+
+int run_to_file(const SceneParameters& scene, const RunOptions& options) {
+  RunRecorder recorder(options);
+  std::optional<RunCheckpoint> from;
+  if (options.resume && std::filesystem::exists(options.output)) {
+    const RunResults before = read_results(options.output);
+    check_same_run(before, scene, options.output);
+    if (before.summary.complete) {
+      report::HeadlineCollector collector(before.header);
+      for (const StepRecord& step : before.steps) collector.add(step);
+      return conclude(collector.result(before.summary), before.summary, options);
+    }
+    from = recorder.take_up(before);
+  }
+  return recorder.finish(run_scene(scene, recorder.observer(), from));
+}
 
 int run_command(const Arguments& arguments) {
   CommandSyntax syntax{
-      "vsi run SCENE.toml [-o RESULTS.h5] [--resume] [--plan] [--contact table|online|paper]", "scene", true, {}};
+      "vsi run SCENE.toml [-o RESULTS.h5] [--resume] [--plan] [--contact table|online|paper]\n"
+      "               [--check-reduction SECONDS]", "scene", true, {}};
   syntax.options.add_options()("output,o", po::value<std::string>()->value_name("RESULTS.h5"),
                                "results; default: <scene>.results.h5 in this folder")(
       "resume", "go on from the last checkpoint in RESULTS.h5; nothing is run where it is complete")(
       "plan", "say what will be built and what is left out, and do not run")(
-      "contact", po::value<std::string>()->value_name("MODE"), "table, online or paper, instead of the scene's");
+      "contact", po::value<std::string>()->value_name("MODE"), "table, online or paper, instead of the scene's")(
+      "check-reduction", po::value<double>()->value_name("SECONDS"),
+      "say how far the first SECONDS with structure.reduction are from those without, and do not run on");
   const auto values = parse_command_line(syntax, arguments);
   if (!values) return 0;
   const std::filesystem::path file = (*values)["scene"].as<std::string>();
@@ -240,8 +281,13 @@ int run_command(const Arguments& arguments) {
   if (values->contains("output")) options.output = (*values)["output"].as<std::string>();
   try {
     if (values->contains("plan")) return print_plan(scene, options);
+    if (values->contains("check-reduction")) {
+      const double seconds = (*values)["check-reduction"].as<double>();
+      if (!(seconds > 0.0)) throw input_error("--check-reduction", fmt::format("{}", seconds), "> 0 s");
+      return print_reduction_error(scene, seconds, options);
+    }
     check_output(scene, file, options.output);
-    return run(scene, options);
+    return run_to_file(scene, options);
   } catch (const InputError& wrong) {
     throw named_scene(wrong, file);
   }

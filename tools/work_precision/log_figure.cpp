@@ -68,7 +68,7 @@ std::string grid(const WorkFigure& figure, const Frame& frame) {
     fmt::format_to(std::back_inserter(svg), "<path stroke=\"#e3e7ec\" d=\"M{} {:.1f}h{}\"/>", left, y, width);
     svg += text(left - 6, y + 4, "end", fmt::format("1e{:g}", power));
   }
-  svg += text(left + 0.5 * width, above + height + 38, "middle", "time per query");
+  svg += text(left + 0.5 * width, above + height + 38, "middle", figure.time_label);
   fmt::format_to(std::back_inserter(svg),
                  "<text transform=\"translate({:.1f} {:.1f}) rotate(-90)\" text-anchor=\"middle\" "
                  "font-size=\"11\">{}</text>",

@@ -9,7 +9,7 @@ namespace railtab::work_precision {
 struct WorkPoint {
   std::string method;   ///< points of one method are joined by a line
   std::string setting;  ///< what distinguishes this point
-  double time_ns;       ///< per query, median over interleaved passes
+  double time_ns;       ///< per query or step, median over interleaved passes
   double error;         ///< the quantile that the figure names, in its unit
   double largest_error;
   std::string note;  ///< memory, share of fallback: for the table of values
@@ -23,6 +23,7 @@ struct WorkFigure {
   std::string advice;  ///< what to choose and why: one paragraph
   double least_error;  ///< errors below count as this: the resolution of the comparison
   std::vector<WorkPoint> points;
+  std::string time_label = "time per query";
 };
 
 /// Points that no other point of the figure beats in both time and error.

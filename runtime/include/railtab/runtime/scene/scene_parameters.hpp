@@ -8,9 +8,11 @@
 
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
+#include "railtab/runtime/results/output_selection.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/track/irregularity_spectrum.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
 
@@ -58,10 +60,6 @@ struct IntegrationParameters {
   void validate() const;  ///< @throws InputError naming the member out of range
 };
 
-struct OutputParameters {
-  int every = 1;  ///< steps between records, >= 1
-};
-
 /// Everything a run needs, read from a TOML scene. Paths are relative to the scene file.
 struct SceneParameters {
   std::string name;
@@ -75,6 +73,7 @@ struct SceneParameters {
   StructureFiles structure;             ///< for TrackKind::imported
   ReductionParameters reduction;
   std::optional<std::filesystem::path> irregularity;
+  std::optional<SpectrumParameters> spectrum;  ///< in place of a file: a random track
   IntegrationParameters integration;
   OutputParameters output;
 

@@ -14,18 +14,16 @@ namespace railtab {
 ///     Lᵀ x = D⁻¹ (z + w)          on the path as often, whole once
 ///
 /// What lies on the path costs little, so that any number of answers to the changing load and the whole solution come
-/// at the price of little more than one back-substitution. "Whole" is the active part of the factor: all of it, or
-/// where the unknowns of a range and nothing else are loaded and asked for. Caller-owned buffers; nothing is allocated
-/// after the first use.
+/// at the price of little more than one back-substitution. Caller-owned buffers; nothing is allocated after the first
+/// use.
 class DividedSubstitution {
  public:
   /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
-  void begin(const StructureFactor& factor, const ActivePart& active, const Eigen::VectorXd& known,
-             std::span<const int> few);
+  void begin(const StructureFactor& factor, const Eigen::VectorXd& known, std::span<const int> few);
   /// The solution at the few unknowns under known + weight·extra. Reads and writes only their entries.
   void respond(const StructureFactor& factor, double weight, const Eigen::VectorXd& extra, Eigen::VectorXd& solution);
-  /// The solution of the active unknowns under the loads of the last respond(), which must have been called.
-  void finish(const StructureFactor& factor, const ActivePart& active, Eigen::VectorXd& solution);
+  /// The whole solution under the loads of the last respond(), which must have been called.
+  void finish(const StructureFactor& factor, Eigen::VectorXd& solution);
 
  private:
   std::vector<int> few_;

@@ -26,6 +26,7 @@ struct ReductionError {
 struct ComparedHistory {
   std::vector<double> static_load;              ///< [N] per wheel
   std::vector<std::vector<float>> force, deck;  ///< per step [N], [m/s²]
+  double seconds_steps = 0.0;                   ///< processor time of all steps
   RunSummary summary;
 };
 [[nodiscard]] ComparedHistory compared_history(const SceneParameters& scene, double duration);

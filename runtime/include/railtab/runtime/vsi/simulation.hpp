@@ -28,8 +28,8 @@ struct RunObserver {
   std::function<void(std::string_view note)> note;   ///< what was repaired in measured profiles, sentence by sentence
   std::function<void(const ResultHeader&)> start;    ///< once, before the first record
   std::function<void()> ready;                       ///< once, when the set-up is over and the first step begins
-  /// The initial state, then every output.every steps, and the last step in any case.
-  std::function<void(const StepRecord&)> record;
+  /// The initial state, then every output.every steps, and the last step in any case. The listener may change it.
+  std::function<void(StepRecord&)> record;
   std::function<void(double fraction)> progress;                             ///< 0..1
   std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
   long checkpoint_every = 2000;

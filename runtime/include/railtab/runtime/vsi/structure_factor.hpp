@@ -22,9 +22,10 @@ class StructureFactor {
   using Vector = Eigen::VectorXd;
 
   /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
-  explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix);
-  /// The same with a given order of elimination (the unknown that is eliminated k-th, for each k).
-  StructureFactor(const Eigen::SparseMatrix<double>& matrix, std::span<const int> order);
+  explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix)
+      : StructureFactor(matrix, {0, matrix.rows()}) {}
+  /// The rows and columns in `range` alone: all other unknowns are held. Unknowns keep their numbers.
+  StructureFactor(const Eigen::SparseMatrix<double>& matrix, const DofRange& range);
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
   /// What one half of a back-substitution reads [bytes].
@@ -46,12 +47,10 @@ class StructureFactor {
     }
   }
 
-  [[nodiscard]] int position(int unknown) const noexcept { return position_[static_cast<std::size_t>(unknown)]; }
-  void into(const Vector& natural, Vector& ordered) const { into(natural, {0, size()}, ordered); }
-  void out_of(const Vector& ordered, Vector& natural) const { out_of(ordered, {0, size()}, natural); }
-  /// The unknowns in `range` only.
-  void into(const Vector& natural, const DofRange& range, Vector& ordered) const;
-  void out_of(const Vector& ordered, const DofRange& range, Vector& natural) const;
+  [[nodiscard]] int position(int unknown) const noexcept { return position_[static_cast<std::size_t>(unknown - first_)]; }
+  /// From and to a vector of all unknowns of the structure; those that are held are not touched.
+  void into(const Vector& natural, Vector& ordered) const;
+  void out_of(const Vector& ordered, Vector& natural) const;
 
   /// y <- L⁻¹ y.
   void forward(Vector& y) const;
@@ -61,11 +60,10 @@ class StructureFactor {
   void forward(Vector& y, const Path& path) const;
   /// The entries of L⁻ᵀ D⁻¹ y on the path; those of x elsewhere stay as they are.
   void backward(const Vector& y, Vector& x, const Path& path) const;
-  /// Full solution in the natural order.
+  /// Full solution in the natural order, of all unknowns of the structure; 0 where they are held.
   [[nodiscard]] Vector solve(const Vector& load) const;
 
  private:
-  void store(Eigen::SparseMatrix<double> L);
   struct Block {
     int first, columns;  // first column and number of columns
     int below, rows;     // rows below the triangle: number, and place of the first in rows_
@@ -81,13 +79,8 @@ class StructureFactor {
   std::vector<int> block_of_;  // of a column
   std::vector<int> position_;  // of an unknown in the factor's order
   Vector inverse_D_;
+  int first_ = 0;              // the unknown that the range begins with
   int most_below_ = 0;
-};
-
-/// Unknowns that take part in a step, and the blocks of the factor that they need.
-struct ActivePart {
-  DofRange dofs;
-  StructureFactor::Path path;
 };
 
 }  // namespace railtab

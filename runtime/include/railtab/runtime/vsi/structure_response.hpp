@@ -47,10 +47,9 @@ class StructureResponse {
 
   [[nodiscard]] const StructureFactor& factor() const noexcept { return *factor_; }
 
-  /// Let only these unknowns take part; all others are taken to rest. At first all take part. To take a part costs less
-  /// only where the structure says where its unknowns are (StructureModel::dof_x).
+  /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
   void activate(const DofRange& dofs);
-  [[nodiscard]] const ActivePart& active() const noexcept { return active_; }
+  [[nodiscard]] const DofRange& active() const noexcept { return active_; }
 
   /// Right-hand side of Eq. 13 without contact forces at the end of the step. Not at rest.
   void step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
@@ -61,8 +60,7 @@ class StructureResponse {
   void free_increment(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
                       Eigen::VectorXd& increment) const;
 
-  /// Back-substitution of the active part; entries of other unknowns are 0.
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const;
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
   /// Make the table of node-by-node compliances cover loads on the rails between positions `from` and `to` [m], coupled
   /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
@@ -96,12 +94,12 @@ class StructureResponse {
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
 
   [[nodiscard]] Eigen::Matrix3d modal(const RailContact& i, const RailContact& j) const noexcept;
-  void make_factor(const StructureModel& structure);
+  void prepare(const StructureModel& structure);
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
   std::unique_ptr<StructureFactor> factor_;
-  ActivePart active_;
+  DofRange active_;
   /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
   struct Entry {
     double stiffness, damping;

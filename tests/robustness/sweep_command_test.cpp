@@ -1,0 +1,192 @@
+// Runs that are killed and resumed, and sweeps of them.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "railtab/runtime/results/result_file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using railtab::RunResults;
+
+class SweepCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              (std::string("sweep_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+
+  [[nodiscard]] pid_t start(const std::vector<std::string>& arguments) const {
+    const pid_t process = fork();
+    if (process != 0) return process;
+    if (chdir(folder_.c_str()) != 0 || !freopen("/dev/null", "w", stdout) || !freopen("log", "a", stderr)) _exit(99);
+    std::vector<char*> argv{const_cast<char*>("vsi")};
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    execv(VSI_COMMAND, argv.data());
+    _exit(98);
+  }
+  /// Exit code, or 128 + signal.
+  static int wait(pid_t process) {
+    int status = 0;
+    waitpid(process, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  [[nodiscard]] int vsi(const std::vector<std::string>& arguments) const { return wait(start(arguments)); }
+
+  [[nodiscard]] std::string text(const std::string& name) const {
+    std::ostringstream content;
+    content << std::ifstream(folder_ / name).rdbuf();
+    return content.str();
+  }
+
+  fs::path folder_;
+};
+
+bool same_motion(const railtab::MotionRecord& a, const railtab::MotionRecord& b) {
+  for (int k = 0; k < 6; ++k) {
+    if (a.displacement[k] != b.displacement[k] || a.velocity[k] != b.velocity[k] ||
+        a.acceleration[k] != b.acceleration[k])
+      return false;
+  }
+  return true;
+}
+
+void expect_same(const RunResults& a, const RunResults& b) {
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  for (std::size_t i = 0; i < a.steps.size(); ++i) {
+    ASSERT_EQ(a.steps[i].time, b.steps[i].time);
+    for (std::size_t w = 0; w < a.steps[i].wheels.size(); ++w)
+      ASSERT_EQ(a.steps[i].wheels[w].Q, b.steps[i].wheels[w].Q) << "record " << i;
+    for (std::size_t k = 0; k < a.steps[i].bodies.size(); ++k)
+      ASSERT_TRUE(same_motion(a.steps[i].bodies[k], b.steps[i].bodies[k])) << "record " << i;
+    for (std::size_t k = 0; k < a.steps[i].nodes.size(); ++k)
+      ASSERT_TRUE(same_motion(a.steps[i].nodes[k], b.steps[i].nodes[k])) << "record " << i;
+  }
+}
+
+// Ten kills at random moments, each followed by a run that goes on: set-up, steps and the writing of checkpoints are
+// all hit. The result is that of a run which nobody disturbed, to the last bit; so it is with a moving window.
+class KilledRun : public SweepCommand, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(KilledRun, ResumesToTheLastBit) {
+  write("scene.toml", std::string("[train]\nspeed = 30.0\nstart = -2.0\n[contact]\nnormal = \"rigid\"\n"
+                                  "[track]\nlength_before = 40.0\nlength_after = 200.0\n"
+                                  "[[bridge]]\nlength = 12.0\nelements = 12\ncount = 3\n"
+                                  "[irregularity]\nspectrum = \"german-low\"\n"
+                                  "[integration]\nduration = 6.0\n[output]\nevery = 7\n[structure]\nreduction = \"") +
+                          GetParam() + "\"\nwindow_ahead = 8.0\nwindow_behind = 8.0\n");
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(vsi({"run", "scene.toml", "-o", "whole.h5", "--quiet"}), 0) << text("log");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> share(0.05, 0.6);
+  int killed = 0;
+  for (int k = 0; k < 10; ++k) {
+    const pid_t process = start({"run", "scene.toml", "-o", "killed.h5", "--quiet", "--resume"});
+    std::this_thread::sleep_for(share(generator) * took);
+    kill(process, SIGKILL);
+    if (wait(process) == 128 + SIGKILL) ++killed;
+  }
+  ASSERT_EQ(vsi({"run", "scene.toml", "-o", "killed.h5", "--quiet", "--resume"}), 0) << text("log");
+  EXPECT_GE(killed, 3) << "the kills came too late to say anything";
+  expect_same(railtab::read_results(folder_ / "killed.h5"), railtab::read_results(folder_ / "whole.h5"));
+}
+INSTANTIATE_TEST_SUITE_P(Reductions, KilledRun, ::testing::Values("none", "window"));
+
+constexpr const char* scene = R"([contact]
+mode = "online"
+[track]
+kind = "rigid"
+[irregularity]
+spectrum = "german-low"
+[integration]
+duration = 0.3
+[output]
+every = 5
+wheels = true
+bodies = ["*/car-body"]
+)";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// All but the run time, which is the last column but one.
+std::string numbers_of(const std::string& line) {
+  const std::size_t message = line.rfind(',');
+  return line.substr(0, line.rfind(',', message - 1));
+}
+
+TEST_F(SweepCommand, ShardsAndAKillMakeTheSameSummary) {
+  write("scene.toml", scene);
+  const std::vector<std::string> sweep{"sweep", "scene.toml", "--speed-kmh", "100:200:50", "--seeds", "2", "--quiet"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = sweep;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  ASSERT_EQ(vsi(with({"-o", "whole"})), 0) << text("log");
+  const std::vector<std::string> whole = lines_of(text("whole/summary.csv"));
+  ASSERT_EQ(whole.size(), 7U);
+  EXPECT_TRUE(whole[1].starts_with("v027.778-s001,27.7778,100,1,1,")) << whole[1];
+  EXPECT_TRUE(whole[6].starts_with("v055.556-s002,")) << whole[6];
+  EXPECT_NE(numbers_of(whole[1]).substr(20), numbers_of(whole[2]).substr(20)) << "two seeds, one track";
+
+  const pid_t process = start(with({"-o", "parts", "--shard", "1/2", "--threads", "1"}));
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  kill(process, SIGKILL);
+  wait(process);
+  for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(vsi(with({"-o", "parts", "--shard", shard})), 0) << text("log");
+  EXPECT_FALSE(fs::exists(folder_ / "parts/summary.csv"));
+  const auto written = fs::last_write_time(folder_ / "parts/v027.778-s001.h5");
+  ASSERT_EQ(vsi(with({"-o", "parts"})), 0) << text("log");
+  EXPECT_EQ(fs::last_write_time(folder_ / "parts/v027.778-s001.h5"), written) << "a finished run was run again";
+  const std::vector<std::string> parts = lines_of(text("parts/summary.csv"));
+  ASSERT_EQ(parts.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(numbers_of(parts[i]), numbers_of(whole[i]));
+
+  const RunResults one = railtab::read_results(folder_ / "whole/v027.778-s001.h5");
+  EXPECT_EQ(one.header.body_names, (std::vector<std::string>{"coach-1/car-body"}));
+  EXPECT_NE(one.header.scene_text.find("# vsi sweep: train.speed = 27.77"), std::string::npos);
+}
+
+TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
+  write("scene.toml", scene);
+  write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
+  const auto refused = [&](const std::vector<std::string>& arguments) { EXPECT_EQ(vsi(arguments), 2) << text("log"); };
+  refused({"sweep", "scene.toml", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "10:20", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "20:10:1", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "10:20:0", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "300", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "30", "--speed-kmh", "100", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "30", "--shard", "3/2", "-o", "out"});
+  refused({"sweep", "smooth.toml", "--speed", "30", "--seeds", "2", "-o", "out"});
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  ASSERT_EQ(vsi({"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"}), 0) << text("log");
+  refused({"sweep", "scene.toml", "--speed", "30", "-o", "out"});  // another scene's folder
+}
+
+}  // namespace

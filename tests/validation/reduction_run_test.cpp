@@ -1,0 +1,126 @@
+// Runs with a reduced structure against the same runs without, and resumed against uninterrupted.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "railtab/runtime/vsi/reduction_check.hpp"
+
+namespace railtab {
+namespace {
+
+SceneParameters coach_on_spans(Reduction reduction) {
+  SceneParameters scene;
+  scene.contact.mode = ContactMode::online;
+  scene.train.start = -2.0;
+  scene.track.length_before = 60.0;
+  scene.track.length_after = 40.0;
+  BridgeParameters span;
+  span.length = 16.0;
+  span.elements = 16;
+  span.Iy = 2.0;
+  scene.spans.assign(4, span);
+  scene.spectrum = SpectrumParameters{};
+  scene.integration.time_step = 1e-3;
+  scene.reduction.kind = reduction;
+  return scene;
+}
+
+TEST(ReducedRun, WindowIsWithinOnePercent) {
+  const ReductionError e = check_reduction(coach_on_spans(Reduction::window), 0.8);
+  EXPECT_LT(e.force_max, 0.01);
+  EXPECT_LT(e.deck_max, 0.01);
+  EXPECT_GT(e.force_max, 0.0) << "a window is an approximation: equal runs would be one run";
+}
+
+// The coach leaves the first spans, which vibrate on in their own modes: 44 m/s over four spans of 16 m, and on.
+TEST(ReducedRun, SpansBehindTheWindowVibrateOn) {
+  SceneParameters scene = coach_on_spans(Reduction::window);
+  scene.contact.normal = NormalContact::rigid;
+  scene.track.length_after = 120.0;
+  scene.reduction.behind = 10.0;
+  const ReductionError e = check_reduction(scene, 3.0);
+  EXPECT_LT(e.deck_max, 0.02);
+  EXPECT_GT(e.deck_max, 0.0);
+}
+
+TEST(ReducedRun, CraigBamptonFollowsTheDeck) {
+  SceneParameters scene = coach_on_spans(Reduction::craig_bampton);
+  scene.spans.resize(1);
+  scene.reduction.modes = 30;
+  const ReductionError e = check_reduction(scene, 0.1);
+  EXPECT_LT(e.force_max, 0.05);
+  EXPECT_LT(e.deck_max, 0.10);
+  EXPECT_GT(e.force_max, 0.0);
+}
+
+// Few modes of so long a structure hold the rails stiff: the static correction gives the wheels their rail back.
+TEST(ReducedRun, StaticCorrectionMendsTheContactForce) {
+  SceneParameters scene = coach_on_spans(Reduction::modal);
+  scene.spans.resize(1);
+  scene.reduction.modes = 30;
+  const ReductionError with = check_reduction(scene, 0.1);
+  scene.reduction.static_correction = false;
+  const ReductionError without = check_reduction(scene, 0.1);
+  EXPECT_LT(with.force_rms, 0.3 * without.force_rms);
+}
+
+struct Run {
+  std::vector<StepRecord> records;
+  std::vector<RunCheckpoint> checkpoints;
+};
+
+Run run(const SceneParameters& scene, const std::optional<RunCheckpoint>& from = std::nullopt) {
+  Run result;
+  RunObserver observer;
+  observer.checkpoint_every = 70;
+  observer.record = [&](const StepRecord& record) { result.records.push_back(record); };
+  observer.checkpoint = [&](long step, std::span<const double> state) {
+    result.checkpoints.push_back({step, {state.begin(), state.end()}});
+  };
+  const RunSummary summary = run_scene(scene, observer, from);
+  EXPECT_TRUE(summary.complete) << summary.message;
+  return result;
+}
+
+bool same(const StepRecord& a, const StepRecord& b) {
+  const auto equal = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+  };
+  return a.time == b.time && equal(a.bodies, b.bodies) && equal(a.nodes, b.nodes) && a.wheels.size() == b.wheels.size() &&
+         [&] {
+           for (std::size_t w = 0; w < a.wheels.size(); ++w) {
+             if (a.wheels[w].Q != b.wheels[w].Q || a.wheels[w].Y != b.wheels[w].Y) return false;
+           }
+           return true;
+         }();
+}
+
+class ResumedRun : public ::testing::TestWithParam<Reduction> {};
+
+// From every checkpoint: the window moves several times in between, and spans fall behind.
+TEST_P(ResumedRun, IsTheUninterruptedOneToTheLastBit) {
+  SceneParameters scene = coach_on_spans(GetParam());
+  scene.reduction.modes = 12;
+  scene.reduction.behind = scene.reduction.ahead = 6.0;
+  scene.integration.duration = GetParam() == Reduction::window ? 1.0 : 0.2;
+  if (GetParam() == Reduction::window) scene.train.speed = 80.0;
+  scene.track.length_after = 60.0;
+  if (GetParam() == Reduction::craig_bampton) scene.spans.resize(1);
+  const Run whole = run(scene);
+  ASSERT_GE(whole.checkpoints.size(), 2U);
+  for (std::size_t c = 0; c < whole.checkpoints.size(); c += 5) {
+    const auto step = static_cast<std::size_t>(whole.checkpoints[c].step);
+    const Run resumed = run(scene, whole.checkpoints[c]);
+    ASSERT_EQ(resumed.records.size() + step + 1, whole.records.size());
+    for (std::size_t i = 0; i < resumed.records.size(); ++i)
+      ASSERT_TRUE(same(resumed.records[i], whole.records[step + 1 + i])) << "step " << step + 1 + i;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Reductions, ResumedRun,
+                         ::testing::Values(Reduction::none, Reduction::modal, Reduction::craig_bampton,
+                                           Reduction::window));
+
+}  // namespace
+}  // namespace railtab

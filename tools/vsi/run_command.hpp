@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "headline.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+
+namespace railtab::vsi {
+
+struct RunOptions {
+  std::string output;
+  bool json = false, quiet = false, resume = false;
+  /// Told how a run has ended, before the program says it; may be empty.
+  std::function<void(const report::Headline&, const RunSummary&)> ended{};
+};
+
+/// Runs a scene and writes its results; with `resume` it goes on from the checkpoint that they hold, and leaves complete
+/// results alone. @return exit code. @throws InputError as run_scene(), and where the results in the way are another
+/// run's
+int run_to_file(const SceneParameters& scene, const RunOptions& options);
+
+}  // namespace railtab::vsi

@@ -1,0 +1,217 @@
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "json_object.hpp"
+#include "railtab/runtime/results/result_file.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+#include "run_command.hpp"
+#include "sweep_plan.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int done = 0, failed = 1, interrupted = 130;
+
+struct Shard {
+  std::size_t index = 1, count = 1;
+};
+
+Shard shard_of(const std::string& text) {
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
+  bool good = first == std::errc() && slash != end && *slash == '/';
+  if (good) {
+    const auto [stop, second] = std::from_chars(slash + 1, end, shard.count);
+    good = second == std::errc() && stop == end && shard.index >= 1 && shard.index <= shard.count;
+  }
+  if (!good) throw input_error("--shard", text, "I/N with 1 <= I <= N");
+  return shard;
+}
+
+std::string whole_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// The runs of a sweep in processes of their own: one that dies takes no other with it, and every one can be resumed.
+class Sweep {
+ public:
+  Sweep(const SceneParameters& scene, fs::path folder, bool quiet)
+      : scene_(scene), folder_(std::move(folder)), quiet_(quiet) {}
+
+  /// @return exit code: 1 where a run failed, 130 after Ctrl-C
+  int run(const std::vector<SweepRun>& runs, std::size_t processes) {
+    signal(SIGINT, [](int) { asked_ = 1; });
+    int code = done;
+    std::size_t next = 0;
+    while (next < runs.size() || !going_.empty()) {
+      while (asked_ == 0 && next < runs.size() && going_.size() < processes) {
+        const SweepRun& run = runs[next++];
+        if (!finished(run)) going_.emplace(begin(run), &run);
+      }
+      if (going_.empty()) break;
+      code = std::max(code, wait());
+    }
+    return asked_ != 0 ? interrupted : code;
+  }
+
+  /// A run is finished when its row is there: it is written last.
+  [[nodiscard]] bool finished(const SweepRun& run) const { return fs::exists(file(run, ".row")); }
+  [[nodiscard]] fs::path file(const SweepRun& run, const char* suffix) const { return folder_ / (run.name + suffix); }
+
+ private:
+  pid_t begin(const SweepRun& run) const {
+    std::fflush(nullptr);
+    const pid_t process = fork();
+    if (process < 0) throw ComputationError("vsi sweep: no more processes can be started");
+    if (process == 0) _exit(in_own_process(run));
+    return process;
+  }
+
+  [[nodiscard]] int in_own_process(const SweepRun& run) const {
+    try {
+      signal(SIGINT, SIG_DFL);
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // a sweep that is killed leaves no run behind that would hold its file
+      std::string row;
+      RunOptions options{file(run, ".h5").string(), false, true, true};
+      options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
+        if (summary.complete) row = summary_row(run, headline, summary);
+      };
+      const int code = run_to_file(scene_of(scene_, run), options);
+      if (!row.empty()) write_text_file(file(run, ".row"), row);
+      return code;
+    } catch (const std::exception& failure) {
+      fmt::print(stderr, "vsi sweep: {}: {}\n", run.name, failure.what());
+      return failed;
+    }
+  }
+
+  /// Waits for one of the processes; its exit code, at most 1.
+  int wait() {
+    int status = 0;
+    const pid_t process = ::wait(&status);
+    if (process < 0) return done;  // a signal: those that go on are waited for again
+    const auto ended = going_.find(process);
+    if (ended == going_.end()) return done;
+    const SweepRun& run = *ended->second;
+    going_.erase(ended);
+    const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
+    if (!quiet_) fmt::print("{}: {}\n", run.name, complete ? "done" : "not finished");
+    std::fflush(stdout);
+    return complete ? done : failed;
+  }
+
+  static inline volatile std::sig_atomic_t asked_ = 0;
+  const SceneParameters& scene_;
+  fs::path folder_;
+  bool quiet_;
+  std::map<pid_t, const SweepRun*> going_;
+};
+
+/// All finished runs of the whole sweep, whichever process or shard made them. @return their number
+std::size_t write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
+  std::string text = summary_columns();
+  std::size_t finished = 0;
+  for (const SweepRun& run : runs) {
+    if (!sweep.finished(run)) continue;
+    text += whole_text(sweep.file(run, ".row"));
+    ++finished;
+  }
+  write_text_file(file, text);
+  return finished;
+}
+
+/// A folder holds the runs of one scene.
+void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
+  const fs::path file = folder / "scene.toml";
+  try {
+    if (!fs::exists(file)) write_text_file(file, scene.text);
+  } catch (const InputError&) {
+    if (!fs::exists(file)) throw;  // else another shard was first
+  }
+  if (whole_text(file) != scene.text) {
+    throw input_error(file.string(), "another scene", "the scene of this sweep, or another folder for -o");
+  }
+}
+
+std::vector<double> speeds_of(const po::variables_map& values) {
+  const bool si = values.contains("speed"), kmh = values.contains("speed-kmh");
+  if (si == kmh) throw InputError("vsi sweep: one of --speed LO:HI:STEP (m/s) and --speed-kmh LO:HI:STEP is needed");
+  const std::string option = si ? "speed" : "speed-kmh";
+  std::vector<double> speeds = values_of_range("--" + option, values[option].as<std::string>());
+  if (kmh) std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double v) { return v / 3.6; });
+  return speeds;
+}
+
+}  // namespace
+
+int sweep_command(const Arguments& arguments) {
+  CommandSyntax syntax{"vsi sweep SCENE.toml --speed LO:HI:STEP [--seeds N] [--shard I/N] -o DIR", "scene", true, {}};
+  syntax.options.add_options()("output,o", po::value<std::string>()->required()->value_name("DIR"),
+                               "folder of the results, made where it does not exist")(
+      "speed", po::value<std::string>()->value_name("LO:HI:STEP"), "speeds in m/s")(
+      "speed-kmh", po::value<std::string>()->value_name("LO:HI:STEP"), "speeds in km/h")(
+      "seeds", po::value<int>()->default_value(1)->value_name("N"),
+      "random tracks for each speed: irregularity.seed and the N - 1 that follow")(
+      "shard", po::value<std::string>()->default_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs");
+  const auto values = parse_command_line(syntax, arguments);
+  if (!values) return done;
+  const SceneParameters scene = read_scene((*values)["scene"].as<std::string>());
+  const int seeds = (*values)["seeds"].as<int>();
+  if (seeds < 1) throw input_error("--seeds", std::to_string(seeds), "a number >= 1");
+  const std::vector<SweepRun> all = sweep_runs(scene, speeds_of(*values), seeds);
+  for (const SweepRun& run : all) static_cast<void>(scene_of(scene, run));
+  const Shard shard = shard_of((*values)["shard"].as<std::string>());
+  std::vector<SweepRun> own;
+  for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) own.push_back(all[i]);
+
+  const fs::path folder = (*values)["output"].as<std::string>();
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw input_error("-o", folder.string() + ", which is a file", "a folder");
+  }
+  fs::create_directories(folder);
+  check_same_scene(scene, folder);
+  const auto asked = static_cast<std::size_t>((*values)["threads"].as<int>());
+  const std::size_t processes = asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
+  const bool json = values->contains("json"), quiet = values->contains("quiet") || json;
+  Sweep sweep(scene, folder, quiet);
+  const int code = sweep.run(own, processes);
+  if (shard.count > 1) {
+    if (!quiet) fmt::print("the same command without --shard writes the summary of all shards\n");
+    return code;
+  }
+  const fs::path summary = folder / "summary.csv";
+  const std::size_t finished = write_summary(sweep, all, summary);
+  if (json) {
+    fmt::print("{}\n", JsonObject()
+                           .add("runs", static_cast<long>(all.size()))
+                           .add("finished", static_cast<long>(finished))
+                           .add("summary", summary.string())
+                           .text());
+  } else if (!quiet) {
+    fmt::print("{} of {} runs finished: {}\n", finished, all.size(), summary.string());
+  }
+  return code;
+}
+
+}  // namespace railtab::vsi

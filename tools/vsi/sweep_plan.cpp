@@ -1,0 +1,105 @@
+#include "sweep_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab::vsi {
+namespace {
+
+constexpr double most_runs = 100000;
+
+double number(const std::string& option, const std::string& text, std::string_view part) {
+  double value = 0.0;
+  const auto [stop, status] = std::from_chars(part.data(), part.data() + part.size(), value);
+  if (status != std::errc() || stop != part.data() + part.size() || !std::isfinite(value)) {
+    throw input_error(option, text, "LO:HI:STEP, three numbers, or one number");
+  }
+  return value;
+}
+
+std::string cell(const report::Extreme& extreme) { return extreme.found() ? fmt::format("{:.8g}", extreme.value) : ""; }
+
+}  // namespace
+
+std::vector<double> values_of_range(const std::string& option, const std::string& text) {
+  const std::size_t first = text.find(':');
+  if (first == std::string::npos) return {number(option, text, text)};
+  const std::size_t second = text.find(':', first + 1);
+  if (second == std::string::npos) throw input_error(option, text, "LO:HI:STEP, three numbers, or one number");
+  const std::string_view view = text;
+  const double low = number(option, text, view.substr(0, first));
+  const double high = number(option, text, view.substr(first + 1, second - first - 1));
+  const double step = number(option, text, view.substr(second + 1));
+  if (!(step > 0.0 && high >= low && (high - low) / step < most_runs)) {
+    throw input_error(option, text, fmt::format("LO <= HI and STEP > 0, at most {} values", most_runs));
+  }
+  constexpr double rounding = 1e-9;
+  std::vector<double> values;
+  const auto count = static_cast<long>(std::floor((high - low) / step * (1.0 + rounding) + rounding));
+  for (long k = 0; k <= count; ++k) values.push_back(low + static_cast<double>(k) * step);
+  return values;
+}
+
+std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector<double>& speeds, int seeds) {
+  if (seeds > 1 && !scene.spectrum) {
+    throw input_error("--seeds", fmt::format("{} and no random track", seeds), "irregularity.spectrum in the scene");
+  }
+  std::vector<SweepRun> runs;
+  for (double speed : speeds) {
+    if (!(speed > 0.0 && speed <= 200.0)) {
+      throw input_error("--speed", fmt::format("{} m/s", speed), "> 0, <= 200 m/s (--speed-kmh takes km/h)");
+    }
+    for (int k = 0; k < seeds; ++k) {
+      const int seed = scene.spectrum ? scene.spectrum->seed + k : 0;
+      std::string name = fmt::format("v{:07.3f}", speed);
+      if (scene.spectrum) name += fmt::format("-s{:03}", seed);
+      if (!runs.empty() && runs.back().name == name) {
+        throw input_error("--speed", fmt::format("two runs of the name {}", name), "steps of at least 0.001 m/s");
+      }
+      runs.push_back({speed, seed, std::move(name)});
+    }
+  }
+  return runs;
+}
+
+SceneParameters scene_of(const SceneParameters& scene, const SweepRun& run) {
+  SceneParameters result = scene;
+  result.train.speed = run.speed;
+  result.name = fmt::format("{}, {:.6g} km/h", scene.name, 3.6 * run.speed);
+  result.text += fmt::format("\n# vsi sweep: train.speed = {}", run.speed);
+  if (result.spectrum) {
+    result.spectrum->seed = run.seed;
+    result.name += fmt::format(", seed {}", run.seed);
+    result.text += fmt::format(", irregularity.seed = {}", run.seed);
+  }
+  result.text += "\n";
+  result.validate();
+  return result;
+}
+
+std::string summary_columns() {
+  return "run,speed[m/s],speed[km/h],seed,complete,max_deck_acceleration[m/s2],max_deck_displacement[m],"
+         "max_car_body_vertical_acceleration[m/s2],max_car_body_lateral_acceleration[m/s2],"
+         "max_derailment_coefficient[-],max_wheel_unloading[-],max_Q[N],min_Q[N],simulated_time[s],steps,"
+         "halved_steps,run_time[s],message\n";
+}
+
+std::string summary_row(const SweepRun& run, const report::Headline& headline, const RunSummary& summary) {
+  std::string message = summary.message;
+  for (char& letter : message) {
+    if (letter == ',' || letter == '\n' || letter == '"') letter = ';';
+  }
+  return fmt::format("{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},{},{:.6g},{},{},{:.3f},{}\n", run.name, run.speed,
+                     3.6 * run.speed, run.seed, summary.complete ? 1 : 0, cell(headline.deck_acceleration),
+                     cell(headline.deck_displacement), cell(headline.car_body_vertical),
+                     cell(headline.car_body_lateral), cell(headline.derailment), cell(headline.unloading),
+                     cell(headline.largest_Q), cell(headline.smallest_Q), headline.simulated_time, summary.steps,
+                     summary.halved_steps, summary.seconds_total, message);
+}
+
+}  // namespace railtab::vsi

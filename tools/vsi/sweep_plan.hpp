@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "headline.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+
+namespace railtab::vsi {
+
+/// Equally spaced values LO, LO + STEP, … up to HI, which is one of them where it is reached but for rounding.
+/// @param text "LO:HI:STEP", or one number. @throws InputError naming the option
+[[nodiscard]] std::vector<double> values_of_range(const std::string& option, const std::string& text);
+
+/// One run of a sweep.
+struct SweepRun {
+  double speed = 0.0;  ///< [m/s]
+  int seed = 0;        ///< of the random track; counts only with one
+  std::string name;    ///< of its files, without their suffix: "v055.556-s001"
+};
+
+/// Every speed with every seed, seeds first. Without a random track there is one seed only.
+/// @throws InputError where there are seeds and no random track, or a speed is out of range
+[[nodiscard]] std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector<double>& speeds,
+                                               int seeds);
+
+/// The scene of one run; its text says what was changed, so that results tell their own scene.
+[[nodiscard]] SceneParameters scene_of(const SceneParameters& scene, const SweepRun& run);
+
+/// One row of the summary and the names of its columns.
+[[nodiscard]] std::string summary_columns();
+[[nodiscard]] std::string summary_row(const SweepRun& run, const report::Headline& headline,
+                                      const RunSummary& summary);
+
+}  // namespace railtab::vsi

@@ -1,0 +1,193 @@
+// Error against run time of the structure's reductions: a train on a viaduct of ten spans, every reduction beside the
+// same run without one.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "log_figure.hpp"
+#include "railtab/runtime/vsi/reduction_check.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+
+namespace railtab::work_precision {
+namespace {
+
+constexpr const char* usage =
+    "reduction_study TABLE.h5 -o FOLDER [--quick | --long]\n"
+    "Two coaches enter a viaduct of ten spans of 32 m at 200 km/h: runs with every reduction of the structure and "
+    "without.\nWrites FOLDER/reduction_force.{csv,svg}, FOLDER/reduction_deck.{csv,svg} and FOLDER/reduction.csv.\n"
+    "--long: eight coaches on a viaduct of 1 km, the window against the whole line; writes FOLDER/long_line.csv.\n";
+
+SceneParameters viaduct(const std::string& table) {
+  SceneParameters scene;
+  scene.name = "viaduct of ten spans";
+  scene.train.count = 2;
+  scene.train.start = -5.0;
+  scene.contact.table = table;
+  scene.track.length_before = 90.0;
+  scene.track.length_after = 60.0;
+  scene.spans.resize(10);
+  scene.spectrum = SpectrumParameters{};
+  return scene;
+}
+
+// Eight coaches in the middle of 32 spans of 32 m.
+SceneParameters long_viaduct(const std::string& table, double speed, double time_step) {
+  SceneParameters scene = viaduct(table);
+  scene.name = "viaduct of 1 km";
+  scene.train.count = 8;
+  scene.train.speed = speed;
+  scene.train.start = 320.0;
+  scene.spans.resize(32);
+  scene.integration.time_step = time_step;
+  return scene;
+}
+
+struct Setting {
+  std::string method, setting;
+  ReductionParameters reduction;
+};
+
+std::vector<Setting> settings(bool quick) {
+  std::vector<Setting> all;
+  const std::vector<int> modes = quick ? std::vector<int>{10, 100} : std::vector<int>{10, 20, 50, 100, 200, 500};
+  for (bool correction : {false, true}) {
+    for (int n : modes)
+      all.push_back({correction ? "modes with static correction" : "modes", fmt::format("{}", n),
+                     {.kind = Reduction::modal, .modes = n, .static_correction = correction}});
+  }
+  for (int n : quick ? std::vector<int>{10} : std::vector<int>{5, 20, 60})
+    all.push_back(
+        {"Craig-Bampton", fmt::format("{} per part", n), {.kind = Reduction::craig_bampton, .modes = n}});
+  for (double length : quick ? std::vector<double>{20.0} : std::vector<double>{5.0, 10.0, 20.0, 40.0, 80.0})
+    all.push_back({"window", fmt::format("{} m", length),
+                   {.kind = Reduction::window, .ahead = length, .behind = length}});
+  return all;
+}
+
+WorkFigure figure(std::string name, std::string title, std::string label) {
+  WorkFigure result;
+  result.name = std::move(name);
+  result.title = std::move(title);
+  result.error_label = std::move(label);
+  result.least_error = 1e-6;
+  result.time_label = "processor time per step";
+  return result;
+}
+
+void write(const std::filesystem::path& folder, const WorkFigure& f) {
+  write_text_file(folder / (f.name + ".csv"), csv(f));
+  write_text_file(folder / (f.name + ".svg"), log_figure(f));
+}
+
+// Processor time of a step [ms].
+double per_step(const ComparedHistory& h) { return 1e3 * h.seconds_steps / static_cast<double>(h.summary.steps); }
+
+// Every n-th step: to compare with a run in steps n times as long.
+ComparedHistory thinned(const ComparedHistory& history, std::size_t n) {
+  ComparedHistory result = history;
+  result.force.clear();
+  result.deck.clear();
+  for (std::size_t i = 0; i < history.force.size(); i += n) {
+    result.force.push_back(history.force[i]);
+    result.deck.push_back(history.deck[i]);
+  }
+  return result;
+}
+
+void study_long_line(const std::string& table, const std::filesystem::path& folder) {
+  constexpr double duration = 1.0, reference_step = 5e-4;
+  std::string text =
+      "# eight coaches, 64 wheels, 32 spans of 32 m; against the whole line in the same steps, and in steps of 0.5 ms\n"
+      "# times: processor time of one core; real_time: time step over the time of a step\n"
+      "speed_kmh,reduction,time_step_ms,tolerance,step_ms,real_time,structure_ms,contact_ms,force_max,force_rms,"
+      "deck_max,deck_rms,force_max_05ms,deck_max_05ms\n";
+  for (double kmh : {72.0, 200.0}) {
+    const ComparedHistory finest = compared_history(long_viaduct(table, kmh / 3.6, reference_step), duration);
+    for (double time_step : {5e-4, 1e-3, 2e-3}) {
+      SceneParameters scene = long_viaduct(table, kmh / 3.6, time_step);
+      const ComparedHistory whole = time_step > reference_step ? compared_history(scene, duration) : finest;
+      const ComparedHistory reference =
+          thinned(finest, static_cast<std::size_t>(std::lround(time_step / reference_step)));
+      const auto row = [&](const ComparedHistory& h, const char* reduction, double tolerance) {
+        const ReductionError e = compare(h, whole), fine = compare(h, reference);
+        const double steps = 1e-3 * static_cast<double>(h.summary.steps);
+        text += fmt::format("{},{},{},{:g},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n", kmh,
+                            reduction, 1e3 * time_step, tolerance, per_step(h), 1e3 * time_step / per_step(h),
+                            h.summary.seconds_structure / steps,
+                            (h.summary.seconds_contact + h.summary.seconds_lookup) / steps, e.force_max, e.force_rms,
+                            e.deck_max, e.deck_rms, fine.force_max, fine.deck_max);
+        fmt::print("{}", text.substr(text.rfind('\n', text.size() - 2) + 1));
+        std::fflush(stdout);
+      };
+      row(whole, "none", scene.integration.tolerance);
+      scene.reduction.kind = Reduction::window;
+      for (double tolerance : {1e-8, 1e-5, 1e-4}) {
+        scene.integration.tolerance = tolerance;
+        row(compared_history(scene, duration), "window", tolerance);
+      }
+    }
+  }
+  write_text_file(folder / "long_line.csv", text);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.size() < 3 || arguments[1] != "-o") throw InputError(usage);
+  const std::filesystem::path folder = arguments[2];
+  std::filesystem::create_directories(folder);
+  if (arguments.size() > 3 && arguments[3] == "--long") {
+    study_long_line(arguments[0], folder);
+    return 0;
+  }
+  const bool quick = arguments.size() > 3 && arguments[3] == "--quick";
+  const double duration = quick ? 0.4 : 2.0;
+  SceneParameters scene = viaduct(arguments[0]);
+  const ComparedHistory whole = compared_history(scene, duration);
+  WorkFigure force = figure("reduction_force", "Vertical contact force",
+                            "largest error of Q [of its largest dynamic part]");
+  WorkFigure deck = figure("reduction_deck", "Deck acceleration", "largest error [of the largest acceleration]");
+  std::string table =
+      "# error against the run without reduction; times: processor time of one core\n"
+      "method,setting,unknowns,setup_s,step_ms,force_max,force_rms,force_of_static,deck_max,deck_rms,peak_force,"
+      "peak_deck\n";
+  table += fmt::format("none,,{},{:.2f},{:.4f},0,0,0,0,0,0,0\n", whole.summary.structure_dofs,
+                       whole.summary.seconds_setup, per_step(whole));
+  for (const Setting& s : settings(quick)) {
+    scene.reduction = s.reduction;
+    const ComparedHistory reduced = compared_history(scene, duration);
+    const ReductionError e = compare(reduced, whole);
+    const double time = 1e6 * per_step(reduced);
+    force.points.push_back({s.method, s.setting, time, e.force_max, e.force_rms, ""});
+    deck.points.push_back({s.method, s.setting, time, e.deck_max, e.deck_rms, ""});
+    table += fmt::format("{},{},{},{:.2f},{:.4f},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n", s.method,
+                         s.setting, reduced.summary.structure_dofs, reduced.summary.seconds_setup, per_step(reduced),
+                         e.force_max, e.force_rms, e.force_static, e.deck_max, e.deck_rms, e.peak_force, e.peak_deck);
+    fmt::print("{}", table.substr(table.rfind('\n', table.size() - 2) + 1));
+    std::fflush(stdout);
+  }
+  write(folder, force);
+  write(folder, deck);
+  write_text_file(folder / "reduction.csv", table);
+  return 0;
+}
+
+}  // namespace
+}  // namespace railtab::work_precision
+
+int main(int argc, char** argv) {
+  try {
+    return railtab::work_precision::run({argv + 1, argv + argc});
+  } catch (const railtab::InputError& error) {
+    fmt::print(stderr, "reduction_study: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "reduction_study: {}\n", error.what());
+    return 1;
+  }
+}
