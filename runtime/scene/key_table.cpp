@@ -96,6 +96,9 @@ const std::vector<KeyBinding>& all_keys() {
     const auto numerics =
         std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "irregularity.file"; });
     all.insert(numerics, structure_keys().begin(), structure_keys().end());
+    const auto integration =
+        std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "integration.time_step"; });
+    all.insert(integration, load_keys().begin(), load_keys().end());
     return all;
   }();
   return keys;

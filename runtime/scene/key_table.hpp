@@ -21,6 +21,10 @@ struct SceneDraft {
   std::filesystem::path irregularity;
   std::string spectrum_name;    ///< empty: no random track
   SpectrumParameters spectrum;  ///< the rest of it
+  std::string deviation_shape = "none", deviation_direction = "vertical";
+  SpanDeviationParameters deviation;
+  LoadParameters load;            ///< the [[load]] being read
+  GroundMotionParameters ground;  ///< the [[ground_motion]] being read
 };
 
 /// Numbers a key accepts; `open_low` excludes the lower end.
@@ -99,7 +103,9 @@ struct KeyBinding {
 [[nodiscard]] const std::vector<KeyBinding>& run_keys();
 /// Keys of [track] and [[bridge]].
 [[nodiscard]] const std::vector<KeyBinding>& structure_keys();
-/// Both, in the order of the guide.
+/// Keys of [span_deviation], [[load]] and [[ground_motion]].
+[[nodiscard]] const std::vector<KeyBinding>& load_keys();
+/// All, in the order of the guide.
 [[nodiscard]] const std::vector<KeyBinding>& all_keys();
 
 /// "table, online, paper"

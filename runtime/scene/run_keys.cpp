@@ -18,6 +18,8 @@ std::vector<KeyBinding> train_keys() {
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.train.speed; }, {0.0, 200.0, true}}},
       {"train.speed_kmh", "km/h", "the same in km/h; not together with speed",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.speed_kmh; }, {0.0, 720.0, true}}},
+      {"train.speed_file", "", "speed over time; not together with speed or speed_kmh",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.train.speed_file; }}},
       {"train.start", "m", "position of the first wheelset at t = 0; the bridge begins at 0",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.train.start; }, any_number}},
       {"train.initial_lateral_shift", "m", "of every wheelset at t = 0, to the right",

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -27,6 +30,62 @@ void IntegrationParameters::validate() const {
   require(max_iterations >= 2, "integration.max_iterations", max_iterations, ">= 2");
   require(max_halvings >= 0, "integration.max_halvings", max_halvings, ">= 0");
 }
+
+namespace {
+
+void check_loads(const SceneParameters& scene, const std::string& place) {
+  for (const LoadParameters& load : scene.loads) {
+    const bool components = std::any_of(load.load.begin(), load.load.end(), [](double f) { return f != 0.0; });
+    if (load.file.empty() != components) {
+      throw input_error(
+          place, fmt::format("a [[load]] with {}", components ? "file and components" : "neither file nor component"),
+          "load.file, or components Fx to Mz");
+    }
+    if (!load.file.empty() && load.gust_duration > 0.0) {
+      throw input_error(place, "load.gust_duration beside load.file", "one of them");
+    }
+    if (load.coach > scene.train.count) {
+      throw input_error(place, fmt::format("load.coach = {}", load.coach),
+                        fmt::format("0 to {}, the coaches of the train", scene.train.count));
+    }
+  }
+}
+
+void check_ground_motion(const SceneParameters& scene, const std::string& place) {
+  for (const GroundMotionParameters& ground : scene.ground_motion) {
+    if (ground.file.empty()) throw input_error(place, "a [[ground_motion]] without a file", "ground_motion.file");
+    if (ground.wave_speed != 0.0 && scene.ground_motion.size() > 1) {
+      throw input_error(place, "ground_motion.wave_speed with several records", "a single record that travels");
+    }
+    require(std::abs(ground.wave_speed) >= 10.0 || ground.wave_speed == 0.0, "ground_motion.wave_speed",
+            ground.wave_speed, "0, or 10 m/s and more forward or backward");
+  }
+  if (!scene.ground_motion.empty() && scene.track_kind == TrackKind::flexible &&
+      scene.reduction.kind != Reduction::none) {
+    throw input_error(place, "ground motion with structure.reduction",
+                      "structure.reduction = \"none\": modes with supports at rest do not follow supports that move");
+  }
+  if (!scene.ground_motion.empty() && scene.track_kind == TrackKind::imported) {
+    throw input_error(place, "ground motion under track.kind = \"imported\"",
+                      "a built-in track: imported matrices do not say how their supports hold them");
+  }
+}
+
+// Wheels that follow the rails have no lateral motion that could answer.
+void check_vertical(const SceneParameters& scene, const std::string& place) {
+  if (scene.contact.normal != NormalContact::rigid) return;
+  for (const LoadParameters& load : scene.loads) {
+    if (load.load[1] == 0.0 && load.load[3] == 0.0 && load.load[5] == 0.0) continue;
+    throw input_error(place, "a [[load]] along y or about x or z with contact.normal = \"rigid\"",
+                      "contact.normal = \"hertz\": a vertical scene has no lateral motion");
+  }
+  if (scene.span_deviation && scene.span_deviation->direction == SpanDeviationDirection::lateral) {
+    throw input_error(place, "span_deviation.direction = \"lateral\" with contact.normal = \"rigid\"",
+                      "contact.normal = \"hertz\": a vertical scene has no lateral motion");
+  }
+}
+
+}  // namespace
 
 void SceneParameters::validate() const {
   const std::string place = name.empty() ? "scene" : name;
@@ -59,6 +118,10 @@ void SceneParameters::validate() const {
     throw input_error(place, "structure.reduction = \"modal\" with contact.normal = \"rigid\"",
                       "another reduction: wheels that follow the rails need their curvature, which few modes have not");
   }
+  if (span_deviation) span_deviation->validate();
+  check_loads(*this, place);
+  check_ground_motion(*this, place);
+  check_vertical(*this, place);
   if (track_kind == TrackKind::flexible) {
     track.validate();
     for (const BridgeParameters& span : spans) span.validate();

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "key_table.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
@@ -142,7 +143,7 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   if (nearest.empty()) {
     return InputError(
         fmt::format("{}: unknown key '{}'; the sections are train, contact, track, bridge, structure, "
-                    "irregularity, integration and output",
+                    "irregularity, span_deviation, load, ground_motion, integration and output",
                     place, leaf.path));
   }
   return InputError(fmt::format("{}: unknown key '{}'; did you mean '{}'?", place, leaf.path, nearest));
@@ -154,21 +155,28 @@ bool is_section(std::string_view path) {
                      [&](const KeyBinding& key) { return key.path.starts_with(prefix); });
 }
 
-/// Copies of the span just read go into the scene; its end is the next [[bridge]] or the end of the file.
-void finish_span(SceneDraft& draft) {
-  draft.parameters.spans.insert(draft.parameters.spans.end(), static_cast<std::size_t>(draft.span_count), draft.span);
-  draft.span = BridgeParameters{};
-  draft.span_count = 1;
+/// What was just read of a [[bridge]], [[load]] or [[ground_motion]] goes into the scene; its end is the next such
+/// heading or the end of the file.
+void finish_entry(SceneDraft& draft, std::string_view section) {
+  if (section == "bridge") {
+    draft.parameters.spans.insert(draft.parameters.spans.end(), static_cast<std::size_t>(draft.span_count), draft.span);
+    draft.span = BridgeParameters{};
+    draft.span_count = 1;
+  } else if (section == "load") {
+    draft.parameters.loads.push_back(std::exchange(draft.load, {}));
+  } else if (section == "ground_motion") {
+    draft.parameters.ground_motion.push_back(std::exchange(draft.ground, {}));
+  }
 }
 
 void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
-  int span = -1;
+  const Leaf* heading = nullptr;  // of the entry being read
   for (const Leaf& leaf : leaves) {
-    if (leaf.span >= 0 && leaf.span != span) {
-      if (span >= 0) finish_span(draft);
-      span = leaf.span;
+    if (leaf.entry >= 0 && is_list_section(leaf.path)) {
+      if (heading) finish_entry(draft, heading->path);
+      heading = &leaf;
+      continue;
     }
-    if (leaf.path == "bridge") continue;
     const auto key = std::find_if(all_keys().begin(), all_keys().end(),
                                   [&](const KeyBinding& candidate) { return candidate.path == leaf.path; });
     if (key != all_keys().end()) {
@@ -179,7 +187,7 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
       throw leaf_error(file, leaf, found_text(*leaf.node), fmt::format("a section [{}]", leaf.path));
     }
   }
-  if (span >= 0) finish_span(draft);
+  if (heading) finish_entry(draft, heading->path);
 }
 
 /// A table holds its own profiles and dimensions: keys that name others would be read and not used.
@@ -206,6 +214,23 @@ std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
   return line;
 }
 
+/// [span_deviation] has choices and numbers; without a shape the numbers would be read and not used.
+void settle_deviation(SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+  if (draft.deviation_shape == "none") {
+    for (const Leaf& leaf : leaves) {
+      if (leaf.path.starts_with("span_deviation.") && leaf.path != "span_deviation.shape") {
+        throw leaf_error(file, leaf, "no span_deviation.shape", "one, \"bending\" or \"parallel-shift\"");
+      }
+    }
+    return;
+  }
+  draft.deviation.shape =
+      draft.deviation_shape == "bending" ? SpanDeviationShape::bending : SpanDeviationShape::parallel_shift;
+  draft.deviation.direction =
+      draft.deviation_direction == "vertical" ? SpanDeviationDirection::vertical : SpanDeviationDirection::lateral;
+  draft.parameters.span_deviation = draft.deviation;
+}
+
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
   if (draft.speed_kmh) {
@@ -216,6 +241,14 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     }
     draft.parameters.train.speed = *draft.speed_kmh / 3.6;
   }
+  if (!draft.parameters.train.speed_file.empty()) {
+    for (const Leaf& leaf : leaves) {
+      if (leaf.path == "train.speed" || leaf.path == "train.speed_kmh") {
+        throw leaf_error(file, leaf, "train.speed_file too", "either a constant speed or train.speed_file");
+      }
+    }
+  }
+  settle_deviation(draft, file, leaves);
   refuse_profiles_beside_table(draft, file, leaves);
   if (!draft.spectrum_name.empty()) {
     if (!draft.irregularity.empty()) {
@@ -228,6 +261,13 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     draft.parameters.spectrum->name = draft.spectrum_name;
   }
   if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
+  if (draft.parameters.track_kind != TrackKind::imported) {
+    // named, but nothing that this run reads
+    const StructureFiles& s = draft.parameters.structure;
+    std::erase_if(draft.parameters.files, [&](const std::filesystem::path& read) {
+      return read == s.mass || read == s.damping || read == s.stiffness || read == s.dofs;
+    });
+  }
   if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();
   try {
     draft.parameters.validate();

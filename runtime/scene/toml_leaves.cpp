@@ -8,41 +8,46 @@
 namespace railtab::scene {
 namespace {
 
-void collect(const toml::table& table, const std::string& prefix, int span, std::vector<Leaf>& leaves) {
+void collect(const toml::table& table, const std::string& prefix, int entry, std::vector<Leaf>& leaves) {
   for (const auto& [key, node] : table) {
-    Leaf leaf{prefix + std::string(key.str()), &node, key.source().begin.line, span};
+    Leaf leaf{prefix + std::string(key.str()), &node, key.source().begin.line, entry};
     const toml::table* inner = node.as_table();
     if (inner && !inner->empty()) {
-      collect(*inner, leaf.path + ".", span, leaves);
+      collect(*inner, leaf.path + ".", entry, leaves);
     } else {
       leaves.push_back(std::move(leaf));
     }
   }
 }
 
-void collect_spans(const Leaf& heading, const std::filesystem::path& file, std::vector<Leaf>& leaves) {
+void collect_list(const Leaf& heading, const std::filesystem::path& file, std::vector<Leaf>& leaves) {
   const toml::array* list = heading.node->as_array();
   if (!list || list->empty() || !list->is_homogeneous(toml::node_type::table)) {
-    throw leaf_error(file, heading, heading.node->is_table() ? "[bridge]" : found_text(*heading.node),
-                     "one [[bridge]] per span");
+    throw leaf_error(file, heading,
+                     heading.node->is_table() ? fmt::format("[{}]", heading.path) : found_text(*heading.node),
+                     heading.path == "bridge" ? "one [[bridge]] per span" : fmt::format("[[{}]]", heading.path));
   }
-  int span = 0;
+  int number = 0;
   for (const toml::node& entry : *list) {
-    leaves.push_back({"bridge", &entry, entry.source().begin.line, span});
-    collect(*entry.as_table(), "bridge.", span, leaves);
-    ++span;
+    leaves.push_back({heading.path, &entry, entry.source().begin.line, number});
+    collect(*entry.as_table(), heading.path + ".", number, leaves);
+    ++number;
   }
 }
 
 }  // namespace
+
+bool is_list_section(std::string_view name) noexcept {
+  return name == "bridge" || name == "load" || name == "ground_motion";
+}
 
 std::vector<Leaf> leaves_of(const toml::table& root, const std::filesystem::path& file) {
   std::vector<Leaf> leaves;
   for (const auto& [key, node] : root) {
     Leaf leaf{std::string(key.str()), &node, key.source().begin.line, -1};
     const toml::table* inner = node.as_table();
-    if (leaf.path == "bridge") {
-      collect_spans(leaf, file, leaves);
+    if (is_list_section(leaf.path)) {
+      collect_list(leaf, file, leaves);
     } else if (inner && !inner->empty()) {
       collect(*inner, leaf.path + ".", -1, leaves);
     } else {

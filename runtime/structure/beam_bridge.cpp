@@ -13,16 +13,18 @@ struct DeckLine {
   std::vector<DofIndices> dof;
 };
 
-/// Numbers the free dofs of a span after those that the bridge has.
-DeckLine deck_line(const BridgeParameters& span, double start, std::vector<double>& dof_x) {
+/// Numbers the free dofs of a span, and its two supports, after those that the bridge has.
+DeckLine deck_line(const BridgeParameters& span, double start, MotionPlane plane, Bridge& bridge) {
+  std::vector<double>& dof_x = bridge.dof_x;
   DeckLine deck;
   for (int i = 0; i <= span.elements; ++i) {
     const double x = start + span.length * i / span.elements;
-    DofIndices dof;
+    const bool supported = i == 0 || i == span.elements;
+    DofIndices dof{held, held, held, held, held, held};
+    if (supported) dof = supported_node(x, bridge.support_x);
     for (std::size_t k = 0; k < 6; ++k) {
       const bool at_first = i == 0 && k < 4, at_last = i == span.elements && k >= 1 && k < 4;
-      dof[k] = held;
-      if (at_first || at_last) continue;
+      if (at_first || at_last || !has_dof(plane, k)) continue;
       dof[k] = static_cast<int>(dof_x.size());
       dof_x.push_back(x);
     }
@@ -36,6 +38,36 @@ BeamSection section_of(const BridgeParameters& span) {
   return {span.E, span.A, span.Iy, span.Iz, span.G * span.J, span.mass, span.rotary_inertia};
 }
 
+/// Damping in proportion to the mass acts on the motion against the line that joins the span's two supports: as C_s is
+/// assembled it would act on the motion against a point at rest, and damp a bridge that moves with its ground.
+void damp_against_supports(MatrixAssembly& assembly, const DeckLine& deck, const BeamSection& section,
+                           double mass_factor) {
+  const double span = deck.x.back() - deck.x.front();
+  for (size_t e = 0; e + 1 < deck.x.size(); ++e) {
+    const BeamMatrix C = mass_factor * beam_mass(section, deck.x[e + 1] - deck.x[e]);
+    const std::array<int, 12> dof = joined(deck.dof[e], deck.dof[e + 1]);
+    for (const bool first : {true, false}) {
+      const DofIndices& support = first ? deck.dof.front() : deck.dof.back();
+      const double turn = (first ? -1.0 : 1.0) / span;  // d/dx of the line per translation of this support
+      Eigen::Matrix<double, 12, 2> line = Eigen::Matrix<double, 12, 2>::Zero();
+      for (int node = 0; node < 2; ++node) {
+        const double part = (deck.x[e + static_cast<size_t>(node)] - deck.x.front()) / span;
+        line(6 * node + 1, 0) = line(6 * node + 2, 1) = first ? 1.0 - part : part;
+        line(6 * node + 5, 0) = turn;
+        line(6 * node + 4, 1) = -turn;
+      }
+      const Eigen::Matrix<double, 12, 2> load = C * line;
+      for (int i = 0; i < 12; ++i) {
+        const int row = dof[static_cast<size_t>(i)];
+        if (row < 0) continue;
+        for (int k = 0; k < 2; ++k) {
+          assembly.damping.emplace_back(row, support[static_cast<size_t>(k + 1)], -load(i, k));
+        }
+      }
+    }
+  }
+}
+
 /// The beam axis at x, expressed by the nodes of its element, and a rigid arm from there to (y, z).
 DeckAttachment attachment(const DeckLine& deck, const BridgeParameters& span, double x, double y, double z) {
   const size_t e = interval_at(deck.x, x);
@@ -47,17 +79,25 @@ DeckAttachment attachment(const DeckLine& deck, const BridgeParameters& span, do
 
 }  // namespace
 
-Bridge beam_bridge(const std::vector<BridgeParameters>& spans) {
+DofIndices supported_node(double x, std::vector<double>& support_x) {
+  const int column = static_cast<int>(2 * support_x.size());
+  support_x.push_back(x);
+  return {held, support_dof(column), support_dof(column + 1), held, held, held};
+}
+
+Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane) {
   Bridge bridge;
   std::vector<DeckLine> decks;
   for (std::size_t s = 0; s < spans.size(); ++s) {
     const BridgeParameters& span = spans[s];
     span.validate();
-    const DeckLine deck = deck_line(span, bridge.end, bridge.dof_x);
+    const DeckLine deck = deck_line(span, bridge.end, plane, bridge);
     const BeamSection section = section_of(span);
     const double omega_1 = simply_supported_frequency(section, span.length, 1);
     const double omega_2 = simply_supported_frequency(section, span.length, 2);
-    add_beam(bridge.matrices, deck.x, deck.dof, section, rayleigh_damping(span.damping_ratio, omega_1, omega_2));
+    const RayleighDamping damping = rayleigh_damping(span.damping_ratio, omega_1, omega_2);
+    add_beam(bridge.matrices, deck.x, deck.dof, section, damping);
+    damp_against_supports(bridge.matrices, deck, section, damping.mass_factor);
     const size_t middle = deck.x.size() / 2;
     bridge.nodes.push_back({fmt::format("deck-midspan-{}", s + 1), deck.x[middle], deck.dof[middle]});
     bridge.spans.push_back({deck.x.front(), deck.x.back()});

@@ -23,6 +23,7 @@ struct Bridge {
   MatrixAssembly matrices;
   std::vector<double> dof_x;                 // position along the track of each unknown [m]
   std::vector<std::array<double, 2>> spans;  // from and to [m]
+  std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
   /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;
@@ -31,10 +32,18 @@ struct Bridge {
 };
 
 /// Simply supported beam spans from x = 0. @throws InputError naming the key
-[[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans);
+[[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane);
 
 /// Rails on pads, sleepers and ballast, laid over a bridge and on to the ground before and after it. The one place
 /// where track and bridge are put together. @throws InputError naming the key
-[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge);
+[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane);
+
+/// Dofs of a node that a support moves along y and z and holds otherwise; the support is added at x.
+[[nodiscard]] DofIndices supported_node(double x, std::vector<double>& support_x);
+
+/// Whether a plane has a dof: 0 to 5 for x, y, z, roll, pitch, yaw.
+[[nodiscard]] constexpr bool has_dof(MotionPlane plane, std::size_t dof) noexcept {
+  return plane == MotionPlane::spatial || dof % 2 == 0;
+}
 
 }  // namespace railtab

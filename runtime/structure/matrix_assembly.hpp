@@ -46,14 +46,35 @@ inline void add_beam(MatrixAssembly& assembly, const std::vector<double>& x, con
   }
 }
 
-/// Sets the model's three matrices, dofs × dofs.
+/// Number that stands for a column of the supports' translations among the dofs of an assembly, and back.
+[[nodiscard]] constexpr int support_dof(int column) noexcept { return -2 - column; }
+[[nodiscard]] constexpr int support_column(int dof) noexcept { return -2 - dof; }
+
+/// Splits the entries of one matrix into those between unknowns and those that the supports' translations have on them.
+inline void split_matrix(const std::vector<Eigen::Triplet<double>>& entries, int dofs, int support_columns,
+                         Eigen::SparseMatrix<double>& matrix, Eigen::SparseMatrix<double>& of_supports) {
+  std::vector<Eigen::Triplet<double>> inner, outer;
+  inner.reserve(entries.size());
+  for (const Eigen::Triplet<double>& e : entries) {
+    if (e.row() < 0) continue;  // what holds the support
+    if (e.col() >= 0) {
+      inner.push_back(e);
+    } else {
+      outer.emplace_back(e.row(), support_column(e.col()), e.value());
+    }
+  }
+  matrix.resize(dofs, dofs);
+  matrix.setFromTriplets(inner.begin(), inner.end());
+  of_supports.resize(dofs, support_columns);
+  of_supports.setFromTriplets(outer.begin(), outer.end());
+}
+
+/// Sets the model's three matrices, dofs × dofs, and those of its supports, whose x are given.
 inline void build_matrices(const MatrixAssembly& assembly, int dofs, StructureModel& model) {
-  model.mass.resize(dofs, dofs);
-  model.damping.resize(dofs, dofs);
-  model.stiffness.resize(dofs, dofs);
-  model.mass.setFromTriplets(assembly.mass.begin(), assembly.mass.end());
-  model.damping.setFromTriplets(assembly.damping.begin(), assembly.damping.end());
-  model.stiffness.setFromTriplets(assembly.stiffness.begin(), assembly.stiffness.end());
+  StructureSupports& s = model.supports;
+  split_matrix(assembly.mass, dofs, s.columns(), model.mass, s.mass);
+  split_matrix(assembly.damping, dofs, s.columns(), model.damping, s.damping);
+  split_matrix(assembly.stiffness, dofs, s.columns(), model.stiffness, s.stiffness);
 }
 
 }  // namespace railtab

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -24,9 +25,10 @@ struct TrackNodes {
 };
 
 /// Nodes of a track that reaches over a bridge up to `bridge_end`, their dofs not yet numbered.
-TrackNodes place_nodes(const TrackParameters& track, double bridge_end) {
+TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPlane plane) {
   constexpr int to_number = 0;
-  constexpr DofIndices all_free{to_number, to_number, to_number, to_number, to_number, to_number};
+  DofIndices free;
+  for (size_t k = 0; k < 6; ++k) free[k] = has_dof(plane, k) ? to_number : held;
   TrackNodes nodes;
   // a length that is a whole number of bays but for rounding must not get one more
   constexpr double rounding = 1e-9;
@@ -34,14 +36,14 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end) {
   const int last = static_cast<int>(std::ceil((bridge_end + track.length_after) / track.sleeper_spacing - rounding));
   for (int i = first; i <= last; ++i) {
     nodes.sleeper.x.push_back(i * track.sleeper_spacing);
-    nodes.sleeper.dof.push_back(all_free);
+    nodes.sleeper.dof.push_back(free);
   }
   NodeLine rail;
   for (int j = first * track.elements_per_bay; j <= last * track.elements_per_bay; ++j) {
     rail.x.push_back(j * track.sleeper_spacing / track.elements_per_bay);
-    rail.dof.push_back(all_free);
+    rail.dof.push_back(free);
   }
-  rail.dof.front() = rail.dof.back() = {held, to_number, to_number, to_number, held, held};
+  rail.dof.front() = rail.dof.back() = {held, free[1], free[2], free[3], held, held};
   nodes.rail = {rail, rail};
   return nodes;
 }
@@ -87,14 +89,13 @@ void add_pad(MatrixAssembly& assembly, const TrackParameters& track, const DofIn
 }
 
 void add_ballast_on_ground(MatrixAssembly& assembly, const TrackParameters& track, const DofIndices& sleeper,
-                           double y) {
+                           const DofIndices& ground, double y) {
   const SpringDamper ballast(track.ballast_ground, 0, 0);
   const Eigen::Vector3d arm(0, y, 0.5 * track.sleeper.height);
-  // the ground stands still: only the sleeper's block of the pair remains
-  const Eigen::Matrix<double, 6, 6> K = spring_matrix(arm, arm, ballast.k, ballast.k_about).topLeftCorner<6, 6>();
-  const Eigen::Matrix<double, 6, 6> C = spring_matrix(arm, arm, ballast.c, ballast.c_about).topLeftCorner<6, 6>();
-  add_element(assembly.stiffness, sleeper, K);
-  add_element(assembly.damping, sleeper, C);
+  const Eigen::Vector3d at_ground = Eigen::Vector3d::Zero();
+  const std::array<int, 12> dof = joined(sleeper, ground);
+  add_element(assembly.stiffness, dof, spring_matrix(arm, at_ground, ballast.k, ballast.k_about));
+  add_element(assembly.damping, dof, spring_matrix(arm, at_ground, ballast.c, ballast.c_about));
 }
 
 /// Ballast between a sleeper and the bridge.
@@ -114,11 +115,12 @@ void add_ballast_on_deck(MatrixAssembly& assembly, const TrackParameters& track,
 }
 
 void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const TrackParameters& track,
-                  const Bridge& bridge) {
+                  const Bridge& bridge, std::vector<double>& support_x) {
   const double bottom = track.rail.height + track.sleeper.height;  // below the rail-head top
   for (size_t i = 0; i < nodes.sleeper.x.size(); ++i) {
     const DofIndices& sleeper = nodes.sleeper.dof[i];
     add_sleeper_mass(assembly, sleeper, track.sleeper);
+    std::optional<DofIndices> ground;
     for (const RailSide side : {RailSide::left, RailSide::right}) {
       const double sign = side == RailSide::left ? -1.0 : 1.0;
       const NodeLine& rail = nodes.rail[static_cast<size_t>(side)];
@@ -128,7 +130,8 @@ void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const Track
       if (const auto deck = bridge.attach(nodes.sleeper.x[i], ballast_y, bottom)) {
         add_ballast_on_deck(assembly, track, sleeper, ballast_y, *deck);
       } else {
-        add_ballast_on_ground(assembly, track, sleeper, ballast_y);
+        if (!ground) ground = supported_node(nodes.sleeper.x[i], support_x);
+        add_ballast_on_ground(assembly, track, sleeper, *ground, ballast_y);
       }
     }
   }
@@ -173,24 +176,26 @@ class OrderAlongTrack {
   }
   void renumber(DofIndices& dof) const {
     for (int& index : dof) {
-      if (index != held) index = number_[static_cast<size_t>(index)];
+      if (index >= 0) index = number_[static_cast<size_t>(index)];
     }
   }
   void renumber(std::vector<Eigen::Triplet<double>>& entries) const {
     for (auto& e : entries) {
-      e = {number_[static_cast<size_t>(e.row())], number_[static_cast<size_t>(e.col())], e.value()};
+      e = {number(e.row()), number(e.col()), e.value()};
     }
   }
 
  private:
+  // Supports keep theirs.
+  [[nodiscard]] int number(int dof) const { return dof < 0 ? dof : number_[static_cast<size_t>(dof)]; }
   std::vector<int> number_;
 };
 
 }  // namespace
 
-StructureModel lay_track(const TrackParameters& track, Bridge bridge) {
+StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane) {
   track.validate();
-  TrackNodes nodes = place_nodes(track, bridge.end);
+  TrackNodes nodes = place_nodes(track, bridge.end, plane);
   number_dofs(nodes.sleeper, bridge.dof_x);
   for (NodeLine& rail : nodes.rail) number_dofs(rail, bridge.dof_x);
 
@@ -199,9 +204,10 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge) {
   const BeamSection section{rail.E, rail.A, rail.Iy, rail.Iz, rail.GJ, rail.mass, rail.rotary_inertia};
   for (const NodeLine& line : nodes.rail)
     add_beam(assembly, line.x, line.dof, section, {rail.mass_damping, rail.stiffness_damping});
-  add_sleepers(assembly, nodes, track, bridge);
+  add_sleepers(assembly, nodes, track, bridge, bridge.support_x);
 
   StructureModel model;
+  model.supports.x = std::move(bridge.support_x);
   model.nodes = named_nodes(nodes, bridge);
   const OrderAlongTrack order(bridge.dof_x);
   for (auto* entries : {&assembly.mass, &assembly.damping, &assembly.stiffness}) order.renumber(*entries);
@@ -219,8 +225,9 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge) {
   return model;
 }
 
-StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans) {
-  return lay_track(track, beam_bridge(spans));
+StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans,
+                                  MotionPlane plane) {
+  return lay_track(track, beam_bridge(spans, plane), plane);
 }
 
 }  // namespace railtab

@@ -97,7 +97,7 @@ CoachParameters coach_parameters(std::string_view name) {
   throw input_error("vehicle", fmt::format("'{}'", name), fmt::format("one of {}", fmt::join(vehicle_names(), ", ")));
 }
 
-VehicleModel build_coach(const CoachParameters& p) {
+VehicleModel build_coach(const CoachParameters& p, MotionPlane plane) {
   p.validate();
   constexpr int car = 0;
   std::vector<RigidBody> bodies{make_body("car-body", p.car_body, 0.0, p.car_body_height)};
@@ -127,6 +127,10 @@ VehicleModel build_coach(const CoachParameters& p) {
   }
   std::vector<DofIndices> dofs(bodies.size(), DofIndices{0, 0, 0, 0, 0, 0});
   dofs[car][0] = held;
+  if (plane == MotionPlane::vertical) {
+    for (DofIndices& dof : dofs) dof[1] = dof[3] = dof[5] = held;
+    for (const int wheelset : wheelsets) dofs[static_cast<size_t>(wheelset)][4] = held;
+  }
   return assemble_vehicle(p.name, std::move(bodies), suspension, std::move(wheelsets), dofs, p.nominal_radius,
                           p.length);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "stopwatch.hpp"
 
@@ -26,11 +27,16 @@ Vector3d mean_line(const RailContact* contact, const Eigen::VectorXd& dofs) {
   return line;
 }
 
-// Heave, its velocity and acceleration of a wheel at speed V on a line that has the values, slopes and curvatures
-// `displacement`, and their material rates: d/dt = ∂/∂t + V ∂/∂x.
-Vector3d followed(const Vector3d& displacement, const Vector3d& velocity, double acceleration, double V) {
-  return {displacement[0], velocity[0] + V * displacement[1],
-          acceleration + 2.0 * V * velocity[1] + V * V * displacement[2]};
+// How the wheels run at the end of a step.
+struct Running {
+  double V, rate;  // speed [m/s] and its rate [m/s²]
+};
+
+// Heave, its velocity and acceleration of a wheel on a line that has the values, slopes and curvatures `displacement`,
+// and their material rates: d/dt = ∂/∂t + V ∂/∂x.
+Vector3d followed(const Vector3d& displacement, const Vector3d& velocity, double acceleration, const Running& run) {
+  return {displacement[0], velocity[0] + run.V * displacement[1],
+          acceleration + 2.0 * run.V * velocity[1] + run.V * run.V * displacement[2] + run.rate * displacement[1]};
 }
 
 // Response of the mean lines to forces on the wheelsets: pairs within the reach of the tabulated compliance.
@@ -64,12 +70,12 @@ std::vector<LineCoupling> line_couplings(const StepOperators& op, const std::vec
 }
 
 // F = F_0 + Σ (Z, W, A)·heave with heave = free + T·Σ line·(load on the rails = −F): a system for the forces.
-void solve_forces(const VsiModel& model, const StepOperators& op, const std::vector<LineCoupling>& couplings,
-                  const std::vector<Vector3d>& free, const Eigen::VectorXd& free_force, RigidWheelWorkspace& ws) {
+void solve_forces(const VsiModel& model, const StepOperators& op, const Running& run,
+                  const std::vector<LineCoupling>& couplings, const std::vector<Vector3d>& free,
+                  const Eigen::VectorXd& free_force, RigidWheelWorkspace& ws) {
   const int wheelsets = static_cast<int>(free_force.size());
   const int per_vehicle = model.wheelsets_per_vehicle();
   const RigidWheelResponse& wheels = *op.rigid_wheels;
-  const double V = model.contact.speed;
   const double rate = op.scheme.velocity_rate();
   const auto impedance = [&](int i, int k) {
     const int a = i % per_vehicle, b = k % per_vehicle;
@@ -82,7 +88,7 @@ void solve_forces(const VsiModel& model, const StepOperators& op, const std::vec
     for (int k = first; k < first + per_vehicle; ++k) ws.force[i] += impedance(i, k).dot(free[index(k)]);
   }
   for (const LineCoupling& c : couplings) {
-    const Vector3d heave = followed(c.line, rate * c.line, op.scheme.acceleration_rate() * c.line[0], V);
+    const Vector3d heave = followed(c.line, rate * c.line, op.scheme.acceleration_rate() * c.line[0], run);
     const int first = c.i - c.i % per_vehicle;
     for (int i = first; i < first + per_vehicle; ++i) ws.system(i, c.j) += impedance(i, c.i).dot(heave);
   }
@@ -92,6 +98,7 @@ void solve_forces(const VsiModel& model, const StepOperators& op, const std::vec
 // What the parts of one step hand on to each other. Lines are (displacement, slope, curvature) of the rails' mean under
 // each wheelset, increments over the structure's predictor.
 struct Lines {
+  Running run;
   std::vector<RailContact> contacts;  // two per wheelset, none on rigid track
   std::vector<LineCoupling> couplings;
   std::vector<Vector3d> known;      // (z, v, a) of irregularity and predictor
@@ -100,9 +107,9 @@ struct Lines {
 };
 
 // (z, v, a) of wheelset w for an increment of its line.
-Vector3d heave(const VsiModel& model, const HhtScheme& hht, const Lines& lines, int w, const Vector3d& increment) {
-  return lines.known[index(w)] + followed(increment, hht.velocity_rate() * increment,
-                                          hht.acceleration_rate() * increment[0], model.contact.speed);
+Vector3d heave(const HhtScheme& hht, const Lines& lines, int w, const Vector3d& increment) {
+  return lines.known[index(w)] +
+         followed(increment, hht.velocity_rate() * increment, hht.acceleration_rate() * increment[0], lines.run);
 }
 
 // Vehicles: what is known of their equations before the wheelsets' heave; returns the forces that no heave needs.
@@ -113,7 +120,9 @@ Eigen::VectorXd free_vehicles(const VsiModel& model, const StepOperators& op, co
   ws.rigid_wheels.R.resize(model.vehicle_x.size());
   for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
     Eigen::VectorXd& R = ws.rigid_wheels.R[index(v)];
-    op.rigid_wheels->remainder(model.vehicle, op.vehicle_damping, op.scheme, state.vehicle[index(v)],
+    const LinearMotion& motion = state.vehicle[index(v)];
+    vehicle_step_load(model, op.scheme, v, state.time, motion, ws.vehicle_load);
+    op.rigid_wheels->remainder(model.vehicle, op.vehicle_damping, op.scheme, ws.vehicle_load, motion,
                                ws.vehicle_prediction[index(v)], R);
     force.segment(per_vehicle * v, per_vehicle) = op.rigid_wheels->free_force(R);
   }
@@ -123,23 +132,29 @@ Eigen::VectorXd free_vehicles(const VsiModel& model, const StepOperators& op, co
 // What the wheels would follow without contact forces at t + dt; one back-substitution.
 Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState& state, double time,
                  StepWorkspace& ws) {
-  const double V = model.contact.speed;
   Lines lines;
+  lines.run = {model.speed(time), model.acceleration(time)};
   lines.contacts = place_wheels(model, time);
   lines.free.assign(index(model.wheelsets()), Vector3d::Zero());
   lines.increment = lines.free;
   for (int w = 0; w < model.wheelsets(); ++w) {
     const VerticalDeviation d = vertical_deviation(model, w, time);
     lines.known.emplace_back(d.z, d.rate, d.acceleration);
+    if (model.structure && lines.contacts[index(2 * w)].on_rail) continue;
+    const VerticalDeviation ground = ground_under(model, w, time);
+    lines.known.back() += Vector3d(ground.z, ground.rate, ground.acceleration);
   }
   if (!model.structure) return lines;
   const Prediction& p = ws.structure_prediction;
   predict(op.scheme, state.structure, op.structure->active(), ws.structure_prediction);
-  op.structure->free_increment(op.scheme, state.structure, p, ws.structure_free);
+  op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
+  add_ground_load(model, op.scheme, state.time, ws.structure_increment);
+  ws.structure_free = op.structure->solve(ws.structure_increment);
   lines.couplings = line_couplings(op, lines.contacts);
   for (int w = 0; w < model.wheelsets(); ++w) {
     const RailContact* contact = &lines.contacts[index(2 * w)];
-    lines.known[index(w)] += followed(mean_line(contact, p.displacement), mean_line(contact, p.velocity), 0.0, V);
+    lines.known[index(w)] +=
+        followed(mean_line(contact, p.displacement), mean_line(contact, p.velocity), 0.0, lines.run);
     lines.free[index(w)] = mean_line(contact, ws.structure_free);
   }
   return lines;
@@ -151,9 +166,9 @@ void solve_contact_forces(const VsiModel& model, const StepOperators& op, const 
   std::vector<Vector3d> free(lines.free.size());
   for (int w = 0; w < model.wheelsets(); ++w) {
     lines.increment[index(w)] = lines.free[index(w)] + ws.far_field.segment<3>(3 * w);
-    free[index(w)] = heave(model, op.scheme, lines, w, lines.increment[index(w)]);
+    free[index(w)] = heave(op.scheme, lines, w, lines.increment[index(w)]);
   }
-  solve_forces(model, op, lines.couplings, free, free_force, ws.rigid_wheels);
+  solve_forces(model, op, lines.run, lines.couplings, free, free_force, ws.rigid_wheels);
   for (const LineCoupling& c : lines.couplings) lines.increment[index(c.i)] -= c.line * ws.rigid_wheels.force[c.j];
   set_vertical_forces(ws.rigid_wheels.force, ws.solution);
 }
@@ -179,7 +194,7 @@ void close_vehicles(const VsiModel& model, const StepOperators& op, const Lines&
   for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
     for (int i = 0; i < per_vehicle; ++i) {
       const int w = per_vehicle * v + i;
-      const Vector3d h = heave(model, op.scheme, lines, w, lines.increment[index(w)]);
+      const Vector3d h = heave(op.scheme, lines, w, lines.increment[index(w)]);
       moved.z[i] = h[0];
       moved.v[i] = h[1];
       moved.a[i] = h[2];

@@ -33,13 +33,14 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
 }
 
 void RigidWheelResponse::remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme,
-                                   const LinearMotion& motion, Prediction& p, Eigen::VectorXd& R) const {
+                                   const Eigen::VectorXd& load, const LinearMotion& motion, Prediction& p,
+                                   Eigen::VectorXd& R) const {
   predict(scheme, motion, p);
   for (int i : c_) {
     p.weighted_displacement[i] = -scheme.alpha * motion.displacement[i];
     p.weighted_velocity[i] = -scheme.alpha * motion.velocity[i];
   }
-  R = vehicle.static_load - scheme.alpha * motion.contact_load;
+  R = load - scheme.alpha * motion.contact_load;
   R.noalias() -= damping * p.weighted_velocity;
   R.noalias() -= vehicle.stiffness * p.weighted_displacement;
 }

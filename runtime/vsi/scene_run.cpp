@@ -9,6 +9,7 @@
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "scene_loads.hpp"
 
 namespace railtab {
 
@@ -97,7 +98,7 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
   }
   header.program_version = RAILTAB_VERSION;
   header.contact_mode = contact_mode_name(scene.contact);
-  header.speed = scene.train.speed;
+  header.speed = model.speed(0.0);
   for (int w = 0; w < model.wheelsets(); ++w) {
     const auto body =
         static_cast<std::size_t>(model.vehicle.wheelsets[static_cast<std::size_t>(w % model.wheelsets_per_vehicle())]);
@@ -170,7 +171,7 @@ long run_in_steps(const SceneParameters& scene, const VsiModel& model) {
   if (!model.structure) return model.geometry && model.geometry->is_paper() ? steps(enough) : 0;
   const double rear = model.wheelset_x(model.wheelsets() - 1, 0.0);
   const double track = rear - std::max(model.structure->rail[0].x.front(), model.structure->rail[1].x.front());
-  return steps(std::min(enough, 0.8 * track / scene.train.speed));
+  return steps(std::min(enough, 0.8 * track / model.speed(0.0)));
 }
 
 // The published search's pairs jump as a wheel moves, and at rest there is no inertia to hold it meanwhile: rest is
@@ -248,14 +249,17 @@ void note_repairs(const VsiModel& model, const RunObserver& observer) {
 VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
-  model.vehicle = build_coach(coach_parameters(scene.train.vehicle));
+  model.vehicle = build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene));
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
-  if (scene.track_kind == TrackKind::flexible) model.structure = build_track_bridge(scene.track, scene.spans);
+  if (scene.track_kind == TrackKind::flexible) {
+    model.structure = build_track_bridge(scene.track, scene.spans, structure_plane(scene));
+  }
   if (scene.track_kind == TrackKind::imported) model.structure = import_structure(scene.structure);
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
+  add_loads(scene, model);
   if (scene.spectrum) model.irregularity = random_track(scene, model);
   check_on_track(scene, model);
   reduce(scene.reduction, model);
@@ -268,7 +272,8 @@ double run_duration(const SceneParameters& scene, const VsiModel& model) {
     throw input_error("scene: integration.duration", "none, and no bridge",
                       "a duration in s, or a [[bridge]] to cross");
   }
-  return (spans_length(scene) - model.wheelset_x(model.wheelsets() - 1, 0.0)) / scene.train.speed;
+  const double way = spans_length(scene) - model.wheelset_x(model.wheelsets() - 1, 0.0);
+  return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
 }
 
 RunPlan plan_run(const SceneParameters& scene) {
@@ -301,6 +306,7 @@ RunPlan plan_run(const SceneParameters& scene) {
   if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
     plan.left_out.emplace_back("bridge: the scene names none");
   if (scene.spectrum) plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+  for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
   if (!scene.irregularity && !scene.spectrum) plan.left_out.emplace_back("irregularity: the scene names none");
   if (model.geometry && scene.contact.mode != ContactMode::table)
     plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");

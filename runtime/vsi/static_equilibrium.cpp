@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
@@ -144,13 +145,18 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   NewtonWorkspace workspace;
   const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
+  std::vector<Eigen::VectorXd> load(index(vehicles));  // gravity and the loads that act at this time
+  for (int v = 0; v < vehicles; ++v) {
+    vehicle_load(model, v, state.time, load[index(v)]);
+    load[index(v)] += model.vehicle.static_load;
+  }
 
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
     rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
     for (int v = 0; v < vehicles; ++v) {
       const LinearMotion& motion = state.vehicle[index(v)];
       const Eigen::VectorXd free =
-          vehicle.inverse() * (model.vehicle.static_load + regularisation * (model.vehicle.mass * motion.displacement));
+          vehicle.inverse() * (load[index(v)] + regularisation * (model.vehicle.mass * motion.displacement));
       gather_wheelsets(model, v, free, problem.free);
     }
     for (int w = 0; w < model.wheelsets(); ++w) {
@@ -171,7 +177,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
-      Eigen::VectorXd next = vehicle.inverse() * (model.vehicle.static_load + motion.contact_load +
+      Eigen::VectorXd next = vehicle.inverse() * (load[index(v)] + motion.contact_load +
                                                   regularisation * (model.vehicle.mass * motion.displacement));
       clear_pitch(model, next);
       report.change = std::max(report.change, (next - motion.displacement).cwiseAbs().maxCoeff());

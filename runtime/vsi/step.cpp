@@ -1,5 +1,6 @@
 #include "railtab/runtime/vsi/step.hpp"
 
+#include "railtab/runtime/vsi/external_load.hpp"
 #include "stopwatch.hpp"
 
 namespace railtab {
@@ -19,7 +20,9 @@ void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiStat
     Prediction& p = ws.vehicle_prediction[index(v)];
     const LinearMotion& motion = state.vehicle[index(v)];
     predict(op.scheme, motion, p);
-    op.vehicle.free_increment(model.vehicle, op.vehicle_damping, op.scheme, motion, p, ws.vehicle_free[index(v)]);
+    vehicle_step_load(model, op.scheme, v, state.time, motion, ws.vehicle_load);
+    op.vehicle.free_increment(model.vehicle, op.vehicle_damping, op.scheme, ws.vehicle_load, motion, p,
+                              ws.vehicle_free[index(v)]);
     // gather into q: predictor, its velocity, the free motion, and the start (constant acceleration)
     const Eigen::VectorXd free = p.displacement + ws.vehicle_free[index(v)];
     const Eigen::VectorXd start = p.displacement + motion.acceleration / op.scheme.acceleration_rate();
@@ -37,6 +40,7 @@ void free_structure(const VsiModel& model, const StepOperators& op, const VsiSta
   const DofRange& active = op.structure->active();
   predict(op.scheme, state.structure, active, p);
   op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
+  add_ground_load(model, op.scheme, state.time, ws.structure_increment);
   ws.rail_dofs.clear();
   for (const RailContact& contact : contacts) append_dofs(contact, ws.rail_dofs);
   active.of(ws.structure_load).setZero();
@@ -120,7 +124,10 @@ double answer_under_wheels(const StepOperators& op, const std::vector<RailContac
 }  // namespace
 
 StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
-    : scheme(hht), vehicle_damping(model.vehicle_damping()), vehicle(model.vehicle, vehicle_damping, hht) {
+    : scheme(hht),
+      vehicle_damping(model.vehicle_damping(model.contact.speed)),
+      vehicle(model.vehicle, vehicle_damping, hht),
+      speed_(model.contact.speed) {
   if (model.normal_contact == NormalContact::rigid) rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
@@ -128,13 +135,19 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
 }
 
 void StepOperators::follow(const VsiModel& model, double time, const DofRange& active) {
+  if (model.speed(time) != speed_) {
+    speed_ = model.speed(time);
+    vehicle_damping = model.vehicle_damping(speed_);
+    vehicle = VehicleResponse(model.vehicle, vehicle_damping, scheme);
+    if (rigid_wheels) rigid_wheels.emplace(model.vehicle, vehicle_damping, scheme);
+  }
   constexpr double ahead = 10.0;  // m
   const double front = model.wheelset_x(0, time);
   const double rear = model.wheelset_x(model.wheelsets() - 1, time);
   if (structure) structure->activate(active);
   if (!structure || (rear >= covered_from_ && front <= covered_to_)) return;
   // A step that is repeated as halves looks back by at most one step.
-  covered_from_ = rear - model.contact.speed * scheme.time_step;
+  covered_from_ = model.wheelset_x(model.wheelsets() - 1, time - scheme.time_step);
   covered_to_ = front + ahead;
   structure->tabulate_compliance(*model.structure, compliance_window, covered_from_, covered_to_);
   if (local) local->follow(covered_from_, covered_to_);
@@ -148,6 +161,7 @@ StepWorkspace::StepWorkspace(const VsiModel& model) {
   structure_load = Eigen::VectorXd::Zero(model.structure ? model.structure->dofs() : 0);
   const VsiState zero(model);
   solution = zero.contact;
+  contact = model.contact;
   problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
   problem.free = problem.predicted = problem.predicted_velocity = solution.displacement;
 }
@@ -159,6 +173,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   const HhtScheme& hht = op.scheme;
   const double time = state.time + hht.time_step;
   ws.far_field = state.far_field;
+  ws.contact.speed = model.speed(time);
 
   // Right-hand side of Eq. 13 without the contact forces at t + dt.
   std::vector<RailContact> contacts;
@@ -185,7 +200,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     double seconds_newton = 0.0;
     {
       const Stopwatch watch(seconds_newton);
-      newton = solve_contact(model.contact, ws.problem, limits.newton, ws.solution, ws.newton);
+      newton = solve_contact(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
     }
     report.newton_iterations += newton.iterations;
     report.queries += newton.queries;

@@ -209,13 +209,6 @@ void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& m
   }
 }
 
-void StructureResponse::free_increment(const HhtScheme& scheme, const LinearMotion& motion,
-                                       const Prediction& prediction, Eigen::VectorXd& increment) const {
-  Eigen::VectorXd load;
-  step_load(scheme, motion, prediction, load);
-  increment = factor_->solve(load);
-}
-
 StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,
                                                        std::size_t node) {
   Entries& e = entries();

@@ -32,13 +32,12 @@ void VehicleResponse::restrict_to_wheelsets(const VehicleModel& vehicle) {
 }
 
 void VehicleResponse::free_increment(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
-                                     const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
-                                     Eigen::VectorXd& increment) const {
-  // (1+α)F − αF with the constant static load leaves it once; the contact load of the last step enters by −α.
-  const Eigen::VectorXd load = vehicle.static_load - scheme.alpha * motion.contact_load -
-                               damping * prediction.weighted_velocity -
-                               vehicle.stiffness * prediction.weighted_displacement;
-  increment.noalias() = inverse_ * load;
+                                     const HhtScheme& scheme, const Eigen::VectorXd& load, const LinearMotion& motion,
+                                     const Prediction& prediction, Eigen::VectorXd& increment) const {
+  // The contact load of the last step enters by −α.
+  const Eigen::VectorXd known = load - scheme.alpha * motion.contact_load - damping * prediction.weighted_velocity -
+                                vehicle.stiffness * prediction.weighted_displacement;
+  increment.noalias() = inverse_ * known;
 }
 
 }  // namespace railtab

@@ -23,7 +23,20 @@ const DofIndices& wheelset_dofs(const VsiModel& model, int wheelset_of_vehicle) 
 double VsiModel::wheelset_x(int wheelset, double time) const noexcept {
   const int per_vehicle = wheelsets_per_vehicle();
   const int body = vehicle.wheelsets[index(wheelset % per_vehicle)];
-  return vehicle_x[index(wheelset / per_vehicle)] + vehicle.bodies[index(body)].position[0] + contact.speed * time;
+  return vehicle_x[index(wheelset / per_vehicle)] + vehicle.bodies[index(body)].position[0] + distance(time);
+}
+
+RailDeviation VsiModel::rail_line(RailSide side, double x) const noexcept {
+  RailDeviation d = irregularity.at(side, x);
+  if (!span_deviation) return d;
+  const RailDeviation turned = span_deviation->at(x);
+  d.y += turned.y;
+  d.z += turned.z;
+  d.dy_dx += turned.dy_dx;
+  d.dz_dx += turned.dz_dx;
+  d.ddy_dx2 += turned.ddy_dx2;
+  d.ddz_dx2 += turned.ddz_dx2;
+  return d;
 }
 
 VsiState::VsiState(const VsiModel& model)
@@ -96,20 +109,38 @@ std::vector<RailContact> place_wheels(const VsiModel& model, double time) {
   return contacts;
 }
 
+namespace {
+
+// A rail that is rigid moves with the ground.
+void add_ground(const VsiModel& model, double x, double time, RailHeadMotion& head) {
+  if (!model.ground_motion) return;
+  const GroundPoint ground = model.ground_motion->at(x, time);
+  head.displacement.head<2>() += ground.displacement;
+  head.velocity.head<2>() += ground.velocity;
+  head.yaw += ground.slope[0];
+  head.slope += ground.slope[1];
+}
+
+}  // namespace
+
 void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
                     const Eigen::VectorXd& structure_displacement,
                     std::vector<std::array<RailHeadMotion, 2>>& deviation) {
   deviation.resize(index(model.wheelsets()));
   for (int w = 0; w < model.wheelsets(); ++w) {
     for (int side = 0; side < 2; ++side) {
-      RailDeviation d = model.irregularity.at(static_cast<RailSide>(side), model.wheelset_x(w, time));
+      const double x = model.wheelset_x(w, time);
+      RailDeviation d = model.rail_line(static_cast<RailSide>(side), x);
       if (model.deviation_history) {
         const VerticalDeviation given = model.deviation_history->at(w, time);
-        d = {.z = given.z, .dz_dx = given.rate / model.contact.speed};
+        d = {.z = given.z, .dz_dx = given.rate / model.speed(time)};
       }
       RailHeadMotion& head = deviation[index(w)][index(side)];
       head = RailHeadMotion{{d.y, d.z, 0.0}, Vector3::Zero(), d.dy_dx, d.dz_dx};
-      if (contacts.empty()) continue;
+      if (contacts.empty() || !contacts[index(2 * w + side)].on_rail) {
+        add_ground(model, x, time, head);
+        continue;
+      }
       const RailContact& contact = contacts[index(2 * w + side)];
       const Eigen::Vector2d slopes = rail_slopes(contact, structure_displacement);
       head.yaw += slopes[0];
@@ -127,15 +158,25 @@ VerticalDeviation DeviationHistory::at(int wheelset_of_train, double time) const
 
 VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept {
   if (model.deviation_history) return model.deviation_history->at(wheelset, time);
-  const double V = model.contact.speed;
+  const double V = model.speed(time);
+  const double x = model.wheelset_x(wheelset, time);
   VerticalDeviation mean;
   for (const RailSide side : {RailSide::left, RailSide::right}) {
-    const RailDeviation d = model.irregularity.at(side, model.wheelset_x(wheelset, time));
+    const RailDeviation d = model.rail_line(side, x);
     mean.z += 0.5 * d.z;
     mean.rate += 0.5 * V * d.dz_dx;
-    mean.acceleration += 0.5 * V * V * d.ddz_dx2;
+    mean.acceleration += 0.5 * (V * V * d.ddz_dx2 + model.acceleration(time) * d.dz_dx);
   }
   return mean;
+}
+
+VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept {
+  if (!model.ground_motion) return {};
+  const GroundPoint g = model.ground_motion->at(model.wheelset_x(wheelset, time), time);
+  const double V = model.speed(time);
+  return {
+      g.displacement[1], g.velocity[1] + V * g.slope[1],
+      g.acceleration[1] + 2.0 * V * g.slope_rate[1] + V * V * g.curvature[1] + model.acceleration(time) * g.slope[1]};
 }
 
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept {

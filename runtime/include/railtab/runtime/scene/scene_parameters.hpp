@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/track/irregularity_spectrum.hpp"
+#include "railtab/runtime/track/span_deviation.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
 
@@ -25,6 +27,7 @@ struct TrainParameters {
   std::string vehicle = "manchester-coach";  ///< a published vehicle
   int count = 1;                             ///< coaches, 1..100
   double speed = 200.0 / 3.6;                ///< [m/s], > 0
+  std::filesystem::path speed_file;          ///< speed over time in place of `speed`; empty: constant
   double start = 0.0;                        ///< position of the first wheelset at t = 0 [m]
   /// Initial lateral shift [m] and yaw [rad] of every wheelset (hunting studies).
   double initial_lateral_shift = 0.0;
@@ -60,6 +63,25 @@ struct IntegrationParameters {
   void validate() const;  ///< @throws InputError naming the member out of range
 };
 
+/// One load on bodies of the train: a history from a file, or the constant one given, or a gust of that peak.
+struct LoadParameters {
+  std::string body = "car-body";  ///< name of a body of the vehicle
+  int coach = 0;                  ///< counted from the front; 0: every one
+  std::filesystem::path file;     ///< load history; empty: `load`
+  std::array<double, 6> load{};   ///< Fx, Fy, Fz [N], Mx, My, Mz [N m]
+  double start = 0.0;             ///< added to the file's times or positions [s] or [m]; of the gust [s]
+  double gust_duration = 0.0;     ///< of a one-minus-cosine gust [s]; 0: the load is constant
+};
+
+/// Ground motion by one record; several are stations along the track.
+struct GroundMotionParameters {
+  std::filesystem::path file;
+  double x = 0.0;           ///< of the station along the track, where there are several [m]
+  double factor = 1.0;      ///< times the record
+  double start = 0.0;       ///< added to the record's times [s]
+  double wave_speed = 0.0;  ///< of a single record: along the track, backward where negative [m/s]; 0: everywhere alike
+};
+
 /// Everything a run needs, read from a TOML scene. Paths are relative to the scene file.
 struct SceneParameters {
   std::string name;
@@ -74,6 +96,9 @@ struct SceneParameters {
   ReductionParameters reduction;
   std::optional<std::filesystem::path> irregularity;
   std::optional<SpectrumParameters> spectrum;  ///< in place of a file: a random track
+  std::optional<SpanDeviationParameters> span_deviation;
+  std::vector<LoadParameters> loads;
+  std::vector<GroundMotionParameters> ground_motion;
   IntegrationParameters integration;
   OutputParameters output;
 

@@ -40,6 +40,15 @@ struct StructureNode {
   DofIndices dof;
 };
 
+/// Where the ground holds a structure. With the unknowns u and the supports' translations s, y and z of each in turn,
+///   M u'' + C u' + K u = F − (M_s s'' + C_s s' + K_s s),
+/// so that K u + K_s s = 0 where all moves alike. Empty: supports are not known, and the ground stands still.
+struct StructureSupports {
+  std::vector<double> x;                                 ///< of each support [m]
+  Eigen::SparseMatrix<double> mass, damping, stiffness;  ///< dofs × 2 per support
+  [[nodiscard]] int columns() const noexcept { return static_cast<int>(2 * x.size()); }
+};
+
 /// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite.
 struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
@@ -53,6 +62,7 @@ struct StructureModel {
   std::vector<double> dof_x;
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.
   std::vector<std::array<double, 2>> spans;
+  StructureSupports supports;
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 

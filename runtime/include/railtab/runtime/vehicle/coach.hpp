@@ -49,7 +49,9 @@ struct CoachParameters {
 [[nodiscard]] CoachParameters coach_parameters(std::string_view name);
 
 /// Bodies in the order car-body, bogie-1, bogie-2 (front first), wheelset-1 … wheelset-4. The car body's x is held:
-/// 41 dofs. @throws InputError
-[[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters);
+/// 41 dofs, or 16 where only the vertical plane is built: x, z and pitch, the wheelsets' rotation left out, which no
+/// spring and no rail turns there. Its vertical motion is that of the 41 while nothing acts out of the plane.
+/// @throws InputError
+[[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial);
 
 }  // namespace railtab

@@ -11,6 +11,10 @@ namespace railtab {
 using DofIndices = std::array<int, 6>;
 inline constexpr int held = -1;  ///< a degree of freedom that is not an unknown
 
+/// In which motions unknowns are built: all six of a body or node, or those within the vertical plane alone (x, z,
+/// pitch), which is the same where nothing acts or stands out of that plane.
+enum class MotionPlane { spatial, vertical };
+
 /// A rigid body; position of its centre of gravity in the vehicle frame: x forward from the vehicle centre, y right,
 /// z down from the rail-head tops [m].
 struct RigidBody {

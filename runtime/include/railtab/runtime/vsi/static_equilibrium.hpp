@@ -11,8 +11,8 @@ struct EquilibriumReport {
 };
 
 /// The train at rest on the track (rolling steadily: creep forces act, rates are zero) with its first position at
-/// `state.time`: displacements, contact forces, and the wheelsets' rotation that needs no torque. Velocities and
-/// accelerations otherwise zero.
+/// `state.time`, under gravity and the body loads of that time: displacements, contact forces, and the wheelsets'
+/// rotation that needs no torque. Velocities and accelerations otherwise zero.
 ///
 /// A rigid-body motion that nothing holds is held by a small multiple of the mass, K + eps M, iterated until it carries
 /// no load (proximal iteration), so that the result is the equilibrium of K itself.

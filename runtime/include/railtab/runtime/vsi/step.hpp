@@ -22,11 +22,13 @@ class StepOperators {
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);
 
-  /// Take the table of the rails' compliance along, so that it covers the train up to `time` and some way ahead, and
-  /// let the unknowns in `active` take part.
+  /// For a step that ends at `time`: take the table of the rails' compliance along, so that it covers the train up to
+  /// there and some way ahead, the vehicle's gyroscopic terms to the speed there, and let the unknowns in `active` take
+  /// part.
   void follow(const VsiModel& model, double time, const DofRange& active);
 
  private:
+  double speed_;                                   ///< of the gyroscopic terms [m/s]
   double covered_from_ = 0.0, covered_to_ = -1.0;  ///< positions along the track [m]; none at first
 };
 
@@ -50,6 +52,8 @@ struct StepWorkspace {
   std::vector<Prediction> vehicle_prediction;
   Prediction structure_prediction, local_prediction;
   std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
+  Eigen::VectorXd vehicle_load;  ///< of one vehicle
+  WheelContactModel contact;     ///< at the speed of the step's end
   DividedSubstitution structure_solution;
   std::vector<int> rail_dofs;  ///< unknowns of the structure that the wheels load
   std::vector<RailCoupling> local;  ///< static correction

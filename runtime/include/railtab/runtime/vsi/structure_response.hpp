@@ -56,9 +56,6 @@ class StructureResponse {
                  Eigen::VectorXd& load) const;
   /// What step_load() reads of the matrices [bytes].
   [[nodiscard]] std::size_t load_bytes() const noexcept { return entry_.size() * (sizeof(Entry) + sizeof(int)); }
-  /// Increment over the predictor without contact forces at the end of the step; one back-substitution.
-  void free_increment(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
-                      Eigen::VectorXd& increment) const;
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 

@@ -17,8 +17,10 @@ class VehicleResponse {
   VehicleResponse(const VehicleModel& vehicle, double regularisation);
 
   /// Increment over the predictor without contact forces at the end of the step.
+  /// @param load of the step on the vehicle besides the contacts: vehicle_step_load()
   void free_increment(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme,
-                      const LinearMotion& motion, const Prediction& prediction, Eigen::VectorXd& increment) const;
+                      const Eigen::VectorXd& load, const LinearMotion& motion, const Prediction& prediction,
+                      Eigen::VectorXd& increment) const;
 
   [[nodiscard]] const Eigen::MatrixXd& inverse() const noexcept { return inverse_; }
   /// Displacement of the wheelset dofs (6 per wheelset, held ones zero) from unit loads on them, (6w × 6w).

@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/loads/body_load.hpp"
+#include "railtab/runtime/loads/ground_motion.hpp"
+#include "railtab/runtime/loads/speed_profile.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/track/irregularity.hpp"
+#include "railtab/runtime/track/span_deviation.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
@@ -41,20 +45,36 @@ struct VsiModel {
   std::shared_ptr<const StructureModel> unreduced;
   std::optional<WindowModel> window;  ///< for Reduction::window
   Irregularity irregularity;
+  std::optional<SpanDeviation> span_deviation;        ///< besides `irregularity`
   std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`
   NormalContact normal_contact = NormalContact::hertz;
   std::shared_ptr<const ContactGeometry> geometry;
-  WheelContactModel contact;  ///< its geometry points to `geometry`
+  WheelContactModel contact;                  ///< its geometry points to `geometry`, its speed is that at t = 0
+  std::optional<SpeedProfile> speed_profile;  ///< speed over time; without it contact.speed throughout
+  std::vector<BodyLoad> loads;                ///< on the vehicles' bodies, besides gravity
+  std::optional<GroundMotion> ground_motion;  ///< under the structure's supports and of rails that are rigid
   GyroscopicMoments gyroscopic_moments = GyroscopicMoments::included;
 
   [[nodiscard]] int wheelsets_per_vehicle() const noexcept { return static_cast<int>(vehicle.wheelsets.size()); }
   [[nodiscard]] int wheelsets() const noexcept { return wheelsets_per_vehicle() * static_cast<int>(vehicle_x.size()); }
   /// Position of a wheelset along the track at time t, wheelsets counted from the front of the train [m].
   [[nodiscard]] double wheelset_x(int wheelset, double time) const noexcept;
+  /// Running speed V [m/s], its rate [m/s²], and the distance run since t = 0 [m].
+  [[nodiscard]] double speed(double time) const noexcept {
+    return speed_profile ? speed_profile->speed(time) : contact.speed;
+  }
+  [[nodiscard]] double acceleration(double time) const noexcept {
+    return speed_profile ? speed_profile->acceleration(time) : 0.0;
+  }
+  [[nodiscard]] double distance(double time) const noexcept {
+    return speed_profile ? speed_profile->distance(time) : contact.speed * time;
+  }
+  /// Irregularity of a rail and its deviation by turning spans together.
+  [[nodiscard]] RailDeviation rail_line(RailSide side, double x) const noexcept;
   /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.
-  [[nodiscard]] Eigen::MatrixXd vehicle_damping() const {
+  [[nodiscard]] Eigen::MatrixXd vehicle_damping(double speed) const {
     if (gyroscopic_moments == GyroscopicMoments::neglected) return vehicle.damping;
-    return vehicle.damping + contact.speed / vehicle.nominal_radius * vehicle.gyroscopic;
+    return vehicle.damping + speed / vehicle.nominal_radius * vehicle.gyroscopic;
   }
 };
 
@@ -82,14 +102,16 @@ void unpack(std::span<const double> numbers, VsiState& state);
 /// Where the wheels stand on the structure, 2 per wheelset (left, right); empty on rigid track.
 [[nodiscard]] std::vector<RailContact> place_wheels(const VsiModel& model, double time);
 
-/// Irregularity under every wheel, with the slopes that the structure's displacement adds.
+/// Irregularity under every wheel, with the slopes that the structure's displacement adds; where the rails are rigid,
+/// with the motion of the ground.
 void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
                     const Eigen::VectorXd& structure_displacement,
                     std::vector<std::array<RailHeadMotion, 2>>& deviation);
 
 /// Mean vertical deviation of the two rails under a wheelset, from the history or the irregularity at the running
-/// speed.
+/// speed; and the vertical motion of the ground there, which rails that are rigid follow.
 [[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
+[[nodiscard]] VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept;
 
 /// Restriction of one vehicle's dof vector to its wheelset unknowns, written into a 12-per-wheelset vector.
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;

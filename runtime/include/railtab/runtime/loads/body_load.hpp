@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <vector>
+
+namespace railtab {
+
+/// Force and moment: Fx, Fy, Fz [N], Mx, My, Mz [N m] about the axes x forward, y right, z down.
+using ForceAndMoment = Eigen::Matrix<double, 6, 1>;
+
+/// What a load history counts along: time [s], or the position of the loaded body along the track [m] (a stretch
+/// without wind screens, a gust that stands).
+enum class LoadArgument { time, position };
+
+/// Force and moment over time or position: straight lines between the points given, the first and the last value beyond
+/// them.
+class LoadHistory {
+ public:
+  /// @param points strictly increasing [s] or [m], at least 1; as many loads
+  /// @throws InputError naming the point
+  LoadHistory(LoadArgument argument, std::vector<double> points, std::vector<ForceAndMoment> loads);
+
+  [[nodiscard]] LoadArgument argument() const noexcept { return argument_; }
+  [[nodiscard]] ForceAndMoment at(double point) const noexcept;
+  /// Components that are not zero throughout.
+  [[nodiscard]] Eigen::Array<bool, 6, 1> acting() const noexcept;
+
+ private:
+  LoadArgument argument_;
+  std::vector<double> points_;
+  std::vector<ForceAndMoment> loads_;
+};
+
+/// One-minus-cosine gust over time: load·(1 − cos(2π(t − start)/duration))/2 within the duration, zero outside; as
+/// straight lines between points that are nowhere farther off than 2e-5 of the peak.
+/// @pre duration > 0
+[[nodiscard]] LoadHistory gust_history(const ForceAndMoment& peak, double start, double duration);
+
+/// Read a load history: first column t[s] or x[m], then any of Fx, Fy, Fz in [N] or [kN] and Mx, My, Mz in [N m] or
+/// [kN m]; components without a column are zero (docs/file_formats/histories.md).
+/// @param start added to the first column [s] or [m]
+/// @throws InputError with file and line
+[[nodiscard]] LoadHistory read_load_history(const std::filesystem::path& file, double start = 0.0);
+
+/// A load at the centre of gravity of a body. Displacements being small, it keeps its direction and point.
+struct BodyLoad {
+  static constexpr int every_vehicle = -1;
+  int vehicle = every_vehicle;  ///< of the train, front first
+  int body = 0;                 ///< of the vehicle
+  LoadHistory history;
+};
+
+}  // namespace railtab

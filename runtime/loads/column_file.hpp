@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace railtab {
+
+/// One column of a text file: the header cell "Fy[kN]" has the name "Fy" and the unit "kN".
+struct FileColumn {
+  std::string name, unit;
+  std::vector<double> values;  ///< as written, in the unit of the header
+  /// Where a cell of this column stands, "file:line: column name". Row 0 is the header.
+  [[nodiscard]] std::string place(std::size_t row) const;
+
+  std::string file;
+  std::vector<long> line;  ///< of the header and of every row
+};
+
+/// Read a text file of numbers: comment lines "#", one header row "name[unit],…", then rows of as many finite numbers,
+/// the first column strictly increasing, at least two rows (docs/file_formats/histories.md).
+/// @throws InputError with file and line
+[[nodiscard]] std::vector<FileColumn> read_columns(const std::filesystem::path& file);
+
+/// Factor from the column's unit to SI.
+struct UnitFactor {
+  std::string_view unit;
+  double factor;
+};
+/// @throws InputError naming the header cell and the units known
+[[nodiscard]] double factor_to_si(const FileColumn& column, const std::vector<UnitFactor>& units);
+
+}  // namespace railtab

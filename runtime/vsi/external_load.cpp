@@ -1,0 +1,95 @@
+#include "railtab/runtime/vsi/external_load.hpp"
+
+namespace railtab {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+constexpr int longitudinal = 0, pitch = 4;
+
+void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, double time, Eigen::VectorXd& load) {
+  const double x = model.vehicle_x[index(vehicle)] + model.vehicle.bodies[index(acting.body)].position[0];
+  const bool over_time = acting.history.argument() == LoadArgument::time;
+  const ForceAndMoment value = acting.history.at(over_time ? time : x + model.distance(time));
+  const DofIndices& dof = model.vehicle.dof[index(acting.body)];
+  for (int k = 0; k < 6; ++k) {
+    if (dof[index(k)] != held) load[dof[index(k)]] += value[k];
+  }
+}
+
+// The car body, whose x is held, is what pulls the rest.
+void add_inertia(const VsiModel& model, double acceleration, Eigen::VectorXd& load) {
+  const VehicleModel& vehicle = model.vehicle;
+  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    const int x = vehicle.dof[b][longitudinal];
+    if (x != held) load[x] -= vehicle.bodies[b].mass * acceleration;
+  }
+  for (int wheelset : vehicle.wheelsets) {
+    const int rotation = vehicle.dof[index(wheelset)][pitch];
+    if (rotation == held) continue;
+    load[rotation] += vehicle.bodies[index(wheelset)].inertia[1] / vehicle.nominal_radius * acceleration;
+  }
+}
+
+struct SupportMotion {
+  Eigen::VectorXd displacement, velocity, acceleration;  // y, z of every support
+};
+
+SupportMotion support_motion(const GroundMotion& ground, const std::vector<double>& x, double time) {
+  const auto rows = static_cast<Eigen::Index>(2 * x.size());
+  SupportMotion motion{Eigen::VectorXd(rows), Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
+  GroundPoint point;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i == 0 || !ground.uniform()) point = ground.at(x[i], time);
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    motion.displacement.segment<2>(row) = point.displacement;
+    motion.velocity.segment<2>(row) = point.velocity;
+    motion.acceleration.segment<2>(row) = point.acceleration;
+  }
+  return motion;
+}
+
+}  // namespace
+
+void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::VectorXd& load) {
+  load.setZero(model.vehicle.dofs());
+  for (const BodyLoad& acting : model.loads) {
+    if (acting.vehicle == vehicle || acting.vehicle == BodyLoad::every_vehicle) {
+      add_body_load(model, acting, vehicle, time, load);
+    }
+  }
+  if (model.speed_profile) add_inertia(model, model.acceleration(time), load);
+}
+
+void vehicle_step_load(const VsiModel& model, const HhtScheme& scheme, int vehicle, double time,
+                       const LinearMotion& motion, Eigen::VectorXd& load) {
+  load = model.vehicle.static_load;
+  if (model.loads.empty() && !model.speed_profile) return;
+  Eigen::VectorXd acting;
+  const double end = time + scheme.time_step;
+  vehicle_load(model, vehicle, end, acting);
+  load += scheme.load_weight() * acting;
+  if (scheme.alpha == 0.0) return;
+  vehicle_load(model, vehicle, time, acting);
+  load -= scheme.alpha * acting;
+  if (model.speed_profile && model.gyroscopic_moments == GyroscopicMoments::included) {
+    const double rotation = (model.speed(end) - model.speed(time)) / model.vehicle.nominal_radius;
+    load -= scheme.alpha * rotation * (model.vehicle.gyroscopic * motion.velocity);
+  }
+}
+
+void add_ground_load(const VsiModel& model, const HhtScheme& scheme, double time, Eigen::VectorXd& load) {
+  if (!model.ground_motion) return;
+  const StructureSupports& supports = model.structure->supports;
+  const auto add_force = [&](const SupportMotion& s, double weight) {
+    load.noalias() -= supports.stiffness * (weight * s.displacement);
+    load.noalias() -= supports.damping * (weight * s.velocity);
+  };
+  const SupportMotion after = support_motion(*model.ground_motion, supports.x, time + scheme.time_step);
+  add_force(after, scheme.load_weight());
+  load.noalias() -= supports.mass * after.acceleration;
+  if (scheme.alpha != 0.0) add_force(support_motion(*model.ground_motion, supports.x, time), -scheme.alpha);
+}
+
+}  // namespace railtab
