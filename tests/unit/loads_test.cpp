@@ -70,7 +70,8 @@ TEST_F(HistoryFile, SpeedIsReadInItsUnit) {
             "h.csv: speed profile, point 2: found 0 m/s, expected 0.1 to 200 m/s");
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n0,20\n", read),
             "h.csv:3: column t: found 0, expected more than 0 of the row before");
-  EXPECT_EQ(message("t[s],V[mph]\n0,10\n1,20\n", read), "h.csv:1: column V: found unit [mph], expected V[m/s], V[km/h]");
+  EXPECT_EQ(message("t[s],V[mph]\n0,10\n1,20\n", read),
+            "h.csv:1: column V: found unit [mph], expected V[m/s], V[km/h]");
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1,ten\n", read), "h.csv:3: column V: found 'ten', expected a finite number");
 }
 
@@ -86,7 +87,8 @@ TEST_F(HistoryFile, LoadsAreReadOverTimeOrPosition) {
   const auto read = [](const auto& f) { return read_load_history(f); };
   EXPECT_EQ(message("t[s],F[N]\n0,1\n1,1\n", read),
             "h.csv:1: column F: found column 'F', expected each of Fx, Fy, Fz, Mx, My, Mz at most once");
-  EXPECT_EQ(message("Fy[N],t[s]\n0,1\n1,1\n", read), "h.csv:1: column Fy: found column 'Fy', expected t[s] or x[m] first");
+  EXPECT_EQ(message("Fy[N],t[s]\n0,1\n1,1\n", read),
+            "h.csv:1: column Fy: found column 'Fy', expected t[s] or x[m] first");
   EXPECT_EQ(message("t[s],Fy[N]\n0,1\n1,1,5\n", read), "h.csv:3: found 3 columns, expected 2, as in the header");
 }
 
@@ -227,7 +229,8 @@ TEST(SpanDeviation, TransitionIsEquation22WithTheSignPutRight) {
 
 TEST(SpanDeviation, ShapesAreThoseOfSpansThatTurn) {
   const SpanDeviation bending({SpanDeviationShape::bending, SpanDeviationDirection::vertical, 20.0, 8e-3, 5.0, 0.0});
-  const SpanDeviation shift({SpanDeviationShape::parallel_shift, SpanDeviationDirection::lateral, 20.0, 8e-3, 5.0, 0.0});
+  const SpanDeviation shift(
+      {SpanDeviationShape::parallel_shift, SpanDeviationDirection::lateral, 20.0, 8e-3, 5.0, 0.0});
   EXPECT_NEAR(bending.at(15.0).z, 4e-3, 1e-8);
   EXPECT_NEAR(bending.at(35.0).z, 4e-3, 1e-8);
   EXPECT_NEAR(bending.at(25.0).z, 8e-3 - 2.0 * 4e-4 / (4.0 * 1.387), 1e-6) << "rounded by the rail at the fold";
