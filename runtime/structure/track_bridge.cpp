@@ -114,8 +114,8 @@ void add_ballast_on_deck(MatrixAssembly& assembly, const TrackParameters& track,
   add_element(assembly.damping, dof, C);
 }
 
-void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const TrackParameters& track,
-                  const Bridge& bridge, std::vector<double>& support_x) {
+void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const TrackParameters& track, const Bridge& bridge,
+                  std::vector<double>& support_x) {
   const double bottom = track.rail.height + track.sleeper.height;  // below the rail-head top
   for (size_t i = 0; i < nodes.sleeper.x.size(); ++i) {
     const DofIndices& sleeper = nodes.sleeper.dof[i];

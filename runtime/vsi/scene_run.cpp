@@ -305,7 +305,8 @@ RunPlan plan_run(const SceneParameters& scene) {
   }
   if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
     plan.left_out.emplace_back("bridge: the scene names none");
-  if (scene.spectrum) plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+  if (scene.spectrum)
+    plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
   if (!scene.irregularity && !scene.spectrum) plan.left_out.emplace_back("irregularity: the scene names none");
   if (model.geometry && scene.contact.mode != ContactMode::table)

@@ -49,6 +49,9 @@ std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector
   if (seeds > 1 && !scene.spectrum) {
     throw input_error("--seeds", fmt::format("{} and no random track", seeds), "irregularity.spectrum in the scene");
   }
+  if (!scene.train.speed_file.empty()) {
+    throw input_error("--speed", "a scene with train.speed_file", "a scene with a constant speed");
+  }
   std::vector<SweepRun> runs;
   for (double speed : speeds) {
     if (!(speed > 0.0 && speed <= 200.0)) {
