@@ -9,6 +9,7 @@
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "plan_memory.hpp"
 #include "scene_loads.hpp"
 
 namespace railtab {
@@ -285,6 +286,7 @@ RunPlan plan_run(const SceneParameters& scene) {
   plan.time_step = scene.integration.time_step;
   plan.duration = run_duration(scene, model);
   plan.steps = step_count(scene, plan.duration);
+  plan.memory = step_memory(model, scene.integration.time_step, scene.integration.alpha);
   plan.built.push_back(
       fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
   if (model.geometry) {
@@ -295,6 +297,10 @@ RunPlan plan_run(const SceneParameters& scene) {
   } else {
     plan.built.emplace_back("wheels that follow the rails rigidly, vertical motion only");
     plan.left_out.emplace_back("contact geometry, creep forces, loss of contact: contact.normal is \"rigid\"");
+    plan.left_out.emplace_back("lateral, roll and yaw unknowns of the vehicles: nothing moves them");
+    if (model.structure && structure_plane(scene) == MotionPlane::vertical && scene.track_kind == TrackKind::flexible) {
+      plan.left_out.emplace_back("lateral, roll and yaw unknowns of track and bridge: nothing loads them");
+    }
   }
   if (model.structure) {
     plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",

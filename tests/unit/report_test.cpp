@@ -158,6 +158,34 @@ TEST(Headline, TakesTheExtremesOfTheRightBodiesAndWheels) {
   EXPECT_DOUBLE_EQ(headline.real_time_factor, 2.0);
 }
 
+TEST(SlidingMean, IsTheMeanOverTheLastMetres) {
+  SlidingMean mean(2.0);
+  EXPECT_FALSE(mean.add(10.0, 1.0));
+  EXPECT_FALSE(mean.add(11.0, 2.0));
+  EXPECT_DOUBLE_EQ(mean.add(12.0, 6.0).value(), 3.0);  // 10 m to 12 m
+  EXPECT_DOUBLE_EQ(mean.add(13.5, 4.0).value(), 5.0);  // 11.5 m to 13.5 m
+  EXPECT_DOUBLE_EQ(mean.add(20.0, -1.0).value(), -1.0);
+}
+
+TEST(Headline, SlidingMeansAreOverTwoMetresOfWay) {
+  RunResults run = small_run();
+  const StepRecord pattern = run.steps[1];
+  run.steps.clear();
+  for (int i = 0; i < 9; ++i) {  // half a metre apart: five records in 2 m
+    StepRecord step = pattern;
+    step.position = 0.5 * i;
+    step.time = 0.01 * i;
+    step.wheels[0] = {.Q = 50e3, .Y = i == 4 ? -40e3 : 0.0};
+    step.wheels[1] = {.Q = 50e3, .Y = 5e3};
+    run.steps.push_back(step);
+  }
+  const Headline headline = headline_of(run);
+  EXPECT_DOUBLE_EQ(headline.derailment.value, 0.8);
+  EXPECT_DOUBLE_EQ(headline.derailment_2m.value, 0.16);
+  EXPECT_EQ(headline.derailment_2m.where, "wheelset 1 left");
+  EXPECT_DOUBLE_EQ(headline.track_shift_2m.value, 5e3);  // (4·5 kN − 35 kN)/5 is smaller
+}
+
 TEST(Headline, LiftOffIsNoDerailmentCoefficientButWholeUnloading) {
   RunResults run = small_run();
   run.steps[1].wheels[0].Q = 0.0;

@@ -30,7 +30,24 @@ bool is_car_body(const std::string& body_name) { return body_name == "car-body" 
 std::string vehicle_of(const std::string& body_name) { return body_name.substr(0, body_name.find('/')); }
 
 HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(header) {
-  for (std::size_t i = 0; i < header.static_wheel_load.size(); ++i) wheel_names_.push_back(wheel_name(i));
+  constexpr double averaged = 2.0;  // m
+  const std::size_t wheels = header.static_wheel_load.size();
+  for (std::size_t i = 0; i < wheels; ++i) wheel_names_.push_back(wheel_name(i));
+  quotient_.assign(wheels, SlidingMean(averaged));
+  shift_.assign(wheels / 2, SlidingMean(averaged));
+}
+
+void HeadlineCollector::add_sliding_means(const StepRecord& step) {
+  for (std::size_t i = 0; i < step.wheels.size(); ++i) {
+    const WheelRecord& wheel = step.wheels[i];
+    if (wheel.Q > 0.0) {
+      const auto mean = quotient_[i].add(step.position, wheel.Y / wheel.Q);
+      if (mean) raise(headline_.derailment_2m, std::abs(*mean), step.time, wheel_names_[i]);
+    }
+    if (i % 2 == 0) continue;
+    const auto mean = shift_[i / 2].add(step.position, step.wheels[i - 1].Y + wheel.Y);
+    if (mean) raise(headline_.track_shift_2m, std::abs(*mean), step.time, fmt::format("wheelset {}", i / 2 + 1));
+  }
 }
 
 void HeadlineCollector::add(const StepRecord& step) {
@@ -46,6 +63,7 @@ void HeadlineCollector::add(const StepRecord& step) {
     if (wheel.Q > 0.0) raise(headline_.derailment, std::abs(wheel.Y) / wheel.Q, step.time, wheel_names_[i]);
     if (static_load > 0.0) raise(headline_.unloading, 1.0 - wheel.Q / static_load, step.time, wheel_names_[i]);
   }
+  add_sliding_means(step);
   for (std::size_t i = 0; i < step.bodies.size(); ++i) {
     if (!is_car_body(header_.body_names[i])) continue;
     const std::string vehicle = vehicle_of(header_.body_names[i]);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "railtab/runtime/results/step_record.hpp"
+#include "sliding_mean.hpp"
 
 namespace railtab::report {
 
@@ -15,13 +16,16 @@ struct Extreme {
   [[nodiscard]] bool found() const noexcept { return !where.empty(); }
 };
 
-/// Headline numbers of a run. Raw maxima over the recorded steps: no filter, no sliding mean, no percentile.
+/// Headline numbers of a run. Maxima over the recorded steps without filter or percentile; raw but for the sliding
+/// means over 2 m of way.
 struct Headline {
   Extreme deck_acceleration;      ///< |vertical| of nodes named deck… [m/s²]
   Extreme deck_displacement;      ///< |vertical| of nodes named deck… [m]
   Extreme car_body_vertical;      ///< |vertical acceleration| at a car body's centre of gravity [m/s²]
   Extreme car_body_lateral;       ///< |lateral acceleration| there [m/s²]
   Extreme derailment;             ///< |Y|/Q of a wheel while Q > 0 [-]
+  Extreme derailment_2m;          ///< |mean of Y/Q over 2 m| of a wheel, records with Q > 0 [-]
+  Extreme track_shift_2m;         ///< |mean of ΣY over 2 m| of a wheelset [N]
   Extreme unloading;              ///< (Q0 - Q)/Q0 of a wheel; 1 is lift-off [-]
   Extreme largest_Q, smallest_Q;  ///< [N]
   double simulated_time = 0.0;    ///< of the last record [s]
@@ -42,7 +46,11 @@ class HeadlineCollector {
 
  private:
   ResultHeader header_;
+  void add_sliding_means(const StepRecord& step);
+
   std::vector<std::string> wheel_names_;
+  std::vector<SlidingMean> quotient_;  // per wheel
+  std::vector<SlidingMean> shift_;     // per wheelset
   Headline headline_;
   double first_position_ = 0.0;
   double last_position_ = 0.0;

@@ -40,12 +40,14 @@ void member(JsonObject& json, std::string_view name, const report::Extreme& extr
 }  // namespace
 
 std::string headline_text(const report::Headline& headline, const RunSummary& summary) {
-  std::string text = "Largest values of the recorded steps, unfiltered:\n";
+  std::string text = "Largest values of the recorded steps:\n";
   line(text, "deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
   line(text, "deck displacement", headline.deck_displacement, 1e3, "mm");
   line(text, "car body, vertical", headline.car_body_vertical, 1.0, "m/s²");
   line(text, "car body, lateral", headline.car_body_lateral, 1.0, "m/s²");
   line(text, "Y/Q", headline.derailment, 1.0, "");
+  line(text, "Y/Q, mean over 2 m", headline.derailment_2m, 1.0, "");
+  line(text, "sum of Y, mean over 2 m", headline.track_shift_2m, 1e-3, "kN");
   line(text, "wheel unloading", headline.unloading, 100.0, "%");
   line(text, "largest Q", headline.largest_Q, 1e-3, "kN");
   line(text, "smallest Q", headline.smallest_Q, 1e-3, "kN");
@@ -84,6 +86,8 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
   member(json, "max_car_body_vertical_acceleration", headline.car_body_vertical);
   member(json, "max_car_body_lateral_acceleration", headline.car_body_lateral);
   member(json, "max_derailment_coefficient", headline.derailment);
+  member(json, "max_derailment_coefficient_2m", headline.derailment_2m);
+  member(json, "max_track_shift_force_2m", headline.track_shift_2m);
   member(json, "max_wheel_unloading", headline.unloading);
   member(json, "max_Q", headline.largest_Q);
   member(json, "min_Q", headline.smallest_Q);

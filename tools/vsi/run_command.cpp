@@ -39,13 +39,14 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
     JsonObject json;
     json.add("scene", scene.name).add("structure_dofs", plan.structure_dofs).add("vehicle_dofs", plan.vehicle_dofs);
     json.add("wheels", static_cast<long>(plan.wheels)).add("steps", plan.steps).add("time_step", plan.time_step);
-    json.add("duration", plan.duration).add("built", plan.built).add("left_out", plan.left_out);
+    json.add("duration", plan.duration).add("memory_bytes", plan.memory).add("built", plan.built).add("left_out", plan.left_out);
     fmt::print("{}\n", json.text());
     return 0;
   }
   fmt::print("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
   fmt::print("  {} unknowns of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs, plan.vehicle_dofs,
              plan.wheels);
+  fmt::print("  {:.3g} MB for what the steps work on, besides contact tables and records\n", 1e-6 * plan.memory);
   for (const std::string& part : plan.built) fmt::print("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) fmt::print("  left out: {}\n", part);
   return 0;

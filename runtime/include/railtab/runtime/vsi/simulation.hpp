@@ -19,6 +19,7 @@ struct RunPlan {
   int wheels = 0;
   long steps = 0;
   double time_step = 0, duration = 0;  ///< [s]
+  double memory = 0;                   ///< of what the steps work on [bytes]
   std::vector<std::string> built, left_out;
 };
 

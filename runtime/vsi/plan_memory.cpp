@@ -1,0 +1,32 @@
+#include "plan_memory.hpp"
+
+#include "railtab/runtime/vsi/structure_response.hpp"
+
+namespace railtab {
+
+namespace {
+
+double bytes_of(const Eigen::SparseMatrix<double>& matrix) {
+  return static_cast<double>(matrix.nonZeros()) * (sizeof(double) + sizeof(int)) +
+         static_cast<double>(matrix.outerSize()) * sizeof(int);
+}
+
+}  // namespace
+
+double step_memory(const VsiModel& model, double time_step, double alpha) {
+  constexpr double vehicle_matrices = 6.0;  // M, C, K, gyroscopic, and for the step C with it and the inverse
+  constexpr double low_factor = 3.0;        // the factor for compliances, of the one for the steps
+  const double n = model.vehicle.dofs();
+  double bytes = vehicle_matrices * n * n * sizeof(double);
+  if (!model.structure) return bytes;
+  const StructureModel& s = *model.structure;
+  for (const auto* matrix :
+       {&s.mass, &s.damping, &s.stiffness, &s.supports.mass, &s.supports.damping, &s.supports.stiffness}) {
+    bytes += bytes_of(*matrix);
+  }
+  const StructureResponse response(s, HhtScheme{.alpha = alpha, .time_step = time_step});
+  bytes += (1.0 + low_factor) * static_cast<double>(response.factor().bytes());
+  return bytes + static_cast<double>(response.load_bytes());
+}
+
+}  // namespace railtab

@@ -1,0 +1,111 @@
+// A scene pays for what it names: on rigid track with a linear creep law no matrix of a structure is built and no file
+// of one, nor the creep table, is opened.
+
+#include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+
+namespace railtab {
+namespace {
+
+/// Counts how often files are opened, by the kernel's own account (inotify).
+class Opens {
+ public:
+  explicit Opens(const std::vector<std::filesystem::path>& files) : handle_(inotify_init1(IN_NONBLOCK)) {
+    for (const auto& file : files) EXPECT_GE(inotify_add_watch(handle_, file.c_str(), IN_OPEN), 0) << file;
+  }
+  ~Opens() { close(handle_); }
+  Opens(const Opens&) = delete;
+  Opens& operator=(const Opens&) = delete;
+
+  /// Since the last call.
+  [[nodiscard]] int count() const {
+    alignas(inotify_event) std::array<char, 4096> buffer;
+    int events = 0;
+    for (ssize_t bytes = 0; (bytes = read(handle_, buffer.data(), buffer.size())) > 0;) {
+      for (ssize_t at = 0; at < bytes; ++events) {
+        const auto* event = reinterpret_cast<const inotify_event*>(buffer.data() + at);
+        at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+      }
+    }
+    return events;
+  }
+
+ private:
+  int handle_;
+};
+
+class LeanScene : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) / "lean_scene";
+    std::filesystem::create_directories(folder_);
+    for (const char* name : {"mass.mtx", "damping.mtx", "stiffness.mtx", "dofs.csv"}) {
+      std::ofstream(folder_ / name) << "nothing that a reader would take";
+      files_.push_back(folder_ / name);
+    }
+    files_.push_back(shipped_creep_table());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] SceneParameters scene(const std::string& kind, const std::string& creep_law) const {
+    std::ofstream(folder_ / "scene.toml")
+        << "[contact]\nmode = \"online\"\ncreep_law = \"" << creep_law << "\"\n[track]\nkind = \"" << kind
+        << "\"\n[structure]\nmass = \"mass.mtx\"\ndamping = \"damping.mtx\"\n"
+           "stiffness = \"stiffness.mtx\"\ndofs = \"dofs.csv\"\n"
+           "[integration]\nduration = 0.01\n";
+    return read_scene(folder_ / "scene.toml");
+  }
+
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> files_;
+};
+
+TEST_F(LeanScene, RigidTrackWithALinearCreepLawOpensNoFile) {
+  const Opens opens(files_);
+  const SceneParameters lean = scene("rigid", "linear");
+  const RunSummary summary = run_scene(lean, {});
+  EXPECT_TRUE(summary.complete) << summary.message;
+  EXPECT_EQ(summary.structure_dofs, 0);
+  EXPECT_EQ(summary.back_substitutions, 0);
+  EXPECT_EQ(opens.count(), 0);
+  // The count sees what is opened: the creep table by its law, the matrices by an imported track.
+  EXPECT_TRUE(run_scene(scene("rigid", "table"), {}).complete);
+  EXPECT_GT(opens.count(), 0);
+  EXPECT_ANY_THROW(static_cast<void>(run_scene(scene("imported", "linear"), {})));
+  EXPECT_GT(opens.count(), 0);
+}
+
+TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
+  const RunPlan lean = plan_run(scene("rigid", "linear"));
+  EXPECT_EQ(lean.structure_dofs, 0);
+  EXPECT_EQ(lean.vehicle_dofs, 41);
+  EXPECT_LT(lean.memory, 1e6);
+  SceneParameters vertical = scene("rigid", "linear");
+  vertical.contact.normal = NormalContact::rigid;
+  const RunPlan plan = plan_run(vertical);
+  EXPECT_EQ(plan.vehicle_dofs, 16);
+  std::string left_out;
+  for (const std::string& part : plan.left_out) left_out += part + "\n";
+  EXPECT_NE(left_out.find("the track is rigid"), std::string::npos);
+  EXPECT_NE(left_out.find("lateral, roll and yaw unknowns of the vehicles"), std::string::npos);
+  EXPECT_NE(left_out.find("creep forces"), std::string::npos);
+  vertical.track_kind = TrackKind::flexible;
+  const RunPlan track = plan_run(vertical);
+  EXPECT_GT(track.structure_dofs, 1000);
+  EXPECT_GT(track.memory, 1e6);
+  vertical.contact.normal = NormalContact::hertz;
+  EXPECT_GT(plan_run(vertical).structure_dofs, 1.8 * static_cast<double>(track.structure_dofs));
+}
+
+}  // namespace
+}  // namespace railtab
