@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "binade_polynomials.hpp"
 #include "hertz_ellipse.hpp"
+#include "railtab/tables/binade_polynomials.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {

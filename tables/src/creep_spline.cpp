@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "cubic_spline_axis.hpp"
@@ -12,13 +13,13 @@ namespace railtab {
 namespace {
 
 using std::numbers::pi;
-using Row = Eigen::Array<float, 16, 1>;  // the four places along β, four components each
-using Value = Eigen::Array4f;
+constexpr std::size_t components = 3;
 
 /// Creepages beyond it are scaled down to it so that their squares do not overflow: complete sliding to rounding.
 constexpr double largest_creepage = 1e100;
-/// Below this angle to pure longitudinal creepage V_β/sin α is taken as V_αβ, which it is to relative order α².
-constexpr double pole_sine = 1e-2;
+/// Below this angle to pure longitudinal creepage V_β/sin α is taken as V_αβ, which it is to relative order α²: both
+/// are then right to 1e-10.
+constexpr double pole_sine = 1e-5;
 
 /// Applies a matrix along one axis of an array with `before` slower and `after` faster entries.
 std::vector<double> along_axis(const std::vector<double>& in, std::size_t before, std::size_t after,
@@ -36,39 +37,62 @@ std::vector<double> along_axis(const std::vector<double>& in, std::size_t before
 
 }  // namespace
 
-/// A query folded by the symmetries.
-struct CreepSpline::Point {
-  Eigen::Array3d sign;     ///< of (x, y, spin) and of (F_x, F_y, M_z) alike
-  Eigen::Vector3d radial;  ///< unit vector of u after folding
-  double rho, across;      ///< |u|, |(u_y, u_s)|
-  Place t, alpha, beta;
+/// Scaled creepages u, folded by the symmetries into u_x >= 0, u_spin >= 0, in polar coordinates.
+struct CreepSpline::Direction {
+  double turn_x, turn;        ///< signs of x and F_x; of (y, spin) and (F_y, M_z)
+  double x, y, spin;          ///< u
+  double rho, across;         ///< |u|, |(u_y, u_spin)|
+  double cosine, sine;        ///< of the angle to pure longitudinal creepage
+  double cos_beta, sin_beta;  ///< around it; (1, 0) on it
+
+  Direction(double u_x, double u_y, double u_spin) noexcept
+      : turn_x(std::copysign(1.0, u_x)),
+        turn(std::copysign(1.0, u_spin)),
+        x(std::abs(u_x)),
+        y(turn * u_y),
+        spin(std::abs(u_spin)) {
+    const double across_squared = y * y + spin * spin;
+    across = std::sqrt(across_squared);
+    rho = std::sqrt(across_squared + x * x);
+    const double by_rho = 1.0 / rho, by_across = 1.0 / across;  // not used where they are infinite
+    cosine = rho > 0.0 ? x * by_rho : 1.0;
+    sine = rho > 0.0 ? across * by_rho : 0.0;
+    cos_beta = across > 0.0 ? y * by_across : 1.0;
+    sin_beta = across > 0.0 ? spin * by_across : 0.0;
+  }
 };
 
-/// V = F/t and its derivatives with respect to t, α, β, and α and β.
-struct CreepSpline::Jet {
-  Value value, t, alpha, beta, alpha_beta;
-};
-
-CreepSpline::Place CreepSpline::Axis::locate(double x) const noexcept {
-  const double steps = (x - first) * inverse_step;
-  const int cell = std::clamp(static_cast<int>(steps), 0, cells - 1);
-  return {cell, steps - cell};
+double CreepSpline::angle(double y, double x) const noexcept {
+  const double width = std::abs(x), larger = std::max(width, y);
+  const double tangent = larger > 0.0 ? std::min(width, y) / larger : 0.0;
+  const double first = arc_tangent_(1.0 + tangent)[0];
+  const double folded = y > width ? 0.5 * pi - first : first;
+  return x < 0.0 ? pi - folded : folded;
 }
 
 CreepSpline::CreepSpline(const CreepTableData& data)
     : ratio_first_(data.nodes[0].front()),
       ratio_last_(data.nodes[0].back()),
-      inverse_stretch_(1.0 / data.ratio_stretch),
-      radius_unit_(data.radius_unit) {
+      radius_unit_(data.radius_unit),
+      ratio_functions_([&data](double ratio) -> std::array<double, 8> {
+        const double low = squeezed_ratio(data.nodes[0].front(), data.ratio_stretch);
+        const double high = squeezed_ratio(data.nodes[0].back(), data.ratio_stretch);
+        const double steps = (squeezed_ratio(ratio, data.ratio_stretch) - low) / (high - low) *
+                             static_cast<double>(data.nodes[0].size() - 1);
+        const CreepScale s = creep_scale(ratio);
+        return {steps, s.x, s.y, s.spin, s.moment, s.alpha, s.beta, 0.0};
+      }),
+      arc_tangent_([](double v) -> std::array<double, 1> { return {std::atan(v - 1.0)}; }) {
   std::array<int, 4> n;
   for (std::size_t i = 0; i < 4; ++i) n[i] = static_cast<int>(data.nodes[i].size());
-  const double low = squeezed_ratio(ratio_first_, data.ratio_stretch);
-  const double high = squeezed_ratio(ratio_last_, data.ratio_stretch);
-  axis_[0] = {low, (n[0] - 1) / (high - low), n[0] - 1};
-  axis_[1] = {0.0, n[1] - 1.0, n[1] - 1};
-  axis_[2] = {0.0, (n[2] - 1) / (0.5 * pi), n[2] - 1};
-  axis_[3] = {0.0, n[3] / pi, n[3]};
+  last_cell_ = {n[0] - 2, n[1] - 2, n[2] - 2, n[3] - 1};
+  inverse_step_ = {n[1] - 1.0, (n[2] - 1) / (0.5 * pi), n[3] / pi};
+  set_coefficients(data);
+}
 
+void CreepSpline::set_coefficients(const CreepTableData& data) {
+  std::array<int, 4> n;
+  for (std::size_t i = 0; i < 4; ++i) n[i] = static_cast<int>(data.nodes[i].size());
   const Eigen::MatrixXd along_ratio = spline_coefficient_matrix(n[0], SplineEnd::free, SplineEnd::free);
   const Eigen::MatrixXd along_t = spline_coefficient_matrix(n[1], SplineEnd::free, SplineEnd::free);
   const std::array<std::size_t, 4> size{static_cast<std::size_t>(n[0]) + 2, static_cast<std::size_t>(n[1]) + 2,
@@ -93,94 +117,73 @@ CreepSpline::CreepSpline(const CreepTableData& data)
   }
 }
 
-CreepSpline::Point CreepSpline::locate(const Eigen::Array3d& u, double alpha_spread,
-                                       double beta_spread) const noexcept {
-  Point p;
-  const double turn = u[2] < 0.0 ? -1.0 : 1.0;
-  p.sign = {u[0] < 0.0 ? -1.0 : 1.0, turn, turn};
-  const Eigen::Vector3d folded = p.sign * u;
-  const double across_squared = folded[1] * folded[1] + folded[2] * folded[2];
-  p.across = std::sqrt(across_squared);
-  p.rho = std::sqrt(across_squared + folded[0] * folded[0]);
-  p.radial = p.rho > 0.0 ? Eigen::Vector3d(folded / p.rho) : Eigen::Vector3d::UnitX();
-  p.t = axis_[1].locate(p.rho / (p.rho + radius_unit_));
-  p.alpha = axis_[2].locate(std::atan2(p.across, alpha_spread * folded[0]));
-  p.beta = axis_[3].locate(std::atan2(std::abs(folded[2]), beta_spread * folded[1]));
-  return p;
-}
-
-CreepSpline::Jet CreepSpline::evaluate(const Place& ratio, const Point& p) const noexcept {
-  const SplineWeights<float> k(static_cast<float>(ratio.fraction)), t(static_cast<float>(p.t.fraction));
-  const SplineWeights<float> a(static_cast<float>(p.alpha.fraction)), b(static_cast<float>(p.beta.fraction));
-  const float* corner = coefficient_.data() + static_cast<std::size_t>(ratio.cell) * stride_[0] +
-                        static_cast<std::size_t>(p.t.cell) * stride_[1] +
-                        static_cast<std::size_t>(p.alpha.cell) * stride_[2] +
-                        static_cast<std::size_t>(p.beta.cell) * components;
-  // Over a/b and t first: of the 256 places 16 are left for the rest.
-  std::array<Row, 4> value, slope;
-  for (std::size_t l = 0; l < 4; ++l) value[l] = slope[l] = Row::Zero();
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      const float* row = corner + i * stride_[0] + j * stride_[1];
-      const float w = k.value[i] * t.value[j], w_t = k.value[i] * t.slope[j];
-      for (std::size_t l = 0; l < 4; ++l) {
-        const Row c = Eigen::Map<const Row>(row + l * stride_[2]);
-        value[l] += w * c;
-        slope[l] += w_t * c;
-      }
-    }
+void CreepSpline::evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept {
+  std::array<std::size_t, 4> cell;
+  Pack fraction;
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    const int whole = std::clamp(static_cast<int>(steps[axis]), 0, last_cell_[axis]);
+    cell[axis] = static_cast<std::size_t>(whole);
+    fraction[axis] = steps[axis] - whole;
   }
-  const Row v = a.value[0] * value[0] + a.value[1] * value[1] + a.value[2] * value[2] + a.value[3] * value[3];
-  const Row v_a = a.slope[0] * value[0] + a.slope[1] * value[1] + a.slope[2] * value[2] + a.slope[3] * value[3];
-  const Row v_t = a.value[0] * slope[0] + a.value[1] * slope[1] + a.value[2] * slope[2] + a.value[3] * slope[3];
-  const auto over_beta = [](const Row& r, const std::array<float, 4>& w) -> Value {
-    return w[0] * r.segment<4>(0) + w[1] * r.segment<4>(4) + w[2] * r.segment<4>(8) + w[3] * r.segment<4>(12);
-  };
-  const auto step = [this](std::size_t axis) { return static_cast<float>(axis_[axis].inverse_step); };
-  return {over_beta(v, b.value), step(1) * over_beta(v_t, b.value), step(2) * over_beta(v_a, b.value),
-          step(3) * over_beta(v, b.slope), step(2) * step(3) * over_beta(v_a, b.slope)};
+  const float* corner =
+      coefficient_.data() + cell[0] * stride_[0] + cell[1] * stride_[1] + cell[2] * stride_[2] + cell[3] * components;
+  creep_spline_jet(corner, stride_, CreepSplineWeights(fraction), jet);
 }
 
 CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creepage) const noexcept {
   CreepLookup result;
   if (!(ratio >= ratio_first_ && ratio <= ratio_last_)) return result;
-  const double x = std::log(ratio) * inverse_stretch_;
-  const Place place = axis_[0].locate(x / std::sqrt(1.0 + x * x));
-  const CreepScale scales = creep_scale(ratio);
-  const Eigen::Array3d scale(scales.x, scales.y, scales.spin), size(1.0, 1.0, scales.moment);
-  Eigen::Array3d wanted(creepage[0], creepage[1], creepage[2]);
-  const double largest = wanted.abs().maxCoeff();
-  if (largest > largest_creepage) wanted *= largest_creepage / largest;
-  const Point p = locate(scale * wanted, scales.alpha, scales.beta);
-  const Jet jet = evaluate(place, p);
+  result.inside = true;
+  if (!(std::abs(creepage[0]) <= largest_creepage && std::abs(creepage[1]) <= largest_creepage &&
+        std::abs(creepage[2]) <= largest_creepage)) {
+    return beyond(ratio, creepage);
+  }
+  const auto [ratio_steps, scale_x, scale_y, scale_spin, moment, alpha_spread, beta_spread, unused] =
+      ratio_functions_(ratio);
+  const Direction d(scale_x * creepage[0], scale_y * creepage[1], scale_spin * creepage[2]);
+  const double h = 1.0 / (d.rho + radius_unit_);  // t/ρ
+  const double t = d.rho * h;
+  CreepSplineJet v;
+  evaluate({ratio_steps, inverse_step_[0] * t, inverse_step_[1] * angle(d.across, alpha_spread * d.x),
+            inverse_step_[2] * angle(d.spin, beta_spread * d.y)},
+           v);
 
   // F = t V; its gradient over u in the directions of growing ρ, α, β.
-  const double h = 1.0 / (p.rho + radius_unit_);  // t/ρ
-  const double t = p.rho * h;
-  const double cosine = p.radial[0], sine = p.rho > 0.0 ? p.across / p.rho : 0.0;
-  const double cos_beta = p.across > 0.0 ? p.radial[1] / sine : 1.0;
-  const double sin_beta = p.across > 0.0 ? p.radial[2] / sine : 0.0;
   // What a spread axis moves by when the angle itself moves: q/(q² cos² + sin²).
-  const auto spread_rate = [](double q, double c, double sn) { return q / (q * q * c * c + sn * sn); };
-  const double alpha_rate = spread_rate(scales.alpha, cosine, sine);
-  const double beta_rate = spread_rate(scales.beta, cos_beta, sin_beta);
-  const Eigen::Vector3d along_alpha(-sine, cosine * cos_beta, cosine * sin_beta);
-  const Eigen::Vector3d along_beta(0.0, -sin_beta, cos_beta);
-  const Eigen::Array3d value = size * jet.value.head<3>().cast<double>();
-  const Eigen::Array3d by_rho = radius_unit_ * h * h * (value + t * size * jet.t.head<3>().cast<double>());
-  const Eigen::Array3d by_alpha = h * alpha_rate * size * jet.alpha.head<3>().cast<double>();
-  const Eigen::Array3d by_beta =
-      sine > pole_sine ? Eigen::Array3d((h * beta_rate / sine) * size * jet.beta.head<3>().cast<double>())
-                       : Eigen::Array3d(h * alpha_rate * beta_rate * size * jet.alpha_beta.head<3>().cast<double>());
-  for (int i = 0; i < 3; ++i) {
-    result.force[static_cast<std::size_t>(i)] = p.sign[i] * t * value[i];
-    for (int j = 0; j < 3; ++j) {
-      const double gradient = by_rho[i] * p.radial[j] + by_alpha[i] * along_alpha[j] + by_beta[i] * along_beta[j];
-      result.derivative[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
-          p.sign[i] * p.sign[j] * scale[j] * gradient;
-    }
+  const auto spread_rate = [](double q, double c, double s) { return q / (q * q * c * c + s * s); };
+  const double alpha_rate = h * inverse_step_[1] * spread_rate(alpha_spread, d.cosine, d.sine);
+  const double beta_rate = inverse_step_[2] * spread_rate(beta_spread, d.cos_beta, d.sin_beta);
+  const double outward = radius_unit_ * h * h;
+  const Pack unit{d.turn_x, d.turn, d.turn * moment, 0.0};
+  const Pack by_rho = unit * outward * (v.value + (t * inverse_step_[0]) * v.t);
+  const Pack by_alpha = unit * alpha_rate * v.alpha;
+  const Pack by_beta =
+      d.sine > pole_sine ? unit * (h * beta_rate / d.sine) * v.beta : unit * (alpha_rate * beta_rate) * v.alpha_beta;
+  const Pack by_across = d.sine * by_rho + d.cosine * by_alpha;
+  const Pack force = unit * t * v.value;
+  const Pack by_x = (d.turn_x * scale_x) * (d.cosine * by_rho - d.sine * by_alpha);
+  const Pack by_y = (d.turn * scale_y) * (d.cos_beta * by_across - d.sin_beta * by_beta);
+  const Pack by_spin = (d.turn * scale_spin) * (d.sin_beta * by_across + d.cos_beta * by_beta);
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.force[i] = force[i];
+    result.derivative[i] = {by_x[i], by_y[i], by_spin[i]};
   }
+  return result;
+}
+
+CreepLookup CreepSpline::beyond(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  const double largest = std::max({std::abs(creepage[0]), std::abs(creepage[1]), std::abs(creepage[2])});
+  const bool finite = std::isfinite(creepage[0]) && std::isfinite(creepage[1]) && std::isfinite(creepage[2]);
+  if (finite) {
+    const double down = largest_creepage / largest;
+    CreepLookup scaled = lookup(ratio, {down * creepage[0], down * creepage[1], down * creepage[2]});
+    for (auto& row : scaled.derivative) row.fill(0.0);
+    return scaled;
+  }
+  CreepLookup result;
   result.inside = true;
+  result.force.fill(std::numeric_limits<double>::quiet_NaN());
+  for (auto& row : result.derivative) row.fill(std::numeric_limits<double>::quiet_NaN());
   return result;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
+#include "creep_spline_jet.hpp"
+#include "railtab/tables/binade_polynomials.hpp"
 #include "railtab/tables/creep_table.hpp"
 
 namespace railtab {
@@ -11,6 +12,9 @@ namespace railtab {
 /// The cubic B-spline of the smooth layout: coefficients of F_x/t, F_y/t, M_z/(t m) over squeezed a/b, t, α, β.
 class CreepSpline {
  public:
+  /// a/b of every table lies within these.
+  static constexpr double least_ratio = 0x1p-10, ratio_end = 0x1p10;
+
   /// @param data of the smooth layout, checked
   explicit CreepSpline(const CreepTableData& data);
 
@@ -18,28 +22,24 @@ class CreepSpline {
   [[nodiscard]] std::size_t bytes() const noexcept { return coefficient_.size() * sizeof(float); }
 
  private:
-  static constexpr int components = 4;  // F_x, F_y, M_z, and one to fill the vector
+  struct Direction;
 
-  /// Where a coordinate lies: cell and fraction.
-  struct Place {
-    int cell;
-    double fraction;
-  };
-  struct Axis {
-    double first, inverse_step;
-    int cells;
-    [[nodiscard]] Place locate(double x) const noexcept;
-  };
-  struct Point;
-  struct Jet;
+  /// Of (x, y), y >= 0, to (1, 0), 0..π: a division and a polynomial. 0 at (0, 0).
+  [[nodiscard]] double angle(double y, double x) const noexcept;
+  void set_coefficients(const CreepTableData& data);
+  /// @param steps from the first nodes of the axes
+  void evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept;
+  /// Creepages that are not finite, or so large that their squares would not be.
+  [[nodiscard]] CreepLookup beyond(double ratio, const std::array<double, 3>& creepage) const noexcept;
 
-  [[nodiscard]] Point locate(const Eigen::Array3d& u, double alpha_spread, double beta_spread) const noexcept;
-  [[nodiscard]] Jet evaluate(const Place& ratio, const Point& point) const noexcept;
-
-  std::array<Axis, 4> axis_;
-  std::array<std::size_t, 3> stride_;  ///< of a/b, t, α, in floats
+  std::array<int, 4> last_cell_;
+  std::array<double, 3> inverse_step_;  ///< of t, α, β
+  std::array<std::size_t, 3> stride_;   ///< of a/b, t, α, in floats
   std::vector<float> coefficient_;
-  double ratio_first_, ratio_last_, inverse_stretch_, radius_unit_;
+  double ratio_first_, ratio_last_, radius_unit_;
+  /// Of a/b, without logarithm and roots: steps from the first node, and the numbers of CreepScale in their order.
+  BinadePolynomials<8, 7, -10, 9> ratio_functions_;
+  BinadePolynomials<1, 5, 0, 1, 6> arc_tangent_;  ///< arctan(v - 1), v in 1..2
 };
 
 }  // namespace railtab

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <numbers>
 
 namespace railtab {
 
-/// Smooth functions of one positive argument over many powers of two: eight polynomial pieces per binade, chosen by the
-/// floating-point bits of the argument, so that a logarithmic table needs no logarithm. `lanes` functions share a piece
-/// and are evaluated side by side. Constant after construction.
-/// Covers [2^first, 2^(last+1)).
-template <int lanes, int degree, int first, int last>
+/// Smooth functions of one positive argument over many powers of two: 2^kBits polynomial pieces per binade, chosen by
+/// the floating-point bits of the argument, so that a logarithmic table needs no logarithm. `lanes` functions share a
+/// piece and are evaluated side by side. Constant after construction. Covers [2^first, 2^(last+1)).
+template <int lanes, int degree, int first, int last, int kBits = 3>
 class BinadePolynomials {
  public:
   /// Interpolates f at Chebyshev nodes on every piece. @param f double -> std::array<double, lanes>
@@ -37,19 +37,36 @@ class BinadePolynomials {
     // Mantissa bits below the piece's, as a number in [1, 2), mapped to [-1, 1).
     const std::uint64_t rest = (bits << kBits) & 0x000fffffffffffffULL;
     const double t = 2.0 * std::bit_cast<double>(rest | 0x3ff0000000000000ULL) - 3.0;
-    const Coefficients& c = pieces_[piece];
-    std::array<double, lanes> value = c[degree];
-    for (int k = degree - 1; k >= 0; --k) {
-      for (int l = 0; l < lanes; ++l) value[l] = value[l] * t + c[k][l];
-    }
+    Lanes sum;
+    evaluate<degree>(pieces_[piece].data(), t, sum);
+    std::array<double, lanes> value;
+    std::memcpy(value.data(), &sum, sizeof sum);
     return value;
   }
 
  private:
-  static constexpr int kBits = 3;
   static constexpr int kPieces = 1 << kBits;
+  static_assert(std::has_single_bit(unsigned{lanes}));
+  /// A vector type: arrays would be carried through memory from step to step.
+  using Lanes [[gnu::vector_size(sizeof(double) * lanes)]] = double;
   using Coefficients =
       std::array<std::array<double, lanes>, degree + 1>;  ///< powers of t in [-1, 1], from the constant
+
+  /// Σ c_k t^k by halves [Estrin1960]: as many steps, one after the other, as the degree has binary digits.
+  template <int highest>
+  static void evaluate(const std::array<double, lanes>* c, double t, Lanes& sum) noexcept {
+    if constexpr (highest == 0) {
+      std::memcpy(&sum, c->data(), sizeof sum);
+    } else {
+      constexpr int middle = std::bit_floor(unsigned{highest});
+      double power = t;
+      for (int k = 1; k < middle; k *= 2) power *= power;
+      Lanes upper;
+      evaluate<highest - middle>(c + middle, t, upper);
+      evaluate<middle - 1>(c, t, sum);
+      sum += upper * power;
+    }
+  }
 
   /// Newton's divided differences at the Chebyshev nodes, expanded into powers.
   template <class Function>
