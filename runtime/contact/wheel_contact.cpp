@@ -68,7 +68,8 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
   if (bound > 0.0) {
     const auto [a, b] =
         model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
-    const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, load.contact.angle, model.speed);
+    const PatchCreepage slip =
+        patch_creepage({velocity, rotation}, arm, load.contact.angle, model.speed / model.creepage_share);
     const Creepage creepage =
         normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.normal.material.shear_modulus(), bound);
     const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
@@ -164,6 +165,17 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
   return moved;
 }
 
+namespace {
+
+// A step of a difference, held so small that it changes the creepage by far less than what makes a wheel slide: at
+// walking pace that is less than the geometry asks for.
+double difference_step(double step, double velocity_rate, double speed) {
+  constexpr double creepage = 4e-6;
+  return step * velocity_rate > creepage * speed ? creepage * speed / velocity_rate : step;
+}
+
+}  // namespace
+
 Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                             const RailHeadMotion& rail, const ContactPatches& patches, const WheelForce& force,
                             const Vector6& velocity_rate, double rail_velocity_rate) noexcept {
@@ -183,7 +195,7 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   // Steps well above the Newton tolerance of the pair and well below the penetration [m, rad].
   constexpr std::array<double, 6> steps{1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7};
   for (int j = 0; j < 6; ++j) {
-    const double step = steps[static_cast<std::size_t>(j)];
+    const double step = difference_step(steps[static_cast<std::size_t>(j)], velocity_rate[j], model.speed);
     WheelsetMotion perturbed = wheelset;
     perturbed.displacement[j] += step;
     perturbed.velocity[j] += velocity_rate[j] * step;
@@ -193,7 +205,7 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   // Moving the rail is moving the wheelset the other way; rolling it is a motion of its own about the rail head.
   tangent.col(6) = -tangent.col(1);
   tangent.col(7) = -tangent.col(2);
-  constexpr double roll_step = 1e-7;
+  const double roll_step = difference_step(1e-7, rail_velocity_rate, model.speed);
   RailHeadMotion rolled = rail;
   rolled.displacement[2] += roll_step;
   rolled.velocity[2] += rail_velocity_rate * roll_step;

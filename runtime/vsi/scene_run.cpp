@@ -83,8 +83,15 @@ long step_count(const SceneParameters& scene, double duration) {
 }
 
 std::string no_equilibrium(const EquilibriumReport& rest) {
+  if (rest.deviation_share > 0.0) {
+    return fmt::format(
+        "no state of rest where the train stands: there is one up to {:.0f} % of the irregularity under it, beyond "
+        "that a "
+        "wheelset leaves its rails; begin elsewhere (train.start) or with less irregularity",
+        100.0 * rest.deviation_share);
+  }
   return fmt::format(
-      "no static equilibrium after {} iterations (last change {:.3g} m): do the wheels fit on the rails "
+      "no state of rest on the smooth track after {} iterations (last change {:.3g} m): do the wheels fit on the rails "
       "(track gauge, flange-back distance, profiles' origins)?",
       rest.iterations, rest.change);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
@@ -73,7 +74,8 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
   problem.velocity_rate[pitch] = 1.0;
   for (int w = 0; w < problem.wheelsets_per_vehicle; ++w) {
     const int k = 6 * w + pitch;
-    const bool free_pitch = problem.vehicle_compliance(k, k) > 0.0;
+    // Without friction no torque depends on the rotation.
+    const bool free_pitch = problem.vehicle_compliance(k, k) > 0.0 && model.contact.friction > 0.0;
     problem.vehicle_compliance.row(k).setZero();
     problem.vehicle_compliance.col(k).setZero();
     if (free_pitch) problem.vehicle_compliance(k, k) = pitch_rate_compliance;
@@ -132,9 +134,22 @@ void local_at_rest(const LocalFlexibility& local, const std::vector<RailContact>
   }
 }
 
-// Equilibrium at state.time with `structure_load` on the structure besides the wheels.
-EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
-                              VsiState& state) {
+// Track deviations by a share of themselves.
+void scale(double share, std::vector<std::array<RailHeadMotion, 2>>& deviation) {
+  for (std::array<RailHeadMotion, 2>& wheelset : deviation) {
+    for (RailHeadMotion& rail : wheelset) {
+      rail.displacement *= share;
+      rail.velocity *= share;
+      rail.yaw *= share;
+      rail.slope *= share;
+    }
+  }
+}
+
+// Equilibrium at state.time with `structure_load` on the structure besides the wheels, and a share of the track's
+// deviations.
+EquilibriumReport equilibrium_at(double share, const VsiModel& model, const RestOperators& rest,
+                                 const Eigen::VectorXd& structure_load, VsiState& state) {
   EquilibriumReport report;
   const VehicleResponse& vehicle = rest.vehicle;
   StructureResponse* structure = rest.structure.get();
@@ -154,6 +169,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
 
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
     rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+    if (share < 1.0) scale(share, problem.deviation);
     for (int v = 0; v < vehicles; ++v) {
       const LinearMotion& motion = state.vehicle[index(v)];
       const Eigen::VectorXd free =
@@ -169,7 +185,7 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     const Eigen::VectorXd contact_before = state.contact.displacement;
     if (model.normal_contact == NormalContact::rigid) {
       rest_on_rails(problem, state.contact);
-    } else if (!solve_contact(model.contact, problem, limits, state.contact, workspace).converged) {
+    } else if (!solve_contact_by_continuation(model.contact, problem, limits, state.contact, workspace).converged) {
       return report;
     }
 
@@ -204,6 +220,37 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
     if (dof == held) continue;
     state.vehicle[index(w / per_vehicle)].velocity[dof] = state.contact.displacement[wheelset_unknowns * w + pitch];
   }
+  return report;
+}
+
+// From where the train stands, and if that leads nowhere (a wheelset far beside its rails would have to climb) from the
+// smooth track, whose deviations grow.
+EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
+                              VsiState& state) {
+  constexpr double first_growth = 0.25, least_growth = 1.0 / 64.0;
+  const VsiState begin = state;
+  EquilibriumReport report = equilibrium_at(1.0, model, rest, structure_load, state);
+  report.deviation_share = 1.0;
+  if (report.converged) return report;
+  int iterations = report.iterations;
+  VsiState reached = begin;
+  report = equilibrium_at(0.0, model, rest, structure_load, reached);
+  double share = 0.0, growth = first_growth;
+  while (report.converged && share < 1.0) {
+    state = reached;
+    iterations += report.iterations;
+    const double next = std::min(1.0, share + growth);
+    report = equilibrium_at(next, model, rest, structure_load, state);
+    if (report.converged) {
+      reached = state;
+      share = next;
+    } else if (growth > least_growth) {
+      growth *= 0.5;
+      report.converged = true;  // with the share before
+    }
+  }
+  report.iterations += iterations;
+  report.deviation_share = share;
   return report;
 }
 

@@ -1,5 +1,6 @@
 #include "railtab/runtime/vsi/step.hpp"
 
+#include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "stopwatch.hpp"
 
@@ -199,7 +200,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     double seconds_newton = 0.0;
     {
       const Stopwatch watch(seconds_newton);
-      newton = solve_contact(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
+      newton = solve_contact_by_continuation(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
     }
     report.newton_iterations += newton.iterations;
     report.queries += newton.queries;

@@ -44,6 +44,8 @@ struct WheelContactModel {
   double friction = 0.3;  ///< [-]
   double damping = 0.0;   ///< F_n = K_h d^{3/2} (1 + damping·d') [s/m]
   double speed = 0.0;     ///< running speed V [m/s], > 0
+  /// Creepages count by this share, 1 but on the way to a solution (solve_contact_by_continuation).
+  double creepage_share = 1.0;
   /// Ellipse of every patch, whatever its load and place (linear stability theory); else Hertz's.
   std::optional<PatchEllipse> constant_ellipse;
   GravitationalStiffness gravitational_stiffness = GravitationalStiffness::included;

@@ -1,0 +1,60 @@
+#include "railtab/runtime/vsi/contact_continuation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace railtab {
+
+namespace {
+
+void add(const NewtonReport& attempt, NewtonReport& total) {
+  total.converged = attempt.converged;
+  total.iterations += attempt.iterations;
+  total.correction = attempt.correction;
+  total.seconds_lookup += attempt.seconds_lookup;
+  total.queries += attempt.queries;
+  total.table_queries += attempt.table_queries;
+}
+
+}  // namespace
+
+NewtonReport solve_contact_by_continuation(const WheelContactModel& model, const ContactProblem& problem,
+                                           const NewtonLimits& limits, ContactSolution& solution, NewtonWorkspace& ws) {
+  constexpr std::array first_shares{1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0};
+  constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
+  const Eigen::VectorXd start = solution.displacement;
+  NewtonReport report = solve_contact(model, problem, limits, solution, ws);
+  if (report.converged || model.friction <= 0.0) return report;
+
+  WheelContactModel part = model;
+  const auto solve = [&](double share, const Eigen::VectorXd& from) {
+    part.creepage_share = share;
+    solution.displacement = from;
+    ws.factor.clear();  // of another law
+    add(solve_contact(part, problem, limits, solution, ws), report);
+    return report.converged;
+  };
+  Eigen::VectorXd reached;
+  double share = 0.0;
+  for (const double first : first_shares) {
+    if (!solve(first, start)) continue;
+    share = first;
+    reached = solution.displacement;
+    break;
+  }
+  for (double ratio = largest_ratio; share > 0.0 && share < 1.0;) {
+    const double next = std::min(1.0, share * ratio);
+    if (solve(next, reached)) {
+      share = next;
+      reached = solution.displacement;
+      ratio = std::min(largest_ratio, ratio * ratio);
+    } else {
+      ratio = std::sqrt(ratio);
+      if (ratio < smallest_ratio) break;
+    }
+  }
+  return report;
+}
+
+}  // namespace railtab

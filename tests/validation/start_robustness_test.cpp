@@ -1,0 +1,117 @@
+// Where a train starts must not decide whether it starts: any speed, no friction, wheelsets far beside the middle of
+// the track.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
+
+namespace railtab {
+namespace {
+
+SceneParameters coach_on_rigid_track(double speed, double friction = 0.3) {
+  SceneParameters scene;
+  scene.train.speed = speed;
+  scene.contact.mode = ContactMode::online;
+  scene.contact.friction = friction;
+  scene.track_kind = TrackKind::rigid;
+  scene.integration.duration = 0.05;
+  return scene;
+}
+
+double train_weight(const VsiModel& model) {
+  double weight = 0.0;
+  for (const int body : model.vehicle.wheelsets) {
+    weight += model.vehicle.static_load[model.vehicle.dof[static_cast<std::size_t>(body)][2]];
+  }
+  return weight;
+}
+
+double carried(const VsiState& state) {
+  double sum = 0.0;
+  for (int wheel = 0; 6 * wheel < state.contact.force.size(); ++wheel)
+    sum += state.contact.force[rail_unknown(wheel) + 1];
+  return sum;
+}
+
+TEST(Start, RestDoesNotDependOnTheSpeed) {
+  const VsiModel fast = build_model(coach_on_rigid_track(50.0));
+  VsiState reference(fast);
+  ASSERT_TRUE(static_equilibrium(fast, reference).converged);
+  for (const double speed : {1.0, 0.1, 0.01, 0.001}) {
+    const VsiModel model = build_model(coach_on_rigid_track(speed));
+    VsiState state(model);
+    ASSERT_TRUE(static_equilibrium(model, state).converged) << speed << " m/s";
+    EXPECT_LT((state.contact.force - reference.contact.force).cwiseAbs().maxCoeff(), 1.0) << speed << " m/s";
+  }
+}
+
+// At rest there is nothing to integrate: forces must stay. At 0.01 m/s a step is 5 um of way, and a wheel slides
+// after 0.1 nm of it.
+TEST(Start, RunsAtAnySpeedWithoutHalvedSteps) {
+  for (const double speed : {10.0, 1.0, 0.1, 0.01}) {
+    const SceneParameters scene = coach_on_rigid_track(speed);
+    double least = 1e9, most = 0.0;
+    RunObserver observer;
+    observer.record = [&](const StepRecord& record) {
+      for (const WheelRecord& wheel : record.wheels) {
+        least = std::min(least, wheel.Q);
+        most = std::max(most, wheel.Q);
+      }
+    };
+    const RunSummary summary = run_scene(scene, observer);
+    EXPECT_TRUE(summary.complete) << speed << " m/s: " << summary.message;
+    EXPECT_EQ(summary.halved_steps, 0) << speed << " m/s";
+    EXPECT_LT(most - least, 1e-3 * most) << speed << " m/s";
+    std::printf("%g m/s: %.2f Newton iterations per step\n", speed,
+                static_cast<double>(summary.newton_iterations) / static_cast<double>(summary.steps));
+  }
+}
+
+TEST(Start, WithoutFrictionOnFlexibleTrack) {
+  SceneParameters scene = coach_on_rigid_track(20.0, 0.0);
+  scene.track_kind = TrackKind::flexible;
+  scene.track.length_before = scene.track.length_after = 30.0;
+  const VsiModel model = build_model(scene);
+  VsiState state(model);
+  ASSERT_TRUE(static_equilibrium(model, state).converged);
+  EXPECT_NEAR(carried(state) / train_weight(model), 1.0, 1e-6);
+}
+
+// The third wheelset stands where both rails lie aside by more than the flanges' clearance: it is reached from the
+// smooth track, the deviations growing.
+TEST(Start, WithOneWheelsetOnItsFlange) {
+  VsiModel model = build_model(coach_on_rigid_track(20.0));
+  const double x = model.wheelset_x(2, 0.0);
+  for (const double shift : {4e-3, 10e-3, 20e-3}) {
+    const std::vector<double> place{x - 5.0, x - 2.0, x - 1.0, x + 1.0, x + 2.0, x + 5.0};
+    const std::vector<double> aside{0.0, 0.0, shift, shift, 0.0, 0.0}, level(6, 0.0);
+    model.irregularity = Irregularity(place, aside, level, aside, level);
+    VsiState state(model);
+    const EquilibriumReport rest = static_equilibrium(model, state);
+    ASSERT_TRUE(rest.converged) << 1e3 * shift << " mm";
+    EXPECT_EQ(rest.deviation_share, 1.0);
+    EXPECT_NEAR(carried(state) / train_weight(model), 1.0, 1e-3);
+    const double rails = model.irregularity.at(RailSide::right, x).y;
+    const double y = state.contact.displacement[2 * wheelset_unknowns + 1];
+    EXPECT_LT(std::abs(y - rails), 8e-3);  // between the rails, or on a flange
+    std::printf("rails %.2f mm aside: wheelset %.2f mm aside, %d iterations\n", 1e3 * rails, 1e3 * y, rest.iterations);
+  }
+}
+
+TEST(Start, SaysThatWheelsDoNotFit) {
+  SceneParameters scene = coach_on_rigid_track(20.0);
+  scene.contact.dimensions.track_gauge = 1.2;
+  const RunSummary summary = run_scene(scene, {});
+  EXPECT_FALSE(summary.complete);
+  EXPECT_NE(summary.message.find("track gauge"), std::string::npos) << summary.message;
+}
+
+}  // namespace
+}  // namespace railtab
