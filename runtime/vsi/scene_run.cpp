@@ -300,7 +300,8 @@ RunPlan plan_run(const SceneParameters& scene) {
   }
   if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
     plan.left_out.emplace_back("bridge: the scene names none");
-  if (scene.spectrum) plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+  if (scene.spectrum)
+    plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
   if (!scene.irregularity && !scene.spectrum) plan.left_out.emplace_back("irregularity: the scene names none");
   if (model.geometry && scene.contact.mode != ContactMode::table)
     plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");

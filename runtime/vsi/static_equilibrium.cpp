@@ -138,7 +138,8 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   const VehicleResponse& vehicle = rest.vehicle;
   StructureResponse* structure = rest.structure.get();
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
-  if (rest.local) rest.local->follow(model.wheelset_x(model.wheelsets() - 1, state.time), model.wheelset_x(0, state.time));
+  if (rest.local)
+    rest.local->follow(model.wheelset_x(model.wheelsets() - 1, state.time), model.wheelset_x(0, state.time));
   ContactProblem problem = rest_problem(model, rest, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
   NewtonWorkspace workspace;

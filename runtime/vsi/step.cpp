@@ -78,8 +78,7 @@ void rail_couplings(const StepOperators& op, const std::vector<RailContact>& con
     // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
     // symmetric.
     for (int i = j; i < wheels; ++i) {
-      Eigen::Matrix3d c =
-          op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
+      Eigen::Matrix3d c = op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
       if (op.local) {
         const Eigen::Matrix3d local = (*op.local)(contacts[index(i)], contacts[index(j)]);
         c += local;

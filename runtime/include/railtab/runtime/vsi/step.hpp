@@ -51,8 +51,8 @@ struct StepWorkspace {
   Prediction structure_prediction, local_prediction;
   std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
   DividedSubstitution structure_solution;
-  std::vector<int> rail_dofs;  ///< unknowns of the structure that the wheels load
-  std::vector<RailCoupling> local;  ///< static correction
+  std::vector<int> rail_dofs;          ///< unknowns of the structure that the wheels load
+  std::vector<RailCoupling> local;     ///< static correction
   Eigen::VectorXd local_displacement;  ///< of it, 3 per wheel
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
