@@ -70,8 +70,7 @@ void PairDimensions::validate() const {
   require(track_gauge >= 0.5 && track_gauge <= 2.0, "track gauge", track_gauge, "0.5 to 2");
   require(gauge_height >= 0.0 && gauge_height <= 0.05, "gauge height", gauge_height, "0 to 0.05");
   require(flange_back >= 0.4 && flange_back <= 2.0, "flange-back distance", flange_back, "0.4 to 2");
-  require(nominal_radius >= 0.1 && nominal_radius <= 1.0, "nominal radius", nominal_radius,
-          "0.1 to 1");
+  require(nominal_radius >= 0.1 && nominal_radius <= 1.0, "nominal radius", nominal_radius, "0.1 to 1");
 }
 
 WheelRailPair::WheelRailPair(ProfileCurve wheel, ProfileCurve rail, PairDimensions dimensions)

@@ -98,8 +98,7 @@ std::vector<KeyBinding> integration_keys() {
       {"output.wheels", "", "record contact forces and contact positions",
        SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.output.wheels; }}},
       {"output.bodies", "", "bodies to record, by name; * stands for any letters",
-       TextListKey{
-           [](SceneDraft& d) -> std::vector<std::string>& { return d.parameters.output.bodies; }}},
+       TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.parameters.output.bodies; }}},
       {"output.nodes", "", "nodes of the structure to record, by name",
        TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.parameters.output.nodes; }}},
   };

@@ -25,7 +25,8 @@ double square(double x) { return x * x; }
 TrackSpectrum german(double omega, double half_base, double Av, double Aa, double Ag) {
   constexpr double Or = 0.0206, Oc = 0.8246, Os = 0.4380;
   const double O2 = omega * omega, shape = Oc * Oc / ((O2 + Or * Or) * (O2 + Oc * Oc));
-  return {Av * shape, Aa * shape, Av / square(half_base) * shape * O2 / (O2 + Os * Os), Ag * shape * O2 / (O2 + Os * Os)};
+  return {Av * shape, Aa * shape, Av / square(half_base) * shape * O2 / (O2 + Os * Os),
+          Ag * shape * O2 / (O2 + Os * Os)};
 }
 
 struct FraClass {
@@ -80,7 +81,8 @@ Irregularity random_irregularity(const SpectrumParameters& parameters, double fr
   const double width = (high - low) / bands;
   const double spacing = parameters.shortest / points_per_wave;
   // Points at whole multiples of the spacing: what stands between them does not depend on the ends either.
-  const auto first = static_cast<long>(std::floor(from / spacing)) - 2, last = static_cast<long>(std::ceil(to / spacing)) + 2;
+  const auto first = static_cast<long>(std::floor(from / spacing)) - 2,
+             last = static_cast<long>(std::ceil(to / spacing)) + 2;
   const auto points = static_cast<std::size_t>(last - first + 1);
   std::vector<double> x(points);
   for (std::size_t i = 0; i < points; ++i) x[i] = static_cast<double>(first + static_cast<long>(i)) * spacing;

@@ -73,7 +73,8 @@ TEST(LowestModes, AllModesOfASmallStructureAreItself) {
   const StructureModel modal = reduce_to_modes(structure, 1000);
   EXPECT_EQ(modal.dofs(), structure.dofs());
   const StructureResponse whole(structure), reduced(modal);
-  const RailContact at = rail_contact(structure, RailSide::left, 11.3), modal_at = rail_contact(modal, RailSide::left, 11.3);
+  const RailContact at = rail_contact(structure, RailSide::left, 11.3),
+                    modal_at = rail_contact(modal, RailSide::left, 11.3);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs()), modal_load = load;
   add_rail_load(at, {0.0, 1.0, 0.0}, load);
   add_rail_load(modal_at, {0.0, 1.0, 0.0}, modal_load);
@@ -121,7 +122,8 @@ TEST(CraigBampton, IsExactAtRestAndKeepsTheLowFrequencies) {
     EXPECT_LT(b.omega2[k], a.omega2[k] * 1.001) << k;
   }
   // The midspan's motion is recovered: deflection under a unit load on the rail there.
-  const RailContact at = rail_contact(structure, RailSide::left, 6.0), reduced_at = rail_contact(reduced, RailSide::left, 6.0);
+  const RailContact at = rail_contact(structure, RailSide::left, 6.0),
+                    reduced_at = rail_contact(reduced, RailSide::left, 6.0);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs()), reduced_load = Eigen::VectorXd::Zero(reduced.dofs());
   add_rail_load(at, {0.0, 1.0, 0.0}, load);
   add_rail_load(reduced_at, {0.0, 1.0, 0.0}, reduced_load);

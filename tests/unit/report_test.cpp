@@ -230,5 +230,17 @@ TEST(ReportPage, RunWithoutRecordsBridgeOrOutlinesIsStillAPage) {
   EXPECT_EQ(page.find("<figure"), std::string::npos);
 }
 
+// A scene records what it chooses: what it leaves out leaves no empty figure behind.
+TEST(ReportPage, ChannelsThatWereNotRecordedAreNotShown) {
+  RunResults run = small_run();
+  run.header.wheel_x.clear();
+  run.header.static_wheel_load.clear();
+  for (StepRecord& step : run.steps) step.wheels.clear();
+  const std::string page = report_page(run);
+  for (const char* part : {"Contact positions", "Wheel forces", "Running safety", "wheelsets", "Largest Y/Q"})
+    EXPECT_EQ(page.find(part), std::string::npos) << part;
+  EXPECT_NE(page.find("Bridge and track"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace railtab::report

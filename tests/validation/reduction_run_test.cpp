@@ -88,8 +88,8 @@ bool same(const StepRecord& a, const StepRecord& b) {
   const auto equal = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
   };
-  return a.time == b.time && equal(a.bodies, b.bodies) && equal(a.nodes, b.nodes) && a.wheels.size() == b.wheels.size() &&
-         [&] {
+  return a.time == b.time && equal(a.bodies, b.bodies) && equal(a.nodes, b.nodes) &&
+         a.wheels.size() == b.wheels.size() && [&] {
            for (std::size_t w = 0; w < a.wheels.size(); ++w) {
              if (a.wheels[w].Q != b.wheels[w].Q || a.wheels[w].Y != b.wheels[w].Y) return false;
            }

@@ -151,7 +151,8 @@ std::string side_figure(const RunResults& results, Side side) {
 
 std::string contact_figure(const RunResults& results) {
   const ResultHeader& header = results.header;
-  if (header.wheel_y.size() < 2 || header.rail_y.size() < 2 || results.steps.empty()) return "";
+  if (header.wheel_y.size() < 2 || header.rail_y.size() < 2 || results.steps.empty() || header.wheel_x.empty())
+    return "";
   return fmt::format(
       "<figure class=\"chart\"><figcaption><h3>Contact positions</h3><p>Wheel {} and rail {}, seen in the direction of "
       "travel and drawn apart; a bar is how often that place was in contact, over all wheels and records. The wheel "

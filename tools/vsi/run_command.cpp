@@ -261,7 +261,10 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
 int run_command(const Arguments& arguments) {
   CommandSyntax syntax{
       "vsi run SCENE.toml [-o RESULTS.h5] [--resume] [--plan] [--contact table|online|paper]\n"
-      "               [--check-reduction SECONDS]", "scene", true, {}};
+      "               [--check-reduction SECONDS]",
+      "scene",
+      true,
+      {}};
   syntax.options.add_options()("output,o", po::value<std::string>()->value_name("RESULTS.h5"),
                                "results; default: <scene>.results.h5 in this folder")(
       "resume", "go on from the last checkpoint in RESULTS.h5; nothing is run where it is complete")(

@@ -15,9 +15,9 @@ struct RunOptions {
   std::function<void(const report::Headline&, const RunSummary&)> ended{};
 };
 
-/// Runs a scene and writes its results; with `resume` it goes on from the checkpoint that they hold, and leaves complete
-/// results alone. @return exit code. @throws InputError as run_scene(), and where the results in the way are another
-/// run's
+/// Runs a scene and writes its results; with `resume` it goes on from the checkpoint that they hold, and leaves
+/// complete results alone. @return exit code. @throws InputError as run_scene(), and where the results in the way are
+/// another run's
 int run_to_file(const SceneParameters& scene, const RunOptions& options);
 
 }  // namespace railtab::vsi

@@ -30,7 +30,6 @@ struct SweepRun {
 
 /// One row of the summary and the names of its columns.
 [[nodiscard]] std::string summary_columns();
-[[nodiscard]] std::string summary_row(const SweepRun& run, const report::Headline& headline,
-                                      const RunSummary& summary);
+[[nodiscard]] std::string summary_row(const SweepRun& run, const report::Headline& headline, const RunSummary& summary);
 
 }  // namespace railtab::vsi

@@ -59,15 +59,15 @@ std::vector<Setting> settings(bool quick) {
   const std::vector<int> modes = quick ? std::vector<int>{10, 100} : std::vector<int>{10, 20, 50, 100, 200, 500};
   for (bool correction : {false, true}) {
     for (int n : modes)
-      all.push_back({correction ? "modes with static correction" : "modes", fmt::format("{}", n),
+      all.push_back({correction ? "modes with static correction" : "modes",
+                     fmt::format("{}", n),
                      {.kind = Reduction::modal, .modes = n, .static_correction = correction}});
   }
   for (int n : quick ? std::vector<int>{10} : std::vector<int>{5, 20, 60})
-    all.push_back(
-        {"Craig-Bampton", fmt::format("{} per part", n), {.kind = Reduction::craig_bampton, .modes = n}});
+    all.push_back({"Craig-Bampton", fmt::format("{} per part", n), {.kind = Reduction::craig_bampton, .modes = n}});
   for (double length : quick ? std::vector<double>{20.0} : std::vector<double>{5.0, 10.0, 20.0, 40.0, 80.0})
-    all.push_back({"window", fmt::format("{} m", length),
-                   {.kind = Reduction::window, .ahead = length, .behind = length}});
+    all.push_back(
+        {"window", fmt::format("{} m", length), {.kind = Reduction::window, .ahead = length, .behind = length}});
   return all;
 }
 
@@ -118,8 +118,8 @@ void study_long_line(const std::string& table, const std::filesystem::path& fold
       const auto row = [&](const ComparedHistory& h, const char* reduction, double tolerance) {
         const ReductionError e = compare(h, whole), fine = compare(h, reference);
         const double steps = 1e-3 * static_cast<double>(h.summary.steps);
-        text += fmt::format("{},{},{},{:g},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n", kmh,
-                            reduction, 1e3 * time_step, tolerance, per_step(h), 1e3 * time_step / per_step(h),
+        text += fmt::format("{},{},{},{:g},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n",
+                            kmh, reduction, 1e3 * time_step, tolerance, per_step(h), 1e3 * time_step / per_step(h),
                             h.summary.seconds_structure / steps,
                             (h.summary.seconds_contact + h.summary.seconds_lookup) / steps, e.force_max, e.force_rms,
                             e.deck_max, e.deck_rms, fine.force_max, fine.deck_max);
@@ -149,8 +149,8 @@ int run(const std::vector<std::string>& arguments) {
   const double duration = quick ? 0.4 : 2.0;
   SceneParameters scene = viaduct(arguments[0]);
   const ComparedHistory whole = compared_history(scene, duration);
-  WorkFigure force = figure("reduction_force", "Vertical contact force",
-                            "largest error of Q [of its largest dynamic part]");
+  WorkFigure force =
+      figure("reduction_force", "Vertical contact force", "largest error of Q [of its largest dynamic part]");
   WorkFigure deck = figure("reduction_deck", "Deck acceleration", "largest error [of the largest acceleration]");
   std::string table =
       "# error against the run without reduction; times: processor time of one core\n"

@@ -25,8 +25,9 @@ struct ModalBasis {
   Eigen::MatrixXd shape;   ///< Φ, unknowns × modes
   Eigen::VectorXd omega2;  ///< Λ [rad²/s²]
 };
-/// The lowest modes of K φ = ω² M φ by block Lanczos iteration with K⁻¹ and full orthogonalisation [GrimesLewisSimon1994];
-/// fewer where the matrices have fewer. Starts from fixed pseudo-random numbers: the same call gives the same modes.
+/// The lowest modes of K φ = ω² M φ by block Lanczos iteration with K⁻¹ and full orthogonalisation
+/// [GrimesLewisSimon1994]; fewer where the matrices have fewer. Starts from fixed pseudo-random numbers: the same call
+/// gives the same modes.
 /// @param tolerance residual of K⁻¹ M φ − φ/ω² relative to 1/ω²
 /// @throws ComputationError where K is not positive definite
 [[nodiscard]] ModalBasis lowest_modes(const Eigen::SparseMatrix<double>& stiffness,

@@ -24,8 +24,8 @@ struct SpectrumParameters {
   void validate() const;            ///< @throws InputError
 };
 
-/// german-low, german-high [ERRI B 176]; fra-4, fra-5, fra-6: classes of the Federal Railroad Administration in the form
-/// of [Hamid1983].
+/// german-low, german-high [ERRI B 176]; fra-4, fra-5, fra-6: classes of the Federal Railroad Administration in the
+/// form of [Hamid1983].
 [[nodiscard]] std::vector<std::string> spectrum_names();
 /// @pre `name` is one of them, omega > 0
 [[nodiscard]] TrackSpectrum track_spectrum(const std::string& name, double omega, double half_base) noexcept;

@@ -55,8 +55,8 @@ struct StepWorkspace {
   Eigen::VectorXd vehicle_load;  ///< of one vehicle
   WheelContactModel contact;     ///< at the speed of the step's end
   DividedSubstitution structure_solution;
-  std::vector<int> rail_dofs;  ///< unknowns of the structure that the wheels load
-  std::vector<RailCoupling> local;  ///< static correction
+  std::vector<int> rail_dofs;          ///< unknowns of the structure that the wheels load
+  std::vector<RailCoupling> local;     ///< static correction
   Eigen::VectorXd local_displacement;  ///< of it, 3 per wheel
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;

@@ -39,7 +39,7 @@ struct DeviationHistory {
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
-  std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
+  std::vector<double> vehicle_x;            ///< of the vehicles' centres at t = 0, front first [m]
   std::optional<StructureModel> structure;  ///< reduced, where a reduction is chosen
   /// Of a modal structure whose left-out modes answer without inertia: all of it.
   std::shared_ptr<const StructureModel> unreduced;
@@ -83,7 +83,7 @@ struct VsiState {
   double time = 0.0;
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
-  LinearMotion local;         ///< of rail heads, 3 per wheel, by the modes left out; empty without static correction
+  LinearMotion local;           ///< of rail heads, 3 per wheel, by the modes left out; empty without static correction
   Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
   ContactSolution contact;
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
