@@ -27,8 +27,8 @@ CaseResult hertz_against_exact(double ratio_of_curvatures) {
   return result;
 }
 
-/// Excess of the force over the friction bound; at vanishing creepage the distance from linear theory, relative, and at
-/// full sliding that from the bound.
+/// Excess of the force over the friction bound, and at full sliding its distance from it; at vanishing creepage, what
+/// the force departs from being proportional.
 CaseResult creep_bound(const CreepLaw& law, double ratio, double creepage) {
   CaseResult result{.outcome = Outcome::converged};
   for (const Creepage& direction : {Creepage{1.0, 0.0, 0.0}, Creepage{0.0, -1.0, 0.0}, Creepage{0.6, 0.8, 0.0}}) {
@@ -39,9 +39,10 @@ CaseResult creep_bound(const CreepLaw& law, double ratio, double creepage) {
     if (creepage == 0.0)
       result.error = std::max(result.error, size);
     else if (creepage < 1e-6) {
-      const CreepForce linear = creep_force(LinearCreep{}, ratio, c);
-      const double expected = std::hypot(linear.x, linear.y);
-      result.error = std::max(result.error, std::hypot(force.x - linear.x, force.y - linear.y) / expected);
+      constexpr double larger = 1e3;
+      const CreepForce far = creep_force(law, ratio, {larger * c.x, larger * c.y, 0.0});
+      const double distance = std::hypot(larger * force.x - far.x, larger * force.y - far.y);
+      result.error = std::max(result.error, distance / std::hypot(far.x, far.y));
     } else {
       result.error = std::max(result.error, size - 1.0);
       if (creepage >= 1e3 && std::min(ratio, 1.0 / ratio) > 0.05) result.error = std::max(result.error, 1.0 - size);
@@ -58,10 +59,9 @@ void add_part_cases(Cases& cases) {
   for (const char* name : {"polach", "fastsim", "table"}) {
     for (const double ratio : {1e-3, 1.0, 1e3}) {
       for (const double creepage : {0.0, 1e-12, 1.0, 1e3}) {
-        // the table's and FASTSIM's slope at zero is that of their own theory, not of Kalker's coefficients
-        const double allowed = creepage == 0.0 ? 1e-15 : creepage < 1e-6 ? 0.05 : 2e-3;
+        const double allowed = creepage == 0.0 ? 1e-15 : creepage < 1e-6 ? 1e-6 : 2e-3;
         cases.push_back({"creep law", fmt::format("{}, a/b = {:g}, creepage {:g}", name, ratio, creepage),
-                         creepage > 0.0 && creepage < 1e-6 ? "against linear theory" : "beyond the friction bound",
+                         creepage > 0.0 && creepage < 1e-6 ? "proportional to creepage" : "beyond the friction bound",
                          allowed, Outcome::converged, true,
                          [=, law = creep_law(name, 0.28)](double) { return creep_bound(law, ratio, creepage); }});
       }
@@ -86,6 +86,7 @@ CaseResult profile_run(const std::string& wheel, const std::string& rail, double
   scene.contact.wheel = wheel;
   scene.contact.rail = rail;
   scene.contact.rail_inclination = inclination;
+  if (rail == "knife-edge") scene.contact.dimensions.gauge_height = 0.0;  // it has no gauge face
   const VsiModel model = build_model(scene);
   return judged(watched_run(model, scene.integration, scene.integration.duration, [&](VsiState& state) {
     for (LinearMotion& motion : state.vehicle) {
@@ -100,7 +101,7 @@ void add_profile_cases(Cases& cases) {
   constexpr const char* impulse = "impulse balance";
   for (const double conicity : {0.0, -0.025, -0.2}) {
     cases.push_back(
-        {"conicity", fmt::format("{:g}", conicity), impulse, 1e-2, Outcome::converged, conicity == 0.0, [=](double) {
+        {"conicity", fmt::format("{:g}", conicity), impulse, 1e-3, Outcome::ended, conicity == 0.0, [=](double) {
            const auto file = wheel_file(fmt::format("cone_{}", conicity), [=](double y) { return -conicity * y; });
            CaseResult result = profile_run(file.string(), "60E1", 0.025, 2e-3);
            std::filesystem::remove(file);
@@ -110,7 +111,7 @@ void add_profile_cases(Cases& cases) {
   for (const double excess : {1e-2, 1e-3, 1e-4}) {
     cases.push_back(
         {"near-conformal profiles", fmt::format("tread of radius 300 mm x {:g} on a head of 300 mm", 1.0 + excess),
-         impulse, 1e-2, Outcome::converged, excess == 1e-3, [=](double) {
+         impulse, 1e-3, Outcome::converged, excess == 1e-3, [=](double) {
            const double R = 0.3 * (1.0 + excess);
            const auto file =
                wheel_file(fmt::format("round_{}", excess), [=](double y) { return R - std::sqrt(R * R - y * y); });
@@ -119,7 +120,7 @@ void add_profile_cases(Cases& cases) {
            return result;
          }});
   }
-  cases.push_back({"knife-edge rail", "S1002", impulse, 1e-2, Outcome::converged, true,
+  cases.push_back({"knife-edge rail", "S1002", impulse, 1e-3, Outcome::refused, true,
                    [](double) { return profile_run("S1002", "knife-edge", 0.0, 0.0); }});
 }
 

@@ -53,7 +53,7 @@ int run(const std::vector<std::string>& arguments) {
     rows.push_back({one, outcome_of(one)});
     fmt::print("{}", text_line(rows.back()));
     std::fflush(stdout);
-    unexpected += rows.back().result.outcome != one.expected;
+    unexpected += !as_expected(one, rows.back().result);
   }
   fmt::print("{} cases, {} with another outcome than expected\n", rows.size(), unexpected);
   if (!folder.empty()) {

@@ -30,7 +30,7 @@ std::string markdown(const std::vector<Row>& rows) {
     const CaseResult& r = row.result;
     text +=
         fmt::format("| {} | {} | {}{} | {} | {:.0e} | {} | {} | {} |\n", row.one.group == group ? "" : row.one.group,
-                    row.one.setting, outcome_name(r.outcome), r.outcome == row.one.expected ? "" : " (unexpected)",
+                    row.one.setting, outcome_name(r.outcome), as_expected(row.one, r) ? "" : " (unexpected)",
                     error_text(row), row.one.allowed, row.one.measure,
                     r.steps > 0 ? fmt::format("{} ({})", r.steps, r.halved_steps) : "", without(r.note, '|'));
     group = row.one.group;
@@ -43,8 +43,7 @@ std::string markdown(const std::vector<Row>& rows) {
 std::string text_line(const Row& row) {
   const CaseResult& r = row.result;
   return fmt::format("{:<34} {:<48} {:<9}{} {:>8} {:>7.1f} s  {}\n", row.one.group, row.one.setting,
-                     outcome_name(r.outcome), r.outcome == row.one.expected ? " " : "!", error_text(row), r.seconds,
-                     r.note);
+                     outcome_name(r.outcome), as_expected(row.one, r) ? " " : "!", error_text(row), r.seconds, r.note);
 }
 
 std::string csv_text(const std::vector<Row>& rows) {

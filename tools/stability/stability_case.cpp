@@ -28,6 +28,10 @@ std::vector<StabilityCase> all_cases() {
   return cases;
 }
 
+bool as_expected(const StabilityCase& one, const CaseResult& result) noexcept {
+  return result.outcome == one.expected || (one.expected == Outcome::ended && result.outcome == Outcome::converged);
+}
+
 CaseResult outcome_of(const StabilityCase& one) {
   const std::clock_t begin = std::clock();
   CaseResult result;

@@ -21,7 +21,7 @@ struct CaseResult {
   double seconds = 0.0;   ///< processor time
   long steps = 0;         ///< of a run
   long halved_steps = 0;  ///< of a run
-  std::string note{};      ///< the message of a case that was refused or ended; what else is worth knowing
+  std::string note{};     ///< the message of a case that was refused or ended; what else is worth knowing
 };
 
 /// One cell of the matrix.
@@ -40,6 +40,9 @@ struct StabilityCase {
 /// Cases of the contact's parts: Hertz's ellipse, creep laws, profiles.
 [[nodiscard]] std::vector<StabilityCase> contact_cases();
 [[nodiscard]] std::vector<StabilityCase> all_cases();
+
+/// Whether an outcome is the expected one, or better: to the end where an early end was expected.
+[[nodiscard]] bool as_expected(const StabilityCase& one, const CaseResult& result) noexcept;
 
 /// Runs a case; what it throws becomes its outcome: an InputError is a refusal, anything else is wrong.
 [[nodiscard]] CaseResult outcome_of(const StabilityCase& one);

@@ -61,13 +61,13 @@ bool all_finite(const StepRecord& record) {
 /// Takes in record after record.
 class Watch {
  public:
-  Watch(const VsiModel& model, WatchedRun& run) : model_(model), run_(run) {}
+  Watch(const VsiModel& model, WatchedRun& run) : model_(&model), run_(&run) {}
 
   void operator()(const StepRecord& record) {
-    run_.finite = run_.finite && all_finite(record);
-    const double step = run_.records > 0 ? record.time - time_ : 0.0;
+    run_->finite = run_->finite && all_finite(record);
+    const double step = run_->records > 0 ? record.time - time_ : 0.0;
     const Pair force = wheel_forces(record);
-    if (run_.records++ > 0) {
+    if (run_->records++ > 0) {
       impulse_.y += 0.5 * step * (force_.y + force.y);
       impulse_.z += 0.5 * step * (force_.z + force.z);
     }
@@ -76,32 +76,55 @@ class Watch {
     flight_.resize(record.wheels.size(), 0.0);
     for (std::size_t w = 0; w < record.wheels.size(); ++w) {
       flight_[w] = record.wheels[w].patches == 0 ? flight_[w] + step : 0.0;
-      run_.longest_flight = std::max(run_.longest_flight, flight_[w]);
-      run_.largest_load = std::max(run_.largest_load, record.wheels[w].Q);
+      run_->longest_flight = std::max(run_->longest_flight, flight_[w]);
+      run_->largest_load = std::max(run_->largest_load, record.wheels[w].Q);
     }
-    const std::size_t bodies = model_.vehicle.bodies.size();
+    const std::size_t bodies = model_->vehicle.bodies.size();
     for (std::size_t i = 0; i < record.bodies.size(); ++i) {
-      const auto& wheelsets = model_.vehicle.wheelsets;
+      const auto& wheelsets = model_->vehicle.wheelsets;
       if (std::find(wheelsets.begin(), wheelsets.end(), static_cast<int>(i % bodies)) == wheelsets.end()) continue;
-      run_.largest_shift = std::max(run_.largest_shift, std::abs(record.bodies[i].displacement[1]));
+      run_->largest_shift = std::max(run_->largest_shift, std::abs(record.bodies[i].displacement[1]));
     }
   }
 
   void conclude(const Pair& change) {
-    const Pair weight = load(model_);
+    const Pair weight = load(*model_);
     const double vertical = weight.z * time_ - impulse_.z - change.z;
     const double lateral = weight.y * time_ - impulse_.y - change.y;
     const double scale = std::abs(weight.z) * time_ + std::abs(impulse_.z) + std::abs(change.z);
-    run_.impulse_error = scale > 0.0 ? std::hypot(vertical, lateral) / scale : 0.0;
+    run_->impulse_error = scale > 0.0 ? std::hypot(vertical, lateral) / scale : 0.0;
   }
 
  private:
-  const VsiModel& model_;
-  WatchedRun& run_;
+  const VsiModel* model_;
+  WatchedRun* run_;
   double time_ = 0.0;
   Pair force_, impulse_;
   std::vector<double> flight_;
 };
+
+StepRecord record_of(const VsiModel& model, const VsiState& state) {
+  StepRecord record;
+  fill_record(model, state, record);
+  return record;
+}
+
+/// Step n of level `level`, of length time_step/2^level, halved as a run halves it, every part watched.
+bool open_step(const VsiModel& model, const IntegrationParameters& integration, int level, long n, VsiState& state,
+               Watch& watch) {
+  IntegrationParameters own = integration;
+  own.time_step = std::ldexp(integration.time_step, -level);
+  own.max_halvings = 0;
+  VsiState tried = state;
+  if (simulate(model, own, static_cast<double>(n + 1) * own.time_step, 1, tried, {}, n).complete) {
+    state = std::move(tried);
+    watch(record_of(model, state));
+    return true;
+  }
+  if (level == integration.max_halvings) return false;
+  return open_step(model, integration, level + 1, 2 * n, state, watch) &&
+         open_step(model, integration, level + 1, 2 * n + 1, state, watch);
+}
 
 }  // namespace
 
@@ -124,7 +147,19 @@ WatchedRun watched_run(const VsiModel& start, const VsiModel& model, const Integ
   Watch watch(model, run);
   RunObserver observer;
   observer.record = [&](const StepRecord& record) { watch(record); };
+  const VsiState first = state;
   run.summary = simulate(model, integration, duration, 1, state, observer);
+  if (run.summary.halved_steps > 0 && run.summary.complete && !model.structure) {
+    // The balance needs the forces of halved steps too.
+    run.records = 0;
+    watch = Watch(model, run);
+    state = first;
+    const auto steps = std::lround(duration / integration.time_step);
+    watch(record_of(model, state));
+    for (long n = 0; n < steps; ++n) {
+      if (!open_step(model, integration, 0, n, state, watch)) break;
+    }
+  }
   const Pair after = momentum(model, state);
   watch.conclude({after.y - before.y, after.z - before.z});
   return run;
