@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "stopwatch.hpp"
 
@@ -198,10 +199,12 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
       summary.message = "interrupted";
       break;
     }
+    summary.message = derailment(model, state);
+    if (!summary.message.empty()) break;
     if (observer.progress) observer.progress(static_cast<double>(summary.steps) / static_cast<double>(steps));
   }
   if (!recorded) emit();  // after a checkpoint: a resumed run leaves the record away again
-  summary.complete = summary.steps == steps;
+  summary.complete = summary.steps == steps && summary.message.empty();
   summary.seconds_total = seconds_since(begin);
   summary.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
   summary.structure_dofs = model.structure ? model.structure->dofs() : 0;

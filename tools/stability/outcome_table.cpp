@@ -1,0 +1,73 @@
+#include "outcome_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+
+namespace railtab::stability {
+namespace {
+
+std::string without(std::string text, char unwanted) {
+  std::replace(text.begin(), text.end(), unwanted, ';');
+  return text;
+}
+
+std::string error_text(const Row& row) {
+  const bool measured = row.result.outcome == Outcome::converged || row.result.outcome == Outcome::wrong;
+  return measured ? fmt::format("{:.1e}", row.result.error) : "";
+}
+
+std::string markdown(const std::vector<Row>& rows) {
+  std::string text =
+      "| group | case | outcome | error | stated | measured by | steps (halved) | note |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  std::string group;
+  for (const Row& row : rows) {
+    const CaseResult& r = row.result;
+    text +=
+        fmt::format("| {} | {} | {}{} | {} | {:.0e} | {} | {} | {} |\n", row.one.group == group ? "" : row.one.group,
+                    row.one.setting, outcome_name(r.outcome), as_expected(row.one, r) ? "" : " (unexpected)",
+                    error_text(row), row.one.allowed, row.one.measure,
+                    r.steps > 0 ? fmt::format("{} ({})", r.steps, r.halved_steps) : "", without(r.note, '|'));
+    group = row.one.group;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_line(const Row& row) {
+  const CaseResult& r = row.result;
+  return fmt::format("{:<34} {:<48} {:<9}{} {:>8} {:>7.1f} s  {}\n", row.one.group, row.one.setting,
+                     outcome_name(r.outcome), as_expected(row.one, r) ? " " : "!", error_text(row), r.seconds, r.note);
+}
+
+std::string csv_text(const std::vector<Row>& rows) {
+  std::string text = "group,case,outcome,expected,error,stated,measure,steps,halved_steps,seconds,note\n";
+  for (const Row& row : rows) {
+    const CaseResult& r = row.result;
+    text += fmt::format("{},{},{},{},{},{:g},{},{},{},{:.2f},{}\n", without(row.one.group, ','),
+                        without(row.one.setting, ','), outcome_name(r.outcome), outcome_name(row.one.expected),
+                        error_text(row), row.one.allowed, without(row.one.measure, ','), r.steps, r.halved_steps,
+                        r.seconds, without(r.note, ','));
+  }
+  return text;
+}
+
+void fill_page(const std::filesystem::path& page, const std::vector<Row>& rows) {
+  std::ifstream stream(page);
+  std::string text((std::istreambuf_iterator<char>(stream)), {});
+  constexpr std::string_view begin = "<!-- outcomes -->\n", end = "<!-- end -->";
+  const std::size_t from = text.find(begin), to = text.find(end);
+  if (from == std::string::npos || to == std::string::npos || to < from) {
+    throw input_error(page.string(), "no marks", "the lines <!-- outcomes --> and <!-- end -->");
+  }
+  text.replace(from + begin.size(), to - from - begin.size(), markdown(rows));
+  write_text_file(page, text);
+}
+
+}  // namespace railtab::stability
