@@ -122,43 +122,6 @@ RefinedPair refine_pair(const WheelRailPair& pair, const WheelsetPose& pose, con
   return result;
 }
 
-PairStatus polish_pair(const WheelRailPair& pair, const WheelsetCentre& centre, const PoseTrigonometry& trig,
-                       double s_wheel, double s_rail, ContactPatch& patch) noexcept {
-  constexpr int most_iterations = 8;
-  constexpr double last_step = 20e-6;  // [m]
-  const ProfileCurve& wheel = pair.wheel();
-  const ProfileCurve& rail = pair.rail();
-  const double axial = pair.tape_circle_offset();
-  const double radius = pair.nominal_radius();
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const std::size_t wheel_piece = wheel.piece_of(s_wheel);
-    const std::size_t rail_piece = rail.piece_of(s_rail);
-    const CommonNormal at(wheel.on_piece(wheel_piece, s_wheel), rail.on_piece(rail_piece, s_rail), axial, radius,
-                          centre, trig);
-    if (!at.S.exists) return PairStatus::not_converged;
-    const Step step = at.newton_step();
-    const double size = step.size();
-    if (!(size < std::numeric_limits<double>::infinity())) return PairStatus::not_converged;
-    s_wheel += step.wheel;
-    s_rail += step.rail;
-    if (size > last_step || !wheel.piece_contains(wheel_piece, s_wheel) || !rail.piece_contains(rail_piece, s_rail)) {
-      continue;
-    }
-    if (!at.is_minimum()) return PairStatus::not_a_minimum;
-    // The silhouette point to second order across the normal, along which alone its place matters; the rest exactly.
-    SilhouettePoint S = at.S;
-    const double bend = 0.5 * step.wheel * step.wheel * S.speed;
-    S.y += step.wheel * S.dy + bend * S.dty;
-    S.z += step.wheel * S.dz + bend * S.dtz;
-    const CurvePoint W = wheel.on_piece(wheel_piece, s_wheel);
-    const CurvePoint C = rail.on_piece(rail_piece, s_rail);
-    S.x = -trig.sin_yaw * (axial + W.y + (radius + W.z) * (W.dz / W.dy));
-    set_patch(pair, s_wheel, s_rail, W, S, C, rail.tangent_angle(rail_piece, C), patch);
-    return off_profile(pair, s_wheel, s_rail) ? PairStatus::off_profile : PairStatus::converged;
-  }
-  return PairStatus::not_converged;
-}
-
 namespace {
 
 // Equations y_wheel = y_rail (f) and t_w x t_r = 0 (g) of a touching wheel, with their derivatives.

@@ -19,24 +19,37 @@ WheelRailPair pair_of(const GeometryTableData& data) {
 }
 
 /// Allowance for the error of z_touch when branches are picked [m]: a branch too many costs one Newton.
-constexpr double height_margin = 4e-6;
+constexpr double height_margin = 12e-6;
 /// A refined pair further from its start than this is another branch's [m].
 constexpr double capture_distance = 0.5e-3;
 /// Two refined pairs nearer than this are one [m].
 constexpr double same_pair = 5e-6;
 
-/// Largest vertical height per unit of normal distance on any branch: 1/n_z, n_y from the middle of its leaf.
+/// Largest vertical height per unit of normal distance on any branch, 1/n_z, from the slope of z_touch along the
+/// lateral axis in the middle of its leaf.
 double steepest_branch(const GeometryTableData& data) {
-  const auto stride =
-      static_cast<std::size_t>(branch_quantities * branch_terms(!data.yaw_squared.fixed(), !data.roll.fixed()));
-  float least = 1.0F;
-  for (std::size_t n = 0; n < data.coefficient.size(); n += stride) {
-    const float normal_y = data.coefficient[n + 3];
-    least = std::min(least, 1.0F - normal_y * normal_y);
+  const int terms = branch_terms(!data.yaw_squared.fixed(), !data.roll.fixed());
+  const int linear_term = terms == 4 ? 1 : 3;
+  std::vector<std::size_t> first(data.leaf_branch.size() + 1, 0);
+  for (std::size_t n = 0; n < data.leaf_branch.size(); ++n) first[n + 1] = first[n] + data.leaf_branch[n];
+  // Nodes stand before their halves: one pass makes the widths of all.
+  std::vector<double> half_width(data.node.size(), 0.5 * (data.lateral.high - data.lateral.low) / data.lateral.cells);
+  double steepest = 0.0;
+  for (std::size_t n = 0; n < data.node.size(); ++n) {
+    const std::size_t index = CellNode::index(data.node[n]);
+    if (!CellNode::is_leaf(data.node[n])) {
+      const double half = half_width[n] * (CellNode::axis(data.node[n]) == 0 ? 0.5 : 1.0);
+      half_width[index] = half_width[index + 1] = half;
+      continue;
+    }
+    for (std::size_t branch = first[index]; branch < first[index + 1]; ++branch) {
+      const auto place = branch_quantities * (branch * static_cast<std::size_t>(terms) + linear_term);
+      steepest = std::max(steepest, std::abs(static_cast<double>(data.coefficient[place])) / half_width[n]);
+    }
   }
   constexpr double off_middle = 1.1;  // it is a little steeper elsewhere in the leaf
   constexpr double most = 10.0;       // beyond that, a gap to a wall
-  return std::min(most, off_middle / std::sqrt(static_cast<double>(std::max(least, 1e-4F))));
+  return std::min(most, off_middle * std::hypot(1.0, steepest));
 }
 
 }  // namespace
@@ -55,16 +68,18 @@ ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss)
 TableAnswer TableContact::answer(const WheelsetPose& pose, double near_miss, ContactPatches& result) const noexcept {
   const GeometryTable::Lookup lookup = table_.lookup(pose.y, pose.z, pose.yaw, pose.roll);
   if (lookup.status == GeometryTable::Status::outside || lookup.count == 0) return TableAnswer::none;
-  const double lowering = pose.z + near_miss * steepest_ - lookup.first_touch;
+  const double height = pose.z + near_miss * steepest_;
+  const double lowering = height - lookup.first_touch;
   // A limit of 0 is a branch that may touch before all of these: it is to be searched at any height.
   if (!(lookup.trusted_lowering > 0 && lowering <= lookup.trusted_lowering)) return TableAnswer::none;
-  const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), near_miss, result);
+  const TableAnswer answer =
+      add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), height, near_miss, result);
   result.from_table = answer != TableAnswer::none;
   return answer;
 }
 
 TableAnswer add_branch_patches(const ContactSearch& search, const GeometryTable::Lookup& lookup,
-                               const WheelsetPose& pose, const PoseTrigonometry& trig, double near_miss,
+                               const WheelsetPose& pose, const PoseTrigonometry& trig, double height, double near_miss,
                                ContactPatches& result) noexcept {
   static_assert(GeometryTable::max_branches <= ContactPatches::capacity);
   const WheelRailPair& pair = search.pair();
@@ -73,7 +88,7 @@ TableAnswer add_branch_patches(const ContactSearch& search, const GeometryTable:
   int strays = 0;
   for (int n = 0; n < lookup.count; ++n) {
     const BranchStart& start = lookup.branch[n];
-    if (start.distance < -near_miss - height_margin) continue;
+    if (start.z_touch > height + height_margin) continue;
     ContactPatch& patch = result.patch[result.count];
     bool own = polish_pair(pair, centre, trig, start.s_wheel, start.s_rail, patch) == PairStatus::converged &&
                std::abs(patch.s_wheel - start.s_wheel) <= capture_distance;

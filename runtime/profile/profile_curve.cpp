@@ -43,11 +43,14 @@ ProfileCurve::ProfileCurve(ProfileKnots knots) : knots_(std::move(knots)) {
     const double h = k.s[i + 1] - k.s[i];
     const double vy = (k.y[i + 1] - k.y[i]) / h;
     const double vz = (k.z[i + 1] - k.z[i]) / h;
-    piece_.push_back({k.y[i], k.dy[i], (3 * vy - 2 * k.dy[i] - k.dy[i + 1]) / h,
-                      (k.dy[i] + k.dy[i + 1] - 2 * vy) / (h * h), k.z[i], k.dz[i],
-                      (3 * vz - 2 * k.dz[i] - k.dz[i + 1]) / h, (k.dz[i] + k.dz[i + 1] - 2 * vz) / (h * h)});
+    piece_.push_back({k.y[i], k.z[i], k.dy[i], k.dz[i], (3 * vy - 2 * k.dy[i] - k.dy[i + 1]) / h,
+                      (3 * vz - 2 * k.dz[i] - k.dz[i + 1]) / h, (k.dy[i] + k.dy[i + 1] - 2 * vy) / (h * h),
+                      (k.dz[i] + k.dz[i + 1] - 2 * vz) / (h * h)});
   }
-  for (const Piece& piece : piece_) start_angle_.push_back(std::atan2(piece.z1, piece.y1));
+  for (const Piece& p : piece_) {
+    const double inverse_speed = 1.0 / std::sqrt(p.y1 * p.y1 + p.z1 * p.z1);
+    tangent_.push_back({std::atan2(p.z1, p.y1), p.y1 * inverse_speed, p.z1 * inverse_speed});
+  }
   start_ = k.s;
   start_.back() = std::numeric_limits<double>::quiet_NaN();  // no s is beyond it
   fill_buckets();
@@ -58,10 +61,11 @@ void ProfileCurve::fill_buckets() {
   const std::size_t n = s.size() - 1;
   double narrowest = s[1] - s[0];
   for (std::size_t i = 1; i < n; ++i) narrowest = std::min(narrowest, s[i + 1] - s[i]);
-  // Buckets as wide as the narrowest interval: an evaluation then walks at most one interval beyond its bucket's
-  // first. Points that crowd far below the mean spacing are worth a short walk rather than a large table.
+  // Buckets a quarter as wide as the narrowest interval: few of them hold a knot, and only there an evaluation may have
+  // to walk one interval beyond its bucket's first. Points that crowd far below the mean spacing are worth a short walk
+  // rather than a large table.
   const double length = s.back() - s.front();
-  const double wanted = std::min(std::ceil(length / narrowest), 8.0 * static_cast<double>(n));
+  const double wanted = std::min(std::ceil(4.0 * length / narrowest), 16.0 * static_cast<double>(n));
   const auto buckets = static_cast<std::size_t>(wanted);
   bucket_.resize(buckets);
   bucket_origin_ = s.front();

@@ -158,7 +158,7 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
   GeometryTable::evaluate(trial.coefficient.data(), trial.branches, yaw_axis_, roll_axis_, point,
                           2.0 / (box.high[0] - box.low[0]), pose.z, lookup);
   ContactPatches table;
-  const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), 0.0, table);
+  const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), pose.z, 0.0, table);
   trial.searched += answer == TableAnswer::searched;
   bool wrong = false;
   const auto missing = [&](const ContactPatches& from, const ContactPatches& in) {
@@ -175,7 +175,7 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
   missing(table, online);
   trial.wrong += wrong;
   for (int n = 0; n < lookup.count; ++n) {
-    if (lookup.branch[n].distance <= 0) continue;
+    if (lookup.branch[n].z_touch >= pose.z) continue;
     double nearest = std::numeric_limits<double>::infinity();
     for (const ContactPatch& p : table) nearest = std::min(nearest, std::abs(p.s_wheel - lookup.branch[n].s_wheel));
     if (std::isfinite(nearest)) trial.start_error = std::max(trial.start_error, nearest);

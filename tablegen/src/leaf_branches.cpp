@@ -156,7 +156,7 @@ void BoxSamples::link_touches() {
   }
 }
 
-BranchDatum BoxSamples::datum(const BoxSample& sample, double y, double z, double normal_y, double s_wheel,
+BranchDatum BoxSamples::datum(const BoxSample& sample, double y, double z, double slope, double s_wheel,
                               double s_rail) const {
   BranchDatum d;
   d.local = sample.local;
@@ -165,7 +165,7 @@ BranchDatum BoxSamples::datum(const BoxSample& sample, double y, double z, doubl
   d.z = z;
   d.s_wheel = s_wheel;
   d.s_rail = s_rail;
-  d.normal_y = normal_y;
+  d.normal_product = -slope / (1.0 + slope * slope);
   return d;
 }
 
@@ -181,7 +181,7 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
       const ContactPatch& patch = s.lowered.patch[n];
       const double shift = patch.penetration * std::sin(patch.angle);  // y* - y = -d n_y
       const double z = s.pose.z + lowering_ - patch.penetration * std::cos(patch.angle);
-      std::vector<BranchDatum> way{datum(s, s.pose.y + shift, z, -std::sin(patch.angle), patch.s_wheel, patch.s_rail)};
+      std::vector<BranchDatum> way{datum(s, s.pose.y + shift, z, std::tan(patch.angle), patch.s_wheel, patch.s_rail)};
       const int steps = std::clamp(static_cast<int>(std::ceil(std::abs(shift) / half)), 1, 4);
       TouchPoint touch = touch_of_pair(search.pair(), {s.pose.y + shift, 0, s.pose.roll, s.pose.yaw}, trig,
                                        patch.s_wheel, patch.s_rail);
@@ -193,8 +193,7 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
                                             touch.s_wheel + dy * touch.s_wheel_dy, touch.s_rail + dy * touch.s_rail_dy);
         followed = r.status == PairStatus::converged;
         touch = r.touch;
-        const double sine = touch.z_touch_dy / std::hypot(1.0, touch.z_touch_dy);
-        if (followed && k > 0) way.push_back(datum(s, y, touch.z_touch, -sine, touch.s_wheel, touch.s_rail));
+        if (followed && k > 0) way.push_back(datum(s, y, touch.z_touch, touch.z_touch_dy, touch.s_wheel, touch.s_rail));
       }
       for (int t = 0; followed && t < s.touches.count; ++t) {
         if (std::abs(s.touches.touch[t].s_wheel - touch.s_wheel) < same_touch) s.patch_component[n] = s.component[t];
@@ -252,8 +251,7 @@ void BoxSamples::collect() {
       const TouchPoint& t = s.touches.touch[i];
       b.at_sample[n] = true;
       b.least_height = std::min(b.least_height, t.z_touch - s.pose.z);
-      const double sine = t.z_touch_dy / std::hypot(1.0, t.z_touch_dy);
-      b.data.push_back(datum(s, s.pose.y, t.z_touch, -sine, t.s_wheel, t.s_rail));
+      b.data.push_back(datum(s, s.pose.y, t.z_touch, t.z_touch_dy, t.s_wheel, t.s_rail));
     }
   }
   for (std::size_t c = 0; c < all.size(); ++c) {
@@ -305,7 +303,7 @@ std::array<float, most_branch_terms * branch_quantities> fit_branch(const Sample
     const BranchDatum& d = branch.data[static_cast<std::size_t>(n)];
     const auto m = branch_monomials(yaw_axis, roll_axis, d.local[0], d.local[1], d.local[2]);
     for (int t = 0; t < terms; ++t) A(n, t) = m[static_cast<std::size_t>(t)];
-    B.row(n) << d.z, d.s_wheel, d.s_rail, d.normal_y;
+    B.row(n) << d.z, d.s_wheel, d.s_rail, d.normal_product;
   }
   const Eigen::RowVectorXd origin = B.topRows(rows).colwise().mean();
   B.topRows(rows).rowwise() -= origin;

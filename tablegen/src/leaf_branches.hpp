@@ -35,7 +35,8 @@ struct BoxSample {
 /// -1..1, for a wheel lowered at a point of the box touches at a point beside it.
 struct BranchDatum {
   std::array<double, 3> local{};
-  double z = 0, s_wheel = 0, s_rail = 0, normal_y = 0;
+  double z = 0, s_wheel = 0, s_rail = 0;
+  double normal_product = 0;  ///< n_y n_z
 };
 
 /// Minima that continue each other over the samples of a box.
@@ -78,7 +79,7 @@ class BoxSamples {
   void follow_lowered(const ContactSearch& search);
   void adopt(const std::vector<std::vector<BranchDatum>>& orphans);
   void collect();
-  [[nodiscard]] BranchDatum datum(const BoxSample& sample, double y, double z, double slope_sine, double s_wheel,
+  [[nodiscard]] BranchDatum datum(const BoxSample& sample, double y, double z, double slope, double s_wheel,
                                   double s_rail) const;
 
   CellBox box_;

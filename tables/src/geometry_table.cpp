@@ -141,12 +141,13 @@ void GeometryTable::pack() {
 
 namespace {
 
-using Row = Eigen::Array4f;  // z_touch, s_wheel, s_rail, n_y
+using Row = Eigen::Array4f;  // z_touch, s_wheel, s_rail, n_y n_z
 
 /// The polynomials of a branch at one (b, c), by powers of a.
 struct AlongLateral {
   Row r0, r1, r2, r3;
-  [[nodiscard]] Row at(float a) const noexcept { return r0 + a * (r1 + a * (r2 + a * r3)); }
+  /// Not Horner's order: two products side by side.
+  [[nodiscard]] Row at(float a) const noexcept { return (r0 + a * r1) + (a * a) * (r2 + a * r3); }
 };
 
 template <int terms>
@@ -165,21 +166,19 @@ template <int terms>
 void evaluate_branches(const float* coefficient, int count, const LocalPoint& p, double inverse_half_width, double z,
                        GeometryTable::Lookup& result) noexcept {
   result.count = count;
-  double first = std::numeric_limits<double>::infinity();
+  const auto height = static_cast<float>(z);
+  const auto per_metre = static_cast<float>(inverse_half_width);
+  float first = std::numeric_limits<float>::infinity();
   for (int n = 0; n < count; ++n) {
     const AlongLateral branch = along_lateral<terms>(coefficient + n * terms * branch_quantities, p.b, p.c);
     const Row touch = branch.at(p.a);
-    const double z_touch = static_cast<double>(touch[0]);
-    const float n_y = touch[3];
-    const float n_z = std::sqrt(std::max(1.0F - n_y * n_y, 1e-4F));
-    const double distance = (z - z_touch) * static_cast<double>(n_z);
-    const float shift = static_cast<float>(std::max(distance, 0.0) * inverse_half_width) * n_y;
+    const float shift = std::max(height - touch[0], 0.0F) * (touch[3] * per_metre);
     const Row pair = branch.at(p.a - shift);
-    result.branch[static_cast<std::size_t>(n)] = {z_touch, distance, static_cast<double>(pair[1]),
+    result.branch[static_cast<std::size_t>(n)] = {static_cast<double>(touch[0]), static_cast<double>(pair[1]),
                                                   static_cast<double>(pair[2])};
-    first = std::min(first, z_touch);
+    first = std::min(first, touch[0]);
   }
-  result.first_touch = first;
+  result.first_touch = static_cast<double>(first);
 }
 
 }  // namespace
@@ -197,26 +196,25 @@ void GeometryTable::evaluate(const float* coefficient, int count, bool yaw_axis,
   }
 }
 
-namespace {
-
-/// Root cell and place in it, in units of 2^-32 of its width.
-struct CellPlace {
-  std::int64_t cell;
-  std::uint32_t fraction;
-};
-
-CellPlace place(double in_cells, double cells) noexcept {
-  const double whole = std::min(std::floor(in_cells), cells - 1);
-  const double fraction = std::min((in_cells - whole) * 0x1p32, 0x1p32 - 1);
-  return {static_cast<std::int64_t>(whole), static_cast<std::uint32_t>(fraction)};
+/// The leaf below a halved root cell. @param fraction of the root cell's width along each axis, 0..1
+GeometryTable::Leaf GeometryTable::descend(Node node, const std::array<double, 3>& fraction) const noexcept {
+  std::array<std::uint32_t, 3> rest{};  // in units of 2^-32 of the cell's width
+  for (std::size_t a = 0; a < 3; ++a) rest[a] = static_cast<std::uint32_t>(std::min(fraction[a] * 0x1p32, 0x1p32 - 1));
+  double inverse_half_width = 2.0 * axis_[0].inverse_width;
+  while (!CellNode::is_leaf(node.code)) {
+    const std::uint32_t axis = CellNode::axis(node.code);
+    const std::uint32_t upper = rest[axis] >> 31;
+    rest[axis] <<= 1;
+    if (axis == 0) inverse_half_width *= 2.0;
+    node = node_[CellNode::index(node.code) + upper];
+  }
+  const auto local = [](std::uint32_t f) { return static_cast<float>(static_cast<double>(f) * 0x1p-31 - 1.0); };
+  return {node, {local(rest[0]), local(rest[1]), local(rest[2])}, inverse_half_width};
 }
 
-}  // namespace
-
-GeometryTable::Lookup GeometryTable::lookup(double y, double z, double yaw, double roll) const noexcept {
-  Lookup result;
-  const bool yaw_axis = !data_.yaw_squared.fixed();
-  const bool roll_axis = !data_.roll.fixed();
+/// Most leaves are whole root cells: the way to them has no loop, and nothing is computed for an axis that is fixed.
+template <bool yaw_axis, bool roll_axis>
+void GeometryTable::lookup(double y, double z, double yaw, double roll, Lookup& result) const noexcept {
   const double lateral = (y - data_.nominal_radius * roll - axis_[0].low) * axis_[0].inverse_width;
   const double squared = (yaw * yaw - axis_[1].low) * axis_[1].inverse_width;
   const double rolled = (roll - axis_[2].low) * axis_[2].inverse_width;
@@ -225,33 +223,39 @@ GeometryTable::Lookup GeometryTable::lookup(double y, double z, double yaw, doub
                       (yaw_axis ? squared >= 0 && squared <= axis_[1].cells
                                 : std::abs(std::abs(yaw) - std::sqrt(axis_[1].low)) <= 1e-12) &&
                       (roll_axis ? rolled >= 0 && rolled <= axis_[2].cells : std::abs(roll - axis_[2].low) <= 1e-12);
-  if (!inside) return result;
+  if (!inside) return;
   result.status = Status::inside;
+  const auto whole = [&](std::size_t axis, double at) { return std::min(std::floor(at), axis_[axis].cells - 1); };
+  const double cell_0 = whole(0, lateral);
+  const double cell_1 = yaw_axis ? whole(1, squared) : 0.0;
+  const double cell_2 = roll_axis ? whole(2, rolled) : 0.0;
+  const auto root =
+      static_cast<std::size_t>(static_cast<std::int64_t>((cell_2 * axis_[1].cells + cell_1) * axis_[0].cells + cell_0));
+  const std::array<double, 3> fraction{lateral - cell_0, squared - cell_1, rolled - cell_2};
+  const auto local = [](double f) { return static_cast<float>(2.0 * f - 1.0); };
+  Leaf leaf{node_[root], {local(fraction[0]), local(fraction[1]), local(fraction[2])}, 2.0 * axis_[0].inverse_width};
+  if (!CellNode::is_leaf(leaf.node.code)) leaf = descend(leaf.node, fraction);
+  result.trusted_lowering = static_cast<double>(leaf.node.trusted_lowering);
+  constexpr int terms = branch_terms(yaw_axis, roll_axis);
+  const std::uint32_t packed = CellNode::index(leaf.node.code);
+  const float* coefficient = line_[static_cast<std::size_t>(packed >> 4) * (terms / 4)].value.data();
+  if constexpr (!yaw_axis) leaf.point.b = leaf.point.c;
+  evaluate_branches<terms>(coefficient, static_cast<int>(packed & 15U), leaf.point, leaf.inverse_half_width, z, result);
+}
 
-  const CellPlace at_lateral = place(lateral, axis_[0].cells);
-  const CellPlace at_yaw = place(squared, axis_[1].cells);
-  const CellPlace at_roll = place(rolled, axis_[2].cells);
-  std::array<std::uint32_t, 3> fraction{at_lateral.fraction, at_yaw.fraction, at_roll.fraction};
-  const std::int64_t root =
-      (at_roll.cell * data_.yaw_squared.cells + at_yaw.cell) * data_.lateral.cells + at_lateral.cell;
-  Node node = node_[static_cast<std::size_t>(root)];
-  double inverse_half_width = 2.0 * axis_[0].inverse_width;
-  while (!CellNode::is_leaf(node.code)) {
-    const std::uint32_t axis = CellNode::axis(node.code);
-    std::uint32_t& f = fraction[axis];
-    const std::uint32_t upper = f >> 31;
-    f <<= 1;
-    if (axis == 0) inverse_half_width *= 2.0;
-    node = node_[CellNode::index(node.code) + upper];
+GeometryTable::Lookup GeometryTable::lookup(double y, double z, double yaw, double roll) const noexcept {
+  Lookup result;
+  const bool yaw_axis = !data_.yaw_squared.fixed();
+  const bool roll_axis = !data_.roll.fixed();
+  if (yaw_axis && !roll_axis) {
+    lookup<true, false>(y, z, yaw, roll, result);
+  } else if (yaw_axis) {
+    lookup<true, true>(y, z, yaw, roll, result);
+  } else if (roll_axis) {
+    lookup<false, true>(y, z, yaw, roll, result);
+  } else {
+    lookup<false, false>(y, z, yaw, roll, result);
   }
-  const auto local = [](std::uint32_t f) { return static_cast<float>(static_cast<double>(f) * 0x1p-31 - 1.0); };
-  const LocalPoint point{local(fraction[0]), yaw_axis ? local(fraction[1]) : 0.0F,
-                         roll_axis ? local(fraction[2]) : 0.0F};
-  const std::uint32_t packed = CellNode::index(node.code);
-  result.trusted_lowering = static_cast<double>(node.trusted_lowering);
-  const std::size_t first = static_cast<std::size_t>(packed >> 4) * static_cast<std::size_t>(terms_ / 4);
-  evaluate(line_[first].value.data(), static_cast<int>(packed & 15U), yaw_axis, roll_axis, point, inverse_half_width, z,
-           result);
   return result;
 }
 

@@ -15,7 +15,7 @@
 namespace railtab {
 namespace {
 
-constexpr int format_version = 3;
+constexpr int format_version = 4;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.
 struct Column {
@@ -119,7 +119,7 @@ void write_cells(ArrayFileWriter& file, const GeometryTableData& table) {
   file.write(
       "branches/coefficient", table.coefficient, {table.coefficient.size() / (4 * terms), terms, 4}, "m; 1",
       "per branch, in the order of the leaves: polynomials of the leaf's local coordinates for z_touch, s_wheel, "
-      "s_rail [m] and n_y [1]");
+      "s_rail [m] and n_y n_z [1]");
 }
 
 /// One table file being read; every error names the file and the dataset.

@@ -177,7 +177,7 @@ TEST(ProfileCurve, TangentAngleIsTheArctangent) {
     EXPECT_TRUE(wheel.piece_contains(piece, s));
     const CurvePoint p = wheel.on_piece(piece, s);
     EXPECT_EQ(p.y, wheel.at(s).y);
-    EXPECT_NEAR(wheel.tangent_angle(piece, p), std::atan2(p.dz, p.dy), 1e-15);
+    EXPECT_NEAR(wheel.tangent_angle(piece, p.dy, p.dz, 1 / std::hypot(p.dy, p.dz)), std::atan2(p.dz, p.dy), 1e-15);
   }
 }
 

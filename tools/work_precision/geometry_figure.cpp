@@ -51,11 +51,16 @@ struct Method {
   std::function<double(const WheelsetPose&)> penetration;
 };
 
-/// Polynomials alone: the largest distance to the touch curves of a leaf's branches.
-double polynomial_penetration(const GeometryTable& table, const WheelsetPose& pose) {
-  const GeometryTable::Lookup lookup = table.lookup(pose.y, pose.z, pose.yaw, pose.roll);
+/// Polynomials alone: the largest height below the touch curves of a leaf's branches, seen along the normal of the rail
+/// profile at their pairs.
+double polynomial_penetration(const TableContact& contact, const WheelsetPose& pose) {
+  const GeometryTable::Lookup lookup = contact.table().lookup(pose.y, pose.z, pose.yaw, pose.roll);
   double d = 0.0;
-  for (int n = 0; n < lookup.count; ++n) d = std::max(d, lookup.branch[static_cast<std::size_t>(n)].distance);
+  for (int n = 0; n < lookup.count; ++n) {
+    const BranchStart& start = lookup.branch[static_cast<std::size_t>(n)];
+    const CurvePoint C = contact.search().pair().rail().at(start.s_rail);
+    d = std::max(d, (pose.z - start.z_touch) * C.dy / std::hypot(C.dy, C.dz));
+  }
   return d;
 }
 
@@ -77,7 +82,7 @@ std::vector<Method> methods(const ContactSearch& search, bool quick) {
     const std::string setting = fmt::format("{:g} µm", cells.start_error * 1e6);
     const std::string note = fmt::format("{:.0f} KiB", static_cast<double>(table->table().bytes()) / 1024.0);
     result.push_back({"table: polynomials alone", setting, note,
-                      [table](const WheelsetPose& p) { return polynomial_penetration(table->table(), p); }});
+                      [table](const WheelsetPose& p) { return polynomial_penetration(*table, p); }});
     result.push_back(
         {"table: pair polished", setting, note, [table](const WheelsetPose& p) { return deepest(table->patches(p)); }});
   }

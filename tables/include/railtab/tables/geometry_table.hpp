@@ -46,8 +46,9 @@ struct CellNode {
 /// yaw², then roll.
 ///
 /// A leaf lists the branches, the local minima of the wheel-rail distance, that a wheel can touch on there. A branch is
-/// four polynomials of the leaf's local coordinates (branch_terms()): z_touch [m], s_wheel [m], s_rail [m] and the
-/// lateral component n_y [-] of the contact normal (into the rail) of a wheel that just touches on this branch.
+/// four polynomials of the leaf's local coordinates (branch_terms()), of a wheel that just touches on this branch:
+/// z_touch [m], s_wheel [m], s_rail [m] and n_y n_z [-], the product of the lateral and the vertical component of the
+/// contact normal (into the rail).
 struct GeometryTableData {
   ProfileKnots wheel, rail;
   double track_gauge = 0, gauge_height = 0, flange_back = 0, nominal_radius = 0;  ///< [m]
@@ -89,7 +90,6 @@ constexpr int most_branch_terms = 12;
 /// Where Newton is to start for a wheel on one branch.
 struct BranchStart {
   double z_touch;          ///< centre height of a wheel that just touches on this branch [m]
-  double distance;         ///< penetration along the common normal, about [m]
   double s_wheel, s_rail;  ///< the deepest pair, about [m]
 };
 
@@ -113,7 +113,7 @@ class GeometryTable {
 
   /// The branches of the cell of (y, yaw, roll), with starts for a wheel whose centre is at height z.
   /// A wheel at (y, z) with penetration d along n touches, moved back by d n, at the same pair: the start is the
-  /// touching pair at y* = y - d n_y.
+  /// touching pair at y* = y - d n_y, where d = (z - z_touch) n_z.
   /// @param y, z of the wheelset centre [m]; @param yaw, roll [rad]. Outside the axes, or off a fixed one by more than
   /// 1e-12: status outside and no branch.
   [[nodiscard]] Lookup lookup(double y, double z, double yaw, double roll) const noexcept;
@@ -140,8 +140,16 @@ class GeometryTable {
   struct Axis {
     double low, inverse_width, cells;
   };
+  struct Leaf {
+    Node node;
+    LocalPoint point;
+    double inverse_half_width;  // [1/m]
+  };
 
   void pack();
+  [[nodiscard]] Leaf descend(Node node, const std::array<double, 3>& fraction) const noexcept;
+  template <bool yaw_axis, bool roll_axis>
+  void lookup(double y, double z, double yaw, double roll, Lookup& result) const noexcept;
 
   GeometryTableData data_;
   std::array<Axis, 3> axis_{};

@@ -42,6 +42,10 @@ class ProfileCurve {
   [[nodiscard]] bool piece_contains(std::size_t piece, double s) const noexcept {
     return s >= start_[piece] && !(s > start_[piece + 1]);
   }
+  /// Arc length at which a piece begins.
+  [[nodiscard]] double piece_begin(std::size_t piece) const noexcept { return start_[piece]; }
+  /// The eight coefficients y0 z0 y1 z1 y2 z2 y3 z3 of a piece's cubics in s - piece_begin(piece); 64-byte aligned.
+  [[nodiscard]] const double* piece_coefficients(std::size_t piece) const noexcept { return &piece_[piece].y0; }
   /// Point at arc length s of one cubic piece, continued beyond its ends.
   [[nodiscard]] CurvePoint on_piece(std::size_t piece, double s) const noexcept {
     const Piece& p = piece_[piece];
@@ -55,15 +59,16 @@ class ProfileCurve {
   }
 
   /// atan2(dz, dy) of a point of a piece, to rounding: from the piece's beginning, where it is known, the tangent has
-  /// turned little, so that a few terms of the series do.
-  [[nodiscard]] double tangent_angle(std::size_t piece, const CurvePoint& point) const noexcept {
-    constexpr double series_limit = 0.05;  // the first term left out is 2e-17
-    const Piece& p = piece_[piece];
-    const double turn = (p.y1 * point.dz - p.z1 * point.dy) / (p.y1 * point.dy + p.z1 * point.dz);
-    if (!(std::abs(turn) < series_limit)) return std::atan2(point.dz, point.dy);
-    const double x = turn * turn;
-    return start_angle_[piece] +
-           turn * (1 - x * (1.0 / 3 - x * (1.0 / 5 - x * (1.0 / 7 - x * (1.0 / 9 - x * (1.0 / 11))))));
+  /// turned little, so that a few terms of the arc sine's series do.
+  /// @param inverse_speed 1/sqrt(dy² + dz²)
+  [[nodiscard]] double tangent_angle(std::size_t piece, double dy, double dz, double inverse_speed) const noexcept {
+    constexpr double series_limit = 0.05;  // the first term left out is 4e-18 of the result
+    const Tangent& begin = tangent_[piece];
+    const double sine = (begin.y * dz - begin.z * dy) * inverse_speed;
+    if (!(std::abs(sine) < series_limit)) return std::atan2(dz, dy);
+    const double x = sine * sine;
+    const double series = 1.0 / 6 + x * (3.0 / 40 + x * (5.0 / 112 + x * (35.0 / 1152 + x * (63.0 / 2816))));
+    return begin.angle + (sine + sine * x * series);
   }
 
   [[nodiscard]] double s_begin() const noexcept { return knots_.s.front(); }
@@ -81,7 +86,10 @@ class ProfileCurve {
 
  private:
   struct alignas(64) Piece {  // one cache line
-    double y0, y1, y2, y3, z0, z1, z2, z3;
+    double y0, z0, y1, z1, y2, z2, y3, z3;
+  };
+  struct Tangent {  // of unit length
+    double angle, y, z;
   };
 
   void fill_buckets();
@@ -90,15 +98,14 @@ class ProfileCurve {
     const double q = (s - bucket_origin_) * bucket_inverse_width_;
     const double last = static_cast<double>(bucket_.size() - 1);
     std::size_t i = bucket_[static_cast<std::size_t>(q > 0 ? (q < last ? q : last) : 0)];
-    i += static_cast<std::size_t>(s >= start_[i + 1]);  // half of the queries, unpredictable: without a branch
-    while (s >= start_[i + 1]) ++i;                     // only where knots crowd
+    while (s >= start_[i + 1]) ++i;  // rarely: the processor need not wait for the answer
     return i;
   }
 
   ProfileKnots knots_;
   std::vector<Piece> piece_;           // one per interval between knots
   std::vector<double> start_;          // arc length at which each piece begins, and a NaN that ends every walk
-  std::vector<double> start_angle_;    // atan2(dz, dy) there
+  std::vector<Tangent> tangent_;       // there
   std::vector<std::uint32_t> bucket_;  // first interval that reaches into each uniform bucket of s
   double bucket_origin_ = 0.0;
   double bucket_inverse_width_ = 0.0;
