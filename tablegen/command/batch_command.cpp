@@ -116,10 +116,8 @@ void make(Job& job, const std::string& title, const CommandLine& line) {
     const GeometryRequest request = request_of(job.pair);
     if (!line.quiet()) print_notes(request);
     ProgressBar bar(title, !line.quiet());
-    GeometryTableData table =
-        generate_geometry_table(request.search, request.options, [&](double share) { bar.show(share); });
-    table.provenance = provenance("geometry", job.pair.arguments);
-    write_geometry_table(request.file, table);
+    generate_geometry_table_file(request.search, request.options, provenance("geometry", job.pair.arguments),
+                                 request.file, [&](double share) { bar.show(share); });
     job.state = State::made;
   } catch (const std::exception& e) {
     // the other tables do not need this one

@@ -1,5 +1,7 @@
 #include "command_line.hpp"
 
+#include <unistd.h>
+
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -141,6 +143,9 @@ void require_output(const std::string& output, std::initializer_list<std::string
   const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
   if (!std::filesystem::is_directory(folder)) {
     throw input_error("--output " + output, "no folder " + folder.string(), "a file in an existing folder");
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw input_error("--output " + output, "no right to write in " + folder.string(), "a folder that can be written");
   }
   require_replaceable(output, filetypes);
 }

@@ -15,13 +15,13 @@ void geometry_command(const std::vector<std::string>& arguments) {
   const GeometryRequest request = geometry_request(line);
   if (!line.quiet()) print_notes(request);
   ProgressBar bar("geometry table", !line.quiet());
-  GeometryTableData table =
-      generate_geometry_table(request.search, request.options, [&](double share) { bar.show(share); });
-  table.provenance = provenance("geometry", arguments);
-  write_geometry_table(request.file, table);
+  generate_geometry_table_file(request.search, request.options, provenance("geometry", arguments), request.file,
+                               [&](double share) { bar.show(share); });
+  if (line.quiet() && !line.json()) return;
+  const GeometryTableData table = read_geometry_table(request.file);
   if (line.json()) {
     fmt::print("{}\n", table_description(table, request.file).dump(2));
-  } else if (!line.quiet()) {
+  } else {
     fmt::print("{}", table_text(table, request.file));
   }
 }

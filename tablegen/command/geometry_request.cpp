@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -39,7 +41,9 @@ po::options_description geometry_options() {
       ("yaw", text_value("-0.030:0.030")->value_name("LO:HI"), "wheelset yaw")                                  //
       ("roll", text_value("0:0")->value_name("LO:HI"), "wheelset roll against the rail head")                   //
       ("tolerance", text_value("1e-8")->value_name("M"), "penetration error asked for")                         //
-      ("shard", po::value<std::string>()->value_name("I/N"), "make one of N parts only, for tablegen merge")    //
+      ("refinement", text_value("0")->value_name("N"),
+       "finer cells from the start, each time as after a missed tolerance (0..4)")                            //
+      ("shard", po::value<std::string>()->value_name("I/N"), "make one of N parts only, for tablegen merge")  //
       ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table, or the shard");
   return own;
 }
@@ -55,6 +59,11 @@ GeometryRequest geometry_request(const CommandLine& line) {
   options.yaw = line.interval("yaw");
   options.roll = line.interval("roll");
   options.tolerance = line.number("tolerance");
+  const double refinement = line.number("refinement");
+  if (!(refinement >= 0 && refinement <= 4 && refinement == std::floor(refinement))) {
+    throw input_error("--refinement", line.text("refinement"), "0, 1, 2, 3 or 4");
+  }
+  options = options.refined(static_cast<int>(refinement));
   if (line.given("shard")) options.shard = line.shard("shard");
   options.validate();
 

@@ -43,10 +43,15 @@ void merge_creep(const Files& shards, const std::string& file, const TableProven
 
 void merge_geometry(const Files& shards, const std::string& file, const TableProvenance& provenance) {
   std::vector<GeometryTableData> parts;
-  for (const std::filesystem::path& shard : shards) parts.push_back(read_geometry_table(shard));
+  for (const std::filesystem::path& shard : shards) {
+    parts.push_back(read_geometry_table(shard));
+    if (parts.back().shard.whole()) throw input_error(shard.string(), "a whole table", "a shard: merged it is already");
+  }
   GeometryTableData table = merge_geometry_tables(std::move(parts));
-  if (!certify_geometry_table(table)) {
-    throw ComputationError(file + ": the merged table does not keep its tolerance; make it with a finer one");
+  try {
+    certify_merged_geometry_table(table);
+  } catch (const ComputationError& e) {
+    throw ComputationError(fmt::format("{}: not written: {}", file, e.what()));
   }
   table.provenance = provenance;
   write_geometry_table(file, table);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry_parts.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tables/input_error.hpp"
 
@@ -13,8 +14,9 @@ bool same_profile(const ProfileKnots& p, const ProfileKnots& q) {
   return p.kind == q.kind && p.s == q.s && p.y == q.y && p.z == q.z && p.dy == q.dy && p.dz == q.dz;
 }
 
-/// Why two parts cannot be of one table; empty where they can.
-std::string difference(const GeometryTableData& p, const GeometryTableData& q) {
+}  // namespace
+
+std::string difference_of_parts(const GeometryTableData& p, const GeometryTableData& q) {
   if (!same_profile(p.wheel, q.wheel)) return fmt::format("another wheel profile ({})", q.wheel.name);
   if (!same_profile(p.rail, q.rail)) return fmt::format("another rail profile ({})", q.rail.name);
   if (p.track_gauge != q.track_gauge || p.gauge_height != q.gauge_height || p.flange_back != q.flange_back ||
@@ -25,8 +27,6 @@ std::string difference(const GeometryTableData& p, const GeometryTableData& q) {
   if (p.tolerance != q.tolerance || p.statistics != q.statistics) return "other options";
   return {};
 }
-
-}  // namespace
 
 GeometryTableData merge_geometry_tables(std::vector<GeometryTableData> parts) {
   if (parts.empty()) throw input_error("geometry parts", "none", "all parts of one table");
@@ -39,7 +39,7 @@ GeometryTableData merge_geometry_tables(std::vector<GeometryTableData> parts) {
     const std::string name = fmt::format("geometry part {}/{}", shard.index, shard.count);
     if (shard.count != count)
       throw input_error(name, fmt::format("a part of {}", shard.count), fmt::format("of {}", count));
-    const std::string other = difference(parts.front(), parts[n]);
+    const std::string other = difference_of_parts(parts.front(), parts[n]);
     if (!other.empty()) throw input_error(name, other, fmt::format("that of part {}", parts.front().shard.index));
     if (shard.index != static_cast<int>(n) + 1) {
       const bool twice = n > 0 && shard.index == parts[n - 1].shard.index;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cell_refinement.hpp"
+#include "geometry_parts.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -121,8 +122,7 @@ void GeometrySweepOptions::validate() const {
   }
 }
 
-GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
-                                 const Progress& progress) {
+GeometryTableData geometry_heading(const ContactSearch& search, const GeometrySweepOptions& options) {
   options.validate();
   const WheelRailPair& pair = search.pair();
   GeometryTableData table;
@@ -135,14 +135,6 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
   table.tolerance = options.tolerance;
   table.shard = options.shard;
   set_axes(options, table);
-  if (root_cells(table) < options.shard.count) {
-    throw input_error("geometry sweep: shard", fmt::format("{} parts", options.shard.count),
-                      fmt::format("at most {}, one per root cell", root_cells(table)));
-  }
-  append_trees(make_trees(search, options, table, progress), table);
-  if (options.shard.whole() && table.coefficient.empty()) {
-    throw ComputationError("geometry sweep: the wheel does not meet the rail anywhere in the range");
-  }
   table.statistics = {{"option.lateral_low", options.lateral.low},
                       {"option.lateral_high", options.lateral.high},
                       {"option.yaw_low", options.yaw.low},
@@ -153,6 +145,20 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
                       {"option.start_error", options.start_error},
                       {"option.iterated_cell", options.iterated_cell},
                       {"option.fallback_cell", options.fallback_cell}};
+  return table;
+}
+
+GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
+                                 const Progress& progress) {
+  GeometryTableData table = geometry_heading(search, options);
+  if (root_cells(table) < options.shard.count) {
+    throw input_error("geometry sweep: shard", fmt::format("{} parts", options.shard.count),
+                      fmt::format("at most {}, one per root cell", root_cells(table)));
+  }
+  append_trees(make_trees(search, options, table, progress), table);
+  if (options.shard.whole() && table.coefficient.empty()) {
+    throw ComputationError("geometry sweep: the wheel does not meet the rail anywhere in the range");
+  }
   return table;
 }
 

@@ -159,7 +159,7 @@ TEST(GeometryTableAccuracy, PartsMakeTheWhole) {
     ASSERT_EQ(p.count, q.count);
     for (int n = 0; n < p.count; ++n) EXPECT_EQ(p.branch[n].s_wheel, q.branch[n].s_wheel);
   }
-  EXPECT_TRUE(certify_geometry_table(merged));
+  EXPECT_NO_THROW(certify_merged_geometry_table(merged));
 
   EXPECT_THROW(merge_geometry_tables({}), InputError);
   EXPECT_THROW(merge_geometry_tables({parts[0], parts[1]}), InputError) << "one is missing";

@@ -1,7 +1,4 @@
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -10,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "railtab/tables/creep_table_file.hpp"
@@ -44,25 +40,6 @@ class CreepCommand : public TablegenFixture {
     EXPECT_EQ(a.statistics, b.statistics);
     EXPECT_EQ(a.poisson, b.poisson);
     EXPECT_EQ(a.elements, b.elements);
-  }
-
-  /// Starts the command and kills it after a time. @returns true where it had not ended by then
-  [[nodiscard]] bool killed(const std::vector<std::string>& arguments, std::chrono::milliseconds after) const {
-    std::vector<char*> argv{const_cast<char*>(TABLEGEN_COMMAND)};
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
-      _exit(127);
-    }
-    std::this_thread::sleep_for(after);
-    kill(child, SIGKILL);
-    int status = 0;
-    waitpid(child, &status, 0);
-    if (WIFSIGNALED(status)) return true;
-    EXPECT_EQ(WEXITSTATUS(status), 0);
-    return false;
   }
 };
 

@@ -8,6 +8,7 @@
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/equivalent_conicity.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/tables/geometry_table_file.hpp"
 #include "tablegen_fixture.hpp"
 
 namespace railtab {
@@ -210,6 +211,62 @@ TEST_F(TablegenCommand, QuietPrintsNothing) {
   const Outcome made = tablegen(std::string(small) + "--quiet");
   EXPECT_EQ(made.exit_code, 0);
   EXPECT_EQ(made.out + made.err, "");
+}
+
+// Killed in the middle, the same command goes on from the parts that are done, to the same bits.
+TEST_F(TablegenCommand, KilledItGoesOnToTheSameTable) {
+  const std::vector<std::string> arguments{"geometry",     "--wheel", "S1002",     "--rail", "60E1", "--lateral",
+                                           "-0.002:0.004", "--quiet", "--threads", "1",      "-o",   "killed.h5"};
+  std::string command;
+  for (const std::string& a : arguments) command += a + " ";
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(tablegen(command.substr(0, command.find("-o")) + "-o whole.h5").exit_code, 0);
+  const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+
+  const std::filesystem::path first = folder_ / "killed.h5.part-0-1";
+  int kills = 0;
+  while (kills < 4 && killed(arguments, whole * 2 / 5)) {
+    ++kills;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "killed.h5")) << "an unfinished table has its final name";
+  }
+  EXPECT_GE(kills, 1);
+  ASSERT_TRUE(std::filesystem::exists(first) || std::filesystem::exists(folder_ / "killed.h5"));
+  if (!std::filesystem::exists(folder_ / "killed.h5")) {
+    std::filesystem::resize_file(first, std::filesystem::file_size(first) / 2);  // cut short: made anew
+    ASSERT_EQ(tablegen(command).exit_code, 0);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos) << entry.path();
+  }
+  const GeometryTableData a = read_geometry_table(folder_ / "whole.h5"), b = read_geometry_table(folder_ / "killed.h5");
+  EXPECT_EQ(a.node, b.node);
+  EXPECT_EQ(a.leaf_branch, b.leaf_branch);
+  EXPECT_EQ(a.trusted_lowering, b.trusted_lowering);
+  EXPECT_EQ(a.coefficient, b.coefficient);
+  EXPECT_EQ(a.statistics, b.statistics);
+}
+
+// What stands in the place of a part is used only where it is one of this very table.
+TEST_F(TablegenCommand, PartsOfAnotherTableAreMadeAnew) {
+  ASSERT_EQ(tablegen(small).exit_code, 0);
+  ASSERT_EQ(tablegen("geometry --wheel S1002 --rail 60E1 --lateral -0.002:0.002 --yaw 0:0.01 --shard 1/8 -o "
+                     "out.h5.part-0-1")
+                .exit_code,
+            0);
+  std::ofstream(folder_ / "out.h5.part-0-2") << "not HDF5";
+  const GeometryTableData before = read_geometry_table(folder_ / "out.h5");
+  ASSERT_EQ(tablegen(small).exit_code, 0);
+  const GeometryTableData after = read_geometry_table(folder_ / "out.h5");
+  EXPECT_EQ(before.node, after.node);
+  EXPECT_EQ(before.coefficient, after.coefficient);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5.part-0-1"));
+}
+
+TEST_F(TablegenCommand, TheOutputIsLookedAtBeforeTheSweep) {
+  std::filesystem::create_directory(folder_ / "folder.h5");
+  expect_refused("geometry --wheel S1002 --rail 60E1 -o folder.h5", "a folder");
+  expect_refused("geometry --wheel S1002 --rail 60E1 -o missing/out.h5", "no folder");
+  expect_refused(std::string(small) + "--refinement 1.5", "--refinement");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct GeometrySweepOptions {
 
   /// @throws InputError naming the first member out of its range.
   void validate() const;
+
+  /// With the start error halved and both shares quartered, so many times.
+  [[nodiscard]] GeometrySweepOptions refined(int times) const;
 };
 
 /// Told the share done, 0..1, from one thread at a time.
@@ -43,13 +47,22 @@ using Progress = std::function<void(double)>;
 [[nodiscard]] GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
                                                const Progress& progress = {});
 
-/// sweep_geometry(), and, of a whole table, certify_geometry_table(), with finer cells until it keeps its word. A part
-/// (options.shard) is not certified: merge_geometry_tables() first.
+/// sweep_geometry(), and, of a whole table, the check of certify_merged_geometry_table(), with finer cells until it
+/// passes. A part (options.shard) is not certified: merge_geometry_tables() first.
 /// @throws ComputationError where the second refinement does not reach the tolerance; the message says what was
 /// reached.
 [[nodiscard]] GeometryTableData generate_geometry_table(const ContactSearch& search,
                                                         const GeometrySweepOptions& options,
                                                         const Progress& progress = {});
+
+/// generate_geometry_table() into a file, written under its final name when it is whole. Of a whole table an eighth at
+/// a time is swept and kept beside it (FILE.part-<refinement>-<1..8>): after a kill the same call goes on from there,
+/// to the same table bit for bit. A part of another pair or other options is made anew; all parts are removed at the
+/// end.
+/// @throws ComputationError as generate_geometry_table(), InputError where the file cannot be written
+void generate_geometry_table_file(const ContactSearch& search, const GeometrySweepOptions& options,
+                                  const TableProvenance& provenance, const std::filesystem::path& file,
+                                  const Progress& progress = {});
 
 /// The whole table of its parts, the slabs of the same sweep, in any order. Not certified yet.
 /// @throws InputError where a part is missing, there twice, or not of the same pair, range and options.
@@ -57,8 +70,9 @@ using Progress = std::function<void(double)>;
 
 /// Holds a table against the online search on 2000 random queries (verify_geometry_table()) and stores the statistics
 /// in it.
-/// @return whether the penetration error is within the tolerance at the 99.9 % point and no patch is missed or
-///         invented, a search with a finer scan judging where the table differs from the online search.
-[[nodiscard]] bool certify_geometry_table(GeometryTableData& table);
+/// @throws ComputationError where the penetration error is above the tolerance at the 99.9 % point or a patch is missed
+///         or invented, a search with a finer scan judging where the table differs from the online search; the message
+///         says what was reached and what to do.
+void certify_merged_geometry_table(GeometryTableData& table);
 
 }  // namespace railtab
