@@ -15,12 +15,12 @@ namespace {
 using std::numbers::pi;
 
 constexpr int kMaximum = 200;  // strips, and elements of a strip
-constexpr int kLanes = 8;      // strips marched together: enough to hide the latency of root and division
+constexpr int kLanes = 24;     // strips marched together: enough to hide the latency of root and division
 using Lanes = Eigen::Array<double, kLanes, 1>;
 
 /// Strips of the unit circle (x/a, y/b): y = sin θ, half-length l = cos θ. Padded by empty strips to full lanes.
 struct Strips {
-  std::array<double, kMaximum> y{}, half_length{};
+  std::array<double, kMaximum + kLanes> y{}, half_length{};
   double step;  ///< of θ
 
   explicit Strips(int n) : step(pi / n) {

@@ -22,6 +22,10 @@ double smooth_step(double x) {
 
 double TableCreep::share(double ratio, const Creepage& creepage) const noexcept {
   const CreepTableData& data = table->data();
+  if (data.layout == CreepTableLayout::smooth && ratio >= ratio_border * data.nodes[0].front() &&
+      ratio_border * ratio <= data.nodes[0].back()) {
+    return 1.0;
+  }
   const double factor = std::min(ratio / data.nodes[0].front(), data.nodes[0].back() / ratio);
   double share = smooth_step((factor - 1.0) / (ratio_border - 1.0));
   if (data.layout == CreepTableLayout::smooth) return share;

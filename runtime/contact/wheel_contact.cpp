@@ -50,6 +50,7 @@ struct ContactAxes {
 struct PatchForce {
   Vector3 force, moment;  // on the wheel, in rail-head axes, moment about the wheelset centre
   double normal;          // [N]
+  bool outside_creep_table = false;
 };
 
 // velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact
@@ -64,6 +65,7 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
   Vector3 force = -N * axes.n;
   if (model.gravitational_stiffness == GravitationalStiffness::neglected) force[1] = 0.0;
   Vector3 moment = Vector3::Zero();
+  bool outside = false;
   const double bound = model.friction * N;
   if (bound > 0.0) {
     const auto [a, b] =
@@ -75,8 +77,10 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
     const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
     force += creep.x * Vector3::UnitX() + creep.y * axes.t;
     moment = creep.moment * axes.n;
+    const auto* table = std::get_if<TableCreep>(&model.creep_law);
+    outside = table && table->share(a / b, creepage) < 1.0;
   }
-  return {force, moment + arm.cross(force), N};
+  return {force, moment + arm.cross(force), N, outside};
 }
 
 }  // namespace
@@ -123,6 +127,7 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     force += p.force;
     moment += p.moment;
     result.normal[i] = p.normal;
+    result.outside_creep_table += p.outside_creep_table;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
     rail_moment -= patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];
   }

@@ -7,7 +7,7 @@
 namespace railtab::result_columns {
 
 /// What the results file holds and under which name: one list for the writer and the reader.
-inline constexpr int format_version = 3;
+inline constexpr int format_version = 4;
 
 template <typename Owner, typename Value>
 struct Column {
@@ -100,6 +100,7 @@ inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSumma
                                            SummaryEntry<long>{"back_substitutions", &RunSummary::back_substitutions},
                                            SummaryEntry<long>{"contact_queries", &RunSummary::contact_queries},
                                            SummaryEntry<long>{"table_queries", &RunSummary::table_queries},
+                                           SummaryEntry<long>{"outside_creep_table", &RunSummary::outside_creep_table},
                                            SummaryEntry<long>{"structure_dofs", &RunSummary::structure_dofs},
                                            SummaryEntry<long>{"vehicle_dofs", &RunSummary::vehicle_dofs}};
 inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},

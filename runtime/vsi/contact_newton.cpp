@@ -58,6 +58,7 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       force.head<6>() += wheel.wheelset;
       force.segment<3>(r) = wheel.rail;
       s.rail_x[index(2 * w + side)] = wheel.rail_x;
+      report.outside_creep_table += wheel.outside_creep_table;
       s.normal[index(2 * w + side)] = wheel.normal;
       if (!tangents) continue;
       const Matrix9 t = wheel_force_tangent(model, wheel_side, motion, rail, patches, wheel, problem.velocity_rate,

@@ -61,6 +61,7 @@ class Integrator {
     summary.back_substitutions += report.back_substitutions;
     summary.contact_queries += report.queries;
     summary.table_queries += report.table_queries;
+    summary.outside_creep_table += report.outside_creep_table;
     summary.seconds_lookup += report.seconds_lookup;
     summary.seconds_contact += report.seconds_contact;
     summary.seconds_structure += report.seconds_structure;

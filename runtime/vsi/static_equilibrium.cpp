@@ -19,8 +19,8 @@ constexpr double newton_tolerance = 1e-12;   // m, rad
 constexpr double contact_tolerance = 1e-10;  // m, rad: of the contact unknowns
 // Of the dofs: what rounding leaves of the wheel loads, over the weak eps M, moves them by some nm.
 constexpr double dof_tolerance = 1e-7;  // m, rad
-// The creep table has 32-bit numbers. Where iterations no longer gain, what they leave of the forces is the end: it
-// moves the contact unknowns by some 1e-9 and, over the weak eps M, the dofs by some 1e-7.
+// Where iterations no longer gain, what rounding leaves of the forces is the end: it moves the contact unknowns by some
+// 1e-9 and, over the weak eps M, the dofs by some 1e-7.
 constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero

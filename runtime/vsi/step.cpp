@@ -205,6 +205,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     report.newton_iterations += newton.iterations;
     report.queries += newton.queries;
     report.table_queries += newton.table_queries;
+    report.outside_creep_table += newton.outside_creep_table;
     report.seconds_lookup += newton.seconds_lookup;
     report.seconds_contact += seconds_newton - newton.seconds_lookup;
     if (!newton.converged) break;

@@ -26,7 +26,7 @@ po::options_description creep_options() {
        "of the exact solution along each axis, even; extrapolated from N/2 and N")  //
       ("layout", text_value("default")->value_name("NAME"), "default or paper")     //
       ("nodes", po::value<std::string>()->value_name("R,T,A,B"),
-       "of the default layout along a/b, radius, polar angle, azimuth")                                        //
+       "of the default layout along a/b, radius, polar angle, azimuth; 5..200 each")                           //
       ("tolerance", text_value("1e-6")->value_name("T"), "on the residual of each solution")                   //
       ("shard", po::value<std::string>()->value_name("I/N"), "solve one of N parts only, for tablegen merge")  //
       ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table, or the shard");

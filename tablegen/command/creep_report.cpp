@@ -4,6 +4,11 @@
 
 #include <filesystem>
 
+#include "railtab/tablegen/creep_job.hpp"
+#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/input_error.hpp"
+
 namespace railtab {
 
 namespace {
@@ -26,6 +31,15 @@ std::array<std::string_view, 4> axis_names(CreepTableLayout layout) {
 }
 
 }  // namespace
+
+bool is_creep_table(const std::string& file) {
+  const std::string type = array_file_type(file);
+  if (type == creep_shard_filetype || type == creep_partial_filetype) {
+    throw input_error(file, type == creep_shard_filetype ? "a shard of a creep table" : "an unfinished creep table",
+                      "a whole table: merge all its shards, or end the command that makes it");
+  }
+  return type == creep_table_filetype;
+}
 
 nlohmann::ordered_json verification_description(const CreepVerification& v) {
   nlohmann::ordered_json j;

@@ -8,6 +8,9 @@
 
 namespace railtab {
 
+/// Whether a file is a creep table and no geometry table. @throws InputError where it is a part of a creep table.
+[[nodiscard]] bool is_creep_table(const std::string& file);
+
 /// A creep table's verification and description, as `verify`, `info` and `creep` print them.
 [[nodiscard]] nlohmann::ordered_json verification_description(const CreepVerification& verification);
 [[nodiscard]] std::string verification_text(const CreepVerification& verification);

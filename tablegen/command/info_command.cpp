@@ -148,7 +148,7 @@ void info_command(const std::vector<std::string>& arguments) {
   const CommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
-  if (array_file_type(file) == creep_table_filetype) {
+  if (is_creep_table(file)) {
     if (line.given("html")) throw input_error("--html", "on a creep table", "a geometry table, or no --html");
     const CreepTableData table = read_creep_table(file);
     if (line.json()) {

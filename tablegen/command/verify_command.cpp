@@ -109,7 +109,7 @@ void verify_command(const std::vector<std::string>& arguments) {
   const CommandLine line("tablegen verify FILE.h5 [options]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
-  if (array_file_type(file) == creep_table_filetype) {
+  if (is_creep_table(file)) {
     verify_creep(line, file);
   } else {
     verify_geometry(line, file);

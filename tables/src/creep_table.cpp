@@ -45,6 +45,10 @@ void require_smooth_layout(const CreepTableData& data) {
                       fmt::format("{}, {}, {}", data.ratio_stretch, data.radius_unit, data.nodes[0].front()),
                       "positive numbers");
   }
+  if (!(data.nodes[0].front() >= CreepSpline::least_ratio && data.nodes[0].back() < CreepSpline::ratio_end)) {
+    throw input_error("creep table: axis ratio", fmt::format("{} to {}", data.nodes[0].front(), data.nodes[0].back()),
+                      fmt::format("a/b from {} to below {}", CreepSpline::least_ratio, CreepSpline::ratio_end));
+  }
   const auto same = [](double v) { return v; };
   const auto squeezed = [&](double v) { return squeezed_ratio(v, data.ratio_stretch); };
   require_uniform(smooth_axes[0], data.nodes[0], squeezed(data.nodes[0].front()), squeezed(data.nodes[0].back()),

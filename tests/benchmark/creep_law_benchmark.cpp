@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "../fastsim_scalar.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
 
@@ -45,10 +46,20 @@ void creep_fastsim(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   run_law(state, FastsimCreep{.strips = n, .elements = n});
 }
+void creep_fastsim_scalar_20(benchmark::State& state) {
+  static const testing::ScalarFastsim<20> fastsim;
+  int i = 0;
+  for (auto _ : state) {
+    const Case& c = cases()[i++ & (kCases - 1)];
+    CreepForce f = fastsim(c.ratio, 0.28, c.creepage);
+    benchmark::DoNotOptimize(f);
+  }
+}
 BENCHMARK(creep_linear);
 BENCHMARK(creep_linear_saturated);
 BENCHMARK(creep_polach);
 BENCHMARK(creep_fastsim)->Arg(10)->Arg(20)->Arg(40);
+BENCHMARK(creep_fastsim_scalar_20);
 
 const CreepTable& shipped_table() {
   static const CreepLaw law = creep_law("table", 0.28);

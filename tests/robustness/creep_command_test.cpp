@@ -107,6 +107,9 @@ TEST_F(CreepCommand, ShardsThatDoNotBelongTogetherAreRefused) {
   expect_refused("merge 1.h5 2.h5 3.h5 -o out.h5", {"2.h5"});
   expect_refused("merge 1.h5 2.h5 3.h5 -o 1.h5", {"1.h5", "a file that this command reads"});
   expect_refused("merge -o out.h5", {"shard is missing"});
+  for (const char* command : {"info", "verify"}) {
+    expect_refused(std::string(command) + " 1.h5", {"1.h5", "a shard of a creep table", "merge"});
+  }
 }
 
 TEST_F(CreepCommand, APartialFileBelongsToItsJob) {

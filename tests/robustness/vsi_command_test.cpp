@@ -164,7 +164,15 @@ TEST_F(VsiCommand, WrongCreepLawsAndTablesAreRefused) {
   expect_refused("creep junk.h5 --query q.csv -o out --law table", "junk.h5");
   expect_refused("creep --query q.csv -o out --poisson 0.3", "Poisson's ratio");
   expect_refused("creep --query q.csv -o out --law kalker", "kalker");
+  expect_refused("creep table.h5 --query q.csv -o out --law polach",
+                 "--law polach: found with the creep table table.h5");
   expect_refused("creep --query q.csv -o out --law polach --poisson 0.7", "--poisson");
+}
+
+TEST_F(VsiCommand, AByteOrderMarkBeforeTheHeaderIsNoneOfItsColumns) {
+  write("q.csv", "\xEF\xBB\xBFratio,ux,uy,phi\r\n1,0.1,0,0\r\n");
+  const Outcome outcome = vsi("creep --query q.csv -o r.csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }
 
 TEST_F(VsiCommand, WrongQueriesNameTheirLine) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../fastsim_scalar.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
 #include "railtab/tables/input_error.hpp"
 
@@ -258,6 +259,18 @@ TEST(Creepage, NormalisationKeepsTheDimensionalLinearForce) {
   EXPECT_NEAR(F.x / (-G * a * b * c.c11 * 2e-6), 1.0, 1e-14);
   EXPECT_NEAR(F.y / (-G * a * b * (c.c22 * upsilon_y + root * c.c23 * phi)), 1.0, 1e-14);
   EXPECT_NEAR(F.moment / (G * a * b * (root * c.c23 * upsilon_y - a * b * c.c33 * phi)), 1.0, 1e-14);
+}
+
+TEST(Fastsim, AgreesWithOneElementAfterTheOther) {
+  const testing::ScalarFastsim<20> scalar;
+  for (int i = 0; i < 200; ++i) {
+    const double size = std::pow(10.0, -2.0 + 0.02 * i), ratio = std::pow(10.0, 1.5 * std::sin(2.3 * i));
+    const Creepage c{size * std::sin(1.1 * i), size * std::cos(0.7 * i), size * std::sin(1.9 * i)};
+    const CreepForce one = scalar(ratio, 0.28, c), all = creep_force(FastsimCreep{}, ratio, c);
+    EXPECT_NEAR(one.x, all.x, 1e-12);
+    EXPECT_NEAR(one.y, all.y, 1e-12);
+    EXPECT_NEAR(one.moment, all.moment, 1e-12 * (std::sqrt(ratio) + 1.0 / std::sqrt(ratio)));
+  }
 }
 
 }  // namespace

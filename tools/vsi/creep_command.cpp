@@ -79,6 +79,10 @@ int creep_command(const Arguments& arguments) {
   require_writable_place(output, "-o");
   require_no_input(output, {query_file});
   if (values->contains("table")) require_no_input(output, {(*values)["table"].as<std::string>()});
+  if (values->contains("table") && name != "table") {
+    throw input_error("--law " + name, "with the creep table " + (*values)["table"].as<std::string>(),
+                      "--law table, or no table");
+  }
   const CreepLaw law = wanted_law(*values, name);
   const CsvTable queries = read_csv(query_file, {"ratio", "ux", "uy", "phi"});
   const Answer result = answer(law, queries, query_file);

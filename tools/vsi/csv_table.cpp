@@ -68,6 +68,8 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
   std::vector<std::size_t> order;
   std::string text;
   for (int line = 1; std::getline(stream, text); ++line) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (line == 1 && text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') continue;
     const std::string place = fmt::format("{}:{}", file.string(), line);

@@ -12,9 +12,9 @@ struct CsvTable {
   std::vector<int> line;
 };
 
-/// Read a CSV with a header row that has exactly these columns, in any order. Blank lines and lines that begin with
-/// '#' are skipped. @throws InputError with file and line: missing file, missing, unknown or repeated column, wrong
-/// number of fields, a field that is no finite number, no row.
+/// Read a CSV with a header row that has exactly these columns, in any order. Blank lines, lines that begin with
+/// '#' and a byte order mark are skipped. @throws InputError with file and line: missing file, missing, unknown or
+/// repeated column, wrong number of fields, a field that is no finite number, no row.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
 }  // namespace railtab::vsi

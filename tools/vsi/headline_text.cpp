@@ -55,6 +55,10 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
     fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
                    summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
   }
+  if (summary.outside_creep_table > 0) {
+    fmt::format_to(std::back_inserter(text), "Outside the creep table, by Polach: {} creep forces\n",
+                   summary.outside_creep_table);
+  }
   const double total = summary.seconds_total;
   const std::string speed =
       headline.real_time_factor > 0.0 ? fmt::format(", {:.3g} times real time", headline.real_time_factor) : "";
@@ -94,6 +98,7 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
   json.add("simulated_time", headline.simulated_time).add("distance", headline.distance);
   json.add("contact_mode", summary.contact_mode).add("contact_queries", summary.contact_queries);
   json.add("table_queries", summary.table_queries).add("table_share", headline.table_share);
+  json.add("outside_creep_table", summary.outside_creep_table);
   json.add("steps", summary.steps).add("newton_iterations", summary.newton_iterations);
   json.add("halved_steps", summary.halved_steps).add("back_substitutions", summary.back_substitutions);
   json.add("structure_dofs", summary.structure_dofs).add("vehicle_dofs", summary.vehicle_dofs);

@@ -57,6 +57,7 @@ struct WheelForce {
   Vector3 rail = Vector3::Zero();      ///< on the rail head: y, z [N], moment about x through the head's origin [N m]
   double rail_x = 0.0;                 ///< on the rail, longitudinal [N]
   std::array<double, ContactPatches::capacity> normal{};  ///< normal force of each patch [N]
+  int outside_creep_table = 0;  ///< patches whose creep force the creep table left to Polach, wholly or in part
 };
 
 enum class WheelSide { left, right };

@@ -62,6 +62,7 @@ struct RunSummary {
   long steps = 0, newton_iterations = 0, halved_steps = 0;
   long back_substitutions = 0;                  ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
+  long outside_creep_table = 0;                 ///< creep forces that the creep table left to Polach, wholly or in part
   /// Set-up; look-ups of the contact geometry; the contact solution besides (forces, tangents, Newton); and so on.
   double seconds_total = 0, seconds_setup = 0, seconds_lookup = 0, seconds_contact = 0, seconds_structure = 0,
          seconds_vehicle = 0, seconds_output = 0;

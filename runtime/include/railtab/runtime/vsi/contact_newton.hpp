@@ -55,6 +55,7 @@ struct NewtonReport {
   double correction = 0.0;      ///< largest last correction [m or rad]
   double seconds_lookup = 0.0;  ///< in the contact geometry
   long queries = 0, table_queries = 0;
+  long outside_creep_table = 0;  ///< creep forces that the creep table left to Polach, wholly or in part
 };
 
 struct NewtonLimits {

@@ -42,7 +42,7 @@ struct StepReport {
   bool converged = false;
   int newton_iterations = 0;
   int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
-  long queries = 0, table_queries = 0;
+  long queries = 0, table_queries = 0, outside_creep_table = 0;
   /// Contact: look-ups of the geometry, and all that the contact solution does besides.
   double seconds_lookup = 0.0, seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
 };
