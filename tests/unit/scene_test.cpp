@@ -225,7 +225,7 @@ Ends ends_of(const std::string& range) {
   return ends;
 }
 
-/// A scene with one key set; `key` is a path under a section or a [[bridge]].
+/// A scene with one key set, and what has to stand beside it.
 std::string scene_with(const std::string& key, double value, bool integer) {
   std::string contact = "mode = \"online\"\n", bridge = "[[bridge]]\n", rest;
   const std::string number = integer ? fmt::format("{}", static_cast<long>(value)) : fmt::format("{:.17e}", value);
@@ -234,8 +234,13 @@ std::string scene_with(const std::string& key, double value, bool integer) {
     contact += line(8);
   else if (key.starts_with("bridge."))
     bridge += line(7);
+  else if (key.starts_with("load.")) {
+    rest = "train.count = 100\n";
+    bridge += "[[load]]\nFy = 1.0\n" + line(5);
+  } else if (key.starts_with("ground_motion."))
+    bridge += "[[ground_motion]]\nfile = \"pair.h5\"\n" + line(14);
   else
-    rest = line(0);
+    rest = (key.starts_with("span_deviation.") ? "span_deviation.shape = \"bending\"\n" : "") + line(0);
   return rest + "[contact]\n" + contact + bridge;
 }
 

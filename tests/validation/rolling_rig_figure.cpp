@@ -43,6 +43,9 @@ SceneParameters scene_of(const Case& c) {
   scene.train.vehicle = "chinese-high-speed-car";
   scene.train.speed = c.kmh / 3.6;
   scene.train.start = -approach;
+  // What moves the coach vertically is the line of the rails alone: the lean contact, of which Hertz's differs by
+  // microns.
+  if (c.direction == SpanDeviationDirection::vertical) scene.contact.normal = NormalContact::rigid;
   scene.contact.mode = ContactMode::online;
   scene.contact.wheel = "LMA-type";
   scene.contact.rail = "CHN60";
@@ -50,7 +53,7 @@ SceneParameters scene_of(const Case& c) {
   scene.contact.dimensions.flange_back = 1.353;
   scene.track_kind = TrackKind::rigid;
   scene.span_deviation = SpanDeviationParameters{c.shape, c.direction, c.span, amplitude, 0.0, 0.0};
-  scene.integration.time_step = 5e-4;
+  scene.integration.time_step = 1e-3;
   const double spans = c.shape == SpanDeviationShape::bending ? 2.0 : 1.0;
   scene.integration.duration = (approach + 20.4 + spans * c.span) / scene.train.speed + after;
   return scene;

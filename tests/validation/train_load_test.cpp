@@ -40,9 +40,15 @@ double overturning(const VsiModel& model, const StepRecord& record) {
 constexpr double wind = 35e3;            // N on the car body, to the right
 constexpr double car_body_height = 1.8;  // m: of its centre of gravity above the rails
 
+LoadParameters wind_load() {
+  LoadParameters load;
+  load.load[1] = wind;
+  return load;
+}
+
 TEST(Crosswind, ConstantWindIsPartOfTheStateOfRest) {
   SceneParameters scene = coach_on_rigid_track();
-  scene.loads.push_back({.load = {0.0, wind, 0.0, 0.0, 0.0, 0.0}});
+  scene.loads.push_back(wind_load());
   scene.integration.duration = 0.1;
   const VsiModel model = build_model(scene);
   VsiState state(model);
@@ -58,7 +64,9 @@ TEST(Crosswind, ConstantWindIsPartOfTheStateOfRest) {
 TEST(Crosswind, SlowGustUnloadsWheelsByItsOverturningMoment) {
   constexpr double length = 20.0;  // s: the slowest motion of the coach, its lower sway, has a period of 1.7 s
   SceneParameters scene = coach_on_rigid_track();
-  scene.loads.push_back({.load = {0.0, wind, 0.0, 0.0, 0.0, 0.0}, .start = 1.0, .gust_duration = length});
+  scene.loads.push_back(wind_load());
+  scene.loads.back().start = 1.0;
+  scene.loads.back().gust_duration = length;
   scene.integration.time_step = 4e-3;
   scene.integration.duration = 16.0;
   const VsiModel model = build_model(scene);
@@ -90,7 +98,7 @@ TEST(SpeedProfile, ConstantProfileIsConstantSpeed) {
   VsiModel profile = constant;
   profile.speed_profile.emplace(std::vector<double>{0.0, 1.0}, std::vector<double>{40.0, 40.0});
   std::array<StepRecord, 2> last;
-  for (const VsiModel* model : {&constant, &profile}) {
+  for (const VsiModel* model : std::initializer_list<const VsiModel*>{&constant, &profile}) {
     VsiState state(*model);
     ASSERT_TRUE(steady_start(*model, state).converged);
     for (LinearMotion& motion : state.vehicle) motion.velocity[model->vehicle.dof[0][1]] = 0.05;
