@@ -51,6 +51,21 @@ class Random {
   std::mt19937_64 generator_;
 };
 
+// values += amplitude·cos(ω x + φ) at evenly spaced x, by turning on from one point to the next.
+void add_wave(double amplitude, double omega, double phase, const std::vector<double>& x, std::vector<double>& values) {
+  constexpr std::size_t stretch = 256;  // points, over which rounding stays below 1e-13
+  const double turn_cos = std::cos(omega * (x[1] - x[0])), turn_sin = std::sin(omega * (x[1] - x[0]));
+  for (std::size_t begin = 0; begin < x.size(); begin += stretch) {
+    double c = amplitude * std::cos(omega * x[begin] + phase), s = amplitude * std::sin(omega * x[begin] + phase);
+    for (std::size_t i = begin; i < std::min(x.size(), begin + stretch); ++i) {
+      values[i] += c;
+      const double next = c * turn_cos - s * turn_sin;
+      s = s * turn_cos + c * turn_sin;
+      c = next;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> spectrum_names() { return {"german-low", "german-high", "fra-4", "fra-5", "fra-6"}; }
@@ -95,7 +110,7 @@ Irregularity random_irregularity(const SpectrumParameters& parameters, double fr
     const std::array<double, 4> densities{S.vertical, S.alignment, S.cross_level, S.gauge};
     for (std::size_t c = 0; c < sum.size(); ++c) {
       const double amplitude = std::sqrt(2.0 * densities[c] * width), phase = 2.0 * std::numbers::pi * random();
-      for (std::size_t i = 0; i < points; ++i) sum[c][i] += amplitude * std::cos(omega * x[i] + phase);
+      add_wave(amplitude, omega, phase, x, sum[c]);
     }
   }
   std::array<std::vector<double>, 4> rails;  // y_left, z_left, y_right, z_right

@@ -62,13 +62,18 @@ MovingWindow::MovingWindow(const VsiModel& model, double time_step)
 MovingWindow::Ends MovingWindow::ends(long step) const {
   const WindowModel& window = *model_.window;
   const double time = static_cast<double>(step) * scheme_.time_step;
-  const double rear = model_.wheelset_x(model_.wheelsets() - 1, time) - window.behind;
-  const double front = model_.wheelset_x(0, time) + window.ahead;
-  Ends ends{stride * std::floor(rear / stride), stride * std::ceil(front / stride)};
-  for (const SpanModes& span : window.spans) {
-    if (span.from < ends.from && ends.from < span.to) ends.from = span.from;
-    if (span.from < ends.to && ends.to < span.to) ends.to = span.to;
-  }
+  Ends ends{model_.wheelset_x(model_.wheelsets() - 1, time), model_.wheelset_x(0, time)};
+  const auto whole_spans = [&] {
+    for (const SpanModes& span : window.spans) {
+      if (span.from < ends.from && ends.from < span.to) ends.from = span.from;
+      if (span.from < ends.to && ends.to < span.to) ends.to = span.to;
+    }
+  };
+  // A span under load turns at its bearings and bends the rails there: the cut stands beyond its neighbour.
+  whole_spans();
+  ends.from = stride * std::floor((ends.from - window.behind) / stride);
+  ends.to = stride * std::ceil((ends.to + window.ahead) / stride);
+  whole_spans();
   return ends;
 }
 

@@ -243,6 +243,19 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
   }
 }
 
+std::string reduction_text(const ReductionParameters& reduction) {
+  const std::string name = fmt::format("reduction of the structure: {}", reduction_name(reduction.kind));
+  if (reduction.kind == Reduction::window) {
+    return fmt::format("{}, {:g} m ahead of the train and {:g} m behind take part", name, reduction.ahead,
+                       reduction.behind);
+  }
+  if (reduction.kind == Reduction::modal) {
+    return fmt::format("{}, {} modes{}", name, reduction.modes,
+                       reduction.static_correction ? " with static correction" : "");
+  }
+  return fmt::format("{}, {} modes of each part", name, reduction.modes);
+}
+
 // What was done to the points of measured profiles.
 void note_repairs(const VsiModel& model, const RunObserver& observer) {
   if (!model.geometry) return;
@@ -313,6 +326,7 @@ RunPlan plan_run(const SceneParameters& scene) {
     plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",
                                      scene.track_kind == TrackKind::imported ? "imported" : "flexible",
                                      2 * model.structure->rail[0].x.size(), scene.spans.size()));
+    if (scene.reduction.kind != Reduction::none) plan.built.push_back(reduction_text(scene.reduction));
   } else {
     plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -28,6 +29,8 @@ class Integrator {
     if (model.window) window_.emplace(model, p.time_step);
     // The tolerance counts relative to a contact displacement of 1 mm.
     limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
+    // What Newton leaves the structure's answer cannot take away.
+    limits_.far_field_tolerance = std::max(limits_.far_field_tolerance, 2.0 * limits_.newton.tolerance);
     static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 

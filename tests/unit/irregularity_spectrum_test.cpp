@@ -25,9 +25,9 @@ double variance(const std::vector<double>& values) {
 TEST(RandomTrack, HasTheMeanSquareOfItsSpectrum) {
   for (const std::string& name : spectrum_names()) {
     SpectrumParameters p{.name = name, .seed = 3, .shortest = 3.0, .longest = 25.0};
-    const Irregularity track = random_irregularity(p, 0.0, 20000.0);
+    const Irregularity track = random_irregularity(p, 0.0, 8000.0);
     std::vector<double> vertical, alignment, cross, gauge;
-    for (double x = 0.0; x < 20000.0; x += 0.7) {
+    for (double x = 0.0; x < 8000.0; x += 0.7) {
       const RailDeviation left = track.at(RailSide::left, x), right = track.at(RailSide::right, x);
       vertical.push_back(0.5 * (left.z + right.z));
       alignment.push_back(0.5 * (left.y + right.y));
@@ -45,11 +45,11 @@ TEST(RandomTrack, HasTheMeanSquareOfItsSpectrum) {
       sum.cross_level += S.cross_level * width;
       sum.gauge += S.gauge * width;
     }
-    // A sample of 20 km of waves up to 25 m: some 5 %.
-    EXPECT_NEAR(variance(vertical) / sum.vertical, 1.0, 0.15) << name;
-    EXPECT_NEAR(variance(alignment) / sum.alignment, 1.0, 0.15) << name;
-    EXPECT_NEAR(variance(cross) / sum.cross_level, 1.0, 0.15) << name;
-    EXPECT_NEAR(variance(gauge) / sum.gauge, 1.0, 0.15) << name;
+    // A sample of 8 km of waves up to 25 m: some 8 %.
+    EXPECT_NEAR(variance(vertical) / sum.vertical, 1.0, 0.25) << name;
+    EXPECT_NEAR(variance(alignment) / sum.alignment, 1.0, 0.25) << name;
+    EXPECT_NEAR(variance(cross) / sum.cross_level, 1.0, 0.25) << name;
+    EXPECT_NEAR(variance(gauge) / sum.gauge, 1.0, 0.25) << name;
     if (name != "german-low") continue;
     EXPECT_NEAR(std::sqrt(sum.vertical), 0.98e-3, 0.01e-3);
     EXPECT_NEAR(std::sqrt(sum.alignment), 0.71e-3, 0.01e-3);

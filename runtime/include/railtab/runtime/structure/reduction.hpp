@@ -15,8 +15,8 @@ struct ReductionParameters {
   Reduction kind = Reduction::none;
   int modes = 200;                ///< modal: of the structure; craig-bampton: of each part, 1..2000
   bool static_correction = true;  ///< modal: the modes left out answer without inertia
-  double ahead = 20.0;            ///< window: track before the first wheelset [m]
-  double behind = 20.0;           ///< window: track behind the last wheelset [m]
+  double ahead = 20.0;            ///< window: track before the first wheelset and its span [m]
+  double behind = 20.0;           ///< window: track behind the last wheelset and its span [m]
   void validate() const;          ///< @throws InputError
 };
 
