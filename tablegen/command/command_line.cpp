@@ -147,6 +147,7 @@ void require_output(const std::string& output, std::initializer_list<std::string
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw input_error("--output " + output, "no right to write in " + folder.string(), "a folder that can be written");
   }
+  if (std::filesystem::is_directory(output)) throw input_error("--output " + output, "a folder", "a file");
   require_replaceable(output, filetypes);
 }
 
