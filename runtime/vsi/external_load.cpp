@@ -85,10 +85,9 @@ void add_ground_load(const VsiModel& model, const HhtScheme& scheme, double time
   const auto add_force = [&](const SupportMotion& s, double weight) {
     load.noalias() -= supports.stiffness * (weight * s.displacement);
     load.noalias() -= supports.damping * (weight * s.velocity);
+    load.noalias() -= supports.mass * (weight * s.acceleration);
   };
-  const SupportMotion after = support_motion(*model.ground_motion, supports.x, time + scheme.time_step);
-  add_force(after, scheme.load_weight());
-  load.noalias() -= supports.mass * after.acceleration;
+  add_force(support_motion(*model.ground_motion, supports.x, time + scheme.time_step), scheme.load_weight());
   if (scheme.alpha != 0.0) add_force(support_motion(*model.ground_motion, supports.x, time), -scheme.alpha);
 }
 

@@ -187,7 +187,8 @@ double two_routes(double time_step) {
     const GroundPoint now = model.ground_motion->at(0.0, end);
     predict(hht, relative, p);
     response.step_load(hht, relative, p, load);
-    load -= now.acceleration[0] * inertia;
+    const double before = model.ground_motion->at(0.0, step * time_step).acceleration[0];
+    load -= (hht.load_weight() * now.acceleration[0] - hht.alpha * before) * inertia;
     update(hht, p, response.solve(load), relative);
     worst = std::max(worst,
                      std::abs(absolute.displacement[midspan] - now.displacement[0] - relative.displacement[midspan]));
