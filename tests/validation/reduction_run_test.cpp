@@ -66,13 +66,13 @@ TEST(ReducedRun, StaticCorrectionMendsTheContactForce) {
   EXPECT_LT(with.force_rms, 0.3 * without.force_rms);
 }
 
-struct Run {
+struct RecordedRun {
   std::vector<StepRecord> records;
   std::vector<RunCheckpoint> checkpoints;
 };
 
-Run run(const SceneParameters& scene, const std::optional<RunCheckpoint>& from = std::nullopt) {
-  Run result;
+RecordedRun recorded(const SceneParameters& scene, const std::optional<RunCheckpoint>& from = std::nullopt) {
+  RecordedRun result;
   RunObserver observer;
   observer.checkpoint_every = 70;
   observer.record = [&](const StepRecord& record) { result.records.push_back(record); };
@@ -108,11 +108,11 @@ TEST_P(ResumedRun, IsTheUninterruptedOneToTheLastBit) {
   if (GetParam() == Reduction::window) scene.train.speed = 80.0;
   scene.track.length_after = 60.0;
   if (GetParam() == Reduction::craig_bampton) scene.spans.resize(1);
-  const Run whole = run(scene);
+  const RecordedRun whole = recorded(scene);
   ASSERT_GE(whole.checkpoints.size(), 2U);
   for (std::size_t c = 0; c < whole.checkpoints.size(); c += 5) {
     const auto step = static_cast<std::size_t>(whole.checkpoints[c].step);
-    const Run resumed = run(scene, whole.checkpoints[c]);
+    const RecordedRun resumed = recorded(scene, whole.checkpoints[c]);
     ASSERT_EQ(resumed.records.size() + step + 1, whole.records.size());
     for (std::size_t i = 0; i < resumed.records.size(); ++i)
       ASSERT_TRUE(same(resumed.records[i], whole.records[step + 1 + i])) << "step " << step + 1 + i;
