@@ -92,7 +92,7 @@ TEST_P(KilledRun, ResumesToTheLastBit) {
                                   "[track]\nlength_before = 40.0\nlength_after = 200.0\n"
                                   "[[bridge]]\nlength = 12.0\nelements = 12\ncount = 3\n"
                                   "[irregularity]\nspectrum = \"german-low\"\n"
-                                  "[integration]\nduration = 6.0\n[output]\nevery = 7\n[structure]\nreduction = \"") +
+                                  "[integration]\nduration = 3.0\n[output]\nevery = 7\n[structure]\nreduction = \"") +
                           GetParam() + "\"\nwindow_ahead = 8.0\nwindow_behind = 8.0\n");
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(vsi({"run", "scene.toml", "-o", "whole.h5", "--quiet"}), 0) << text("log");
