@@ -70,6 +70,12 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                    set("list of texts", "any", fmt::format("[\"{}\"]", fmt::join(k.member(standard), "\", \"")));
                  },
                  [&](const SwitchKey& k) { set("choice", "true, false", k.member(standard) ? "true" : "false"); },
+                 [&](const PointKey& k) {
+                   const std::optional<Point>& point = k.member(standard);
+                   set("point", "any", point ? fmt::format("{}", fmt::join(*point, ", ")) : "");
+                 },
+                 [&](const NumberListKey&) { set("numbers", "any", ""); },
+                 [&](const FileFormatKey&) { set("choice", "matrix-market, calculix, ansys", "matrix-market"); },
              },
              key.value);
   return result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -18,6 +19,7 @@ struct SceneDraft {
   BridgeParameters span;            ///< the [[bridge]] being read
   int span_count = 1;               ///< equal spans that this [[bridge]] stands for
   std::optional<double> speed_kmh;  ///< the other way to say train.speed
+  std::string span_damping_type;    ///< of the [[bridge]] being read; empty: its damping_ratio
   std::filesystem::path irregularity;
   std::string spectrum_name;    ///< empty: no random track
   SpectrumParameters spectrum;  ///< the rest of it
@@ -67,6 +69,15 @@ struct TextKey {
   Member<std::string> member;
   Names names;
 };
+using Point = std::array<double, 3>;
+/// Three numbers.
+struct PointKey {
+  Member<std::optional<Point>> member;
+};
+/// Any count of numbers, rising or not.
+struct NumberListKey {
+  Member<std::vector<double>> member;
+};
 /// A file that must exist, relative to the scene.
 struct FileKey {
   Member<std::filesystem::path> member;
@@ -88,6 +99,7 @@ struct TextListKey {
 struct SwitchKey {
   Member<bool> member;
 };
+struct FileFormatKey {};
 
 /// The one place that says which key goes to which member, in which unit and range.
 struct KeyBinding {
@@ -95,13 +107,16 @@ struct KeyBinding {
   std::string_view unit;
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ContactModeKey,
-               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey, TextListKey>
+               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey, TextListKey, PointKey, NumberListKey,
+               FileFormatKey>
       value;
 };
 
 /// Keys of [train], [contact], [irregularity], [integration], [output] and the top of the scene.
 [[nodiscard]] const std::vector<KeyBinding>& run_keys();
-/// Keys of [track] and [[bridge]].
+/// Keys of [structure].
+[[nodiscard]] const std::vector<KeyBinding>& import_keys();
+/// Keys of [track], [[bridge]] and [structure].
 [[nodiscard]] const std::vector<KeyBinding>& structure_keys();
 /// Keys of [span_deviation], [[load]] and [[ground_motion]].
 [[nodiscard]] const std::vector<KeyBinding>& load_keys();

@@ -15,6 +15,35 @@ void require(bool ok, std::string_view key, double found, std::string_view expec
   if (!ok) throw input_error(key, fmt::format("{}", found), expected);
 }
 
+/// Rails come from the imported structure, or the track is laid over its deck.
+void check_structure(const SceneParameters& scene, const std::string& place) {
+  const ImportParameters& structure = scene.structure;
+  const FeFiles& files = structure.files;
+  if (scene.track_kind == TrackKind::imported && files.nodes.empty()) {
+    const bool all_files =
+        !files.mass.empty() && !files.damping.empty() && !files.stiffness.empty() && !files.dofs.empty();
+    if (!all_files) {
+      throw input_error(place, "track.kind = \"imported\" without all its files",
+                        "structure.mass, structure.damping, structure.stiffness and structure.dofs");
+    }
+    return;
+  }
+  if (scene.track_kind == TrackKind::imported) {
+    if (!structure.rail_left.given() || !structure.rail_right.given()) {
+      throw input_error(place, "track.kind = \"imported\" without both rails",
+                        "structure.rail_left and structure.rail_right, or track.kind = \"flexible\"");
+    }
+    structure.validate();
+  }
+  if (scene.track_kind != TrackKind::flexible || files.stiffness.empty()) return;
+  if (!scene.spans.empty()) throw input_error(place, "a [[bridge]] and a [structure]", "one of them under the track");
+  if (!structure.deck.given()) {
+    throw input_error(place, "a [structure] without structure.deck",
+                      "the deck's nodes, which the track is laid upon, or track.kind = \"imported\"");
+  }
+  structure.validate();
+}
+
 }  // namespace
 
 std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
@@ -65,8 +94,8 @@ void check_ground_motion(const SceneParameters& scene, const std::string& place)
     throw input_error(place, "ground motion with structure.reduction",
                       "structure.reduction = \"none\": modes with supports at rest do not follow supports that move");
   }
-  if (!scene.ground_motion.empty() && scene.track_kind == TrackKind::imported) {
-    throw input_error(place, "ground motion under track.kind = \"imported\"",
+  if (!scene.ground_motion.empty() && !scene.structure.files.stiffness.empty()) {
+    throw input_error(place, "ground motion under an imported structure",
                       "a built-in track: imported matrices do not say how their supports hold them");
   }
 }
@@ -103,12 +132,7 @@ void SceneParameters::validate() const {
         fmt::format("a [[bridge]] on track.kind = \"{}\"", track_kind == TrackKind::rigid ? "rigid" : "imported"),
         "track.kind = \"flexible\" or no bridge");
   }
-  const bool all_files =
-      !structure.mass.empty() && !structure.damping.empty() && !structure.stiffness.empty() && !structure.dofs.empty();
-  if (track_kind == TrackKind::imported && !all_files) {
-    throw input_error(place, "track.kind = \"imported\" without all its files",
-                      "structure.mass, structure.damping, structure.stiffness and structure.dofs");
-  }
+  check_structure(*this, place);
   if (train.count < 1) throw input_error(place, fmt::format("train.count = {}", train.count), ">= 1");
   require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");
   integration.validate();

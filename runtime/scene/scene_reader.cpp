@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <utility>
 
 #include "key_table.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/structure/bridge_damping.hpp"
 #include "toml_leaves.hpp"
 
 namespace railtab::scene {
@@ -79,6 +81,18 @@ struct Assign {
     draft.parameters.contact.normal =
         one_of({"hertz", "rigid"}) == "rigid" ? NormalContact::rigid : NormalContact::hertz;
   }
+  void operator()(const FileFormatKey&) const {
+    const std::string name = one_of({"matrix-market", "calculix", "ansys"});
+    draft.parameters.structure.files.format = name == "calculix" ? FeFormat::calculix
+                                              : name == "ansys"  ? FeFormat::ansys
+                                                                 : FeFormat::matrix_market;
+  }
+  void operator()(const PointKey& key) const {
+    const std::vector<double> values = numbers("three numbers, [x, y, z]");
+    if (values.size() != 3) throw error("three numbers, [x, y, z]");
+    key.member(draft) = Point{values[0], values[1], values[2]};
+  }
+  void operator()(const NumberListKey& key) const { key.member(draft) = numbers("numbers, [a, b, …]"); }
 
  private:
   [[nodiscard]] InputError error(std::string_view expected) const {
@@ -91,6 +105,18 @@ struct Assign {
       throw error(fmt::format("a number, {}{}{}", range.text(), unit == "1" ? "" : " ", unit == "1" ? "" : unit));
     }
     return *value;
+  }
+
+  [[nodiscard]] std::vector<double> numbers(std::string_view expected) const {
+    const toml::array* list = leaf.node->as_array();
+    if (!list) throw error(expected);
+    std::vector<double> values;
+    for (const toml::node& entry : *list) {
+      const std::optional<double> value = entry.value<double>();
+      if (!entry.is_number() || !value || !std::isfinite(*value)) throw error(expected);
+      values.push_back(*value);
+    }
+    return values;
   }
 
   [[nodiscard]] std::string text(std::string_view expected) const {
@@ -159,8 +185,12 @@ bool is_section(std::string_view path) {
 /// heading or the end of the file.
 void finish_entry(SceneDraft& draft, std::string_view section) {
   if (section == "bridge") {
+    if (!draft.span_damping_type.empty()) {
+      draft.span.damping_ratio = damping_lower_bound("bridge.damping_type", draft.span_damping_type, draft.span.length);
+    }
     draft.parameters.spans.insert(draft.parameters.spans.end(), static_cast<std::size_t>(draft.span_count), draft.span);
     draft.span = BridgeParameters{};
+    draft.span_damping_type.clear();
     draft.span_count = 1;
   } else if (section == "load") {
     draft.parameters.loads.push_back(std::exchange(draft.load, {}));
@@ -188,6 +218,17 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
     }
   }
   if (heading) finish_entry(draft, heading->path);
+}
+
+/// The bound of a type of bridge, or a ratio.
+void refuse_two_dampings(const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+  for (const Leaf& type : leaves) {
+    if (type.path != "bridge.damping_type") continue;
+    for (const Leaf& leaf : leaves) {
+      if (leaf.path != "bridge.damping_ratio" || leaf.entry != type.entry) continue;
+      throw leaf_error(file, leaf, "bridge.damping_type too", "either damping_ratio or damping_type of a bridge");
+    }
+  }
 }
 
 /// A table holds its own profiles and dimensions: keys that name others would be read and not used.
@@ -250,6 +291,7 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
   }
   settle_deviation(draft, file, leaves);
   refuse_profiles_beside_table(draft, file, leaves);
+  refuse_two_dampings(file, leaves);
   if (!draft.spectrum_name.empty()) {
     if (!draft.irregularity.empty()) {
       for (const Leaf& leaf : leaves) {
@@ -261,11 +303,11 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     draft.parameters.spectrum->name = draft.spectrum_name;
   }
   if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
-  if (draft.parameters.track_kind != TrackKind::imported) {
+  if (draft.parameters.track_kind == TrackKind::rigid) {
     // named, but nothing that this run reads
-    const StructureFiles& s = draft.parameters.structure;
+    const FeFiles& s = draft.parameters.structure.files;
     std::erase_if(draft.parameters.files, [&](const std::filesystem::path& read) {
-      return read == s.mass || read == s.damping || read == s.stiffness || read == s.dofs;
+      return read == s.mass || read == s.damping || read == s.stiffness || read == s.dofs || read == s.nodes;
     });
   }
   if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();

@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "key_table.hpp"
+#include "railtab/runtime/structure/bridge_damping.hpp"
 
 namespace railtab::scene {
 namespace {
@@ -19,7 +20,8 @@ auto& of_span(SceneDraft& draft) {
 
 std::vector<KeyBinding> track_keys() {
   return {
-      {"track.kind", "", "rigid: the lean alternative without structure unknowns; imported: matrices from files",
+      {"track.kind", "",
+       "rigid: the lean alternative without structure unknowns; imported: rails of an imported structure",
        TrackKindKey{}},
       {"track.sleeper_spacing", "m", "distance of the sleepers",
        NumberKey{of_track<&TrackParameters::sleeper_spacing>, {0.2, 5.0}}},
@@ -112,6 +114,8 @@ std::vector<KeyBinding> span_keys() {
        NumberKey{of_span<&BridgeParameters::rotary_inertia>, positive}},
       {"bridge.damping_ratio", "1", "of critical, at the first two vertical bending frequencies",
        NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}}},
+      {"bridge.damping_type", "", "the damping_ratio that EN 1991-2, Table 6.6, has as lower bound for the span",
+       TextKey{[](SceneDraft& d) -> std::string& { return d.span_damping_type; }, bridge_damping_types}},
       {"bridge.elements", "1", "beam elements of the span, even",
        IntegerKey{of_span<&BridgeParameters::elements>, 2, 1000}},
       {"bridge.axis_depth", "m", "rail-head top down to the beam axis, negative where the axis is above",
@@ -132,19 +136,6 @@ std::vector<KeyBinding> reduction_keys() {
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.ahead; }, {5.0, 1e5}}},
       {"structure.window_behind", "m", "window: track that takes part behind the last wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.behind; }, {5.0, 1e5}}},
-  };
-}
-
-std::vector<KeyBinding> import_keys() {
-  return {
-      {"structure.mass", "", "Matrix Market file of the mass matrix",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.mass; }}},
-      {"structure.damping", "", "of the damping matrix",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.damping; }}},
-      {"structure.stiffness", "", "of the stiffness matrix",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.stiffness; }}},
-      {"structure.dofs", "", "table of the rails' and the reported degrees of freedom",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.parameters.structure.dofs; }}},
   };
 }
 

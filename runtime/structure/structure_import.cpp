@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <string_view>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/structure/fe_structure.hpp"
+#include "text_lines.hpp"
 
 namespace railtab {
 
@@ -20,7 +19,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr std::string_view header = "row,node,x[m],motion,rail";
 constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "roll", "pitch", "yaw"};
-constexpr double symmetry_tolerance = 1e-9;  // of the largest diagonal entry: what writing with ten digits leaves
 
 struct Node {
   double x = 0.0;
@@ -34,29 +32,16 @@ struct DofTable {
   std::vector<double> sign;                         // per row of the matrices
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
 std::array<std::string_view, 5> cells_of(const std::string& place, std::string_view text) {
   std::array<std::string_view, 5> cells;
   std::size_t count = 0;
   for (std::size_t begin = 0; begin <= text.size(); ++count) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    if (count < cells.size()) cells[count] = trimmed(text.substr(begin, end - begin));
+    if (count < cells.size()) cells[count] = stripped(text.substr(begin, end - begin));
     begin = end + 1;
   }
   if (count != cells.size()) throw input_error(place, fmt::format("{} columns", count), fmt::format("5: {}", header));
   return cells;
-}
-
-template <class Number>
-bool parse(std::string_view text, Number& value) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && stop == text.data() + text.size();
 }
 
 void set_rails(Node& node, const std::string& place, std::string_view rail) {
@@ -108,23 +93,20 @@ void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place
 }
 
 DofTable read_dofs(const std::filesystem::path& file, int rows) {
-  std::ifstream stream(file);
-  if (!stream) throw input_error(file.string(), "no readable file", "a table of dofs");
+  LineReader reader(file, "a table of dofs");
   DofTable table;
   table.sign.assign(static_cast<std::size_t>(rows), 1.0);
   std::vector<bool> taken(static_cast<std::size_t>(rows), false);
   bool has_header = false;
-  std::string text;
-  for (long count = 1; std::getline(stream, text); ++count) {
-    const std::string place = fmt::format("{}:{}", file.string(), count);
-    const std::string_view line = trimmed(text);
+  while (reader.next()) {
+    const std::string_view line = stripped(reader.line());
     if (line.empty() || line.front() == '#') continue;
     if (has_header) {
-      add_row(table, taken, place, line);
+      add_row(table, taken, reader.place(), line);
     } else if (line == header) {
       has_header = true;
     } else {
-      throw input_error(place, fmt::format("'{}'", line), header);
+      throw reader.error(fmt::format("'{}'", line), header);
     }
   }
   return table;
@@ -153,25 +135,7 @@ RailLine rail_line(const DofTable& table, bool Node::*on_rail, const std::filesy
 }
 
 Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
-  const Sparse matrix = read_matrix_market(file);
-  const Eigen::Index expected = rows > 0 ? rows : matrix.rows();
-  if (matrix.rows() != expected || matrix.cols() != expected) {
-    throw input_error(file.string(), fmt::format("{} x {}", matrix.rows(), matrix.cols()),
-                      fmt::format("{0} x {0}{1}", expected, rows > 0 ? ", as the stiffness matrix" : ", square"));
-  }
-  const Sparse transposed = matrix.transpose();
-  const Sparse difference = matrix - transposed;
-  const double bound = symmetry_tolerance * matrix.diagonal().cwiseAbs().maxCoeff();
-  for (int column = 0; column < difference.outerSize(); ++column) {
-    for (Sparse::InnerIterator entry(difference, column); entry; ++entry) {
-      if (std::abs(entry.value()) <= bound) continue;
-      throw input_error(fmt::format("{}: row {}, column {}", file.string(), entry.row() + 1, column + 1),
-                        fmt::format("{} against {} at the mirrored place", matrix.coeff(entry.row(), column),
-                                    matrix.coeff(column, entry.row())),
-                        "a symmetric matrix");
-    }
-  }
-  return 0.5 * (matrix + transposed);
+  return symmetric_mean(file, read_matrix_market(file), rows);
 }
 
 }  // namespace

@@ -55,6 +55,14 @@ class Dissection {
     }
   }
 
+  [[nodiscard]] bool touches_level(int v, int level) const {
+    for (int p = begin_[index(v)]; p < begin_[index(v) + 1]; ++p) {
+      const auto w = index(row_[index(p)]);
+      if (part_[w] == part_[index(v)] && level_[w] == level) return true;
+    }
+    return false;
+  }
+
   // `reached`: connected vertices in the order of their levels.
   void dissect(const std::vector<int>& reached) {
     const int levels = level_[index(reached.back())] + 1;
@@ -79,9 +87,13 @@ class Dissection {
       }
     }
     const auto at = [&](std::size_t i) { return reached.begin() + static_cast<std::ptrdiff_t>(i); };
-    const std::vector<int> below(reached.begin(), at(first[index(cut)]));
+    std::vector<int> below(reached.begin(), at(first[index(cut)]));
     const std::vector<int> above(at(first[index(cut) + 1]), reached.end());
-    const std::vector<int> middle(at(first[index(cut)]), at(first[index(cut) + 1]));
+    // What has no neighbour above need not be cut: inner unknowns of solid elements are two thirds of a level.
+    std::vector<int> middle;
+    for (std::size_t i = first[index(cut)]; i < first[index(cut) + 1]; ++i) {
+      (touches_level(reached[i], cut + 1) ? middle : below).push_back(reached[i]);
+    }
     eliminate(below);
     eliminate(above);
     order_.insert(order_.end(), middle.begin(), middle.end());

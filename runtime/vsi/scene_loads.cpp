@@ -98,7 +98,8 @@ MotionPlane vehicle_plane(const SceneParameters& scene) noexcept {
 MotionPlane structure_plane(const SceneParameters& scene) noexcept {
   const bool aside = std::any_of(scene.spans.begin(), scene.spans.end(),
                                  [](const BridgeParameters& span) { return span.track_offset != 0.0; });
-  return aside ? MotionPlane::spatial : vehicle_plane(scene);
+  const bool imported = !scene.structure.files.stiffness.empty();  // has all its motions
+  return aside || imported ? MotionPlane::spatial : vehicle_plane(scene);
 }
 
 void add_loads(const SceneParameters& scene, VsiModel& model) {

@@ -3,14 +3,15 @@
 #include <chrono>
 #include <cmath>
 
+#include "plan_memory.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
-#include "plan_memory.hpp"
 #include "scene_loads.hpp"
+#include "scene_structure.hpp"
 
 namespace railtab {
 
@@ -275,10 +276,7 @@ VsiModel build_model(const SceneParameters& scene) {
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
-  if (scene.track_kind == TrackKind::flexible) {
-    model.structure = build_track_bridge(scene.track, scene.spans, structure_plane(scene));
-  }
-  if (scene.track_kind == TrackKind::imported) model.structure = import_structure(scene.structure);
+  if (scene.track_kind != TrackKind::rigid) model.structure = build_structure(scene);
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   add_loads(scene, model);
   if (scene.spectrum) model.irregularity = random_track(scene, model);
@@ -289,12 +287,19 @@ VsiModel build_model(const SceneParameters& scene) {
 
 double run_duration(const SceneParameters& scene, const VsiModel& model) {
   if (scene.integration.duration > 0.0) return scene.integration.duration;
+  const auto time_to = [&](double x) {
+    const double way = x - model.wheelset_x(model.wheelsets() - 1, 0.0);
+    return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
+  };
+  if (track_on_import(scene)) {
+    // the track goes on for length_after, rounded up to whole bays
+    return time_to(model.structure->rail[0].x.back() - scene.track.length_after);
+  }
   if (scene.spans.empty()) {
     throw input_error("scene: integration.duration", "none, and no bridge",
                       "a duration in s, or a [[bridge]] to cross");
   }
-  const double way = spans_length(scene) - model.wheelset_x(model.wheelsets() - 1, 0.0);
-  return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
+  return time_to(spans_length(scene));
 }
 
 RunPlan plan_run(const SceneParameters& scene) {
@@ -330,7 +335,9 @@ RunPlan plan_run(const SceneParameters& scene) {
   } else {
     plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
   }
-  if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
+  if (track_on_import(scene)) {
+    plan.built.push_back(fmt::format("bridge of {}", scene.structure.files.stiffness.filename().string()));
+  } else if (scene.spans.empty() && scene.track_kind != TrackKind::imported)
     plan.left_out.emplace_back("bridge: the scene names none");
   if (scene.spectrum)
     plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));

@@ -10,6 +10,7 @@
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/structure/fe_files.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/track/irregularity.hpp"
 #include "railtab/tables/creep_table.hpp"
@@ -77,6 +78,11 @@ const std::vector<Reader>& readers() {
       {"two_columns", ".txt", read_wheel, nullptr},
       {"scene", ".toml", [](const Path& file) { static_cast<void>(read_scene(file)); }, nullptr},
       {"matrix_market", ".mtx", [](const Path& file) { static_cast<void>(read_matrix_market(file)); }, nullptr},
+      {"calculix_matrix", ".sti", [](const Path& file) { static_cast<void>(read_calculix_matrix(file, 3)); }, nullptr},
+      {"calculix_rows", ".dof", [](const Path& file) { static_cast<void>(read_calculix_rows(file)); }, nullptr},
+      {"harwell_boeing", ".matrix", [](const Path& file) { static_cast<void>(read_harwell_boeing(file)); }, nullptr},
+      {"ansys_rows", ".mapping", [](const Path& file) { static_cast<void>(read_ansys_rows(file)); }, nullptr},
+      {"fe_mesh", ".inp", [](const Path& file) { static_cast<void>(read_fe_mesh(file)); }, nullptr},
       {"structure_dofs", ".csv", read_dof_table, nullptr},
       {"irregularity", ".csv", [](const Path& file) { static_cast<void>(read_irregularity(file)); }, nullptr},
       {"creep_queries", ".csv",

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "railtab/runtime/structure/fe_files.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/tables/input_error.hpp"
 

@@ -14,5 +14,6 @@ int creep_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
 int report_command(const Arguments& arguments);
+int structure_command(const Arguments& arguments);
 
 }  // namespace railtab::vsi

@@ -22,6 +22,8 @@ std::string quoted(std::string_view text) {
   return result + "\"";
 }
 
+std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+
 }  // namespace
 
 JsonObject& JsonObject::add_raw(std::string_view name, std::string_view value) {
@@ -30,9 +32,7 @@ JsonObject& JsonObject::add_raw(std::string_view name, std::string_view value) {
   return *this;
 }
 
-JsonObject& JsonObject::add(std::string_view name, double value) {
-  return add_raw(name, std::isfinite(value) ? fmt::format("{}", value) : "null");
-}
+JsonObject& JsonObject::add(std::string_view name, double value) { return add_raw(name, number_text(value)); }
 JsonObject& JsonObject::add(std::string_view name, long value) { return add_raw(name, std::to_string(value)); }
 JsonObject& JsonObject::add(std::string_view name, bool value) { return add_raw(name, value ? "true" : "false"); }
 JsonObject& JsonObject::add(std::string_view name, std::string_view value) { return add_raw(name, quoted(value)); }
@@ -40,6 +40,11 @@ JsonObject& JsonObject::add(std::string_view name, const JsonObject& value) { re
 JsonObject& JsonObject::add(std::string_view name, const std::vector<std::string>& values) {
   std::string list;
   for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);
+  return add_raw(name, "[" + list + "]");
+}
+JsonObject& JsonObject::add(std::string_view name, const std::vector<double>& values) {
+  std::string list;
+  for (double value : values) list += (list.empty() ? "" : ", ") + number_text(value);
   return add_raw(name, "[" + list + "]");
 }
 

@@ -16,6 +16,7 @@ class JsonObject {
   JsonObject& add(std::string_view name, const char* value) { return add(name, std::string_view(value)); }
   JsonObject& add(std::string_view name, const JsonObject& value);
   JsonObject& add(std::string_view name, const std::vector<std::string>& values);
+  JsonObject& add(std::string_view name, const std::vector<double>& values);
   [[nodiscard]] std::string text() const { return "{" + members_ + "}"; }
 
  private:

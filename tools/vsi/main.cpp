@@ -19,7 +19,8 @@ constexpr const char* usage =
     "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
     "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
-    "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n";
+    "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n"
+    "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n";
 
 int dispatch(const Arguments& arguments) {
   if (arguments.empty()) throw InputError(fmt::format("no command\n{}", usage));
@@ -30,6 +31,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "run") return run_command(rest);
   if (name == "sweep") return sweep_command(rest);
   if (name == "report") return report_command(rest);
+  if (name == "structure") return structure_command(rest);
   if (name == "--help" || name == "-h") {
     fmt::print("{}", usage);
     return done;

@@ -10,8 +10,8 @@
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 #include "railtab/runtime/results/output_selection.hpp"
+#include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
-#include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/track/irregularity_spectrum.hpp"
 #include "railtab/runtime/track/span_deviation.hpp"
@@ -92,7 +92,7 @@ struct SceneParameters {
   TrackKind track_kind = TrackKind::flexible;
   TrackParameters track;
   std::vector<BridgeParameters> spans;  ///< none: no bridge
-  StructureFiles structure;             ///< for TrackKind::imported
+  ImportParameters structure;  ///< rails (TrackKind::imported) or a bridge under railtab's own track (flexible)
   ReductionParameters reduction;
   std::optional<std::filesystem::path> irregularity;
   std::optional<SpectrumParameters> spectrum;  ///< in place of a file: a random track

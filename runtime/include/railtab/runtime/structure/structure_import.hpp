@@ -1,17 +1,10 @@
 #pragma once
 
-#include <Eigen/SparseCore>
 #include <filesystem>
 
 #include "railtab/runtime/structure/structure_model.hpp"
 
 namespace railtab {
-
-/// A real sparse matrix in Matrix Market's coordinate format, `general` or `symmetric`; entries of the same place add
-/// up (docs/file_formats/structure.md).
-/// @throws InputError with file and line: another kind of matrix, an index out of range, a value that is not a finite
-///         number, more or fewer entries than the size line says.
-[[nodiscard]] Eigen::SparseMatrix<double> read_matrix_market(const std::filesystem::path& file);
 
 /// Files of a structure from a finite-element program.
 struct StructureFiles {

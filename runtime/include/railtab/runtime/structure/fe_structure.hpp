@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/structure/fe_files.hpp"
+
+namespace railtab {
+
+/// Which program's files these are.
+enum class FeFormat { matrix_market, calculix, ansys };
+
+/// Files of a finite-element model. `dofs` says what the rows are, `nodes` where the nodes stand.
+struct FeFiles {
+  FeFormat format = FeFormat::matrix_market;
+  std::filesystem::path mass, stiffness;
+  std::filesystem::path damping;  ///< empty: none
+  std::filesystem::path dofs, nodes;
+};
+
+/// The model's units and axes against railtab's.
+struct FeFrame {
+  std::string units = "m-N-kg";  ///< one of fe_unit_systems(); all with seconds
+  std::string axes = "x -y -z";  ///< the model's directions forward, right and down; right-handed
+  /// The model's point that is at x = 0, in the track's centre, at the height of the rail-head tops [model's length].
+  std::optional<std::array<double, 3>> origin{{0.0, 0.0, 0.0}};
+};
+/// "m-N-kg", "mm-N-t", "m-kN-t": units of length, force and mass that belong together with the second.
+[[nodiscard]] std::vector<std::string> fe_unit_systems();
+
+/// Some of a mesh's nodes: a named set, or those in a box.
+struct NodeSelection {
+  std::string set;                                ///< empty: the box
+  std::optional<std::array<double, 3>> from, to;  ///< corners of the box in the model's own axes and unit of length
+  double tolerance = 1e-3;                        ///< by which the box is widened on all sides [model's length]
+  [[nodiscard]] bool given() const noexcept { return !set.empty() || from || to; }
+};
+
+/// A node in railtab's axes [m], and its rows: none for a motion that is held (or that the model does not have), one,
+/// or several where the program has expanded a beam or shell into solids that share the number of the node; the node's
+/// motion is then the mean of theirs.
+struct FeNode {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  std::array<std::vector<int>, 6> rows;
+  [[nodiscard]] bool expanded() const noexcept;
+};
+
+inline constexpr int no_node = 0;
+
+/// A finite-element model in SI units and railtab's axes: every row is a motion x, y, z, roll, pitch or yaw, in
+/// railtab's sense. Symmetric.
+struct FeStructure {
+  Eigen::SparseMatrix<double> mass, stiffness;
+  Eigen::SparseMatrix<double> damping;  ///< 0 × 0: none
+  std::vector<int> motion;              ///< of each row: 0..5 for x, y, z, roll, pitch, yaw
+  std::vector<int> node_of_row;         ///< no_node for an inner mode of an element, which rests in rigid motions
+  std::map<int, FeNode> nodes;          ///< all nodes of the mesh that have a row or a position
+  FeMesh mesh;                          ///< as it was read, for selections
+  std::string source;                   ///< name of the stiffness file, for messages
+  [[nodiscard]] int dofs() const noexcept { return static_cast<int>(stiffness.rows()); }
+};
+
+/// Reads a model, checks that its matrices are symmetric (1e-9 of the largest diagonal entry; the mean of both halves
+/// is taken), that no diagonal entry of K is zero or negative and none of M negative, and turns it into railtab's axes
+/// and units: with q_railtab = S·q_model, S = ±(unit of length) for a translation and ±1 for a rotation, K becomes F·L
+/// · S⁻ᵀ K S⁻¹, and likewise M and C with the second. @throws InputError with file and line, row, or key
+[[nodiscard]] FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame);
+
+/// Numbers of the selected nodes, ascending. @throws InputError naming `key` where there is no such set or no node
+[[nodiscard]] std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection,
+                                              const std::string& key);
+
+/// (A + Aᵀ)/2. @throws InputError with file, row and column where the two differ by more than 1e-9 of the largest
+/// diagonal entry, or with the size where the matrix is not rows × rows (rows = 0: any square).
+[[nodiscard]] Eigen::SparseMatrix<double> symmetric_mean(const std::filesystem::path& file,
+                                                         const Eigen::SparseMatrix<double>& matrix, Eigen::Index rows);
+
+}  // namespace railtab

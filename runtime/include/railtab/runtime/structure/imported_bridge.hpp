@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/structure/fe_structure.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
+
+namespace railtab {
+
+/// Damping of an imported structure, in one of four ways: its own matrix (FeFiles::damping), Rayleigh's coefficients, a
+/// ratio, or the bridge standard's lower bound for a type and span. The last two give C = aM + bK with the ratio at two
+/// frequencies, between which it is lower and beyond which it is higher.
+struct FeDamping {
+  std::optional<double> mass_factor;       ///< a [1/s], >= 0
+  std::optional<double> stiffness_factor;  ///< b [s], >= 0
+  std::optional<double> ratio;             ///< of critical, 0..0.5
+  std::string type;                        ///< one of bridge_damping_types()
+  double span = 0.0;                       ///< [m], with `type`
+  /// At which the ratio holds [Hz]; 0: the first and the third natural frequency of the structure.
+  std::array<double, 2> frequencies{0.0, 0.0};
+};
+
+/// A structure from a finite-element program and how track and train meet it.
+struct ImportParameters {
+  FeFiles files;
+  FeFrame frame;
+  FeDamping damping;
+  NodeSelection deck;                   ///< nodes that carry railtab's own track
+  NodeSelection rail_left, rail_right;  ///< or nodes of beams that are rails in the model, with z and pitch
+  std::vector<double> report;  ///< positions along the track at which the deck is reported [m]; empty: its middle
+
+  /// @throws InputError naming the keys: damping in no or more than one way, a file missing
+  void validate() const;
+};
+
+/// Railtab's track laid over the deck of an imported bridge, between whose first and last deck nodes the sleepers rest
+/// on it. Named nodes: "deck-<x>" (the deck node nearest to the track's centre at x), or "deck-midspan-1" where no
+/// position is asked for, and the rails above them. Of an expanded node the motion of its first row is reported.
+/// @throws InputError naming file, node or key
+[[nodiscard]] StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters);
+
+/// An imported structure whose own beams are the rails, at the rail-head tops. @throws InputError naming file, node or
+/// key
+[[nodiscard]] StructureModel import_with_rails(const ImportParameters& parameters);
+
+/// The damping matrix of an imported structure. @throws InputError, ComputationError
+[[nodiscard]] Eigen::SparseMatrix<double> damping_matrix(const FeStructure& structure, const FeDamping& damping);
+
+}  // namespace railtab

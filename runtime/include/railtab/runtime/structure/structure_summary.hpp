@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/structure/imported_bridge.hpp"
+
+namespace railtab {
+
+/// What to compare with the program that a structure comes from, or with a drawing.
+struct StructureSummary {
+  long dofs = 0, nodes = 0;
+  Eigen::Vector3d low, high;           ///< corners around all nodes, railtab's axes [m]
+  Eigen::Vector3d mass;                ///< that moves with x, y, z alike: without what is held [kg]
+  std::vector<std::string> free;       ///< rigid motions that nothing resists: x, y, z, roll, pitch, yaw
+  std::vector<double> frequencies;     ///< lowest natural frequencies [Hz]; none where a rigid motion is free
+  std::vector<double> damping_ratios;  ///< at each of them, φᵀCφ/(2ω)
+};
+
+/// An imported structure without railtab's track. Rotations are looked at where no node is expanded: the rows of such
+/// a node stand around it, it is not known where. @pre modes >= 0
+[[nodiscard]] StructureSummary summarise(const FeStructure& structure, const FeDamping& damping, int modes);
+
+/// Built-in spans without their track; the mass is that of their whole length. @pre modes >= 0
+[[nodiscard]] StructureSummary summarise(const std::vector<BridgeParameters>& spans, int modes);
+
+}  // namespace railtab

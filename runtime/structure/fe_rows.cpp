@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "railtab/runtime/structure/fe_files.hpp"
+#include "text_lines.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> ansys_labels{"UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"};
+constexpr std::array<std::string_view, 6> motions{"X", "Y", "Z", "ROTX", "ROTY", "ROTZ"};
+
+using NumberedRow = std::pair<int, FeRow>;  // row of the matrices, from 1
+
+NumberedRow numbered_row(const LineReader& reader, const std::array<std::string_view, 3>& words,
+                         const std::array<std::string_view, 6>& names) {
+  const int number = reader.number<int>(words[0], "the number of a row");
+  FeRow row;
+  row.node = reader.number<int>(words[1], "the number of a node");
+  const std::string label = upper_case(words[2]);
+  const auto* const known = std::find(names.begin(), names.end(), label);
+  if (known == names.end()) {
+    throw reader.error(fmt::format("'{}'", words[2]),
+                       fmt::format("{}: a structure has no other motions", fmt::join(names, ", ")));
+  }
+  row.motion = static_cast<int>(known - names.begin());
+  return {number, row};
+}
+
+std::vector<FeRow> in_order(const LineReader& reader, std::vector<NumberedRow>& rows) {
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<FeRow> result;
+  for (const auto& [number, row] : rows) {
+    const int expected = static_cast<int>(result.size()) + 1;
+    if (number != expected) {
+      throw reader.file_error(
+          fmt::format("row {} {}", number < expected ? number : expected, number < expected ? "twice" : "missing"),
+          "each row of the matrices once");
+    }
+    result.push_back(row);
+  }
+  if (result.empty()) throw reader.file_error("no row", "one line for each row of the matrices");
+  return result;
+}
+
+}  // namespace
+
+std::vector<FeRow> read_ansys_rows(const std::filesystem::path& file) {
+  LineReader reader(file, "a mapping file of ANSYS");
+  std::vector<NumberedRow> rows;
+  while (reader.next()) {
+    std::array<std::string_view, 3> words;
+    const std::size_t count = split(reader.line(), words);
+    int number = 0;
+    if (count == 0 || !parse(words[0], number)) {
+      if (rows.empty()) continue;  // headings
+      if (count == 0) continue;
+    }
+    if (count != 3) {
+      throw reader.error(fmt::format("'{}'", reader.line().substr(0, 80)), "equation, node, label");
+    }
+    rows.push_back(numbered_row(reader, words, ansys_labels));
+  }
+  return in_order(reader, rows);
+}
+
+std::vector<FeRow> read_row_table(const std::filesystem::path& file) {
+  constexpr std::string_view header = "row,node,motion";
+  LineReader reader(file, "a table of rows");
+  std::vector<NumberedRow> rows;
+  bool has_header = false;
+  while (reader.next()) {
+    const std::string_view text = stripped(reader.line());
+    if (text.empty() || text.front() == '#') continue;
+    if (!has_header) {
+      if (text != header) throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
+      has_header = true;
+      continue;
+    }
+    std::array<std::string_view, 3> words;
+    if (split(text, words, ",") != 3) throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
+    rows.push_back(numbered_row(reader, words, motions));
+  }
+  return in_order(reader, rows);
+}
+
+}  // namespace railtab

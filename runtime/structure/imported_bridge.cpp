@@ -1,0 +1,210 @@
+#include "railtab/runtime/structure/imported_bridge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bridge.hpp"
+#include "deck_attachment.hpp"
+#include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+void append(const Sparse& matrix, std::vector<Eigen::Triplet<double>>& entries) {
+  entries.reserve(entries.size() + static_cast<std::size_t>(matrix.nonZeros()));
+  for (int j = 0; j < matrix.outerSize(); ++j) {
+    for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
+      entries.emplace_back(static_cast<int>(entry.row()), j, entry.value());
+    }
+  }
+}
+
+StructureNode reported(std::string name, const FeNode& node) {
+  StructureNode result{std::move(name), node.position[0], {}};
+  for (std::size_t k = 0; k < 6; ++k) result.dof[k] = node.rows[k].empty() ? held : node.rows[k].front();
+  return result;
+}
+
+/// The node nearest to the track's centre at x.
+const FeNode& nearest(const FeStructure& structure, const std::vector<int>& nodes, double x) {
+  const FeNode* best = nullptr;
+  double least = INFINITY;
+  for (int number : nodes) {
+    const FeNode& node = structure.nodes.at(number);
+    const double distance = std::hypot(node.position[0] - x, node.position[1]);
+    if (distance < least) {
+      least = distance;
+      best = &node;
+    }
+  }
+  return *best;
+}
+
+/// Of every row along the track; an element's inner mode stands where the last of its nodes does.
+std::vector<double> positions(const FeStructure& structure) {
+  std::vector<double> x;
+  for (int node : structure.node_of_row)
+    x.push_back(node == no_node ? -INFINITY : structure.nodes.at(node).position[0]);
+  for (int r = 0; r < structure.dofs(); ++r) {
+    if (structure.node_of_row[static_cast<std::size_t>(r)] != no_node) continue;
+    double& own = x[static_cast<std::size_t>(r)];
+    for (Sparse::InnerIterator entry(structure.stiffness, r); entry; ++entry) {
+      const auto other = static_cast<std::size_t>(entry.row());
+      if (structure.node_of_row[other] != no_node) own = std::max(own, x[other]);
+    }
+  }
+  return x;
+}
+
+/// Wrong units, axes or origins show where the deck stands.
+void check_place(const FeStructure& structure, const std::vector<int>& deck, const Bridge& bridge, double begin) {
+  constexpr double shortest = 0.5, longest = 1e5, highest = -0.5, lowest = 60.0;  // [m]
+  if (!(bridge.end - begin >= shortest && bridge.end - begin <= longest)) {
+    throw input_error(
+        "structure.deck", fmt::format("a deck from x = {:.4g} m to {:.4g} m", begin, bridge.end),
+        fmt::format("{} m to {:.0f} km of it: see structure.units and structure.axes", shortest, 1e-3 * longest));
+  }
+  for (int number : deck) {
+    const double z = structure.nodes.at(number).position[2];
+    if (z >= highest && z <= lowest) continue;
+    throw input_error(fmt::format("structure.deck: node {}", number),
+                      fmt::format("{:.4g} m {} the rail-head tops", std::abs(z), z < 0.0 ? "above" : "below"),
+                      "a deck below the track: see structure.origin, structure.axes and structure.units");
+  }
+}
+
+Bridge bridge_of(const FeStructure& structure, const ImportParameters& parameters) {
+  const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
+  Bridge bridge;
+  bridge.attach = deck_function(structure, deck);
+  append(structure.mass, bridge.matrices.mass);
+  append(structure.stiffness, bridge.matrices.stiffness);
+  append(damping_matrix(structure, parameters.damping), bridge.matrices.damping);
+  bridge.dof_x = positions(structure);
+  double begin = INFINITY;
+  bridge.end = -INFINITY;
+  for (int number : deck) {
+    begin = std::min(begin, structure.nodes.at(number).position[0]);
+    bridge.end = std::max(bridge.end, structure.nodes.at(number).position[0]);
+  }
+  check_place(structure, deck, bridge, begin);
+  const auto [low, high] = std::minmax_element(bridge.dof_x.begin(), bridge.dof_x.end());
+  constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
+  bridge.spans.push_back({std::min(begin, *low) - rounding, std::max(bridge.end, *high) + rounding});
+  for (double x : parameters.report) {
+    if (x < begin || x > bridge.end) {
+      throw input_error("structure.report", fmt::format("{} m", x), fmt::format("{} to {} m", begin, bridge.end));
+    }
+    bridge.nodes.push_back(reported(fmt::format("deck-{}", x), nearest(structure, deck, x)));
+  }
+  if (parameters.report.empty()) {
+    bridge.nodes.push_back(reported("deck-midspan-1", nearest(structure, deck, 0.5 * (begin + bridge.end))));
+  }
+  return bridge;
+}
+
+RailLine rail_line(const FeStructure& structure, const NodeSelection& selection, const std::string& key) {
+  std::vector<std::pair<int, const FeNode*>> nodes;
+  for (int number : selected_nodes(structure, selection, key)) nodes.emplace_back(number, &structure.nodes.at(number));
+  std::sort(nodes.begin(), nodes.end(),
+            [](const auto& a, const auto& b) { return a.second->position[0] < b.second->position[0]; });
+  if (nodes.size() < 2) throw input_error(key, fmt::format("{} node", nodes.size()), "at least 2 along the track");
+  RailLine line;
+  for (const auto& [number, node] : nodes) {
+    const std::string place = fmt::format("{}: node {}", key, number);
+    if (node->rows[2].size() != 1 || node->rows[4].size() != 1) {
+      throw input_error(place, fmt::format("{} rows of z and {} of pitch", node->rows[2].size(), node->rows[4].size()),
+                        "one each: rails are beams with rotations of their own (else give structure.deck and let "
+                        "railtab lay the track)");
+    }
+    if (!line.x.empty() && !(node->position[0] > line.x.back())) {
+      throw input_error(place, fmt::format("a second node of the rail at x = {} m", node->position[0]), "one");
+    }
+    line.x.push_back(node->position[0]);
+    line.dof.push_back(reported("", *node).dof);
+  }
+  return line;
+}
+
+RayleighDamping rayleigh(const FeStructure& structure, const FeDamping& damping) {
+  if (damping.mass_factor || damping.stiffness_factor) {
+    return {damping.mass_factor.value_or(0.0), damping.stiffness_factor.value_or(0.0)};
+  }
+  const double ratio = damping.type.empty() ? damping.ratio.value_or(0.0)
+                                            : damping_lower_bound("structure.damping_type", damping.type, damping.span);
+  if (ratio == 0.0) return {};
+  std::array<double, 2> omega{2.0 * std::numbers::pi * damping.frequencies[0],
+                              2.0 * std::numbers::pi * damping.frequencies[1]};
+  if (damping.frequencies[0] == 0.0) {
+    const Eigen::VectorXd squares = lowest_modes(structure.stiffness, structure.mass, 3).omega2;
+    omega = {std::sqrt(squares[0]), std::sqrt(squares[squares.size() - 1])};
+  }
+  return rayleigh_damping(ratio, omega[0], omega[1]);
+}
+
+}  // namespace
+
+void ImportParameters::validate() const {
+  for (const auto& [file, key] : {std::pair{&files.mass, "structure.mass"},
+                                  {&files.stiffness, "structure.stiffness"},
+                                  {&files.dofs, "structure.dofs"},
+                                  {&files.nodes, "structure.nodes"}}) {
+    if (file->empty()) throw input_error(key, "no file", "a file of the finite-element model");
+  }
+  const int ways = (files.damping.empty() ? 0 : 1) + (damping.mass_factor || damping.stiffness_factor ? 1 : 0) +
+                   (damping.ratio ? 1 : 0) + (damping.type.empty() ? 0 : 1);
+  if (ways != 1) {
+    throw input_error("structure", fmt::format("damping in {} ways", ways),
+                      "one: a file (damping), mass_damping and stiffness_damping, damping_ratio, or damping_type "
+                      "with damping_span");
+  }
+  if ((damping.frequencies[0] > 0.0) != (damping.frequencies[1] > 0.0) ||
+      (damping.frequencies[0] > 0.0 && !(damping.frequencies[1] > damping.frequencies[0]))) {
+    throw input_error("structure.damping_frequency",
+                      fmt::format("{} and {} Hz", damping.frequencies[0], damping.frequencies[1]),
+                      "two rising frequencies, or neither");
+  }
+  if (!damping.type.empty()) {
+    static_cast<void>(damping_lower_bound("structure.damping_type", damping.type, damping.span));
+  }
+}
+
+Sparse damping_matrix(const FeStructure& structure, const FeDamping& damping) {
+  if (structure.damping.rows() > 0) return structure.damping;
+  const RayleighDamping factors = rayleigh(structure, damping);
+  return factors.mass_factor * structure.mass + factors.stiffness_factor * structure.stiffness;
+}
+
+StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
+  parameters.validate();
+  return lay_track(track, bridge_of(read_fe_structure(parameters.files, parameters.frame), parameters),
+                   MotionPlane::spatial);
+}
+
+StructureModel import_with_rails(const ImportParameters& parameters) {
+  parameters.validate();
+  const FeStructure structure = read_fe_structure(parameters.files, parameters.frame);
+  StructureModel model;
+  model.mass = structure.mass;
+  model.stiffness = structure.stiffness;
+  model.damping = damping_matrix(structure, parameters.damping);
+  model.rail[0] = rail_line(structure, parameters.rail_left, "structure.rail_left");
+  model.rail[1] = rail_line(structure, parameters.rail_right, "structure.rail_right");
+  if (parameters.deck.given()) {
+    const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
+    for (double x : parameters.report) {
+      model.nodes.push_back(reported(fmt::format("deck-{}", x), nearest(structure, deck, x)));
+    }
+  }
+  return model;
+}
+
+}  // namespace railtab

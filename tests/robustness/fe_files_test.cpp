@@ -1,0 +1,180 @@
+// Files of finite-element programs: what they say is read, what is wrong is refused with file and line.
+
+#include "railtab/runtime/structure/fe_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+class FeFilesTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("railtab_fe_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+
+  // The message with which a file is refused.
+  template <class Read>
+  std::string message(const Read& read, const std::string& text) const {
+    const auto file = write("f", text);
+    try {
+      static_cast<void>(read(file));
+    } catch (const InputError& wrong) {
+      const std::string what = wrong.what();
+      return what.substr(what.find(folder_.string()) == 0 ? folder_.string().size() + 1 : 0);
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_;
+};
+
+// Lines of a Harwell-Boeing header [DuffGrimesLewis1992]: counts in fields of 14, formats in fields of 16, 16 and 20.
+std::string header(const std::string& type, int rows, int entries, const std::string& formats,
+                   int right_hand_lines = 0) {
+  char counts[160], sizes[160];
+  std::snprintf(counts, sizeof counts, "%14d%14d%14d%14d%14d\n", 3, 1, 1, 1, right_hand_lines);
+  std::snprintf(sizes, sizeof sizes, "%-14s%14d%14d%14d%14d\n", type.c_str(), rows, rows, entries, 0);
+  return "A matrix of a test                                                      KEY     \n" + std::string(counts) +
+         sizes + formats + "\n";
+}
+const char* const formats_of_five = "(8I5)           (8I5)           (1P,3E20.12)        (3E20.12)           ";
+
+const Eigen::Matrix3d expected = (Eigen::Matrix3d() << 4, -1.5, 0, -1.5, 5, 250, 0, 250, 6e5).finished();
+
+TEST_F(FeFilesTest, HarwellBoeingSymmetricKeepsOneTriangle) {
+  const std::string text = header("RSA", 3, 5, formats_of_five) +
+                           "    1    3    5    6\n    1    2    2    3    3\n"
+                           "  4.000000000000D+00 -1.500000000000E+00  5.000000000000d+00\n"
+                           "            2.500+02          6.000E+005\n";
+  const Eigen::MatrixXd read(read_harwell_boeing(write("k.matrix", text)));
+  EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
+}
+
+TEST_F(FeFilesTest, HarwellBoeingUnsymmetricOneEntryPerLineAndRightHandSides) {
+  const std::string text = header("RUA", 3, 7, "(1I14)          (1I14)          (1D25.15)           (1D25.15)", 3) +
+                           "F                          1             0\n"  // a fifth card, where there are such sides
+                           "             1\n             3\n             6\n             8\n"
+                           "             1\n             2\n             1\n             2\n             3\n"
+                           "             2\n             3\n"
+                           "    0.400000000000000D+01\n   -0.150000000000000D+01\n   -0.150000000000000D+01\n"
+                           "    0.500000000000000D+01\n    0.250000000000000D+03\n    0.250000000000000D+03\n"
+                           "    0.600000000000000D+06\n    1.0\n    1.0\n    1.0\n";
+  const Eigen::MatrixXd read(read_harwell_boeing(write("k.matrix", text)));
+  EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
+}
+
+TEST_F(FeFilesTest, HarwellBoeingRefusals) {
+  const auto refused = [&](const std::string& text) { return message(read_harwell_boeing, text); };
+  const std::string body = "    1    2    3\n    1    2\n  4.000000000000D+00 -1.500000000000E+00\n";
+  EXPECT_EQ(refused(header("RSA", 2, 2, formats_of_five) + body), "accepted");
+  EXPECT_TRUE(refused(header("CSA", 2, 2, formats_of_five) + body).starts_with("f:3: found matrix type 'CSA'"));
+  EXPECT_TRUE(refused(header("RSE", 2, 2, formats_of_five) + body).starts_with("f:3: found matrix type 'RSE'"));
+  EXPECT_TRUE(refused(header("RSA", 2, 2, "(8X5)           (8I5)           (3E20.12)") + body)
+                  .starts_with("f:4: found format '(8X5)'"));
+  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    3    2\n")
+                  .starts_with("f:5: found column 3 at place 2, expected 3 to 3"));
+  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    9\n")
+                  .starts_with("f:6: found row 9, expected 1 to 2"));
+  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    2    1\n")
+                  .starts_with("f:6: found entries on both sides"));
+  EXPECT_TRUE(
+      refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    2\n   4.00D+00            nan\n")
+          .starts_with("f:7: found 'nan'"));
+  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    2\n")
+                  .starts_with("f: found the end of the file"));
+  EXPECT_TRUE(refused(header("RSA", 2000000000, 2, formats_of_five)).starts_with("f:3: found 2000000000 rows"));
+  EXPECT_TRUE(refused(header("RSA", 2, 2000000000, formats_of_five)).starts_with("f:3: found 2000000000 entries"));
+}
+
+// A size line that promises what the file cannot hold is refused before anything is allocated for it.
+TEST_F(FeFilesTest, MatrixMarketOfAbsurdSizeIsRefusedAtItsSizeLine) {
+  const std::string banner = "%%MatrixMarket matrix coordinate real general\n";
+  EXPECT_TRUE(message(read_matrix_market, banner + "2000000000 2000000000 1\n1 1 1\n")
+                  .starts_with("f:2: found 2000000000 rows and 2000000000 columns, expected 1 to 20000000"));
+  EXPECT_TRUE(message(read_matrix_market, banner + "2 2 2000000000\n1 1 1\n")
+                  .starts_with("f:2: found 2000000000 entries, expected at most"));
+  EXPECT_TRUE(message(read_matrix_market, banner + "2 2 99999999999999999999\n").starts_with("f:2: found '9999"));
+}
+
+TEST_F(FeFilesTest, CalculixMatrixAndRows) {
+  const auto file = write("m.sti", "1 1  4.0\n1 2 -1.5\n2 2  5.0\n2 3  2.5e2\n3 3  6.0e5\n");
+  EXPECT_TRUE(Eigen::MatrixXd(read_calculix_matrix(file, 3)).isApprox(expected, 0.0));
+  const std::vector<FeRow> rows = read_calculix_rows(write("m.dof", "12.1\n12.3\n7.2\n"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1].node, 12);
+  EXPECT_EQ(rows[1].motion, 2);
+  EXPECT_EQ(rows[2].node, 7);
+  const auto refused = [&](const std::string& text) {
+    return message([](const auto& f) { return read_calculix_matrix(f, 3); }, text);
+  };
+  EXPECT_TRUE(refused("1 1 4\n1 4 1\n").starts_with("f:2: found row 1, column 4, expected 1 to 3"));
+  EXPECT_TRUE(refused("1 2 4\n3 1 1\n").starts_with("f:2: found entries on both sides"));
+  EXPECT_TRUE(refused("1 1 inf\n").starts_with("f:1: found 'inf'"));
+  EXPECT_TRUE(refused("1 1\n").starts_with("f:1: found '1 1'"));
+  EXPECT_TRUE(message(read_calculix_rows, "1.1\n1.7\n").starts_with("f:2: found '1.7'"));
+  EXPECT_TRUE(message(read_calculix_rows, "").starts_with("f: found no line"));
+}
+
+TEST_F(FeFilesTest, AnsysRowsComeInTheOrderOfTheEquations) {
+  const auto rows = read_ansys_rows(write("k.mapping",
+                                          "  Matrix Eqn     Node      DOF\n\n"
+                                          "          2        5       ROTZ\n"
+                                          "          1        5       UX\n"
+                                          "          3       11       UZ\n"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].motion, 0);
+  EXPECT_EQ(rows[1].motion, 5);
+  EXPECT_EQ(rows[2].node, 11);
+  EXPECT_TRUE(message(read_ansys_rows, "head\n1 5 UX\n2 5 TEMP\n").starts_with("f:3: found 'TEMP'"));
+  EXPECT_TRUE(message(read_ansys_rows, "1 5 UX\n3 5 UY\n").starts_with("f: found row 2 missing"));
+  EXPECT_TRUE(message(read_ansys_rows, "1 5 UX\n1 5 UY\n").starts_with("f: found row 1 twice"));
+  EXPECT_TRUE(message(read_ansys_rows, "1 5\n").starts_with("f:1: found '1 5'"));
+  EXPECT_TRUE(message(read_row_table, "row,node\n").starts_with("f:1: found 'row,node'"));
+  EXPECT_TRUE(message(read_row_table, "row,node,motion\n1,2,up\n").starts_with("f:2: found 'up'"));
+}
+
+TEST_F(FeFilesTest, MeshesOfDecksAndTables) {
+  write("more.inp", "*NODE\n3, 7.5\n");
+  const FeMesh deck = read_fe_mesh(write("deck.inp",
+                                         "** a deck\n*HEADING\n1, 2, 3 are no nodes\n*Node, Nset=All\n"
+                                         "1, 0., 1., 2.\n2, 5., 1., -2.e0\n*INCLUDE, INPUT=more.inp\n"
+                                         "*ELEMENT, TYPE=B31\n1, 1, 2\n*NSET, NSET=ends\n1,\n3\n"
+                                         "*nset, nset=Run, GENERATE\n1, 3, 2\n*NSET,NSET=BOTH\nENDS, 2\n"));
+  ASSERT_EQ(deck.nodes.size(), 3u);
+  EXPECT_EQ(deck.nodes.at(2), Eigen::Vector3d(5, 1, -2));
+  EXPECT_EQ(deck.nodes.at(3), Eigen::Vector3d(7.5, 0, 0));
+  EXPECT_EQ(deck.sets.at("ALL"), (std::vector<int>{1, 2}));
+  EXPECT_EQ(deck.sets.at("RUN"), (std::vector<int>{1, 3}));
+  EXPECT_EQ(deck.sets.at("BOTH"), (std::vector<int>{1, 3, 2}));
+  const FeMesh table = read_fe_mesh(write("nodes.txt", "! from NWRITE\n 1\n 2  0.5  0.  0.25\n 3,1,2,3\n"));
+  ASSERT_EQ(table.nodes.size(), 3u);
+  EXPECT_EQ(table.nodes.at(1), Eigen::Vector3d::Zero());
+  EXPECT_EQ(table.nodes.at(2), Eigen::Vector3d(0.5, 0, 0.25));
+  EXPECT_TRUE(message(read_fe_mesh, "1 0 0 0\n1 1 0 0\n").starts_with("f:2: found node 1 again"));
+  EXPECT_TRUE(message(read_fe_mesh, "1 0 0 0 30\n").starts_with("f:1: found node 1 with axes turned by 30"));
+  EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, a\n").starts_with("f:2: found 'a'"));
+  EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, 0\n*NSET, NSET=S\n9\n").starts_with("f: found node 9 in the set S"));
+  EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, 0\n*NSET, NSET=S, GENERATE\n1, 2000000000, 1\n")
+                  .starts_with("f:4: found '1, 2000000000, 1'"));
+  EXPECT_TRUE(message(read_fe_mesh, "*INCLUDE, INPUT=f\n").find("include each other") != std::string::npos);
+  EXPECT_TRUE(message(read_fe_mesh, "# nothing\n").starts_with("f: found no node"));
+}
+
+}  // namespace
+}  // namespace railtab

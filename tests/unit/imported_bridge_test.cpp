@@ -1,0 +1,308 @@
+// An imported bridge under railtab's own track, against the built-in one that it was written from.
+
+#include "railtab/runtime/structure/imported_bridge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "bridge.hpp"
+#include "deck_attachment.hpp"
+#include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/runtime/structure/structure_summary.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+const std::filesystem::path folder = std::filesystem::temp_directory_path() / "railtab_imported_bridge";
+
+// One span of six elements, its axis 2 m below the rail-head tops and 0.3 m left of the track's centre.
+BridgeParameters span() {
+  BridgeParameters p;
+  p.length = 24.0;
+  p.elements = 6;
+  p.axis_depth = 2.0;
+  p.track_offset = 0.3;
+  p.damping_ratio = 0.02;
+  return p;
+}
+
+// The span as a program with axes x forward, y up, z right and units mm, N, t would have it: rows in an order of its
+// own, held motions left out, matrices in Matrix Market or Harwell-Boeing.
+class WrittenSpan {
+ public:
+  explicit WrittenSpan(FeFormat format) {
+    std::filesystem::create_directories(folder);
+    const Bridge bridge = beam_bridge({span()}, MotionPlane::spatial);
+    const int n = static_cast<int>(bridge.dof_x.size());
+    StructureModel model;
+    model.supports.x = bridge.support_x;
+    build_matrices(bridge.matrices, n, model);
+    // what the rows of the built-in span are: nodes in turn, x y z roll held at the first, y z roll at the last
+    std::vector<FeRow> rows;
+    for (int node = 0; node <= 6; ++node) {
+      for (int k = 0; k < 6; ++k) {
+        if ((node == 0 && k < 4) || (node == 6 && k >= 1 && k < 4)) continue;
+        rows.push_back({node, k});
+      }
+    }
+    EXPECT_EQ(static_cast<int>(rows.size()), n);
+    std::vector<int> order(rows.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), std::minstd_rand(3));
+    // railtab's x, y, z are the program's x, z, -y: railtab's motion k is the program's `axis[k]`, with a sign
+    const std::array<int, 3> axis{0, 2, 1};
+    const std::array<double, 3> sign{1, 1, -1};
+    Eigen::MatrixXd K = Eigen::MatrixXd(model.stiffness), M = Eigen::MatrixXd(model.mass), C = model.damping;
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(n, n);  // q_railtab = T q_program
+    std::string dofs = format == FeFormat::ansys ? " Matrix Eqn   Node   DOF\n" : "row,node,motion\n";
+    for (int i = 0; i < n; ++i) {
+      const FeRow row = rows[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
+      const auto k = static_cast<std::size_t>(row.motion % 3);
+      T(order[static_cast<std::size_t>(i)], i) = sign[k] * (row.motion < 3 ? 1e-3 : 1.0);
+      const bool turns = row.motion >= 3;
+      const std::string letter(1, static_cast<char>((format == FeFormat::ansys ? 'X' : 'x') + axis[k]));
+      const std::string motion =
+          format == FeFormat::ansys ? (turns ? "ROT" : "U") + letter : (turns ? "rot" : "") + letter;
+      const char* const comma = format == FeFormat::ansys ? "  " : ",";
+      dofs += std::to_string(i + 1) + comma + std::to_string(row.node + 101) + comma + motion + "\n";
+    }
+    std::string nodes = "# number, x, y (up), z\n";
+    for (int node = 0; node <= 6; ++node)
+      nodes += std::to_string(node + 101) + ", " + std::to_string(4000 * node) + ", 0, 0\n";
+    parameters.files = {format,
+                        write(format, "m", 1e3 * T.transpose() * M * T),
+                        write(format, "k", 1e3 * T.transpose() * K * T),
+                        write(format, "c", 1e3 * T.transpose() * C * T),
+                        folder / "dofs",
+                        folder / "nodes"};
+    std::ofstream(folder / "dofs") << dofs;
+    std::ofstream(folder / "nodes") << nodes;
+    parameters.frame = {"mm-N-t", "x z -y", {{0.0, 2000.0, 300.0}}};
+    parameters.deck.from = {0, 0, 0};
+    parameters.deck.to = {24000, 0, 0};
+  }
+  ImportParameters parameters;
+
+ private:
+  static std::filesystem::path write(FeFormat format, const std::string& name, const Eigen::MatrixXd& matrix) {
+    const auto file = folder / name;
+    std::FILE* out = std::fopen(file.c_str(), "w");
+    const int n = static_cast<int>(matrix.rows());
+    std::string pointers, indices, values;
+    char text[64];
+    int count = 0;
+    for (int j = 0; j < n; ++j) {
+      std::snprintf(text, sizeof text, "%14d\n", count + 1);
+      pointers += text;
+      for (int i = j; i < n; ++i) {
+        if (matrix(i, j) == 0.0) continue;
+        ++count;
+        if (format == FeFormat::ansys) {
+          std::snprintf(text, sizeof text, "%14d\n", i + 1);
+          indices += text;
+          std::snprintf(text, sizeof text, "%25.16E\n", matrix(i, j));
+        } else {
+          std::snprintf(text, sizeof text, "%d %d %.17g\n", i + 1, j + 1, matrix(i, j));
+        }
+        values += text;
+      }
+    }
+    if (format == FeFormat::ansys) {
+      std::fprintf(out, "%-72s%-8s\n%14d%14d%14d%14d%14d\n%-14s%14d%14d%14d%14d\n%-16s%-16s%-20s\n", "A span", "KEY", 0,
+                   0, 0, 0, 0, "RSA", n, n, count, 0, "(1I14)", "(1I14)", "(1E25.16)");
+      std::fprintf(out, "%s%14d\n%s%s", pointers.c_str(), count + 1, indices.c_str(), values.c_str());
+    } else {
+      std::fprintf(out, "%%%%MatrixMarket matrix coordinate real symmetric\n%d %d %d\n%s", n, n, count, values.c_str());
+    }
+    std::fclose(out);
+    return file;
+  }
+};
+
+TrackParameters short_track() {
+  TrackParameters track;
+  track.length_before = track.length_after = 6.0;
+  return track;
+}
+
+class ImportedSpan : public ::testing::TestWithParam<FeFormat> {};
+
+// The vertical and lateral compliance of the rail head over the whole model, from both: signs, units, axes, the order
+// of the rows, the arms and the damping all enter.
+TEST_P(ImportedSpan, UnderRailtabsTrackIsTheBuiltInOne) {
+  const WrittenSpan written(GetParam());
+  const StructureModel imported = build_track_on_import(short_track(), written.parameters);
+  const StructureModel built = build_track_bridge(short_track(), {span()});
+  ASSERT_EQ(imported.dofs(), built.dofs());
+  const auto response = [](const StructureModel& model) {
+    const Eigen::SparseMatrix<double> dynamic = model.stiffness + 30.0 * model.damping + 900.0 * model.mass;
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(dynamic);
+    Eigen::MatrixXd result(model.rail[0].x.size(), 12);
+    for (int k = 0; k < 6; ++k) {
+      Eigen::VectorXd load = Eigen::VectorXd::Zero(model.dofs());
+      load[model.rail[1].dof[30][static_cast<std::size_t>(k)]] = 1.0;
+      const Eigen::VectorXd u = factor.solve(load);
+      for (std::size_t n = 1; n + 1 < model.rail[0].x.size(); ++n) {
+        result(static_cast<Eigen::Index>(n), 2 * k) = u[model.rail[0].dof[n][2]];
+        result(static_cast<Eigen::Index>(n), 2 * k + 1) = u[model.rail[0].dof[n][1]];
+      }
+      result.row(0).setZero();
+      result.bottomRows(1).setZero();
+    }
+    return result;
+  };
+  const Eigen::MatrixXd a = response(imported), b = response(built);
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    // a pair that symmetry keeps apart has only rounding
+    EXPECT_LT((a.col(k) - b.col(k)).norm(), 1e-8 * b.col(k).norm() + 1e-20) << k;
+  }
+  ASSERT_EQ(imported.nodes.size(), built.nodes.size());
+  for (std::size_t n = 0; n < built.nodes.size(); ++n) {
+    EXPECT_EQ(imported.nodes[n].name, built.nodes[n].name);
+    EXPECT_DOUBLE_EQ(imported.nodes[n].x, built.nodes[n].x);
+  }
+}
+
+TEST_P(ImportedSpan, HasTheMassAndFrequenciesOfTheBuiltInOne) {
+  const WrittenSpan written(GetParam());
+  const FeStructure structure = read_fe_structure(written.parameters.files, written.parameters.frame);
+  const StructureSummary imported = summarise(structure, written.parameters.damping, 6);
+  const StructureSummary built = summarise({span()}, 6);
+  EXPECT_TRUE(imported.free.empty());
+  // without what moves with the held nodes at both ends: 2·264/420 of one of six elements
+  EXPECT_NEAR(imported.mass[2], (1.0 - 2.0 * 264.0 / 420.0 / 6.0) * built.mass[2], 1e-9 * built.mass[2]);
+  ASSERT_EQ(imported.frequencies.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(imported.frequencies[k], built.frequencies[k], 1e-8 * built.frequencies[k]);
+    EXPECT_NEAR(imported.damping_ratios[k], built.damping_ratios[k], 1e-8);
+  }
+  const double first = simply_supported_frequency({34.5e9, 8.8889, 10.947, 86.216, 0, 33.9e3, 0}, 24.0, 1);
+  EXPECT_NEAR(built.frequencies[0], first / (2 * std::numbers::pi), 1e-4 * first);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, ImportedSpan, ::testing::Values(FeFormat::matrix_market, FeFormat::ansys),
+                         [](const auto& format) { return format.param == FeFormat::ansys ? "Ansys" : "MatrixMarket"; });
+
+TEST(ImportedBridge, RefusesWhatDoesNotFit) {
+  const ImportParameters good = WrittenSpan(FeFormat::matrix_market).parameters;
+  const auto message = [](ImportParameters parameters) -> std::string {
+    try {
+      static_cast<void>(build_track_on_import(short_track(), parameters));
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "accepted";
+  };
+  const auto changed = [&](auto&& change) {
+    ImportParameters parameters = good;
+    change(parameters);
+    return message(parameters);
+  };
+  EXPECT_EQ(message(good), "accepted");
+  EXPECT_NE(changed([](auto& p) { p.frame.axes = "x y -z"; }).find("left-handed"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.frame.axes = "x x z"; }).find("an axis twice"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.frame.axes = "x up"; }).find("structure.axes"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.frame.units = "m-N-kg"; }).find("structure.units"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.frame.axes = "x -z y"; }).find("above the rail-head tops"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.deck.set = "DECK"; }).find("structure.deck.set"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.deck.from = p.deck.to = {0, 5e3, 0}; }).find("structure.deck"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.damping.ratio = 0.01; }).find("damping in 2 ways"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.files.damping.clear(); }).find("damping in 0 ways"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.report = {99.0}; }).find("structure.report"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.files.mass = p.files.dofs; }).find("dofs:1"), std::string::npos);
+}
+
+TEST(ImportedBridge, DampingByRatioTypeAndCoefficients) {
+  ImportParameters parameters = WrittenSpan(FeFormat::matrix_market).parameters;
+  parameters.files.damping.clear();
+  const FeStructure structure = read_fe_structure(parameters.files, parameters.frame);
+  const auto ratios = [&](const FeDamping& damping) { return summarise(structure, damping, 4).damping_ratios; };
+  FeDamping by_ratio, by_factors;
+  by_ratio.ratio = 0.03;
+  EXPECT_NEAR(ratios(by_ratio)[0], 0.03, 1e-8);
+  EXPECT_LT(ratios(by_ratio)[1], 0.03);
+  EXPECT_NEAR(ratios(by_ratio)[2], 0.03, 1e-8);
+  FeDamping by_type;
+  by_type.type = "steel-composite";
+  by_type.span = 12.0;
+  EXPECT_NEAR(ratios(by_type)[0], 0.015, 1e-8);
+  const double f = summarise(structure, by_type, 1).frequencies[0];
+  by_type.frequencies = {f, 10 * f};
+  EXPECT_NEAR(ratios(by_type)[0], 0.015, 1e-8);
+  by_factors.mass_factor = 0.5;
+  by_factors.stiffness_factor = 1e-3;
+  EXPECT_NEAR(ratios(by_factors)[0], 0.5 * (0.5 / (2 * std::numbers::pi * f) + 1e-3 * 2 * std::numbers::pi * f), 1e-9);
+}
+
+// [EN1991-2, Table 6.6]
+TEST(BridgeDamping, LowerBounds) {
+  EXPECT_DOUBLE_EQ(damping_lower_bound("k", "steel-composite", 25.0), 0.005);
+  EXPECT_DOUBLE_EQ(damping_lower_bound("k", "steel-composite", 10.0), 0.0175);
+  EXPECT_DOUBLE_EQ(damping_lower_bound("k", "prestressed-concrete", 20.0), 0.010);
+  EXPECT_DOUBLE_EQ(damping_lower_bound("k", "prestressed-concrete", 5.0), 0.0205);
+  EXPECT_DOUBLE_EQ(damping_lower_bound("k", "reinforced-concrete", 15.0), 0.0185);
+  EXPECT_THROW(static_cast<void>(damping_lower_bound("k", "wood", 15.0)), InputError);
+  EXPECT_THROW(static_cast<void>(damping_lower_bound("k", "steel-composite", 0.0)), InputError);
+}
+
+// A deck of scattered nodes, numbers of which are the places of their three rows.
+FeStructure scattered_deck(double slope) {
+  FeStructure structure;
+  std::minstd_rand generator(5);
+  std::uniform_real_distribution<double> shift(-0.2, 0.2);
+  int row = 0;
+  for (int i = 0; i <= 20; ++i) {
+    for (int j = 0; j <= 10; ++j) {
+      FeNode& node = structure.nodes[row / 3 + 1];
+      node.position = {0.6 * i + (i > 0 && i < 20 ? shift(generator) : 0.0), 0.5 * j - 2.5 + shift(generator), 0.0};
+      node.position[2] = 0.8 + slope * node.position[1];
+      for (std::size_t k = 0; k < 3; ++k) node.rows[k] = {row++};
+    }
+  }
+  structure.stiffness.resize(row, row);
+  return structure;
+}
+
+// Every rigid motion of the nodes is the same motion of the attachment, whatever the mesh: no spring is strained by it.
+TEST(DeckSurface, FollowsRigidMotionsAndSlopes) {
+  const FeStructure structure = scattered_deck(0.02);
+  std::vector<int> numbers;
+  for (const auto& [number, node] : structure.nodes) numbers.push_back(number);
+  const DeckFunction deck = deck_function(structure, numbers);
+  for (const auto& [x, y] : {std::pair{0.0, -0.75}, {3.1, 0.75}, {6.0, 0.0}, {11.9, 1.5}}) {
+    const auto at = deck(x, y, 0.4);
+    ASSERT_TRUE(at) << x;
+    const Eigen::Vector3d point(x, y, 0.4), foot = point - at->arm;
+    EXPECT_NEAR(foot[2], 0.8 + 0.02 * y, 1e-9);
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Vector3d turn = k < 3 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(Eigen::Vector3d::Unit(k - 3));
+      const Eigen::Vector3d move = k < 3 ? Eigen::Vector3d(Eigen::Vector3d::Unit(k)) : Eigen::Vector3d::Zero();
+      Eigen::VectorXd q = Eigen::VectorXd::Zero(structure.dofs());
+      for (const auto& [number, node] : structure.nodes) {
+        for (std::size_t d = 0; d < 3; ++d)
+          q[node.rows[d][0]] = (move + turn.cross(node.position))[static_cast<int>(d)];
+      }
+      Eigen::VectorXd own(at->dof.size());
+      for (std::size_t i = 0; i < at->dof.size(); ++i) own[static_cast<int>(i)] = q[at->dof[i]];
+      const Eigen::Matrix<double, 6, 1> motion = at->rows * own;
+      const Eigen::Vector3d found = motion.head<3>() + motion.tail<3>().cross(at->arm);
+      EXPECT_LT((found - move - turn.cross(point)).norm(), 1e-9) << x << ' ' << k;
+    }
+  }
+  EXPECT_FALSE(deck(-0.1, 0.0, 0.4));
+  EXPECT_FALSE(deck(12.0, 0.0, 0.4));
+  EXPECT_THROW(static_cast<void>(deck(6.0, 4.5, 0.4)), InputError) << "beyond the edge";
+}
+
+}  // namespace
+}  // namespace railtab

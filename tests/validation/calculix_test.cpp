@@ -1,0 +1,217 @@
+// A bridge that CalculiX has assembled, against the built-in beams and beam theory. CalculiX has no beam elements of
+// its own: B31, B32 and B32R are expanded into solids (8 nodes with incompatible modes; 20 nodes; 20 nodes with reduced
+// integration) whose nodes share the beam node's number. They have shear deformation and rotary inertia: the theory is
+// Timoshenko's, and Euler and Bernoulli's only where the beam is slender. Skipped where there is no ccx.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+#include "railtab/runtime/structure/beam_element.hpp"
+#include "railtab/runtime/structure/imported_bridge.hpp"
+#include "railtab/runtime/structure/structure_summary.hpp"
+#include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr double nu = 0.2;
+
+struct RectangularBeam {
+  double length, width, height;
+  int elements;
+  double E = 34.5e9, density = 2500.0;
+  [[nodiscard]] double A() const { return width * height; }
+  [[nodiscard]] double Iy() const { return width * std::pow(height, 3) / 12.0; }
+  [[nodiscard]] double Iz() const { return height * std::pow(width, 3) / 12.0; }
+};
+
+/// A simply supported beam, x forward, y left, z up; lateral motion held where `plane`.
+class CalculixBeam {
+ public:
+  CalculixBeam(const std::string& name, const RectangularBeam& beam, const std::string& type, bool plane)
+      : folder_(std::filesystem::temp_directory_path() / ("railtab_ccx_" + name)) {
+    std::filesystem::create_directories(folder_);
+    const int per_element = type == "B31" ? 1 : 2, last = per_element * beam.elements + 1;
+    std::ofstream deck(folder_ / "beam.inp");
+    deck << "*NODE, NSET=DECK\n";
+    for (int i = 1; i <= last; ++i) deck << i << ", " << beam.length * (i - 1) / (last - 1) << ", 0, 0\n";
+    deck << "*ELEMENT, TYPE=" << type << ", ELSET=ALL\n";
+    for (int e = 0; e < beam.elements; ++e) {
+      deck << e + 1;
+      for (int k = 0; k <= per_element; ++k) deck << ", " << per_element * e + k + 1;
+      deck << "\n";
+    }
+    deck << "*MATERIAL, NAME=CONCRETE\n*ELASTIC\n" << beam.E << ", " << nu << "\n*DENSITY\n" << beam.density << "\n";
+    // local axis 1 is z: the first dimension is the height
+    deck << "*BEAM SECTION, ELSET=ALL, MATERIAL=CONCRETE, SECTION=RECT\n"
+         << beam.height << ", " << beam.width << "\n0, 0, 1\n";
+    deck << "*BOUNDARY\n1, 1, 4\n" << last << ", 2, 4\n";
+    if (plane) deck << "DECK, 2\n";
+    deck << "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n10\n*END STEP\n";
+    deck.close();
+    const std::string command = "cd '" + folder_.string() + "' && ccx beam > ccx.log 2>&1";
+    ran_ = std::system(command.c_str()) == 0 && std::filesystem::exists(folder_ / "beam.dof");
+    parameters.files = {FeFormat::calculix,   folder_ / "beam.mas", folder_ / "beam.sti", {},
+                        folder_ / "beam.dof", folder_ / "beam.inp"};
+    parameters.damping.ratio = 0.01;
+    parameters.deck.set = "deck";
+  }
+  ~CalculixBeam() { std::filesystem::remove_all(folder_); }
+  CalculixBeam(const CalculixBeam&) = delete;
+  CalculixBeam& operator=(const CalculixBeam&) = delete;
+
+  [[nodiscard]] static bool installed() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
+  [[nodiscard]] bool ran() const { return ran_; }
+
+  ImportParameters parameters;
+
+ private:
+  std::filesystem::path folder_;
+  bool ran_ = false;
+};
+
+#define RAILTAB_NEEDS_CALCULIX() \
+  if (!CalculixBeam::installed()) GTEST_SKIP() << "no ccx (Debian: calculix-ccx)"
+
+BridgeParameters built_in(const RectangularBeam& beam) {
+  BridgeParameters span;
+  span.length = beam.length;
+  span.E = beam.E;
+  span.G = beam.E / (2.0 * (1.0 + nu));
+  span.A = beam.A();
+  span.Iy = beam.Iy();
+  span.Iz = beam.Iz();
+  span.mass = beam.density * beam.A();
+  span.rotary_inertia = beam.density * (beam.Iy() + beam.Iz());
+  span.elements = 40;
+  return span;
+}
+
+/// n-th circular frequency of a simply supported Timoshenko beam: the lower root of
+/// r²ρ/G ω⁴ − (1 + r²k²(1 + E/G)) ω² + r²k⁴E/ρ = 0 with k = nπ/L, r² = I/A [TimoshenkoYoungWeaver1974, Sect. 5.12]. The
+/// shear coefficient is 1: one quadratic element over the height has the same shear strain everywhere.
+double timoshenko(const RectangularBeam& beam, int n) {
+  const double k = n * std::numbers::pi / beam.length, r2 = beam.Iy() / beam.A();
+  const double G = beam.E / (2.0 * (1.0 + nu));
+  const double a = r2 * beam.density / G, b = 1.0 + r2 * k * k * (1.0 + beam.E / G),
+               c = r2 * std::pow(k, 4) * beam.E / beam.density;
+  return std::sqrt(2.0 * c / (b + std::sqrt(b * b - 4.0 * a * c)));
+}
+
+std::vector<double> frequencies(const ImportParameters& parameters, int modes) {
+  return summarise(read_fe_structure(parameters.files, parameters.frame), parameters.damping, modes).frequencies;
+}
+
+// Slender (1:125): the theories are the same to 0.25 % in the fifth mode.
+TEST(Calculix, FirstFiveBendingFrequenciesOfASlenderBridge) {
+  RAILTAB_NEEDS_CALCULIX();
+  const RectangularBeam beam{25.0, 0.4, 0.2, 20};
+  const CalculixBeam written("slender", beam, "B32R", true);
+  ASSERT_TRUE(written.ran());
+  const std::vector<double> found = frequencies(written.parameters, 5);
+  ASSERT_EQ(found.size(), 5u);
+  std::vector<double> expected;
+  for (double f : summarise({built_in(beam)}, 30).frequencies) {
+    // the built-in span moves out of its plane too
+    const double n =
+        std::round(std::sqrt(f / (simply_supported_frequency(
+                                      {beam.E, beam.A(), beam.Iy(), 0, 0, beam.density * beam.A(), 0}, beam.length, 1) /
+                                  (2 * std::numbers::pi))));
+    const double bending = simply_supported_frequency({beam.E, beam.A(), beam.Iy(), 0, 0, beam.density * beam.A(), 0},
+                                                      beam.length, static_cast<int>(n)) /
+                           (2 * std::numbers::pi);
+    if (std::abs(f / bending - 1.0) < 1e-3 && expected.size() < 5) expected.push_back(f);
+  }
+  ASSERT_EQ(expected.size(), 5u);
+  for (std::size_t n = 0; n < 5; ++n) {
+    RecordProperty("mode_" + std::to_string(n + 1), std::to_string(found[n] / expected[n] - 1.0));
+    EXPECT_NEAR(found[n], expected[n], 0.005 * expected[n]) << "mode " << n + 1;
+  }
+}
+
+// Stout (1:12.5): what the solids have and Euler-Bernoulli beams do not is shear and rotary inertia.
+TEST(Calculix, AStoutBridgeFollowsTimoshenko) {
+  RAILTAB_NEEDS_CALCULIX();
+  const RectangularBeam beam{25.0, 1.0, 2.0, 20};
+  const CalculixBeam written("stout", beam, "B32R", true);
+  ASSERT_TRUE(written.ran());
+  const std::vector<double> found = frequencies(written.parameters, 8);
+  const BeamSection section{beam.E, beam.A(), beam.Iy(), 0, 0, beam.density * beam.A(), 0};
+  for (int n = 1; n <= 3; ++n) {
+    const double omega = timoshenko(beam, n), euler = simply_supported_frequency(section, beam.length, n);
+    double nearest = 0.0;  // modes along x stand between those of bending
+    for (double f : found) {
+      if (std::abs(2 * std::numbers::pi * f - omega) < std::abs(nearest - omega)) nearest = 2 * std::numbers::pi * f;
+    }
+    EXPECT_NEAR(nearest, omega, 5e-4 * omega) << n;
+    EXPECT_GT(euler / omega - 1.0, 0.008 * n * n) << "the theories differ here";
+  }
+}
+
+/// Largest deflection and acceleration at midspan while a coach crosses.
+struct Response {
+  double deflection = 0.0, acceleration = 0.0;
+};
+
+Response crossing(const StructureModel& structure, double length) {
+  VsiModel model;
+  model.vehicle = build_coach(coach_parameters("manchester-coach"));
+  model.vehicle_x = {-20.0};
+  model.normal_contact = NormalContact::rigid;
+  model.contact.speed = 55.0;
+  model.structure = structure;
+  VsiState state(model);
+  IntegrationParameters integration;
+  integration.time_step = 1e-3;
+  EXPECT_TRUE(steady_start(model, state).converged);
+  Response response;
+  RunObserver observer;
+  const auto deck =
+      static_cast<std::size_t>(std::find_if(structure.nodes.begin(), structure.nodes.end(),
+                                            [](const StructureNode& node) { return node.name == "deck-midspan-1"; }) -
+                               structure.nodes.begin());
+  observer.record = [&](const StepRecord& step) {
+    response.deflection = std::max(response.deflection, std::abs(step.nodes[deck].displacement[2]));
+    response.acceleration = std::max(response.acceleration, std::abs(step.nodes[deck].acceleration[2]));
+  };
+  EXPECT_TRUE(simulate(model, integration, (length + 32.0) / model.contact.speed, 1, state, observer).complete);
+  return response;
+}
+
+TEST(Calculix, MidspanUnderATrainIsThatOfTheBuiltInBridge) {
+  RAILTAB_NEEDS_CALCULIX();
+  // stiff and heavy, so that it can be slender: shear, which the built-in span does not have, is small
+  const RectangularBeam beam{30.0, 3.0, 0.5, 20, 8.0 * 34.5e9, 5000.0};
+  CalculixBeam written("train", beam, "B32R", false);
+  ASSERT_TRUE(written.ran());
+  written.parameters.frame.origin = {{0.0, 0.0, 1.2}};  // rail-head tops over the axis
+  // the same damping: at the first two bending frequencies
+  const BeamSection section{beam.E, beam.A(), beam.Iy(), 0, 0, beam.density * beam.A(), 0};
+  for (int n = 1; n <= 2; ++n) {
+    written.parameters.damping.frequencies[static_cast<std::size_t>(n - 1)] =
+        simply_supported_frequency(section, beam.length, n) / (2 * std::numbers::pi);
+  }
+  TrackParameters track;
+  track.length_before = track.length_after = 48.0;
+  BridgeParameters span = built_in(beam);
+  span.axis_depth = 1.2;
+  const Response imported = crossing(build_track_on_import(track, written.parameters), beam.length);
+  const Response built = crossing(build_track_bridge(track, {span}), beam.length);
+  RecordProperty("deflection", std::to_string(imported.deflection / built.deflection - 1.0));
+  RecordProperty("acceleration", std::to_string(imported.acceleration / built.acceleration - 1.0));
+  EXPECT_GT(built.deflection, 1e-4);
+  EXPECT_NEAR(imported.deflection, built.deflection, 0.01 * built.deflection);
+  EXPECT_NEAR(imported.acceleration, built.acceleration, 0.01 * built.acceleration);
+}
+
+}  // namespace
+}  // namespace railtab

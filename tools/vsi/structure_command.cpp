@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "json_object.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/structure/structure_summary.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+StructureSummary summary_of(const SceneParameters& scene, int modes) {
+  if (!scene.structure.files.nodes.empty()) {
+    const FeStructure structure = read_fe_structure(scene.structure.files, scene.structure.frame);
+    return summarise(structure, scene.structure.damping, modes);
+  }
+  if (!scene.spans.empty()) return summarise(scene.spans, modes);
+  throw input_error(scene.name, "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
+}
+
+void print(const SceneParameters& scene, const StructureSummary& s) {
+  fmt::print("{}: {} unknowns, {} nodes\n", scene.name, s.dofs, s.nodes);
+  fmt::print("  from x = {:.3f}, y = {:.3f}, z = {:.3f} m to {:.3f}, {:.3f}, {:.3f} m below the rail-head tops\n",
+             s.low[0], s.low[1], s.low[2], s.high[0], s.high[1], s.high[2]);
+  fmt::print("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
+             1e-3 * s.mass[2]);
+  if (!s.free.empty()) {
+    fmt::print("  nothing holds it against {}: supports are missing, or the track is to hold it\n",
+               fmt::join(s.free, ", "));
+  }
+  for (std::size_t k = 0; k < s.frequencies.size(); ++k) {
+    fmt::print("  {:3}. {:10.4f} Hz, damping {:.3f} %\n", k + 1, s.frequencies[k], 100.0 * s.damping_ratios[k]);
+  }
+}
+
+void print_json(const SceneParameters& scene, const StructureSummary& s) {
+  JsonObject json;
+  json.add("scene", scene.name).add("dofs", s.dofs).add("nodes", s.nodes);
+  json.add("mass_x", s.mass[0]).add("mass_y", s.mass[1]).add("mass_z", s.mass[2]);
+  json.add("free", s.free).add("frequencies", s.frequencies).add("damping_ratios", s.damping_ratios);
+  fmt::print("{}\n", json.text());
+}
+
+}  // namespace
+
+int structure_command(const Arguments& arguments) {
+  CommandSyntax syntax{"vsi structure SCENE.toml [--modes N]", "scene", true, {}};
+  syntax.options.add_options()("modes", po::value<int>()->value_name("N"),
+                               "natural frequencies of the bridge without its track; default 10, 0 for none");
+  const auto values = parse_command_line(syntax, arguments);
+  if (!values) return 0;
+  const int modes = values->contains("modes") ? (*values)["modes"].as<int>() : 10;
+  if (modes < 0 || modes > 500) throw input_error("--modes", fmt::format("{}", modes), "0 to 500");
+  const SceneParameters scene = read_scene((*values)["scene"].as<std::string>());
+  const StructureSummary summary = summary_of(scene, modes);
+  if (values->contains("json")) {
+    print_json(scene, summary);
+  } else {
+    print(scene, summary);
+  }
+  return 0;
+}
+
+}  // namespace railtab::vsi
