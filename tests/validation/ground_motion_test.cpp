@@ -201,8 +201,9 @@ TEST(GroundMotion, AbsoluteAndRelativeMotionOfTrackAndBridgeAgree) {
   const double coarse = two_routes(2e-3), fine = two_routes(1e-3);
   std::printf("bridge on moving ground, absolute against relative: %.2e of the deflection at 1 ms, order %.2f\n", fine,
               std::log2(coarse / fine));
-  EXPECT_LT(fine, 5e-3);
-  EXPECT_GT(std::log2(coarse / fine), 1.7);
+  // What is left at this level is of first order in the time step.
+  EXPECT_LT(fine, 3e-4);
+  EXPECT_GT(std::log2(coarse / fine), 0.9);
 }
 
 // Ground that moves slowly takes the train along, and its wheel loads with it.

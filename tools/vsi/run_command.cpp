@@ -39,7 +39,10 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
     JsonObject json;
     json.add("scene", scene.name).add("structure_dofs", plan.structure_dofs).add("vehicle_dofs", plan.vehicle_dofs);
     json.add("wheels", static_cast<long>(plan.wheels)).add("steps", plan.steps).add("time_step", plan.time_step);
-    json.add("duration", plan.duration).add("memory_bytes", plan.memory).add("built", plan.built).add("left_out", plan.left_out);
+    json.add("duration", plan.duration)
+        .add("memory_bytes", plan.memory)
+        .add("built", plan.built)
+        .add("left_out", plan.left_out);
     fmt::print("{}\n", json.text());
     return 0;
   }
