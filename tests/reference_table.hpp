@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -12,8 +13,9 @@ namespace railtab::testing {
 /// Columns of a committed reference CSV by name; lines that begin with '#' tell the origin and are skipped.
 /// Fields that are not numbers are refused: a reference file has numbers only.
 inline std::map<std::string, std::vector<double>> read_reference(const std::string& name) {
-  std::ifstream in(std::string(RAILTAB_REFERENCE_DIR) + "/" + name);
-  if (!in) throw std::runtime_error("missing reference file " + name);
+  const std::filesystem::path file = std::filesystem::path(RAILTAB_REFERENCE_DIR) / name;
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error("missing reference file " + file.string());
   std::vector<std::string> columns;
   std::map<std::string, std::vector<double>> table;
   for (std::string line; std::getline(in, line);) {

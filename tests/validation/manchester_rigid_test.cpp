@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -31,7 +32,7 @@ const ContactSearch& search() {
 }
 
 std::vector<std::vector<double>> read_reference(const std::string& name) {
-  std::ifstream file(std::string(RAILTAB_REFERENCE_DIR) + "/" + name);
+  std::ifstream file(std::filesystem::path(RAILTAB_REFERENCE_DIR) / name);
   std::vector<std::vector<double>> rows;
   std::string line;
   bool titles = true;

@@ -7,7 +7,7 @@
 namespace railtab::vsi {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -28,18 +28,18 @@ std::string number_text(double value) { return std::isfinite(value) ? fmt::forma
 
 JsonObject& JsonObject::add_raw(std::string_view name, std::string_view value) {
   if (!members_.empty()) members_ += ", ";
-  members_ += quoted(name) + ": " + std::string(value);
+  members_ += in_quotes(name) + ": " + std::string(value);
   return *this;
 }
 
 JsonObject& JsonObject::add(std::string_view name, double value) { return add_raw(name, number_text(value)); }
 JsonObject& JsonObject::add(std::string_view name, long value) { return add_raw(name, std::to_string(value)); }
 JsonObject& JsonObject::add(std::string_view name, bool value) { return add_raw(name, value ? "true" : "false"); }
-JsonObject& JsonObject::add(std::string_view name, std::string_view value) { return add_raw(name, quoted(value)); }
+JsonObject& JsonObject::add(std::string_view name, std::string_view value) { return add_raw(name, in_quotes(value)); }
 JsonObject& JsonObject::add(std::string_view name, const JsonObject& value) { return add_raw(name, value.text()); }
 JsonObject& JsonObject::add(std::string_view name, const std::vector<std::string>& values) {
   std::string list;
-  for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);
+  for (const std::string& value : values) list += (list.empty() ? "" : ", ") + in_quotes(value);
   return add_raw(name, "[" + list + "]");
 }
 JsonObject& JsonObject::add(std::string_view name, const std::vector<double>& values) {

@@ -1,0 +1,54 @@
+# Headers that nearly every source includes, parsed once: it halves the time of a whole build. Sources still include all
+# that they use: a build without RAILTAB_PRECOMPILED (the preset `release`) is the check.
+
+set(railtab_precompiled_headers
+  <Eigen/Dense> <Eigen/SparseCholesky> <Eigen/SparseCore> <fmt/format.h>
+  <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers> <optional> <random>
+  <span> <string> <string_view> <vector>)
+
+# railtab_precompiled_set(<name> <header>... LIBRARIES ...): a set of precompiled headers for other targets to reuse.
+function(railtab_precompiled_set name)
+  cmake_parse_arguments(arg "" "" "HEADERS;LIBRARIES" ${ARGN})
+  set(source ${PROJECT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// carries precompiled headers\n")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE railtab_options Eigen3::Eigen fmt::fmt ${arg_LIBRARIES})
+  target_compile_definitions(${name} PRIVATE $<TARGET_PROPERTY:tables,INTERFACE_COMPILE_DEFINITIONS>)
+  target_precompile_headers(${name} PRIVATE ${railtab_precompiled_headers} ${arg_HEADERS})
+endfunction()
+
+# All targets made so far in `folder` and below.
+function(railtab_targets_below folder result)
+  get_property(found DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  get_property(below DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+  foreach(next IN LISTS below)
+    railtab_targets_below(${next} more)
+    list(APPEND found ${more})
+  endforeach()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# Every target of the project that compiles sources. Those with OpenMP's options cannot share what was compiled without.
+function(railtab_precompile_all)
+  railtab_precompiled_set(railtab_precompiled)
+  if(RAILTAB_TESTS)
+    find_package(GTest REQUIRED)
+    railtab_precompiled_set(railtab_precompiled_tests HEADERS <gtest/gtest.h> LIBRARIES GTest::gtest)
+  endif()
+  railtab_targets_below(${PROJECT_SOURCE_DIR} targets)
+  foreach(target IN LISTS targets)
+    get_target_property(type ${target} TYPE)
+    get_target_property(links ${target} LINK_LIBRARIES)
+    if(target MATCHES "^railtab_precompiled" OR NOT type MATCHES "EXECUTABLE|STATIC_LIBRARY|SHARED_LIBRARY")
+      continue()
+    elseif(NOT target STREQUAL tables AND NOT "${links}" MATCHES "tables|runtime|tablegen|report")
+      continue()  # knows nothing of Eigen
+    elseif("${links}" MATCHES "GTest::")
+      target_precompile_headers(${target} REUSE_FROM railtab_precompiled_tests)
+    elseif("${links}" MATCHES "OpenMP::")
+      target_precompile_headers(${target} PRIVATE ${railtab_precompiled_headers})
+    else()
+      target_precompile_headers(${target} REUSE_FROM railtab_precompiled)
+    endif()
+  endforeach()
+endfunction()
