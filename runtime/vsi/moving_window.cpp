@@ -11,7 +11,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr int span_modes = 16;  // of a span with its track: those of the deck that matter after a train
+constexpr int span_modes = 16;   // of a span with its track: those of the deck that matter after a train
 constexpr double stride = 10.0;  // m: the window moves on by as much at a time
 
 // Unknowns with from <= x <= to.
@@ -31,7 +31,7 @@ auto of_span(Eigen::VectorXd& numbers, Eigen::Index first, Eigen::Index modes, i
 
 void to_rest(LinearMotion& motion, Eigen::Index begin, Eigen::Index count) {
   for (Eigen::VectorXd* vector :
-       {&motion.displacement, &motion.velocity, &motion.acceleration, &motion.contact_load})
+       {&motion.displacement, &motion.velocity, &motion.acceleration, &motion.contact_load, &motion.step_load})
     vector->segment(begin, count).setZero();
 }
 

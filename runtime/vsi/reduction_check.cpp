@@ -51,8 +51,8 @@ ComparedHistory compared_history(const SceneParameters& scene, double duration) 
   history.summary = run_scene(stretch, observer);
   history.seconds_steps = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   if (!history.summary.complete) {
-    throw ComputationError(
-        fmt::format("comparison with reduction \"{}\": {}", reduction_name(scene.reduction.kind), history.summary.message));
+    throw ComputationError(fmt::format("comparison with reduction \"{}\": {}", reduction_name(scene.reduction.kind),
+                                       history.summary.message));
   }
   return history;
 }

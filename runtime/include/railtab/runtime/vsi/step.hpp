@@ -55,8 +55,8 @@ struct StepWorkspace {
   Eigen::VectorXd vehicle_load;  ///< of one vehicle
   WheelContactModel contact;     ///< at the speed of the step's end
   DividedSubstitution structure_solution;
-  std::vector<int> rail_dofs;  ///< unknowns of the structure that the wheels load
-  std::vector<RailCoupling> local;  ///< static correction
+  std::vector<int> rail_dofs;          ///< unknowns of the structure that the wheels load
+  std::vector<RailCoupling> local;     ///< static correction
   Eigen::VectorXd local_displacement;  ///< of it, 3 per wheel
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
@@ -66,6 +66,10 @@ struct StepWorkspace {
 
   explicit StepWorkspace(const VsiModel& model);
 };
+
+/// The contacts as the state has them at its time, for the step that begins there: needed with
+/// ContactForceRule::energy where that state does not come from a step.
+void remember_contact(const VsiModel& model, VsiState& state);
 
 /// One HHT step of the coupled system (Eqs. 12-16). If it does not converge, `state` is as before. Serves both kinds of
 /// normal contact; `advance_rigid_wheels` is the part for wheels that follow the rails.

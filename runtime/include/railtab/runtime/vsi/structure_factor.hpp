@@ -22,8 +22,7 @@ class StructureFactor {
   using Vector = Eigen::VectorXd;
 
   /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
-  explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix)
-      : StructureFactor(matrix, {0, matrix.rows()}) {}
+  explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix) : StructureFactor(matrix, {0, matrix.rows()}) {}
   /// The rows and columns in `range` alone: all other unknowns are held. Unknowns keep their numbers.
   StructureFactor(const Eigen::SparseMatrix<double>& matrix, const DofRange& range);
 
@@ -47,7 +46,9 @@ class StructureFactor {
     }
   }
 
-  [[nodiscard]] int position(int unknown) const noexcept { return position_[static_cast<std::size_t>(unknown - first_)]; }
+  [[nodiscard]] int position(int unknown) const noexcept {
+    return position_[static_cast<std::size_t>(unknown - first_)];
+  }
   /// From and to a vector of all unknowns of the structure; those that are held are not touched.
   void into(const Vector& natural, Vector& ordered) const;
   void out_of(const Vector& ordered, Vector& natural) const;
@@ -79,7 +80,7 @@ class StructureFactor {
   std::vector<int> block_of_;  // of a column
   std::vector<int> position_;  // of an unknown in the factor's order
   Vector inverse_D_;
-  int first_ = 0;              // the unknown that the range begins with
+  int first_ = 0;  // the unknown that the range begins with
   int most_below_ = 0;
 };
 

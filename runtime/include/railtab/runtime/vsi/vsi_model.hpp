@@ -39,7 +39,7 @@ struct DeviationHistory {
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
-  std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
+  std::vector<double> vehicle_x;            ///< of the vehicles' centres at t = 0, front first [m]
   std::optional<StructureModel> structure;  ///< reduced, where a reduction is chosen
   /// Of a modal structure whose left-out modes answer without inertia: all of it.
   std::shared_ptr<const StructureModel> unreduced;
@@ -83,7 +83,7 @@ struct VsiState {
   double time = 0.0;
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
-  LinearMotion local;         ///< of rail heads, 3 per wheel, by the modes left out; empty without static correction
+  LinearMotion local;           ///< of rail heads, 3 per wheel, by the modes left out; empty without static correction
   Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
   ContactSolution contact;
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
@@ -112,6 +112,10 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
 /// speed; and the vertical motion of the ground there, which rails that are rigid follow.
 [[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
 [[nodiscard]] VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept;
+
+/// The contact unknowns and their velocities as a state has them (`predicted`, with the track's deviation), nothing
+/// left to solve: for what is asked of the contacts outside the steps.
+[[nodiscard]] ContactProblem present_contact(const VsiModel& model, const VsiState& state);
 
 /// Restriction of one vehicle's dof vector to its wheelset unknowns, written into a 12-per-wheelset vector.
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
