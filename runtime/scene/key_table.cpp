@@ -70,6 +70,7 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                    set("list of texts", "any", fmt::format("[\"{}\"]", fmt::join(k.member(standard), "\", \"")));
                  },
                  [&](const SwitchKey& k) { set("choice", "true, false", k.member(standard) ? "true" : "false"); },
+                 [&](const ContactForceKey&) { set("choice", "endpoint, energy", "endpoint"); },
              },
              key.value);
   return result;

@@ -88,6 +88,7 @@ struct TextListKey {
 struct SwitchKey {
   Member<bool> member;
 };
+struct ContactForceKey {};
 
 /// The one place that says which key goes to which member, in which unit and range.
 struct KeyBinding {
@@ -95,7 +96,7 @@ struct KeyBinding {
   std::string_view unit;
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ContactModeKey,
-               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey, TextListKey>
+               TrackKindKey, NormalContactKey, ReductionKey, SwitchKey, TextListKey, ContactForceKey>
       value;
 };
 

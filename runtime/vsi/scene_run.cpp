@@ -3,13 +3,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "plan_memory.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
-#include "plan_memory.hpp"
 #include "scene_loads.hpp"
 
 namespace railtab {
