@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "railtab/runtime/contact/creepage.hpp"
+#include "railtab/runtime/contact/mean_force.hpp"
 
 namespace railtab {
 
@@ -109,9 +110,6 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
   const Vector3 rotation = rail_axes.from_track({w.velocity[3] - r.velocity[2], 0.0, w.velocity[5]}) +
                            (w.velocity[4] - V / pair.nominal_radius()) * axle;
 
-  Vector3 force = Vector3::Zero();
-  Vector3 moment = Vector3::Zero();
-  double rail_moment = 0.0;
   const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
   for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
     const ContactPatch& patch = loads[i].contact;
@@ -124,24 +122,19 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
     const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
     const PatchForce p = patch_force(model, loads[i], arm, velocity + centre_shift - surface_velocity, rotation);
-    force += p.force;
-    moment += p.moment;
     result.normal[i] = p.normal;
     result.outside_creep_table += p.outside_creep_table;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
-    rail_moment -= patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];
+    const double rail_moment = patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];
+    const Vector3 force = rail_axes.to_track(p.force);
+    const Vector3 moment = rail_axes.to_track(p.moment);
+    Vector9& share = result.patch[i];
+    share << force, moment[0], p.moment.dot(axle), moment[2], -force[1], -force[2], -rail_moment;
+    if (side == WheelSide::left) share << reflected(share.head<6>()), reflected_rail(share.tail<3>());
+    result.wheelset += share.head<6>();
+    result.rail += share.tail<3>();
   }
-
-  const Vector3 force_track = rail_axes.to_track(force);
-  const Vector3 moment_track = rail_axes.to_track(moment);
-  result.wheelset.head<3>() = force_track;
-  result.wheelset.tail<3>() = Vector3(moment_track[0], moment.dot(axle), moment_track[2]);
-  result.rail << -force_track[1], -force_track[2], rail_moment;
-  result.rail_x = -force_track[0];
-  if (side == WheelSide::left) {
-    result.wheelset = reflected(result.wheelset);
-    result.rail = reflected_rail(result.rail);
-  }
+  result.rail_x = -result.wheelset[0];
   return result;
 }
 
@@ -160,12 +153,7 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
         continue;
       }
     }
-    // Frozen pair: the penetration changes by the displacement of the wheel's particle along the normal.
-    const double arm_y = p.y_rail - (from.y - pair.rail_offset());
-    const double arm_z = p.z_rail - (from.z - pair.nominal_radius());
-    const double roll = to.roll - from.roll;
-    q.penetration +=
-        -std::sin(p.angle) * (to.y - from.y - roll * arm_z) + std::cos(p.angle) * (to.z - from.z + roll * arm_y);
+    q.penetration += PenetrationGradient(pair, p, from).change(from, to);  // the pair frozen
   }
   return moved;
 }
@@ -183,19 +171,24 @@ double difference_step(double step, double velocity_rate, double speed) {
 
 Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                             const RailHeadMotion& rail, const ContactPatches& patches, const WheelForce& force,
-                            const Vector6& velocity_rate, double rail_velocity_rate) noexcept {
+                            const Vector6& velocity_rate, double rail_velocity_rate,
+                            const ContactMemory* start) noexcept {
   Matrix9 tangent = Matrix9::Zero();
-  if (patches.count == 0) return tangent;
+  if (patches.count == 0 && (!start || start->count == 0)) return tangent;
   const WheelRailPair& pair = model.geometry->pair();
   const WheelsetPose pose = relative_pose(pair, side, wheelset, rail);
+  const auto total = [&](const WheelsetPose& at, const ContactPatches& p, const WheelForce& f) -> Vector9 {
+    if (start) return mean_force(pair, *start, at, p, f);
+    Vector9 sum;
+    sum << f.wheelset, f.rail;
+    return sum;
+  };
+  const Vector9 here = total(pose, patches, force);
   const auto difference = [&](const WheelsetMotion& w, const RailHeadMotion& r, bool moves_pose, double step) {
-    const ContactPatches& moved =
-        moves_pose ? moved_patches(*model.geometry, patches, pose, relative_pose(pair, side, w, r)) : patches;
-    const WheelForce f = wheel_force(model, side, w, r, moved);
-    Vector9 column;
-    column.head<6>() = (f.wheelset - force.wheelset) / step;
-    column.tail<3>() = (f.rail - force.rail) / step;
-    return column;
+    const WheelsetPose to = moves_pose ? relative_pose(pair, side, w, r) : pose;
+    const ContactPatches& moved = moves_pose ? moved_patches(*model.geometry, patches, pose, to) : patches;
+    const Vector9 there = total(to, moved, wheel_force(model, side, w, r, moved));
+    return Vector9((there - here) / step);
   };
   // Steps well above the Newton tolerance of the pair and well below the penetration [m, rad].
   constexpr std::array<double, 6> steps{1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7};

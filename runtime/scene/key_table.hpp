@@ -100,6 +100,7 @@ struct SwitchKey {
   Member<bool> member;
 };
 struct FileFormatKey {};
+struct ContactForceKey {};
 
 /// The one place that says which key goes to which member, in which unit and range.
 struct KeyBinding {
@@ -108,7 +109,7 @@ struct KeyBinding {
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ContactModeKey,
                TrackKindKey, NormalContactKey, ReductionKey, SwitchKey, TextListKey, PointKey, NumberListKey,
-               FileFormatKey>
+               FileFormatKey, ContactForceKey>
       value;
 };
 

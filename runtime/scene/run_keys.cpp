@@ -87,6 +87,8 @@ std::vector<KeyBinding> integration_keys() {
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.duration; }, {0.0, 1e5}}},
       {"integration.alpha", "1", "HHT α; 0 is Newmark's trapezoidal rule",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.alpha; }, {-1.0 / 3.0, 0.0}}},
+      {"integration.contact_force", "",
+       "contact force of a step: that of its end, or such that a contact spring keeps its energy", ContactForceKey{}},
       {"integration.tolerance", "1", "Newton: change of the contact displacement relative to 1 mm",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.tolerance; }, {0.0, 1e-2, true}}},
       {"integration.max_iterations", "1", "Newton iterations before a step is halved",

@@ -77,6 +77,10 @@ struct Assign {
     if (!value) throw error("true or false");
     key.member(draft) = value->get();
   }
+  void operator()(const ContactForceKey&) const {
+    draft.parameters.integration.contact_force =
+        one_of({"endpoint", "energy"}) == "energy" ? ContactForceRule::energy : ContactForceRule::endpoint;
+  }
   void operator()(const NormalContactKey&) const {
     draft.parameters.contact.normal =
         one_of({"hertz", "rigid"}) == "rigid" ? NormalContact::rigid : NormalContact::hertz;

@@ -38,16 +38,19 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
   for (int w = 0; w < wheelsets; ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
     auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    auto end_force = s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w);
     force.setZero();
+    end_force.setZero();
     if (tangents) (*tangents)[index(w)].setZero();
     for (int side = 0; side < 2; ++side) {
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
       const WheelSide wheel_side = sides[index(side)];
-      ContactPatches& patches = s.patches[index(2 * w + side)];
+      const std::size_t number = index(2 * w + side);
+      ContactPatches& patches = s.patches[number];
+      const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
       {
         const Stopwatch watch(report.seconds_lookup);
-        patches = wheel_patches(model, index(2 * w + side),
-                                relative_pose(model.geometry->pair(), wheel_side, motion, rail), pairs, ws);
+        patches = wheel_patches(model, number, pose, pairs, ws);
       }
       if (pairs == Pairs::searched) {
         ++report.queries;
@@ -55,14 +58,26 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       }
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, patches);
       const int r = 6 + 3 * side;
-      force.head<6>() += wheel.wheelset;
-      force.segment<3>(r) = wheel.rail;
-      s.rail_x[index(2 * w + side)] = wheel.rail_x;
+      end_force.head<6>() += wheel.wheelset;
+      end_force.segment<3>(r) = wheel.rail;
+      s.rail_x[number] = wheel.rail_x;
       report.outside_creep_table += wheel.outside_creep_table;
-      s.normal[index(2 * w + side)] = wheel.normal;
+      s.normal[number] = wheel.normal;
+      s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
+      const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
+      if (start) {
+        const Vector9 share = problem.mean_weight *
+                              (mean_force(model.geometry->pair(), *start, pose, patches, wheel) - 0.5 * start->force());
+        force.head<6>() += share.head<6>();
+        force.segment<3>(r) = share.tail<3>();
+      } else {
+        force.head<6>() += wheel.wheelset;
+        force.segment<3>(r) = wheel.rail;
+      }
       if (!tangents) continue;
-      const Matrix9 t = wheel_force_tangent(model, wheel_side, motion, rail, patches, wheel, problem.velocity_rate,
-                                            problem.rail_velocity_rate);
+      const Matrix9 t = (start ? problem.mean_weight : 1.0) * wheel_force_tangent(model, wheel_side, motion, rail,
+                                                                                  patches, wheel, problem.velocity_rate,
+                                                                                  problem.rail_velocity_rate, start);
       Matrix12& tangent = (*tangents)[index(w)];
       tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
       tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
@@ -157,6 +172,14 @@ RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd&
   motion.velocity += problem.predicted_velocity.segment<3>(k) +
                      problem.rail_velocity_rate * (displacement - problem.predicted.segment<3>(k));
   return motion;
+}
+
+NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem,
+                              ContactSolution& solution) {
+  NewtonReport report;
+  NewtonWorkspace workspace;
+  evaluate(model, problem, Pairs::searched, solution, workspace, nullptr, report);
+  return report;
 }
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,

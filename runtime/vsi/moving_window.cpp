@@ -30,7 +30,8 @@ auto of_span(Eigen::VectorXd& numbers, Eigen::Index first, Eigen::Index modes, i
 }
 
 void to_rest(LinearMotion& motion, Eigen::Index begin, Eigen::Index count) {
-  for (Eigen::VectorXd* vector : {&motion.displacement, &motion.velocity, &motion.acceleration, &motion.contact_load})
+  for (Eigen::VectorXd* vector :
+       {&motion.displacement, &motion.velocity, &motion.acceleration, &motion.contact_load, &motion.step_load})
     vector->segment(begin, count).setZero();
 }
 

@@ -5,6 +5,7 @@
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "stopwatch.hpp"
+#include "structure_step.hpp"
 
 namespace railtab {
 
@@ -129,7 +130,7 @@ Eigen::VectorXd free_vehicles(const VsiModel& model, const StepOperators& op, co
   return force;
 }
 
-// What the wheels would follow without contact forces at t + dt; one back-substitution.
+// What the wheels would follow without contact forces at t + dt: the forward half of the structure's back-substitution.
 Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState& state, double time,
                  StepWorkspace& ws) {
   Lines lines;
@@ -145,11 +146,8 @@ Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState&
     lines.known.back() += Vector3d(ground.z, ground.rate, ground.acceleration);
   }
   if (!model.structure) return lines;
+  begin_structure(model, op, state, lines.contacts, ws);
   const Prediction& p = ws.structure_prediction;
-  predict(op.scheme, state.structure, op.structure->active(), ws.structure_prediction);
-  op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
-  add_ground_load(model, op.scheme, state.time, ws.structure_increment);
-  ws.structure_free = op.structure->solve(ws.structure_increment);
   lines.couplings = line_couplings(op, lines.contacts);
   for (int w = 0; w < model.wheelsets(); ++w) {
     const RailContact* contact = &lines.contacts[index(2 * w)];
@@ -173,13 +171,15 @@ void solve_contact_forces(const VsiModel& model, const StepOperators& op, const 
   set_vertical_forces(ws.rigid_wheels.force, ws.solution);
 }
 
-// Full response of the structure to the contact forces; returns what the forces' solution had missed of it.
-double full_structure(const StepOperators& op, Lines& lines, StepWorkspace& ws) {
-  scatter_rail_forces(lines.contacts, ws.solution.force, ws.structure_load);
-  ws.structure_increment = ws.structure_free + op.scheme.load_weight() * op.structure->solve(ws.structure_load);
+// Response of the structure to the contact forces, under the wheels; returns what the forces' solution had missed of
+// it.
+double answer_under_wheels(const StepOperators& op, Lines& lines, StepWorkspace& ws) {
+  for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
+  add_rail_forces(lines.contacts, ws.solution.force, ws.structure_load);
+  ws.structure_solution.respond(op.structure->factor(), op.scheme.load_weight(), ws.structure_load, ws.structure_free);
   double missed = 0.0;
   for (int w = 0; w < static_cast<int>(lines.increment.size()); ++w) {
-    const Vector3d miss = mean_line(&lines.contacts[index(2 * w)], ws.structure_increment) - lines.increment[index(w)];
+    const Vector3d miss = mean_line(&lines.contacts[index(2 * w)], ws.structure_free) - lines.increment[index(w)];
     missed = std::max(missed, miss.cwiseAbs().maxCoeff());
     ws.far_field.segment<3>(3 * w) += miss;
     lines.increment[index(w)] += miss;
@@ -236,8 +236,7 @@ StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& op, 
       break;
     }
     const Stopwatch watch(report.seconds_structure);
-    report.converged = full_structure(op, lines, ws) < limits.far_field_tolerance;
-    ++report.back_substitutions;
+    report.converged = answer_under_wheels(op, lines, ws) < limits.far_field_tolerance;
   }
   if (!report.converged) return report;
 
@@ -248,6 +247,7 @@ StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& op, 
   if (model.structure) {
     const Stopwatch watch(report.seconds_structure);
     const DofRange& active = op.structure->active();
+    ws.structure_solution.finish(op.structure->factor(), ws.structure_increment);
     active.of(state.structure.contact_load) = active.of(ws.structure_load);
     update(op.scheme, ws.structure_prediction, ws.structure_increment, active, state.structure);
   }

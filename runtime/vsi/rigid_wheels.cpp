@@ -72,6 +72,7 @@ void set_vertical_forces(const Eigen::VectorXd& force, ContactSolution& solution
       solution.patches[index(2 * w + side)].count = 0;
     }
   }
+  solution.end_force = solution.force;
 }
 
 void rest_on_rails(const ContactProblem& problem, ContactSolution& solution) {

@@ -23,8 +23,8 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 // The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
 class Integrator {
  public:
-  Integrator(const VsiModel& model, const IntegrationParameters& p, double& seconds_setup)
-      : model_(model), parameters_(p), workspace_(model) {
+  Integrator(const VsiModel& model, const IntegrationParameters& p, const RunObserver& observer, double& seconds_setup)
+      : model_(model), parameters_(p), workspace_(model), energy_(observer.energy) {
     if (model.structure) active_ = {0, model.structure->dofs()};
     if (model.window) window_.emplace(model, p.time_step);
     // The tolerance counts relative to a contact displacement of 1 mm.
@@ -40,8 +40,12 @@ class Integrator {
     if (window_) window_->vibrate(state);
     return true;
   }
-  /// From here on as a run that begins here: nothing of earlier steps but the state.
-  void forget() { workspace_.newton.factor.clear(); }
+  /// From here on as a run that begins here: nothing of earlier steps but the numbers of a checkpoint.
+  void begin(VsiState& state) {
+    workspace_.newton.factor.clear();
+    if (parameters_.contact_force == ContactForceRule::energy) remember_contact(model_, state);
+    if (energy_ && !account_ && model_.normal_contact == NormalContact::hertz) account_.emplace(model_, state);
+  }
 
  private:
   // Operators of a step that ends at `time`.
@@ -49,7 +53,9 @@ class Integrator {
     const Stopwatch watch(seconds_setup);
     auto found = operators_.find(level);
     if (found == operators_.end()) {
-      const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
+      const HhtScheme scheme{.alpha = parameters_.alpha,
+                             .time_step = std::ldexp(parameters_.time_step, -level),
+                             .contact_force = parameters_.contact_force};
       found = operators_.emplace(level, StepOperators(model_, scheme)).first;
     }
     found->second.follow(model_, time, active_);
@@ -69,7 +75,11 @@ class Integrator {
     summary.seconds_contact += report.seconds_contact;
     summary.seconds_structure += report.seconds_structure;
     summary.seconds_vehicle += report.seconds_vehicle;
-    if (report.converged) return true;
+    if (report.converged) {
+      if (account_) account_->step(step_operators.scheme.gamma(), state);
+      if (account_) energy_(account_->balance());
+      return true;
+    }
     if (level == parameters_.max_halvings) return false;
     ++summary.halved_steps;
     return step(level + 1, state, summary) && step(level + 1, state, summary);
@@ -80,6 +90,8 @@ class Integrator {
   StepLimits limits_;
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
+  std::function<void(const EnergyBalance&)> energy_;
+  std::optional<EnergyAccount> account_;
   DofRange active_;  // unknowns of the structure that take part
   std::optional<MovingWindow> window_;
 };
@@ -145,8 +157,8 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
     WheelRecord& w = record.wheels[wheel];
     fill_patches(state.contact, wheel, w);
     const int unknown = rail_unknown(static_cast<int>(wheel));
-    w.Y = state.contact.force[unknown];
-    w.Q = state.contact.force[unknown + 1];
+    w.Y = state.contact.end_force[unknown];
+    w.Q = state.contact.end_force[unknown + 1];
     w.X = state.contact.rail_x[wheel];
   }
   const std::size_t bodies = model.vehicle.bodies.size();
@@ -166,7 +178,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
                     VsiState& state, const RunObserver& observer, long first_step) {
   RunSummary summary;
   const Clock::time_point begin = Clock::now();
-  Integrator integrator(model, integration, summary.seconds_setup);
+  Integrator integrator(model, integration, observer, summary.seconds_setup);
   const auto steps = std::lround(duration / integration.time_step);
   StepRecord record;
   const auto emit = [&] {
@@ -177,6 +189,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
     summary.seconds_output += seconds_since(output_begin);
   };
 
+  integrator.begin(state);
   if (observer.ready) observer.ready();
   bool recorded = true;  // what has been reached
   summary.steps = first_step;
@@ -198,7 +211,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
     if (observer.checkpoint && (summary.interrupted || summary.steps % observer.checkpoint_every == 0)) {
       observer.checkpoint(summary.steps, packed(state));
     }
-    if (summary.steps % observer.checkpoint_every == 0) integrator.forget();
+    if (summary.steps % observer.checkpoint_every == 0) integrator.begin(state);
     if (summary.interrupted) {
       summary.message = "interrupted";
       break;

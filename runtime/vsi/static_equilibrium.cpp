@@ -212,6 +212,9 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
                        (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
   }
   if (rest.local) local_at_rest(*rest.local, contacts, state);
+  state.contact.step_load = state.contact.force;
+  for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;
+  state.structure.step_load = state.structure.contact_load;
   // The pitch unknowns are rates: hand them to the vehicles as such.
   for (int w = 0; w < model.wheelsets(); ++w) {
     const int per_vehicle = model.wheelsets_per_vehicle();

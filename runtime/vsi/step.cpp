@@ -3,6 +3,7 @@
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "stopwatch.hpp"
+#include "structure_step.hpp"
 
 namespace railtab {
 
@@ -37,17 +38,8 @@ void free_vehicles(const VsiModel& model, const StepOperators& op, const VsiStat
 // The structure likewise, under the wheels only: the forward half of its back-substitution.
 void free_structure(const VsiModel& model, const StepOperators& op, const VsiState& state,
                     const std::vector<RailContact>& contacts, StepWorkspace& ws) {
-  Prediction& p = ws.structure_prediction;
-  const DofRange& active = op.structure->active();
-  predict(op.scheme, state.structure, active, p);
-  op.structure->step_load(op.scheme, state.structure, p, ws.structure_increment);
-  add_ground_load(model, op.scheme, state.time, ws.structure_increment);
-  ws.rail_dofs.clear();
-  for (const RailContact& contact : contacts) append_dofs(contact, ws.rail_dofs);
-  active.of(ws.structure_load).setZero();
-  ws.structure_free.resize(model.structure->dofs());
-  ws.structure_solution.begin(op.structure->factor(), ws.structure_increment, ws.rail_dofs);
-  ws.structure_solution.respond(op.structure->factor(), 0.0, ws.structure_load, ws.structure_free);
+  begin_structure(model, op, state, contacts, ws);
+  const Prediction& p = ws.structure_prediction;
   gather_rails(contacts, p.displacement, ws.problem.predicted);
   gather_rails(contacts, p.velocity, ws.problem.predicted_velocity);
   gather_rails(contacts, ws.structure_free, ws.problem.free);
@@ -121,6 +113,89 @@ double answer_under_wheels(const StepOperators& op, const std::vector<RailContac
   return missed;
 }
 
+void set_force_rule(const HhtScheme& hht, const ContactSolution& start, ContactProblem& problem) {
+  const bool energy = hht.contact_force == ContactForceRule::energy;
+  problem.start = energy ? &start : nullptr;
+  problem.mean_weight = energy ? 1.0 / (hht.gamma() * hht.load_weight()) : 1.0;
+}
+
+// Eq. 16, condensed to the contacts; the structure's answer closes it.
+void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLimits& limits,
+                    const std::vector<RailContact>& contacts, StepWorkspace& ws, StepReport& report) {
+  for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
+    NewtonReport newton;
+    double seconds_newton = 0.0;
+    {
+      const Stopwatch watch(seconds_newton);
+      newton = solve_contact_by_continuation(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
+    }
+    report.newton_iterations += newton.iterations;
+    report.queries += newton.queries;
+    report.table_queries += newton.table_queries;
+    report.outside_creep_table += newton.outside_creep_table;
+    report.seconds_lookup += newton.seconds_lookup;
+    report.seconds_contact += seconds_newton - newton.seconds_lookup;
+    if (!newton.converged) return;
+    if (!model.structure) {
+      report.converged = true;
+      return;
+    }
+    const Stopwatch watch(report.seconds_structure);
+    report.converged = answer_under_wheels(op, contacts, ws) < limits.far_field_tolerance;
+  }
+}
+
+// What the contacts loaded a subsystem with in the step, from `load` of the solution's forces and from what went
+// before; for the next step.
+void close_load(const HhtScheme& hht, const Eigen::VectorXd& load, const DofRange& active, LinearMotion& motion) {
+  if (hht.contact_force == ContactForceRule::endpoint) return;
+  Eigen::VectorXd past;
+  past_contact_load(hht, motion, active, past);
+  active.of(motion.step_load) = hht.load_weight() * active.of(load) + active.of(past);
+}
+
+// The same in the contact unknowns.
+void close_contact(const HhtScheme& hht, const ContactSolution& start, ContactSolution& end) {
+  end.step_load = hht.load_weight() * end.force;
+  if (hht.contact_force == ContactForceRule::endpoint) {
+    end.step_load -= hht.alpha * start.end_force;
+  } else {
+    end.step_load += (0.5 * start.end_force - (1.0 - hht.gamma()) * start.step_load) / hht.gamma();
+  }
+}
+
+// Motion and contact forces at t + dt.
+void close_step(const VsiModel& model, const StepOperators& op, const std::vector<RailContact>& contacts,
+                VsiState& state, StepWorkspace& ws, StepReport& report) {
+  const HhtScheme& hht = op.scheme;
+  for (int v = 0; v < vehicles(model); ++v) {
+    const Stopwatch watch(report.seconds_vehicle);
+    LinearMotion& motion = state.vehicle[index(v)];
+    scatter_wheelset_forces(model, v, ws.solution.force, ws.vehicle_load);
+    ws.vehicle_increment[index(v)] =
+        ws.vehicle_free[index(v)] + hht.load_weight() * (op.vehicle.inverse() * ws.vehicle_load);
+    close_load(hht, ws.vehicle_load, {0, ws.vehicle_load.size()}, motion);
+    scatter_wheelset_forces(model, v, ws.solution.end_force, motion.contact_load);
+    update(hht, ws.vehicle_prediction[index(v)], ws.vehicle_increment[index(v)], motion);
+  }
+  if (model.structure) {
+    const Stopwatch watch(report.seconds_structure);
+    const DofRange& active = op.structure->active();
+    LinearMotion& motion = state.structure;
+    ws.structure_solution.finish(op.structure->factor(), ws.structure_increment);
+    close_load(hht, ws.structure_load, active, motion);
+    active.of(motion.contact_load).setZero();
+    add_rail_forces(contacts, ws.solution.end_force, motion.contact_load);
+    update(hht, ws.structure_prediction, ws.structure_increment, active, motion);
+    // Without inertia, Newmark's velocities of two steps would swing about their mean: none is handed on.
+    if (op.local) state.local.displacement += ws.local_displacement;
+  }
+  close_contact(hht, state.contact, ws.solution);
+  std::swap(state.contact, ws.solution);
+  state.far_field = ws.far_field;
+  state.time += hht.time_step;
+}
+
 }  // namespace
 
 StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
@@ -128,7 +203,10 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
       vehicle_damping(model.vehicle_damping(model.contact.speed)),
       vehicle(model.vehicle, vehicle_damping, hht),
       speed_(model.contact.speed) {
-  if (model.normal_contact == NormalContact::rigid) rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
+  if (model.normal_contact == NormalContact::rigid) {
+    scheme.contact_force = ContactForceRule::endpoint;  // a constraint has no spring
+    rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
+  }
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
   if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
@@ -158,6 +236,7 @@ StepWorkspace::StepWorkspace(const VsiModel& model) {
   vehicle_prediction.resize(n);
   vehicle_free.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
   vehicle_increment = vehicle_free;
+  vehicle_load = Eigen::VectorXd::Zero(model.vehicle.dofs());
   structure_load = Eigen::VectorXd::Zero(model.structure ? model.structure->dofs() : 0);
   const VsiState zero(model);
   solution = zero.contact;
@@ -194,52 +273,27 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   ws.problem.rail_velocity_rate = hht.velocity_rate();
   ws.problem.vehicle_compliance = hht.load_weight() * op.vehicle.compliance();
 
-  // Eq. 16, condensed to the contacts; the structure's answer closes it.
-  for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
-    NewtonReport newton;
-    double seconds_newton = 0.0;
-    {
-      const Stopwatch watch(seconds_newton);
-      newton = solve_contact_by_continuation(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
-    }
-    report.newton_iterations += newton.iterations;
-    report.queries += newton.queries;
-    report.table_queries += newton.table_queries;
-    report.outside_creep_table += newton.outside_creep_table;
-    report.seconds_lookup += newton.seconds_lookup;
-    report.seconds_contact += seconds_newton - newton.seconds_lookup;
-    if (!newton.converged) break;
-    if (!model.structure) {
-      report.converged = true;
-      break;
-    }
-    const Stopwatch watch(report.seconds_structure);
-    report.converged = answer_under_wheels(op, contacts, ws) < limits.far_field_tolerance;
-  }
-  if (!report.converged) return report;
-
-  // Motion and contact forces at t + dt.
-  for (int v = 0; v < vehicles(model); ++v) {
-    const Stopwatch watch(report.seconds_vehicle);
-    LinearMotion& motion = state.vehicle[index(v)];
-    scatter_wheelset_forces(model, v, ws.solution.force, motion.contact_load);
-    ws.vehicle_increment[index(v)] =
-        ws.vehicle_free[index(v)] + hht.load_weight() * (op.vehicle.inverse() * motion.contact_load);
-    update(hht, ws.vehicle_prediction[index(v)], ws.vehicle_increment[index(v)], motion);
-  }
-  if (model.structure) {
-    const Stopwatch watch(report.seconds_structure);
-    const DofRange& active = op.structure->active();
-    ws.structure_solution.finish(op.structure->factor(), ws.structure_increment);
-    active.of(state.structure.contact_load) = active.of(ws.structure_load);
-    update(hht, ws.structure_prediction, ws.structure_increment, active, state.structure);
-    // Without inertia, Newmark's velocities of two steps would swing about their mean: none is handed on.
-    if (op.local) state.local.displacement += ws.local_displacement;
-  }
-  std::swap(state.contact, ws.solution);
-  state.far_field = ws.far_field;
-  state.time = time;
+  set_force_rule(hht, state.contact, ws.problem);
+  solve_coupling(model, op, limits, contacts, ws, report);
+  if (report.converged) close_step(model, op, contacts, state, ws, report);
   return report;
+}
+
+void remember_contact(const VsiModel& model, VsiState& state) {
+  if (model.normal_contact == NormalContact::rigid) return;
+  const std::vector<RailContact> contacts = place_wheels(model, state.time);
+  const ContactProblem problem = present_contact(model, state);
+  WheelContactModel contact = model.contact;
+  contact.speed = model.speed(state.time);
+  ContactSolution now = state.contact;
+  now.displacement = problem.predicted;
+  static_cast<void>(evaluate_contact(contact, problem, now));
+  for (int v = 0; v < vehicles(model); ++v) {
+    scatter_wheelset_forces(model, v, now.end_force, state.vehicle[index(v)].contact_load);
+  }
+  if (model.structure) scatter_rail_forces(contacts, now.end_force, state.structure.contact_load);
+  state.contact.end_force = std::move(now.end_force);
+  state.contact.memory = std::move(now.memory);
 }
 
 }  // namespace railtab

@@ -189,9 +189,8 @@ StructureResponse::Entries& StructureResponse::entries() {
 
 void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
                                   Eigen::VectorXd& load) const {
-  load.resize(dofs_);
   const Eigen::Index first = active_.begin, last = active_.end();
-  active_.of(load) = -scheme.alpha * active_.of(motion.contact_load);
+  past_contact_load(scheme, motion, active_, load);
   const double* const u = prediction.weighted_displacement.data();
   const double* const v = prediction.weighted_velocity.data();
   double* const f = load.data();

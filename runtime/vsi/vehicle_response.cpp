@@ -34,9 +34,9 @@ void VehicleResponse::restrict_to_wheelsets(const VehicleModel& vehicle) {
 void VehicleResponse::free_increment(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
                                      const HhtScheme& scheme, const Eigen::VectorXd& load, const LinearMotion& motion,
                                      const Prediction& prediction, Eigen::VectorXd& increment) const {
-  // The contact load of the last step enters by −α.
-  const Eigen::VectorXd known = load - scheme.alpha * motion.contact_load - damping * prediction.weighted_velocity -
-                                vehicle.stiffness * prediction.weighted_displacement;
+  Eigen::VectorXd known;
+  past_contact_load(scheme, motion, {0, motion.contact_load.size()}, known);
+  known += load - damping * prediction.weighted_velocity - vehicle.stiffness * prediction.weighted_displacement;
   increment.noalias() = inverse_ * known;
 }
 

@@ -45,6 +45,8 @@ VsiState::VsiState(const VsiModel& model)
   const int wheelsets = model.wheelsets();
   contact.displacement = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
   contact.force = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
+  contact.end_force = contact.step_load = contact.force;
+  contact.memory.resize(index(2 * wheelsets));
   contact.rail_x.assign(index(2 * wheelsets), 0.0);
   contact.patches.resize(index(2 * wheelsets));
   contact.normal.resize(index(2 * wheelsets));
@@ -65,6 +67,7 @@ void visit_numbers(State& state, Visitor&& visit) {
     visit_vector(motion.velocity);
     visit_vector(motion.acceleration);
     visit_vector(motion.contact_load);
+    visit_vector(motion.step_load);
   };
   for (auto& motion : state.vehicle) visit_motion(motion);
   visit_motion(state.structure);
@@ -72,6 +75,7 @@ void visit_numbers(State& state, Visitor&& visit) {
   visit_vector(state.left_behind);
   visit_vector(state.contact.displacement);
   visit_vector(state.contact.force);
+  visit_vector(state.contact.step_load);
   visit_vector(state.contact.rail_x);
   visit_vector(state.far_field);
 }
@@ -218,6 +222,25 @@ void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::Vect
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
     add_rail_load(contacts[index(wheel)], force.segment<3>(rail_unknown(wheel)), load);
   }
+}
+
+ContactProblem present_contact(const VsiModel& model, const VsiState& state) {
+  const std::vector<RailContact> contacts = place_wheels(model, state.time);
+  ContactProblem problem;
+  problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+  problem.predicted = problem.predicted_velocity = Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
+  for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
+    gather_wheelsets(model, v, state.vehicle[index(v)].displacement, problem.predicted);
+    gather_wheelsets(model, v, state.vehicle[index(v)].velocity, problem.predicted_velocity);
+  }
+  gather_rails(contacts, state.structure.displacement, problem.predicted);
+  gather_rails(contacts, state.structure.velocity, problem.predicted_velocity);
+  for (int wheel = 0; wheel < static_cast<int>(state.local.displacement.size()) / 3; ++wheel) {
+    problem.predicted.segment<3>(rail_unknown(wheel)) += state.local.displacement.segment<3>(3 * wheel);
+    problem.predicted_velocity.segment<3>(rail_unknown(wheel)) += state.local.velocity.segment<3>(3 * wheel);
+  }
+  rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+  return problem;
 }
 
 }  // namespace railtab

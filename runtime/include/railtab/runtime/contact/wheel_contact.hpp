@@ -11,6 +11,8 @@ namespace railtab {
 
 using Vector3 = Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 /// Motion of a wheelset in the track frame, dof order x, y, z, roll, pitch, yaw. Displacement from the nominal position
 /// (centred, centre R0 above the rail-head tops); pitch rate is the deviation from the nominal rotation -V/R0 about y.
@@ -58,6 +60,8 @@ struct WheelForce {
   double rail_x = 0.0;                 ///< on the rail, longitudinal [N]
   std::array<double, ContactPatches::capacity> normal{};  ///< normal force of each patch [N]
   int outside_creep_table = 0;  ///< patches whose creep force the creep table left to Polach, wholly or in part
+  /// Share of each patch in (wheelset 6, rail 3); as many as there are patches.
+  std::array<Vector9, ContactPatches::capacity> patch;
 };
 
 enum class WheelSide { left, right };
@@ -77,16 +81,17 @@ enum class WheelSide { left, right };
 [[nodiscard]] ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatches& patches,
                                            const WheelsetPose& from, const WheelsetPose& to) noexcept;
 
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-using Vector9 = Eigen::Matrix<double, 9, 1>;
+struct ContactMemory;
 
 /// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
 /// velocities follow displacements with dv/da: `velocity_rate` per wheelset dof and `rail_velocity_rate` [1/s]
 /// (gamma/(beta dt) in a time step). By differences of the force itself along the wheelset's motions and the rail's
 /// roll; the rail's translations follow, since only relative motion matters.
+/// @param start with the contact at the start of a time step, the derivative is that of mean_force()
 [[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                           const ContactPatches& patches, const WheelForce& force,
-                                          const Vector6& velocity_rate, double rail_velocity_rate) noexcept;
+                                          const Vector6& velocity_rate, double rail_velocity_rate,
+                                          const ContactMemory* start = nullptr) noexcept;
 
 }  // namespace railtab

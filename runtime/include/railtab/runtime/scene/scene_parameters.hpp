@@ -16,6 +16,7 @@
 #include "railtab/runtime/track/irregularity_spectrum.hpp"
 #include "railtab/runtime/track/span_deviation.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vsi/hht.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
 
 namespace railtab {
@@ -57,6 +58,7 @@ struct IntegrationParameters {
   double time_step = 5e-4;  ///< [s]
   double duration = 0.0;    ///< [s]; 0: until the last wheelset has left the last span
   double alpha = -0.05;     ///< HHT alpha, -1/3..0
+  ContactForceRule contact_force = ContactForceRule::endpoint;
   double tolerance = 1e-8;  ///< Newton: change of contact displacement relative to 1 mm
   int max_iterations = 20;
   int max_halvings = 6;   ///< of a step that does not converge

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/contact/mean_force.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
@@ -24,6 +24,20 @@ struct RailCoupling {
   Eigen::Matrix3d compliance;
 };
 
+/// Solution and last contact forces, kept from step to step.
+struct ContactSolution {
+  Eigen::VectorXd displacement;  ///< q, 12 per wheelset
+  /// f, dual to q: with the load weight 1+α, what these contact forces load train and structure with in this step.
+  /// Under ContactForceRule::endpoint the contact force at q, otherwise its share in the step's mean.
+  Eigen::VectorXd force;
+  Eigen::VectorXd end_force;   ///< contact force at q and its velocity
+  Eigen::VectorXd step_load;   ///< p, the contacts' part of Eq. 12 in the last step
+  std::vector<double> rail_x;  ///< longitudinal force on the rail per wheel [N]
+  std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
+  std::vector<ContactPatches> patches;  ///< per wheel, of its own (mirrored on the left) side
+  std::vector<ContactMemory> memory;    ///< per wheel, what the next step wants to know of this one's end
+};
+
 /// The contact problem of one step, condensed to the contact unknowns q: the linear rest of the train and the structure
 /// answers q = q_free + C·f(q, v) with v = v_predicted + velocity_rate·(q − q_predicted). Derived in
 /// docs/theory/coupling.md from Eq. 16.
@@ -38,15 +52,10 @@ struct ContactProblem {
   std::vector<RailCoupling> rail;                       ///< times the load weight; empty on rigid track
   std::vector<std::array<RailHeadMotion, 2>> deviation;  ///< irregularity and the rails' slopes, per wheelset and side
   double largest_move = 5e-3;                            ///< bound on one Newton correction [m or rad]
-};
-
-/// Solution and last contact forces, kept from step to step.
-struct ContactSolution {
-  Eigen::VectorXd displacement;                                      ///< q, 12 per wheelset
-  Eigen::VectorXd force;                                             ///< f, dual to q
-  std::vector<double> rail_x;                                        ///< longitudinal force on the rail per wheel [N]
-  std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
-  std::vector<ContactPatches> patches;  ///< per wheel, of its own (mirrored on the left) side
+  /// Contact at the start of the step where f = mean_weight·(mean force over the step − half of that at its start);
+  /// none: f is the force at the end.
+  const ContactSolution* start = nullptr;
+  double mean_weight = 1.0;
 };
 
 struct NewtonReport {
@@ -81,6 +90,9 @@ struct NewtonWorkspace {
                                              int wheelset) noexcept;
 [[nodiscard]] RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset,
                                          int side) noexcept;
+
+/// Forces at solution.displacement, written into the solution.
+NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over vehicles (the
 /// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact) and kept

@@ -9,13 +9,15 @@ namespace railtab {
 /// State of a linear subsystem (one vehicle, or the structure) at the end of a step.
 struct LinearMotion {
   Eigen::VectorXd displacement, velocity, acceleration;
-  Eigen::VectorXd contact_load;  ///< what the contacts applied at the end of the step
+  Eigen::VectorXd contact_load;  ///< contact forces at the end of the step
+  Eigen::VectorXd step_load;     ///< the contacts' part of Eq. 12 in the step; for ContactForceRule::energy
 
   explicit LinearMotion(Eigen::Index dofs = 0)
       : displacement(Eigen::VectorXd::Zero(dofs)),
         velocity(Eigen::VectorXd::Zero(dofs)),
         acceleration(Eigen::VectorXd::Zero(dofs)),
-        contact_load(Eigen::VectorXd::Zero(dofs)) {}
+        contact_load(Eigen::VectorXd::Zero(dofs)),
+        step_load(Eigen::VectorXd::Zero(dofs)) {}
 };
 
 /// Predictors of one HHT step, caller-owned so that a step allocates nothing.
@@ -48,6 +50,19 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, const D
 }
 inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
   predict(scheme, motion, {0, motion.displacement.size()}, p);
+}
+
+/// What the contact forces up to the beginning of a step add to its right-hand side: −α f(t); with
+/// ContactForceRule::energy (½ f(t) − (1−γ) p(t))/γ, see docs/theory/time_integration.md.
+inline void past_contact_load(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range,
+                              Eigen::VectorXd& load) {
+  load.resize(motion.contact_load.size());
+  if (scheme.contact_force == ContactForceRule::endpoint) {
+    range.of(load) = -scheme.alpha * range.of(motion.contact_load);
+  } else {
+    range.of(load) =
+        (0.5 * range.of(motion.contact_load) - (1.0 - scheme.gamma()) * range.of(motion.step_load)) / scheme.gamma();
+  }
 }
 
 /// Close the step of the unknowns in `range` with the increment Δ over the predictor.

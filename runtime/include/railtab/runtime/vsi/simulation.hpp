@@ -9,6 +9,7 @@
 
 #include "railtab/runtime/results/step_record.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/vsi/energy_account.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
@@ -31,6 +32,9 @@ struct RunObserver {
   std::function<void()> ready;                       ///< once, when the set-up is over and the first step begins
   /// The initial state, then every output.every steps, and the last step in any case. The listener may change it.
   std::function<void(StepRecord&)> record;
+  /// After every step, halved ones too: the energy account, kept only where somebody listens. Not for wheels that
+  /// follow the rails.
+  std::function<void(const EnergyBalance&)> energy;
   std::function<void(double fraction)> progress;                             ///< 0..1
   std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
   long checkpoint_every = 2000;

@@ -67,6 +67,10 @@ struct StepWorkspace {
   explicit StepWorkspace(const VsiModel& model);
 };
 
+/// The contacts as the state has them at its time, for the step that begins there: needed with
+/// ContactForceRule::energy where that state does not come from a step.
+void remember_contact(const VsiModel& model, VsiState& state);
+
 /// One HHT step of the coupled system (Eqs. 12-16). If it does not converge, `state` is as before. Serves both kinds of
 /// normal contact; `advance_rigid_wheels` is the part for wheels that follow the rails.
 [[nodiscard]] StepReport advance(const VsiModel& model, const StepOperators& operators, const StepLimits& limits,

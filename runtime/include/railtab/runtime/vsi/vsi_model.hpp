@@ -113,6 +113,10 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
 [[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
 [[nodiscard]] VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept;
 
+/// The contact unknowns and their velocities as a state has them (`predicted`, with the track's deviation), nothing
+/// left to solve: for what is asked of the contacts outside the steps.
+[[nodiscard]] ContactProblem present_contact(const VsiModel& model, const VsiState& state);
+
 /// Restriction of one vehicle's dof vector to its wheelset unknowns, written into a 12-per-wheelset vector.
 void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
 /// Its transpose: the contact forces of one vehicle's wheelsets as loads on the vehicle's dofs.

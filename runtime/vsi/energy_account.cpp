@@ -1,0 +1,124 @@
+#include "railtab/runtime/vsi/energy_account.hpp"
+
+#include <utility>
+
+#include "railtab/runtime/vsi/external_load.hpp"
+
+namespace railtab {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
+
+/// (2/5) F d of the patches of one wheel.
+double contact_energy(const WheelContactModel& model, const WheelsetPose& pose, const ContactPatches& patches) {
+  const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < index(patches.count); ++i) {
+    sum += 0.4 * loads[i].elastic_force * patches.patch[i].penetration;
+  }
+  return sum;
+}
+
+}  // namespace
+
+EnergyAccount::EnergyAccount(const VsiModel& model, const VsiState& state)
+    : model_(model), contact_(model.contact), frictionless_(model.contact) {
+  frictionless_.friction = 0.0;
+  last_ = observe(state);
+  balance_.initial = balance_.energy();
+}
+
+EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
+  EnergyBalance& b = balance_;
+  b.time = state.time;
+  b.kinetic = b.strain = b.gravity = b.contact = 0.0;
+  Instant now;
+  for (const LinearMotion& m : state.vehicle) {
+    b.kinetic += 0.5 * m.velocity.dot(model_.vehicle.mass * m.velocity);
+    b.strain += 0.5 * m.displacement.dot(model_.vehicle.stiffness * m.displacement);
+    b.gravity -= model_.vehicle.static_load.dot(m.displacement);
+    now.vehicle_displacement.push_back(m.displacement);
+    now.vehicle_velocity.push_back(m.velocity);
+  }
+  if (model_.structure) {
+    const LinearMotion& m = state.structure;
+    b.kinetic += 0.5 * m.velocity.dot(model_.structure->mass * m.velocity);
+    b.strain += 0.5 * m.displacement.dot(model_.structure->stiffness * m.displacement);
+    now.structure_velocity = m.velocity;
+  }
+  contact_.speed = frictionless_.speed = model_.speed(state.time);
+  if (!model_.loads.empty() || model_.speed_profile) {
+    now.vehicle_load.resize(state.vehicle.size());
+    for (std::size_t v = 0; v < state.vehicle.size(); ++v)
+      vehicle_load(model_, static_cast<int>(v), state.time, now.vehicle_load[v]);
+  }
+  const ContactProblem problem = present_contact(model_, state);
+  now.wheel_displacement = problem.predicted;
+  now.wheel_velocity = problem.predicted_velocity;
+  now.mean_force = now.mean_normal_force = Eigen::VectorXd::Zero(problem.predicted.size());
+  now.step_load = state.contact.step_load;
+  const WheelRailPair& pair = model_.geometry->pair();
+  for (int w = 0; w < model_.wheelsets(); ++w) {
+    const WheelsetMotion motion = wheelset_motion(problem, problem.predicted, w);
+    for (int side = 0; side < 2; ++side) {
+      const WheelSide wheel_side = sides[index(side)];
+      const RailHeadMotion rail = rail_motion(problem, problem.predicted, w, side);
+      const WheelsetPose pose = relative_pose(pair, wheel_side, motion, rail);
+      const ContactPatches patches = model_.geometry->patches(pose);
+      b.contact += contact_energy(contact_, pose, patches);
+      const std::size_t number = now.contact.size();
+      const int k = wheelset_unknowns * w, r = rail_unknown(2 * w + side);
+      now.wheel_displacement.segment<3>(r) = rail.displacement;
+      const auto add = [&](const WheelContactModel& contact, const std::vector<ContactMemory>& before,
+                           std::vector<ContactMemory>& memory, Eigen::VectorXd& mean) {
+        const WheelForce force = wheel_force(contact, wheel_side, motion, rail, patches);
+        memory.push_back(remembered(pair, pose, patches, force));
+        if (before.empty()) return;  // the account begins
+        const Vector9 f = mean_force(pair, before[number], pose, patches, force);
+        mean.segment<6>(k) += f.head<6>();
+        mean.segment<3>(r) = f.tail<3>();
+      };
+      add(contact_, last_.contact, now.contact, now.mean_force);
+      add(frictionless_, last_.normal, now.normal, now.mean_normal_force);
+    }
+  }
+  return now;
+}
+
+void EnergyAccount::step(double gamma, const VsiState& state) {
+  const double time_step = state.time - balance_.time;
+  const double contact_before = balance_.contact;
+  Instant now = observe(state);
+  for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
+    const Eigen::VectorXd mean = 0.5 * (last_.vehicle_velocity[v] + now.vehicle_velocity[v]);
+    balance_.dissipated += time_step * mean.dot(model_.vehicle.damping * mean);
+    if (now.vehicle_load.empty()) continue;
+    balance_.load_work +=
+        0.5 *
+        (last_.vehicle_load[v] + now.vehicle_load[v]).dot(now.vehicle_displacement[v] - last_.vehicle_displacement[v]);
+  }
+  if (model_.structure) {
+    const Eigen::VectorXd mean = 0.5 * (last_.structure_velocity + now.structure_velocity);
+    balance_.dissipated += time_step * mean.dot(model_.structure->damping * mean);
+  }
+  // Displacements of the material: those of the wheelsets, and of the rails without what the wheels' running on adds.
+  const Eigen::VectorXd moved = now.wheel_displacement - last_.wheel_displacement;
+  Eigen::VectorXd material = moved;
+  for (int wheel = 0; wheel < 2 * model_.wheelsets(); ++wheel) {
+    const int r = rail_unknown(wheel);
+    material.segment<3>(r) = 0.5 * time_step * (last_.wheel_velocity.segment<3>(r) + now.wheel_velocity.segment<3>(r));
+  }
+  const double creep_work = (now.mean_force - now.mean_normal_force).dot(material);
+  const double traction_work = now.mean_normal_force.dot(material - moved);
+  const double work = ((1.0 - gamma) * last_.step_load + gamma * now.step_load).dot(material);
+  balance_.creep_work += creep_work;
+  balance_.traction_work += traction_work;
+  balance_.stiffness_work += balance_.contact - contact_before + now.mean_normal_force.dot(moved);
+  balance_.contact_gain += balance_.contact - contact_before + work - creep_work - traction_work;
+  last_ = std::move(now);
+}
+
+}  // namespace railtab

@@ -1,0 +1,125 @@
+// What the rule of the contact force (integration.contact_force) is worth in scenes: errors of wheel forces against
+// fine steps, energy that the time integration of the contacts makes, Newton iterations, processor time. Not a test:
+// prints the table of docs/validation/contact_force.md.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <filesystem>
+
+#include "railtab/runtime/vsi/simulation.hpp"
+
+namespace {
+
+using namespace railtab;
+
+// A coach on the flexible track of the demo, roughness included.
+SceneParameters rough_track(double speed) {
+  SceneParameters scene;
+  scene.train.speed = speed;
+  scene.contact.mode = ContactMode::online;
+  scene.track.length_before = 36.0;
+  scene.track.length_after = 60.0;
+  scene.irregularity = std::filesystem::path(RAILTAB_SOURCE_DIR) / "docs/examples/demo_irregularity.csv";
+  scene.integration.duration = 0.4;
+  return scene;
+}
+
+// Every wheelset is set off towards the rail: flanges hit at some 0.3 m/s.
+SceneParameters flange_impact() {
+  SceneParameters scene = rough_track(400.0 / 3.6);
+  scene.irregularity.reset();
+  scene.train.initial_yaw = 3e-3;
+  scene.integration.duration = 0.2;
+  return scene;
+}
+
+struct Outcome {
+  std::vector<StepRecord> steps;
+  RunSummary summary;
+  EnergyBalance energy;
+  double seconds = 0.0;
+};
+
+Outcome run(SceneParameters scene, ContactForceRule rule, double alpha, double time_step, bool account) {
+  scene.integration.contact_force = rule;
+  scene.integration.alpha = alpha;
+  scene.integration.time_step = time_step;
+  scene.output.every = static_cast<int>(std::lround(1e-3 / time_step));
+  Outcome result;
+  RunObserver observer;
+  observer.record = [&](const StepRecord& record) { result.steps.push_back(record); };
+  if (account) observer.energy = [&](const EnergyBalance& balance) { result.energy = balance; };
+  const std::clock_t begin = std::clock();
+  result.summary = run_scene(scene, observer);
+  result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return result;
+}
+
+struct Difference {
+  double Q = 0, Y = 0;  ///< rms over wheels and milliseconds [N]
+};
+
+Difference difference(const Outcome& a, const Outcome& b) {
+  Difference sum;
+  double n = 0;
+  for (std::size_t i = 1; i < std::min(a.steps.size(), b.steps.size()); ++i) {
+    for (std::size_t w = 0; w < a.steps[i].wheels.size(); ++w, ++n) {
+      const double dQ = a.steps[i].wheels[w].Q - b.steps[i].wheels[w].Q;
+      const double dY = a.steps[i].wheels[w].Y - b.steps[i].wheels[w].Y;
+      sum.Q += dQ * dQ;
+      sum.Y += dY * dY;
+    }
+  }
+  return {std::sqrt(sum.Q / n), std::sqrt(sum.Y / n)};
+}
+
+double peak_Y(const Outcome& outcome) {
+  double peak = 0.0;
+  for (const StepRecord& step : outcome.steps)
+    for (const WheelRecord& wheel : step.wheels) peak = std::max(peak, std::abs(wheel.Y));
+  return peak;
+}
+
+const char* name_of(ContactForceRule rule) { return rule == ContactForceRule::energy ? "energy" : "endpoint"; }
+
+void study(const char* name, const SceneParameters& scene) {
+  constexpr double fine_step = 3.125e-5;
+  const Outcome reference = run(scene, ContactForceRule::energy, 0.0, fine_step, false);
+  const Difference of_fine = difference(run(scene, ContactForceRule::endpoint, 0.0, fine_step, false), reference);
+  fmt::print("{}: largest |Y| {:.1f} kN; both rules at {} us differ by {:.0f} N in Q, {:.0f} N in Y\n", name,
+             1e-3 * peak_Y(reference), 1e6 * fine_step, of_fine.Q, of_fine.Y);
+  fmt::print(
+      "| alpha | step [ms] | rule | rms error Q [N] | rms error Y [N] | largest Y [kN] | gain of contacts [J] | "
+      "gain [J] | iterations per step | halved | CPU [s] |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const double alpha : {0.0, -0.05, -0.1}) {
+    for (const double step : {1e-3, 5e-4, 2.5e-4}) {
+      for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
+        const Outcome o = run(scene, rule, alpha, step, false);
+        const EnergyBalance energy = run(scene, rule, alpha, step, true).energy;
+        const Difference d = difference(o, reference);
+        fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.1f} | {:+.2f} | {:+.2f} | {:.2f} | {} | {:.2f} |{}\n", alpha,
+                   1e3 * step, name_of(rule), d.Q, d.Y, 1e-3 * peak_Y(o), energy.contact_gain - energy.stiffness_work,
+                   energy.gain(),
+                   static_cast<double>(o.summary.newton_iterations) / static_cast<double>(o.summary.steps),
+                   o.summary.halved_steps, o.seconds, o.summary.complete ? "" : " incomplete");
+        std::fflush(stdout);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main() {
+  try {
+    study("rough track, 300 km/h", rough_track(300.0 / 3.6));
+    study("flange impact, 400 km/h", flange_impact());
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,135 @@
+// Energy of contacts that part and meet again: a wheelset that bounces on rails without friction or damping.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "hunting_model.hpp"
+
+namespace railtab::hunting {
+namespace {
+
+// The wheelset with the load of an axle, free to heave only, on cones and crowns: two Hertz springs of constant
+// stiffness.
+VsiModel bouncing_mass() {
+  constexpr double speed = 50.0;  // m/s
+  VsiModel model = wheelset({}, speed);
+  DofIndices none;
+  none.fill(held);
+  const DofIndices heave{held, held, 0, held, held, held};
+  model.vehicle = assemble_vehicle(
+      "bouncing mass",
+      {{"frame", 1.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}}, {"mass", 11000.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}}}, {}, {1},
+      {none, heave}, R0, 10.0);
+  model.contact.constant_ellipse.reset();
+  model.contact.gravitational_stiffness = GravitationalStiffness::included;
+  model.contact.friction = 0.0;
+  return model;
+}
+
+struct Bouncing {
+  std::vector<double> change;  ///< of the energy at each impact, relative to that before
+  double largest = 0.0;        ///< of these
+  double total = 0.0;          ///< energy in the last flight less that of the fall [J]
+  EnergyBalance balance;       ///< then
+};
+
+// Height of the wheelset at which the wheels touch: z, down.
+double touch_height(const VsiModel& model) {
+  double low = -1e-3, high = 1e-3;
+  while (high - low > 1e-15) {
+    const double middle = 0.5 * (low + high);
+    (model.geometry->patches({.z = middle}).count > 0 ? high : low) = middle;
+  }
+  return low;
+}
+
+// Falls from `height` [m] until it has met the rails `impacts` times; energies are taken in flight.
+Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double height, int impacts) {
+  const VsiModel model = bouncing_mass();
+  const int z = model.vehicle.dof[1][2];
+  const double mass = model.vehicle.mass(z, z);
+  const double g = model.vehicle.static_load[z] / mass;
+  const double touch = touch_height(model);
+  VsiState state(model);
+  state.vehicle[0].displacement[z] = touch - height;
+  state.vehicle[0].acceleration[z] = g;
+
+  Bouncing result;
+  const double fall = mass * g * height;
+  double energy = fall;
+  bool was_loaded = false;
+  RunObserver observer;
+  observer.energy = [&](const EnergyBalance& balance) { result.balance = balance; };
+  observer.record = [&](const StepRecord& record) {
+    const bool loaded = record.wheels[0].Q + record.wheels[1].Q > 0.0;
+    if (was_loaded && !loaded) {
+      const MotionRecord& motion = record.bodies.at(1);
+      const double now =
+          0.5 * mass * motion.velocity[2] * motion.velocity[2] - mass * g * (motion.displacement[2] - touch);
+      result.change.push_back(now / energy - 1.0);
+      energy = now;
+    }
+    was_loaded = loaded;
+  };
+  observer.stop = [&] { return static_cast<int>(result.change.size()) == impacts; };
+  IntegrationParameters integration;
+  integration.time_step = time_step;
+  integration.alpha = alpha;
+  integration.contact_force = rule;
+  const RunSummary run = simulate(model, integration, 5.0, 1, state, observer);
+  if (!run.interrupted) throw std::runtime_error("too few impacts: " + run.message);
+  for (const double change : result.change) result.largest = std::max(result.largest, std::abs(change));
+  result.total = energy - fall;
+  return result;
+}
+
+TEST(Impact, KeepsItsEnergyWithinOnePercentAtOneMillisecond) {
+  for (const double height : {1e-3, 5e-3, 2e-2}) {
+    for (const double alpha : {0.0, -0.05, -0.1}) {
+      const auto largest = [&](ContactForceRule rule) { return bounce(rule, alpha, 1e-3, height, 8).largest; };
+      const double endpoint = largest(ContactForceRule::endpoint), energy = largest(ContactForceRule::energy);
+      std::printf(
+          "fall of %2.0f mm, alpha %5.2f, 1 ms: energy changes by up to %6.3f %% per impact, endpoint rule %.2f %%\n",
+          1e3 * height, alpha, 100 * energy, 100 * endpoint);
+      EXPECT_LT(energy, 0.01);
+      EXPECT_GT(endpoint, 0.01);  // the question is worth asking
+    }
+  }
+}
+
+// What is left is HHT's damping (with alpha = 0 nothing, but for the stiffness that varies with the depth).
+TEST(Impact, RemainderVanishesFasterThanTheSquareOfTheTimeStep) {
+  for (const double alpha : {-0.05, -0.1, -0.3}) {
+    const auto loss = [&](double dt) { return bounce(ContactForceRule::energy, alpha, dt, 1e-3, 8).largest; };
+    const double coarse = loss(1e-3), fine = loss(2.5e-4);
+    const double order = 0.5 * std::log2(coarse / fine);
+    std::printf("alpha %5.2f: %.2e of the energy per impact at 1 ms, %.2e at 0.25 ms, order %.2f\n", alpha, coarse,
+                fine, order);
+    EXPECT_GT(order, 2.0);
+    EXPECT_LT(order, 4.5);
+  }
+}
+
+// The account of a run against the energies of the flights.
+TEST(Impact, EnergyAccountFindsWhatTheImpactsMade) {
+  for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
+    const Bouncing b = bounce(rule, 0.0, 1e-3, 5e-3, 8);
+    std::printf("%s: gain by the account %+.4f J, of it in the contacts %+.4f J; by the flights %+.4f J\n",
+                rule == ContactForceRule::energy ? "energy" : "endpoint", b.balance.gain(), b.balance.contact_gain,
+                b.total);
+    EXPECT_NEAR(b.balance.gain(), b.total, 1e-6 * b.balance.energy());
+    EXPECT_NEAR(b.balance.contact_gain, b.total, 1e-6 * b.balance.energy());
+    if (rule == ContactForceRule::energy) {
+      EXPECT_NEAR(b.balance.stiffness_work, b.total, 1e-6 * b.balance.energy());
+    }
+    EXPECT_EQ(b.balance.dissipated, 0.0);
+    EXPECT_EQ(b.balance.traction_work, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace railtab::hunting
