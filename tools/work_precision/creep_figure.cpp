@@ -11,7 +11,7 @@ WorkFigure creep_figure(const std::vector<std::filesystem::path>& tables, bool q
   WorkFigure figure;
   figure.name = "creep";
   figure.title = "Creep force: a/b 0.05 to 20, creepages 0.05 to 30 times the linear limit";
-  figure.error_label = "error of the force vector, 99 % point [of mu F_n]";
+  figure.y_label = "error of the force vector, 99 % point [of mu F_n]";
   figure.least_error = 1e-5;
   figure.advice =
       "Take the table: it is more than an order of magnitude nearer to exact theory than FASTSIM on any grid, at a "

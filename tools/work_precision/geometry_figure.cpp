@@ -102,7 +102,7 @@ WorkFigure geometry_figure(bool quick) {
   WorkFigure figure;
   figure.name = "geometry";
   figure.title = "Contact geometry: penetration of the deepest patch";
-  figure.error_label = "error of penetration, 99.9 % point [m]";
+  figure.y_label = "error of penetration, 99.9 % point [m]";
   figure.least_error = 2e-12;
   figure.advice =
       "Take the table as it is made by default (starts within 8 µm): it gives the online search's own answer to a "

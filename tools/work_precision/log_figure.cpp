@@ -36,10 +36,10 @@ struct Frame {
 Frame frame_of(const WorkFigure& figure) {
   double t_low = 1e300, t_high = 0.0, e_low = 1e300, e_high = 0.0;
   for (const WorkPoint& p : figure.points) {
-    t_low = std::min(t_low, p.time_ns);
-    t_high = std::max(t_high, p.time_ns);
-    e_low = std::min(e_low, std::max(p.error, figure.least_error));
-    e_high = std::max(e_high, p.error);
+    t_low = std::min(t_low, p.x);
+    t_high = std::max(t_high, p.x);
+    e_low = std::min(e_low, std::max(p.y, figure.least_error));
+    e_high = std::max(e_high, p.y);
   }
   return {axis_over(t_low, t_high), axis_over(e_low, std::max(e_low, e_high))};
 }
@@ -49,18 +49,14 @@ std::string text(double x, double y, const char* anchor, const std::string& cont
                      size, report::escaped(content));
 }
 
-std::string time_name(double ns) {
-  if (ns < 1e3) return fmt::format("{:g} ns", ns);
-  if (ns < 1e6) return fmt::format("{:g} µs", ns / 1e3);
-  return fmt::format("{:g} ms", ns / 1e6);
-}
-
 std::string grid(const WorkFigure& figure, const Frame& frame) {
+  const bool over_size = figure.kind == FigureKind::time_over_size;
   std::string svg;
   for (double power = frame.time.low; power <= frame.time.high; power += 1.0) {
     const double x = frame.x(std::pow(10.0, power));
     fmt::format_to(std::back_inserter(svg), "<path stroke=\"#e3e7ec\" d=\"M{:.1f} {}v{}\"/>", x, above, height);
-    svg += text(x, above + height + 16, "middle", time_name(std::pow(10.0, power)));
+    svg += text(x, above + height + 16, "middle",
+                over_size ? fmt::format("1e{:g}", power) : time_name(std::pow(10.0, power)));
   }
   const double step = std::max(1.0, std::ceil((frame.error.high - frame.error.low) / 8.0));
   for (double power = frame.error.low; power <= frame.error.high; power += step) {
@@ -68,15 +64,22 @@ std::string grid(const WorkFigure& figure, const Frame& frame) {
     fmt::format_to(std::back_inserter(svg), "<path stroke=\"#e3e7ec\" d=\"M{} {:.1f}h{}\"/>", left, y, width);
     svg += text(left - 6, y + 4, "end", fmt::format("1e{:g}", power));
   }
-  svg += text(left + 0.5 * width, above + height + 38, "middle", figure.time_label);
+  svg += text(left + 0.5 * width, above + height + 38, "middle", figure.x_label);
   fmt::format_to(std::back_inserter(svg),
                  "<text transform=\"translate({:.1f} {:.1f}) rotate(-90)\" text-anchor=\"middle\" "
                  "font-size=\"11\">{}</text>",
-                 left - 52, above + 0.5 * height, report::escaped(figure.error_label));
+                 left - 52, above + 0.5 * height, report::escaped(figure.y_label));
   return svg;
 }
 
 }  // namespace
+
+std::string time_name(double ns) {
+  if (ns < 1e3) return fmt::format("{:.3g} ns", ns);
+  if (ns < 1e6) return fmt::format("{:.3g} µs", ns / 1e3);
+  if (ns < 1e9) return fmt::format("{:.3g} ms", ns / 1e6);
+  return fmt::format("{:.3g} s", ns / 1e9);
+}
 
 std::string log_figure(const WorkFigure& figure) {
   const Frame frame = frame_of(figure);
@@ -97,11 +100,15 @@ std::string log_figure(const WorkFigure& figure) {
     for (std::size_t i = 0; i < figure.points.size(); ++i) {
       const WorkPoint& p = figure.points[i];
       if (p.method != methods[m]) continue;
-      const double x = frame.x(p.time_ns), y = frame.y(std::max(p.error, figure.least_error));
+      const double x = frame.x(p.x), y = frame.y(std::max(p.y, figure.least_error));
       fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', x, y);
       fmt::format_to(std::back_inserter(svg),
                      "<circle stroke=\"{0}\" fill=\"{1}\" cx=\"{2:.1f}\" cy=\"{3:.1f}\" r=\"4\"/>", colour,
                      front[i] ? colour : "#fff", x, y);
+      if (p.standard) {
+        fmt::format_to(std::back_inserter(svg),
+                       "<circle stroke=\"#1d2430\" stroke-width=\"1.5\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/>", x, y);
+      }
       svg += text(x + 7, y - 5 - 10 * (labels++ % 4), "start", p.setting, 9);
     }
     fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" d=\"{}\"/>\n", colour, line);
@@ -110,17 +117,23 @@ std::string log_figure(const WorkFigure& figure) {
                    colour, left + width + 16, legend_y);
     svg += text(left + width + 26, legend_y + 4, "start", methods[m]);
   }
-  svg += text(left + width + 16, above + height, "start", "filled: Pareto front", 10);
+  if (figure.kind == FigureKind::error_over_time) {
+    svg += text(left + width + 16, above + height, "start", "filled: Pareto front", 10);
+    svg += text(left + width + 16, above + height + 14, "start", "ringed: default", 10);
+  }
   return svg + "</svg>\n";
 }
 
 std::string csv(const WorkFigure& figure) {
-  std::string rows = "method,setting,time_ns,error,largest_error,pareto,note\n";
+  const bool over_size = figure.kind == FigureKind::time_over_size;
+  std::string rows = over_size ? "method,setting,size,seconds,note\n"
+                               : "method,setting,time_ns,error,largest_error,pareto,default,note\n";
   const std::vector<bool> front = pareto_front(figure);
   for (std::size_t i = 0; i < figure.points.size(); ++i) {
     const WorkPoint& p = figure.points[i];
-    fmt::format_to(std::back_inserter(rows), "{},{},{:.4g},{:.4g},{:.4g},{},{}\n", p.method, p.setting, p.time_ns,
-                   p.error, p.largest_error, front[i] ? 1 : 0, p.note);
+    rows += fmt::format("\"{}\",\"{}\",{:.5g},{:.4g},", p.method, p.setting, p.x, p.y);
+    if (!over_size) rows += fmt::format("{:.4g},{},{},", p.largest_error, front[i] ? 1 : 0, p.standard ? 1 : 0);
+    rows += fmt::format("\"{}\"\n", p.note);
   }
   return rows;
 }

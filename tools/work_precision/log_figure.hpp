@@ -10,6 +10,9 @@ namespace railtab::work_precision {
 /// on the Pareto front are filled.
 [[nodiscard]] std::string log_figure(const WorkFigure& figure);
 
+/// A time [ns] with three digits and its unit.
+[[nodiscard]] std::string time_name(double ns);
+
 /// The same values as CSV, one row per point.
 [[nodiscard]] std::string csv(const WorkFigure& figure);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -13,24 +15,47 @@
 #include "geometry_figure.hpp"
 #include "html_page.hpp"
 #include "html_text.hpp"
+#include "integration_figure.hpp"
 #include "log_figure.hpp"
+#include "machine.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
+#include "scaling_figure.hpp"
+#include "scene_figure.hpp"
 
 namespace railtab::work_precision {
 namespace {
 
 constexpr const char* usage =
-    "work_precision [--quick] [--creep-table FILE.h5]... -o FOLDER\n"
+    "work_precision [--quick] [--figure NAME]... [--creep-table FILE.h5]... [--table FILE.h5] [--paper-creep FILE.h5] "
+    "-o "
+    "FOLDER\n"
     "Measures error against run time and writes, for each figure, FOLDER/<figure>.csv and .svg, and all of them in\n"
-    "FOLDER/index.html. Figures: geometry, creep. --quick: fewer queries and settings.\n";
+    "FOLDER/index.html. NAME: geometry, creep, integration, scene, scaling; all of them where none is named.\n"
+    "--table: geometry table of S1002 on 60E1 1:40 for scenes and scaling. --paper-creep: creep table in the "
+    "published\n"
+    "layout (tablegen creep --layout paper). --quick: fewer queries and settings.\n";
 
 struct Options {
   bool quick = false;
   std::filesystem::path folder;
+  std::vector<std::string> figures;
   std::vector<std::filesystem::path> creep_tables;
+  SceneTables tables;
 };
+
+using Figures = std::vector<WorkFigure>;
+struct Group {
+  std::string_view name;
+  Figures (*make)(const Options&);
+};
+constexpr std::array groups{
+    Group{"geometry", [](const Options& o) { return Figures{geometry_figure(o.quick)}; }},
+    Group{"creep", [](const Options& o) { return Figures{creep_figure(o.creep_tables, o.quick)}; }},
+    Group{"integration", [](const Options& o) { return integration_figures(o.quick); }},
+    Group{"scene", [](const Options& o) { return scene_figures(o.tables, o.quick); }},
+    Group{"scaling", [](const Options& o) { return scaling_figures(o.tables.geometry, o.quick); }}};
 
 Options parse(const std::vector<std::string>& arguments) {
   Options options;
@@ -44,10 +69,21 @@ Options parse(const std::vector<std::string>& arguments) {
       options.quick = true;
     } else if (argument == "-o") {
       options.folder = value();
+    } else if (argument == "--figure") {
+      options.figures.push_back(value());
+      const std::string& name = options.figures.back();
+      if (std::none_of(groups.begin(), groups.end(), [&](const Group& g) { return g.name == name; })) {
+        throw input_error("work_precision: --figure", name, "geometry, creep, integration, scene or scaling");
+      }
     } else if (argument == "--creep-table") {
       options.creep_tables.emplace_back(value());
+    } else if (argument == "--table") {
+      options.tables.geometry = value();
+    } else if (argument == "--paper-creep") {
+      options.tables.paper_creep = value();
     } else {
-      throw input_error("work_precision", argument, "--quick, --creep-table FILE.h5 or -o FOLDER");
+      throw input_error("work_precision", argument,
+                        "--quick, --figure, --creep-table, --table, --paper-creep or -o, see --help");
     }
   }
   if (options.folder.empty()) throw input_error("work_precision: -o", "nothing", "a folder for the figures");
@@ -57,15 +93,17 @@ Options parse(const std::vector<std::string>& arguments) {
 
 std::string table_of(const WorkFigure& figure) {
   const std::vector<bool> front = pareto_front(figure);
-  std::string rows =
-      "<table><tr><th>method</th><th>setting</th><th>time per query</th><th>error</th><th>largest</th><th>"
-      "Pareto front</th><th></th></tr>\n";
+  const bool over_size = figure.kind == FigureKind::time_over_size;
+  std::string rows = fmt::format("<table><tr><th>method</th><th>setting</th><th>{}</th><th>{}</th>{}<th></th></tr>\n",
+                                 report::escaped(figure.x_label), report::escaped(figure.y_label),
+                                 over_size ? "" : "<th>largest</th><th>Pareto front</th>");
   for (std::size_t i = 0; i < figure.points.size(); ++i) {
     const WorkPoint& p = figure.points[i];
-    rows += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{:.3g} ns</td><td>{:.2g}</td><td>{:.2g}</td><td>{}</td><td>{}</td></tr>\n",
-        report::escaped(p.method), report::escaped(p.setting), p.time_ns, p.error, p.largest_error,
-        front[i] ? "yes" : "", report::escaped(p.note));
+    rows += fmt::format("<tr><td>{}</td><td>{}{}</td><td>{}</td><td>{:.2g}</td>", report::escaped(p.method),
+                        report::escaped(p.setting), p.standard ? " (default)" : "",
+                        over_size ? fmt::format("{:g}", p.x) : time_name(p.x), p.y);
+    if (!over_size) rows += fmt::format("<td>{:.2g}</td><td>{}</td>", p.largest_error, front[i] ? "yes" : "");
+    rows += fmt::format("<td>{}</td></tr>\n", report::escaped(p.note));
   }
   return rows + "</table>\n";
 }
@@ -73,16 +111,24 @@ std::string table_of(const WorkFigure& figure) {
 int run(const std::vector<std::string>& arguments) {
   const Options options = parse(arguments);
   std::filesystem::create_directories(options.folder);
-  std::string body;
-  for (const auto& make : {+[](const Options& o) { return geometry_figure(o.quick); },
-                           +[](const Options& o) { return creep_figure(o.creep_tables, o.quick); }}) {
-    const WorkFigure figure = make(options);
-    const std::string svg = log_figure(figure);
-    write_text_file(options.folder / (figure.name + ".csv"), csv(figure));
-    write_text_file(options.folder / (figure.name + ".svg"), svg);
-    body +=
-        report::html_section(figure.title, svg + table_of(figure) + "<p>" + report::escaped(figure.advice) + "</p>");
-    fmt::print("{}: {} points\n", figure.name, figure.points.size());
+  const std::string origin = fmt::format("railtab {}, commit {}; {}{}", RAILTAB_VERSION, source_commit(),
+                                         machine_kind(), options.quick ? "; --quick" : "");
+  std::string body = "<p>" + report::escaped(origin) + "</p>\n";
+  for (const Group& group : groups) {
+    if (!options.figures.empty() && std::none_of(options.figures.begin(), options.figures.end(),
+                                                 [&](const std::string& name) { return name == group.name; })) {
+      continue;
+    }
+    for (const WorkFigure& figure : group.make(options)) {
+      if (figure.points.empty()) continue;
+      const std::string svg = log_figure(figure);
+      write_text_file(options.folder / (figure.name + ".csv"), "# " + origin + "\n" + csv(figure));
+      write_text_file(options.folder / (figure.name + ".svg"), svg);
+      body +=
+          report::html_section(figure.title, svg + table_of(figure) + "<p>" + report::escaped(figure.advice) + "</p>");
+      fmt::print("{}: {} points\n", figure.name, figure.points.size());
+      std::fflush(stdout);
+    }
   }
   write_text_file(options.folder / "index.html", report::html_page("Error against run time", body, RAILTAB_VERSION));
   fmt::print("{}\n", (options.folder / "index.html").string());

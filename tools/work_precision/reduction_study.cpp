@@ -75,9 +75,9 @@ WorkFigure figure(std::string name, std::string title, std::string label) {
   WorkFigure result;
   result.name = std::move(name);
   result.title = std::move(title);
-  result.error_label = std::move(label);
+  result.y_label = std::move(label);
   result.least_error = 1e-6;
-  result.time_label = "processor time per step";
+  result.x_label = "processor time per step";
   return result;
 }
 

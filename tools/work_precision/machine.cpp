@@ -1,0 +1,36 @@
+#include "machine.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+namespace railtab::work_precision {
+
+std::string machine_kind() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string model = "processor of unknown kind";
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) {
+      model = line.substr(colon + 2);
+      break;
+    }
+  }
+  return fmt::format("{}, {} cores", model, std::thread::hardware_concurrency());
+}
+
+std::string source_commit() {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> git(
+      popen("git -C '" RAILTAB_SOURCE_DIR "' describe --always --dirty --abbrev=10 2>/dev/null", "r"), pclose);
+  std::array<char, 64> text{};
+  if (!git || !std::fgets(text.data(), text.size(), git.get())) return "unknown";
+  std::string commit = text.data();
+  while (!commit.empty() && commit.back() == '\n') commit.pop_back();
+  return commit;
+}
+
+}  // namespace railtab::work_precision

@@ -1,0 +1,137 @@
+#include "scene_figure.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "run_error.hpp"
+#include "scenes.hpp"
+
+namespace railtab::work_precision {
+
+namespace {
+
+struct Variant {
+  std::string method, setting;
+  SceneParameters scene;
+  bool standard = false;
+};
+
+std::vector<Variant> variants(const SceneParameters& base, const SceneTables& tables, bool quick) {
+  std::vector<Variant> result;
+  const auto add = [&](const std::string& method, ContactMode mode, const std::string& law, double step) {
+    Variant v{method, law, base};
+    v.scene.contact.mode = mode;
+    if (mode == ContactMode::table) v.scene.contact.table = tables.geometry;
+    v.scene.contact.creep_law = law;
+    v.scene.integration.time_step = step;
+    if (law == "published table") {
+      v.scene.contact.creep_law = "table";
+      v.scene.contact.creep_table = tables.paper_creep;
+    }
+    const double standard_step = IntegrationParameters{}.time_step;
+    if (step != standard_step) v.setting += fmt::format(", {:g} ms", 1e3 * step);
+    v.standard = mode == ContactMode::table && law == ContactParameters{}.creep_law && step == standard_step;
+    result.push_back(v);
+  };
+  const double step = IntegrationParameters{}.time_step;
+  std::vector<std::string> laws{"linear", "polach", "table", "fastsim"};
+  if (quick) laws = {"polach", "table"};
+  if (!tables.paper_creep.empty()) laws.push_back("published table");
+  for (const std::string& law : laws) {
+    if (!tables.geometry.empty()) add("geometry table", ContactMode::table, law, step);
+    add("online search", ContactMode::online, law, step);
+    add("published search", ContactMode::paper, law, step);
+  }
+  if (tables.geometry.empty()) return result;
+  const auto add_reduced = [&](const std::string& setting, const ReductionParameters& reduction) {
+    add("geometry table, reduced structure", ContactMode::table, ContactParameters{}.creep_law, step);
+    result.back().setting += ", " + setting;
+    result.back().scene.reduction = reduction;
+    result.back().standard = false;
+  };
+  add_reduced("window of 20 m", {.kind = Reduction::window});
+  if (quick) return result;
+  add_reduced("200 modes", {.kind = Reduction::modal, .modes = 200});
+  for (const double other : {4 * step, 2 * step, step / 2, step / 4}) {
+    add("geometry table, other steps", ContactMode::table, "table", other);
+    add("geometry table, other steps", ContactMode::table, "polach", other);
+  }
+  return result;
+}
+
+MeasuredRun run_of(const SceneParameters& scene, double recorded) {
+  SceneParameters with = scene;
+  with.output.every = static_cast<int>(std::lround(recorded / scene.integration.time_step));
+  return measured([&](const RunObserver& observer) { return run_scene(with, observer); });
+}
+
+struct Kind {
+  Quantity quantity;
+  const char *name, *title, *error_label;
+};
+constexpr std::array kinds{
+    Kind{Quantity::wheel_forces, "scene_forces", "Whole scene, coach led by its flanges over a bridge: wheel forces",
+         "error of wheel forces, rms [of the rms of their dynamic part]"},
+    Kind{Quantity::car_body_acceleration, "scene_car_body", "Whole scene: car-body acceleration",
+         "error of car-body acceleration, rms [of its rms]"},
+    Kind{Quantity::deck_acceleration, "scene_deck", "Whole scene: deck acceleration",
+         "error of deck acceleration, rms [of its rms]"}};
+
+std::string note_of(const RunSummary& s) {
+  return fmt::format("look-ups {:.0f} ms of wall time, {} queries; {} halved steps", 1e3 * s.seconds_lookup,
+                     s.contact_queries, s.halved_steps);
+}
+
+}  // namespace
+
+std::vector<WorkFigure> scene_figures(const SceneTables& tables, bool quick) {
+  const std::filesystem::path track =
+      std::filesystem::temp_directory_path() / fmt::format("railtab_wavy_track_{}.csv", getpid());
+  write_wavy_track(track);
+  SceneParameters base = coach_over_bridge(track);
+  if (quick) base.integration.duration = 0.1;
+  const double recorded = 4.0 * base.integration.time_step;
+  SceneParameters finest = base;
+  finest.contact.creep_law = "table";
+  finest.integration.time_step /= quick ? 4.0 : 16.0;
+  finest.integration.alpha = 0.0;
+  const MeasuredRun reference = run_of(finest, recorded);
+
+  const std::vector<Variant> all = variants(base, tables, quick);
+  std::vector<std::vector<double>> seconds(all.size());
+  std::vector<MeasuredRun> last(all.size());
+  for (int round = 0; round < (quick ? 1 : 3); ++round) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      last[i] = run_of(all[i].scene, recorded);
+      seconds[i].push_back(last[i].seconds);
+    }
+  }
+  std::filesystem::remove(track);
+
+  std::vector<WorkFigure> figures;
+  for (const Kind& kind : kinds) {
+    WorkFigure figure{
+        .name = kind.name, .title = kind.title, .y_label = kind.error_label, .advice = "", .least_error = 1e-9};
+    figure.x_label = "processor time of the run, 0.6 s";
+    figure.advice =
+        "Take the geometry table: its run is the online search's run in less time. The creep law decides the error of "
+        "the "
+        "forces: the table's is the one of exact theory. The published search is off by its jumps, whatever the law.";
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const RunError error = run_error(reference, last[i], kind.quantity);
+      if (!std::isfinite(error.rms)) continue;
+      std::nth_element(seconds[i].begin(), seconds[i].begin() + static_cast<std::ptrdiff_t>(seconds[i].size() / 2),
+                       seconds[i].end());
+      figure.points.push_back({all[i].method, all[i].setting, 1e9 * seconds[i][seconds[i].size() / 2], error.rms,
+                               error.largest, note_of(last[i].summary), all[i].standard});
+    }
+    figures.push_back(figure);
+  }
+  return figures;
+}
+
+}  // namespace railtab::work_precision
