@@ -72,7 +72,8 @@ void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place
   }
   if (name.empty()) throw input_error(place, "no node name", "a name");
   table.sign[static_cast<std::size_t>(row - 1)] = turned ? -1.0 : 1.0;
-  auto at = std::find_if(table.nodes.rbegin(), table.nodes.rend(), [&](const auto& n) { return n.first == name; });
+  auto at = std::find_if(table.nodes.rbegin(), table.nodes.rend(),
+                         [wanted = name](const auto& n) { return n.first == wanted; });
   if (at == table.nodes.rend()) {
     table.nodes.emplace_back(std::string(name), Node{});
     at = table.nodes.rbegin();

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <cstdlib>
 
 #include <cstdio>
 #include <exception>
@@ -49,11 +50,9 @@ int run(const std::vector<std::string>& arguments) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int exit_code(const std::vector<std::string>& arguments) {
   try {
-    return run({argv + 1, argv + argc});
+    return run(arguments);
   } catch (const railtab::InputError& e) {
     fmt::print(stderr, "tablegen: {}\n", e.what());
     return 2;
@@ -61,4 +60,15 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "tablegen: {}\n", e.what());
     return 1;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = exit_code({argv + 1, argv + argc});
+  if (code == 0) return 0;
+  // What HDF5 could not write or read it keeps open, and its own clean-up at the end of a process crashes on a full
+  // disk and complains of damaged files: every file has been closed as far as it can be, so leave without it.
+  std::fflush(nullptr);
+  std::_Exit(code);
 }

@@ -17,9 +17,12 @@ using hdf5::require;
 void ArrayFileWriter::Impl::begin_records() {
   assert(mode == Mode::growing);
   if (temporary.empty()) return;
+  if (broken) throw input_error(file.string(), "a file that could not be written before", "room on the disk");
+  broken = true;
   if (!growing.empty()) create_blocks();
   growing.clear();
   require(handle.reset(), file.string(), "a file that can be written");
+  broken = false;
   if (std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
   lock = WriterLock(temporary);
   publish();

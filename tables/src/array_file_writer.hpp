@@ -22,6 +22,7 @@ struct ArrayFileWriter::Impl {
   std::filesystem::path file;       ///< the name at the end
   std::filesystem::path temporary;  ///< the name now; empty once the file has its own
   Mode mode = Mode::whole_or_nothing;
+  bool broken = false;  ///< could not be written whole under its temporary name, and must not get its own
   WriterLock lock;
   hdf5::File handle;
 
