@@ -20,7 +20,7 @@ constexpr double linear_creepage = 1e-6;  // in scaled creepage: adhesion everyw
 
 // What the layout's measured errors decided; see docs/theory/creep_table.md.
 constexpr double ratio_stretch = 4.0;
-constexpr double radius_unit = 4.0;
+constexpr double radius_unit = 2.0;
 
 std::vector<double> uniform_nodes(double first, double last, int count) {
   std::vector<double> nodes(static_cast<std::size_t>(count));

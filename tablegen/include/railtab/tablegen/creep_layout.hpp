@@ -21,7 +21,7 @@ struct CreepLayoutOptions {
   double poisson = 0.28;  ///< 0..0.5
   int elements = 40;      ///< of the exact solution, recorded in the table
   /// Nodes of the smooth layout along a/b, radius, polar angle, azimuth; the paper's layout is fixed.
-  std::array<int, 4> nodes = {15, 18, 20, 24};
+  std::array<int, 4> nodes = {15, 26, 16, 36};
 
   /// @throws InputError
   void validate() const;
