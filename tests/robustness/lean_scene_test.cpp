@@ -100,6 +100,7 @@ TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
   EXPECT_NE(left_out.find("lateral, roll and yaw unknowns of the vehicles"), std::string::npos);
   EXPECT_NE(left_out.find("creep forces"), std::string::npos);
   vertical.track_kind = TrackKind::flexible;
+  vertical.structure.files = {};
   const RunPlan track = plan_run(vertical);
   EXPECT_GT(track.structure_dofs, 1000);
   EXPECT_GT(track.memory, 1e6);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,8 +46,9 @@ class TablegenFixture : public ::testing::Test {
             contents(folder_ / "stderr.txt")};
   }
 
-  /// Starts the command and kills it after a time. @returns true where it had not ended by then
-  [[nodiscard]] bool killed(const std::vector<std::string>& arguments, std::chrono::milliseconds after) const {
+  /// Starts the command and kills it as soon as it is time. @returns true where it had not ended by then
+  [[nodiscard]] bool killed_when(const std::vector<std::string>& arguments,
+                                 const std::function<bool()>& it_is_time) const {
     std::vector<char*> argv{const_cast<char*>(TABLEGEN_COMMAND)};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
@@ -55,13 +57,24 @@ class TablegenFixture : public ::testing::Test {
       if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
       _exit(127);
     }
-    std::this_thread::sleep_for(after);
-    kill(child, SIGKILL);
     int status = 0;
-    waitpid(child, &status, 0);
+    bool ended = false;
+    while (!it_is_time() && !ended) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      ended = waitpid(child, &status, WNOHANG) == child;
+    }
+    if (!ended) {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+    }
     if (WIFSIGNALED(status)) return true;
     EXPECT_EQ(WEXITSTATUS(status), 0);
     return false;
+  }
+
+  [[nodiscard]] bool killed(const std::vector<std::string>& arguments, std::chrono::milliseconds after) const {
+    const auto end = std::chrono::steady_clock::now() + after;
+    return killed_when(arguments, [end] { return std::chrono::steady_clock::now() >= end; });
   }
 
   std::filesystem::path folder_;
