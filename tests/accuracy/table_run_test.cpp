@@ -22,7 +22,8 @@ namespace railtab {
 namespace {
 
 std::filesystem::path made_table() {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "railtab_table_run_test.h5";
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("railtab_table_run_test_{}.h5", getpid());
   const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
                                            ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {}));
   GeometrySweepOptions options;

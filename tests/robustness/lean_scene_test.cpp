@@ -47,7 +47,7 @@ class Opens {
 class LeanScene : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / "lean_scene";
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("lean_scene_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
     for (const char* name : {"mass.mtx", "damping.mtx", "stiffness.mtx", "dofs.csv"}) {
       std::ofstream(folder_ / name) << "nothing that a reader would take";

@@ -20,7 +20,8 @@ std::map<std::string, std::vector<StabilityCase>> quick_cases() {
 class Stability : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Stability, EveryCaseEndsAsItShould) {
-  for (const StabilityCase& one : quick_cases()[GetParam()]) {
+  const auto groups = quick_cases();
+  for (const StabilityCase& one : groups.at(GetParam())) {
     const CaseResult result = outcome_of(one);
     EXPECT_TRUE(as_expected(one, result))
         << outcome_name(result.outcome) << " instead of " << outcome_name(one.expected) << ": " << one.setting << ": "

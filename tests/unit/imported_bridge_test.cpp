@@ -3,6 +3,7 @@
 #include "railtab/runtime/structure/imported_bridge.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
@@ -23,7 +24,11 @@
 namespace railtab {
 namespace {
 
-const std::filesystem::path folder = std::filesystem::temp_directory_path() / "railtab_imported_bridge";
+const std::filesystem::path folder =
+    std::filesystem::temp_directory_path() / ("railtab_imported_bridge_" + std::to_string(getpid()));
+const struct RemoveFolder {
+  ~RemoveFolder() { std::filesystem::remove_all(folder); }
+} remove_folder;
 
 // One span of six elements, its axis 2 m below the rail-head tops and 0.3 m left of the track's centre.
 BridgeParameters span() {

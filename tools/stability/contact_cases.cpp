@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,7 +73,8 @@ void add_part_cases(Cases& cases) {
 
 /// A tread of this cone angle, or round with this radius about the rail head's middle, as a profile file of its own.
 std::filesystem::path wheel_file(const std::string& name, const std::function<double(double)>& z) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("railtab_stability_" + name + ".txt");
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("railtab_stability_" + std::to_string(getpid()) + name + ".txt");
   std::ofstream out(file);
   out << "# units: m\n";
   for (int i = -35; i <= 35; ++i) {
