@@ -35,6 +35,10 @@ void check_structure(const SceneParameters& scene, const std::string& place) {
     }
     structure.validate();
   }
+  const bool described = structure.deck.given() || !files.mass.empty() || !files.nodes.empty();
+  if (scene.track_kind == TrackKind::flexible && files.stiffness.empty() && described) {
+    throw input_error(place, "a [structure] without structure.stiffness", "its matrices, or a [[bridge]] alone");
+  }
   if (scene.track_kind != TrackKind::flexible || files.stiffness.empty()) return;
   if (!scene.spans.empty()) throw input_error(place, "a [[bridge]] and a [structure]", "one of them under the track");
   if (!structure.deck.given()) {

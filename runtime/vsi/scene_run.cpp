@@ -37,7 +37,7 @@ std::string no_equilibrium(const EquilibriumReport& rest) {
   }
   return fmt::format(
       "no state of rest on the smooth track after {} iterations (last change {:.3g} m): do the wheels fit on the rails "
-      "(track gauge, flange-back distance, profiles' origins)?",
+      "(track gauge, flange-back distance, profiles' origins), and can the train bear the loads at t = 0?",
       rest.iterations, rest.change);
 }
 

@@ -51,7 +51,9 @@ void HeadlineCollector::add_sliding_means(const StepRecord& step) {
 }
 
 void HeadlineCollector::add(const StepRecord& step) {
+  constexpr double sparse = 0.25;  // m: fewer than eight records in 2 m are no mean over them
   if (!any_) first_position_ = step.position;
+  if (any_ && step.position - last_position_ > sparse) sparse_ = true;
   any_ = true;
   last_position_ = step.position;
   headline_.simulated_time = step.time;
@@ -82,6 +84,7 @@ void HeadlineCollector::add(const StepRecord& step) {
 Headline HeadlineCollector::result(const RunSummary& summary) const {
   Headline result = headline_;
   result.distance = last_position_ - first_position_;
+  if (sparse_) result.derailment_2m = result.track_shift_2m = {};
   if (summary.contact_queries > 0) {
     result.table_share = static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries);
   }

@@ -55,6 +55,7 @@ class HeadlineCollector {
   double first_position_ = 0.0;
   double last_position_ = 0.0;
   bool any_ = false;
+  bool sparse_ = false;  // records too far apart for sliding means
 };
 
 /// "wheelset 3 left" for a wheel's index in StepRecord::wheels.

@@ -113,6 +113,10 @@ class RunRecorder {
   [[nodiscard]] std::optional<RunCheckpoint> take_up(const RunResults& before) {
     const std::optional<Checkpoint> checkpoint = ResultWriter::read_checkpoint(options_.output);
     if (!checkpoint) return std::nullopt;
+    if (checkpoint->records > before.steps.size()) {
+      throw input_error(options_.output, "records that were added while it was read",
+                        "a file that no other run writes");
+    }
     collector_.emplace(before.header);
     for (std::size_t i = 0; i < checkpoint->records; ++i) collector_->add(before.steps[i]);
     resumed_at_ = checkpoint->records > 0 ? before.steps[checkpoint->records - 1].time : 0.0;

@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "json_object.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
 #include "run_command.hpp"
@@ -141,16 +142,20 @@ std::size_t write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs,
   return finished;
 }
 
-/// A folder holds the runs of one scene.
+/// A folder holds the runs of one scene and of the same contents of the files that it names.
 void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
   const fs::path file = folder / "scene.toml";
+  std::string text = scene.text;
+  for (const fs::path& input : scene.files) text += fmt::format("\n# {}: {}", input.string(), file_checksum(input));
+  text += '\n';
   try {
-    if (!fs::exists(file)) write_text_file(file, scene.text);
+    if (!fs::exists(file)) write_text_file(file, text);
   } catch (const InputError&) {
     if (!fs::exists(file)) throw;  // else another shard was first
   }
-  if (whole_text(file) != scene.text) {
-    throw input_error(file.string(), "another scene", "the scene of this sweep, or another folder for -o");
+  if (whole_text(file) != text) {
+    throw input_error(file.string(), "another scene, or other contents of the files that it names",
+                      "the scene of this sweep, or another folder for -o");
   }
 }
 

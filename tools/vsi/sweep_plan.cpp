@@ -88,7 +88,8 @@ SceneParameters scene_of(const SceneParameters& scene, const SweepRun& run) {
 std::string summary_columns() {
   return "run,speed[m/s],speed[km/h],seed,complete,max_deck_acceleration[m/s2],max_deck_displacement[m],"
          "max_car_body_vertical_acceleration[m/s2],max_car_body_lateral_acceleration[m/s2],"
-         "max_derailment_coefficient[-],max_wheel_unloading[-],max_Q[N],min_Q[N],simulated_time[s],steps,"
+         "max_derailment_coefficient[-],max_derailment_coefficient_2m[-],max_track_shift_force_2m[N],"
+         "max_wheel_unloading[-],max_Q[N],min_Q[N],simulated_time[s],steps,"
          "halved_steps,run_time[s],message\n";
 }
 
@@ -97,12 +98,13 @@ std::string summary_row(const SweepRun& run, const report::Headline& headline, c
   for (char& letter : message) {
     if (letter == ',' || letter == '\n' || letter == '"') letter = ';';
   }
-  return fmt::format("{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},{},{:.6g},{},{},{:.3f},{}\n", run.name, run.speed,
-                     3.6 * run.speed, run.seed, summary.complete ? 1 : 0, cell(headline.deck_acceleration),
+  return fmt::format("{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},{},{},{},{:.6g},{},{},{:.3f},{}\n", run.name,
+                     run.speed, 3.6 * run.speed, run.seed, summary.complete ? 1 : 0, cell(headline.deck_acceleration),
                      cell(headline.deck_displacement), cell(headline.car_body_vertical),
-                     cell(headline.car_body_lateral), cell(headline.derailment), cell(headline.unloading),
-                     cell(headline.largest_Q), cell(headline.smallest_Q), headline.simulated_time, summary.steps,
-                     summary.halved_steps, summary.seconds_total, message);
+                     cell(headline.car_body_lateral), cell(headline.derailment), cell(headline.derailment_2m),
+                     cell(headline.track_shift_2m), cell(headline.unloading), cell(headline.largest_Q),
+                     cell(headline.smallest_Q), headline.simulated_time, summary.steps, summary.halved_steps,
+                     summary.seconds_total, message);
 }
 
 }  // namespace railtab::vsi
