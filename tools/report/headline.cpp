@@ -51,7 +51,7 @@ void HeadlineCollector::add_sliding_means(const StepRecord& step) {
 }
 
 void HeadlineCollector::add(const StepRecord& step) {
-  constexpr double sparse = 0.25;  // m: fewer than eight records in 2 m are no mean over them
+  constexpr double sparse = 0.5;  // m: fewer than five records in 2 m are no mean over them
   if (!any_) first_position_ = step.position;
   if (any_ && step.position - last_position_ > sparse) sparse_ = true;
   any_ = true;
