@@ -184,7 +184,7 @@ TEST(Headline, SlidingMeansAreOverTwoMetresOfWay) {
   EXPECT_DOUBLE_EQ(headline.derailment_2m.value, 0.16);
   EXPECT_EQ(headline.derailment_2m.where, "wheelset 1 left");
   EXPECT_DOUBLE_EQ(headline.track_shift_2m.value, 5e3);  // with the peak it is (4·5 kN − 35 kN)/5
-  run.steps.back().position += 0.1;  // fewer records than make a mean
+  run.steps.back().position += 0.1;                      // fewer records than make a mean
   EXPECT_FALSE(headline_of(run).derailment_2m.found());
   EXPECT_FALSE(headline_of(run).track_shift_2m.found());
 }
