@@ -3,20 +3,20 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "../reference_table.hpp"
+#include "beam_crossing.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab {
 namespace {
 
-constexpr double beam_length = 25.0, beam_mass = 2303.0;
+using testing::crossed_length;
+
+constexpr double beam_mass = 2303.0;
 
 // A wheel, and on it a sprung mass where `sprung` > 0.
 struct Load {
@@ -37,57 +37,30 @@ VsiModel load_on_beam(const Load& load, double speed) {
   model.vehicle = assemble_vehicle("load", bodies, suspension, {0}, dofs, 0.46, 10.0);
   model.vehicle_x = {0.0};
   model.structure =
-      build_simple_beam({.length = beam_length, .E = 2.87e9, .I = 2.90, .mass = beam_mass, .elements = 40});
+      build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = beam_mass, .elements = 40});
   model.contact.speed = speed;
   model.normal_contact = NormalContact::rigid;
   return model;
 }
 
-struct History {
-  std::vector<double> t, u_mid, a_sprung, force;
-};
-
 // Crosses the beam in `steps` steps.
-History cross(const VsiModel& model, long steps, int record_every) {
-  VsiState state(model);
-  EXPECT_TRUE(static_equilibrium(model, state).converged);
-  History history;
-  RunObserver observer;
-  observer.record = [&](const StepRecord& record) {
-    history.t.push_back(record.time);
-    history.u_mid.push_back(record.nodes.at(0).displacement[2]);
-    history.a_sprung.push_back(record.bodies.back().acceleration[2]);
-    history.force.push_back(record.wheels.at(0).Q + record.wheels.at(1).Q);
-  };
-  const double duration = beam_length / model.contact.speed;
+testing::CrossingHistory cross(const VsiModel& model, long steps, int record_every) {
   IntegrationParameters integration;
-  integration.time_step = duration / static_cast<double>(steps);
+  integration.time_step = crossed_length / model.contact.speed / static_cast<double>(steps);
   integration.alpha = 0.0;
-  const RunSummary summary = simulate(model, integration, duration, record_every, state, observer);
-  EXPECT_TRUE(summary.complete) << summary.message;
-  return history;
-}
-
-double largest(const std::vector<double>& v) {
-  double m = 0.0;
-  for (double x : v) m = std::max(m, std::abs(x));
-  return m;
+  return testing::cross_beam(model, integration, record_every, model.vehicle.bodies.size() - 1);
 }
 
 // Largest difference, of the reference's largest value, without the last point: there the load leaves the beam.
 double difference(const std::vector<double>& a, const std::vector<double>& reference) {
-  EXPECT_EQ(a.size(), reference.size());
-  double m = 0.0;
-  for (std::size_t i = 0; i + 1 < std::min(a.size(), reference.size()); ++i)
-    m = std::max(m, std::abs(a[i] - reference[i]));
-  return m / largest(reference);
+  return testing::largest_difference(a, reference, 1) / testing::largest(reference);
 }
 
 // A mass on a spring of 1 N/m and a wheel of 1 g: its weight, but for 2 mN.
 TEST(MovingLoad, Force) {
   auto reference = testing::read_reference("moving_force_on_beam.csv");
   const VsiModel model = load_on_beam({1e-3, 56407.5 / 9.81, 1.0, 0.0}, 100.0 / 3.6);
-  const History h = cross(model, 3600, 36);
+  const testing::CrossingHistory h = cross(model, 3600, 36);
   const double u = difference(h.u_mid, reference["u_mid"]);
   std::printf("moving force: midspan displacement %.4f %% of the peak\n", 100 * u);
   EXPECT_LT(u, 1e-3);
@@ -104,10 +77,11 @@ class MovingMass : public ::testing::TestWithParam<MassCase> {};
 TEST_P(MovingMass, FollowsTheModalSolution) {
   const MassCase& c = GetParam();
   auto reference = testing::read_reference(std::string("moving_mass_") + c.name + ".csv");
-  const double speed = beam_length / reference["t"].back();
-  EXPECT_NEAR(speed / (M_PI / beam_length * std::sqrt(2.87e9 * 2.90 / beam_mass)), c.speed_ratio, 1e-3 * c.speed_ratio);
-  const VsiModel model = load_on_beam({c.mass_ratio * beam_mass * beam_length, 0.0, 0.0, 0.0}, speed);
-  const History h = cross(model, 2000, 20);
+  const double speed = crossed_length / reference["t"].back();
+  EXPECT_NEAR(speed / (M_PI / crossed_length * std::sqrt(2.87e9 * 2.90 / beam_mass)), c.speed_ratio,
+              1e-3 * c.speed_ratio);
+  const VsiModel model = load_on_beam({c.mass_ratio * beam_mass * crossed_length, 0.0, 0.0, 0.0}, speed);
+  const testing::CrossingHistory h = cross(model, 2000, 20);
   const double u = difference(h.u_mid, reference["u_mid"]);
   const double force = difference(h.force, reference["force"]);
   std::printf("moving mass %s: midspan displacement %.4f %%, force %.3f %% of the peak\n", c.name, 100 * u,
@@ -117,14 +91,14 @@ TEST_P(MovingMass, FollowsTheModalSolution) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, MovingMass,
-                         ::testing::Values(MassCase{"yang_yau", 5750.0 / (beam_mass * beam_length), 0.11628},
+                         ::testing::Values(MassCase{"yang_yau", 5750.0 / (beam_mass * crossed_length), 0.11628},
                                            MassCase{"half", 0.5, 0.25}, MassCase{"fifth", 0.2, 0.5}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(MovingLoad, SprungMass) {
   auto reference = testing::read_reference("sprung_mass_on_beam.csv");
   const VsiModel model = load_on_beam({1e-3, 5750.0, 1595e3, 0.0}, 100.0 / 3.6);
-  const History h = cross(model, 3600, 16);
+  const testing::CrossingHistory h = cross(model, 3600, 16);
   const double u = difference(h.u_mid, reference["u_mid"]);
   const double a = difference(h.a_sprung, reference["a_sprung"]);
   std::printf("sprung mass: midspan displacement %.4f %%, acceleration %.4f %% of the peak\n", 100 * u, 100 * a);
@@ -137,7 +111,7 @@ TEST(MovingLoad, SprungMass) {
 TEST(MovingLoad, SprungMassOnUnsprungMass) {
   auto reference = testing::read_reference("sprung_unsprung_mass_on_beam.csv");
   const VsiModel model = load_on_beam({500.0, 5750.0, 1595e3, 10e3}, 100.0 / 3.6);
-  const History h = cross(model, 3600, 36);
+  const testing::CrossingHistory h = cross(model, 3600, 36);
   const double u = difference(h.u_mid, reference["u_mid"]);
   const double a = difference(h.a_sprung, reference["a_sprung"]);
   std::printf(

@@ -2,20 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "../reference_table.hpp"
+#include "beam_crossing.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab {
 namespace {
 
+using testing::crossed_length;
+using testing::CrossingHistory;
+using testing::largest;
+using testing::largest_difference;
+
 constexpr double speed = 100.0 / 3.6;
-constexpr double beam_length = 25.0;
 
 struct Idealisation {
   int elements;
@@ -39,7 +41,7 @@ VsiModel sprung_mass_on_beam(const Idealisation& ideal) {
   model.vehicle = assemble_vehicle("sprung mass", bodies, suspension, {1}, {all_but_z, all_but_z}, 0.46, 10.0);
   model.vehicle_x = {0.0};
   model.structure =
-      build_simple_beam({.length = beam_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements});
+      build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements});
   model.geometry = std::make_shared<const ContactGeometry>(
       ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "cone-1:40", 0.0)),
                                   ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));
@@ -50,45 +52,17 @@ VsiModel sprung_mass_on_beam(const Idealisation& ideal) {
   return model;
 }
 
-struct History {
-  std::vector<double> t, u_mid, a_sprung;
-};
-
-History cross(const VsiModel& model, double time_step, int record_every) {
-  VsiState state(model);
-  EXPECT_TRUE(static_equilibrium(model, state).converged);
-  History history;
-  RunObserver observer;
-  observer.record = [&](const StepRecord& record) {
-    history.t.push_back(record.time);
-    history.u_mid.push_back(record.nodes.at(0).displacement[2]);
-    history.a_sprung.push_back(record.bodies.at(0).acceleration[2]);
-  };
+CrossingHistory cross(const VsiModel& model, double time_step, int record_every) {
   IntegrationParameters integration;
   integration.time_step = time_step;
   integration.alpha = 0.0;
   integration.tolerance = 1e-9;
-  const RunSummary summary = simulate(model, integration, beam_length / speed, record_every, state, observer);
-  EXPECT_TRUE(summary.complete) << summary.message;
-  return history;
-}
-
-double largest(const std::vector<double>& v) {
-  double m = 0.0;
-  for (double x : v) m = std::max(m, std::abs(x));
-  return m;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double m = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) m = std::max(m, std::abs(a[i] - b[i]));
-  return m;
+  return testing::cross_beam(model, integration, record_every, 0);
 }
 
 TEST(SprungMassOnBeam, FollowsTheSemiAnalyticSolution) {
   auto reference = testing::read_reference("sprung_mass_on_beam.csv");
-  const History h = cross(sprung_mass_on_beam(as_reference), 5e-4, 8);
+  const CrossingHistory h = cross(sprung_mass_on_beam(as_reference), 5e-4, 8);
   const double u = largest_difference(h.u_mid, reference["u_mid"]) / largest(reference["u_mid"]);
   const double a = largest_difference(h.a_sprung, reference["a_sprung"]) / largest(reference["a_sprung"]);
   std::printf("midspan displacement: %.4f %% of the peak; sprung-mass acceleration: %.4f %% of the peak\n", 100 * u,
@@ -99,9 +73,9 @@ TEST(SprungMassOnBeam, FollowsTheSemiAnalyticSolution) {
 
 TEST(SprungMassOnBeam, ConvergesWithSecondOrderInTheTimeStep) {
   const VsiModel model = sprung_mass_on_beam(resolvable);
-  const History coarse = cross(model, 1e-4, 10);
-  const History medium = cross(model, 5e-5, 20);
-  const History fine = cross(model, 2.5e-5, 40);
+  const CrossingHistory coarse = cross(model, 1e-4, 10);
+  const CrossingHistory medium = cross(model, 5e-5, 20);
+  const CrossingHistory fine = cross(model, 2.5e-5, 40);
   const double order_u =
       std::log2(largest_difference(coarse.u_mid, medium.u_mid) / largest_difference(medium.u_mid, fine.u_mid));
   const double order_a = std::log2(largest_difference(coarse.a_sprung, medium.a_sprung) /
