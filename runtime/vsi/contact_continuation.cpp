@@ -12,9 +12,7 @@ void add(const NewtonReport& attempt, NewtonReport& total) {
   total.converged = attempt.converged;
   total.iterations += attempt.iterations;
   total.correction = attempt.correction;
-  total.seconds_lookup += attempt.seconds_lookup;
-  total.queries += attempt.queries;
-  total.table_queries += attempt.table_queries;
+  total.counts += attempt.counts;
 }
 
 }  // namespace

@@ -49,19 +49,19 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       ContactPatches& patches = s.patches[number];
       const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
       {
-        const Stopwatch watch(report.seconds_lookup);
+        const Stopwatch watch(report.counts.seconds_lookup);
         patches = wheel_patches(model, number, pose, pairs, ws);
       }
       if (pairs == Pairs::searched) {
-        ++report.queries;
-        if (patches.from_table) ++report.table_queries;
+        ++report.counts.queries;
+        if (patches.from_table) ++report.counts.table_queries;
       }
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, patches);
       const int r = 6 + 3 * side;
       end_force.head<6>() += wheel.wheelset;
       end_force.segment<3>(r) = wheel.rail;
       s.rail_x[number] = wheel.rail_x;
-      report.outside_creep_table += wheel.outside_creep_table;
+      report.counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
       s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
       const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
@@ -156,6 +156,14 @@ void limit_moves(const ContactProblem& problem, Eigen::VectorXd& correction) {
 }
 
 }  // namespace
+
+ContactCounts& ContactCounts::operator+=(const ContactCounts& more) noexcept {
+  queries += more.queries;
+  table_queries += more.table_queries;
+  outside_creep_table += more.outside_creep_table;
+  seconds_lookup += more.seconds_lookup;
+  return *this;
+}
 
 WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept {
   const int k = wheelset_unknowns * wheelset;

@@ -37,7 +37,7 @@ ComparedHistory compared_history(const SceneParameters& scene, double duration) 
   observer.start = [&](const ResultHeader& header) {
     history.static_load = header.static_wheel_load;
     for (std::size_t n = 0; n < header.node_names.size(); ++n) {
-      if (header.node_names[n].starts_with("deck")) deck.push_back(n);
+      if (is_deck(header.node_names[n])) deck.push_back(n);
     }
   };
   observer.record = [&](const StepRecord& record) {

@@ -68,10 +68,10 @@ class Integrator {
     const StepReport report = advance(model_, step_operators, limits_, state, workspace_);
     summary.newton_iterations += report.newton_iterations;
     summary.back_substitutions += report.back_substitutions;
-    summary.contact_queries += report.queries;
-    summary.table_queries += report.table_queries;
-    summary.outside_creep_table += report.outside_creep_table;
-    summary.seconds_lookup += report.seconds_lookup;
+    summary.contact_queries += report.counts.queries;
+    summary.table_queries += report.counts.table_queries;
+    summary.outside_creep_table += report.counts.outside_creep_table;
+    summary.seconds_lookup += report.counts.seconds_lookup;
     summary.seconds_contact += report.seconds_contact;
     summary.seconds_structure += report.seconds_structure;
     summary.seconds_vehicle += report.seconds_vehicle;

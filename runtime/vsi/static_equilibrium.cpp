@@ -125,11 +125,11 @@ void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::Vecto
 
 // What the static correction adds to the rail heads' displacement.
 void local_at_rest(const LocalFlexibility& local, const std::vector<RailContact>& contacts, VsiState& state) {
-  state.local.displacement.setZero();
+  state.local.setZero();
   const int wheels = static_cast<int>(contacts.size());
   for (int i = 0; i < wheels; ++i) {
     for (int j = 0; j < wheels; ++j)
-      state.local.displacement.segment<3>(3 * i) +=
+      state.local.segment<3>(3 * i) +=
           local(contacts[index(i)], contacts[index(j)]) * state.contact.force.segment<3>(rail_unknown(j));
   }
 }

@@ -54,15 +54,9 @@ void free_structure(const VsiModel& model, const StepOperators& op, const VsiSta
 }
 
 // What the static correction adds under the wheels.
-void predict_local(const StepOperators& op, const VsiState& state, StepWorkspace& ws) {
-  predict(op.scheme, state.local, ws.local_prediction);
-  const Prediction& p = ws.local_prediction;
-  for (int wheel = 0; wheel < static_cast<int>(p.displacement.size()) / 3; ++wheel) {
-    const int k = rail_unknown(wheel);
-    ws.problem.predicted.segment<3>(k) += p.displacement.segment<3>(3 * wheel);
-    ws.problem.predicted_velocity.segment<3>(k) += p.velocity.segment<3>(3 * wheel);
-    ws.solution.displacement.segment<3>(k) += state.local.displacement.segment<3>(3 * wheel);
-  }
+void predict_local(const VsiState& state, StepWorkspace& ws) {
+  add_local(state, ws.problem.predicted);
+  add_local(state, ws.solution.displacement);
 }
 
 void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
@@ -90,12 +84,13 @@ void rail_couplings(const StepOperators& op, const std::vector<RailContact>& con
 }
 
 // The structure's own answer to the contact forces, under the wheels; returns what the contact solution had missed.
-double answer_under_wheels(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
+double answer_under_wheels(const StepOperators& op, const VsiState& state, const std::vector<RailContact>& contacts,
+                           StepWorkspace& ws) {
   for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   add_rail_forces(contacts, ws.solution.force, ws.structure_load);
   ws.structure_solution.respond(op.structure->factor(), op.scheme.load_weight(), ws.structure_load, ws.structure_free);
   if (op.local) {
-    ws.local_displacement = -ws.local_prediction.displacement;
+    ws.local_displacement = -state.local;
     for (const RailCoupling& c : ws.local) {
       ws.local_displacement.segment<3>(3 * c.i) += c.compliance * ws.solution.force.segment<3>(rail_unknown(c.j));
     }
@@ -120,7 +115,7 @@ void set_force_rule(const HhtScheme& hht, const ContactSolution& start, ContactP
 }
 
 // Eq. 16, condensed to the contacts; the structure's answer closes it.
-void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLimits& limits,
+void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLimits& limits, const VsiState& state,
                     const std::vector<RailContact>& contacts, StepWorkspace& ws, StepReport& report) {
   for (int pass = 0; pass < limits.max_passes && !report.converged; ++pass) {
     NewtonReport newton;
@@ -130,18 +125,15 @@ void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLi
       newton = solve_contact_by_continuation(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
     }
     report.newton_iterations += newton.iterations;
-    report.queries += newton.queries;
-    report.table_queries += newton.table_queries;
-    report.outside_creep_table += newton.outside_creep_table;
-    report.seconds_lookup += newton.seconds_lookup;
-    report.seconds_contact += seconds_newton - newton.seconds_lookup;
+    report.counts += newton.counts;
+    report.seconds_contact += seconds_newton - newton.counts.seconds_lookup;
     if (!newton.converged) return;
     if (!model.structure) {
       report.converged = true;
       return;
     }
     const Stopwatch watch(report.seconds_structure);
-    report.converged = answer_under_wheels(op, contacts, ws) < limits.far_field_tolerance;
+    report.converged = answer_under_wheels(op, state, contacts, ws) < limits.far_field_tolerance;
   }
 }
 
@@ -187,8 +179,7 @@ void close_step(const VsiModel& model, const StepOperators& op, const std::vecto
     active.of(motion.contact_load).setZero();
     add_rail_forces(contacts, ws.solution.end_force, motion.contact_load);
     update(hht, ws.structure_prediction, ws.structure_increment, active, motion);
-    // Without inertia, Newmark's velocities of two steps would swing about their mean: none is handed on.
-    if (op.local) state.local.displacement += ws.local_displacement;
+    if (op.local) state.local += ws.local_displacement;
   }
   close_contact(hht, state.contact, ws.solution);
   std::swap(state.contact, ws.solution);
@@ -265,7 +256,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     const Stopwatch watch(report.seconds_structure);
     free_structure(model, op, state, contacts, ws);
     ++report.back_substitutions;
-    if (op.local) predict_local(op, state, ws);
+    if (op.local) predict_local(state, ws);
     rail_couplings(op, contacts, ws);
   }
   rail_deviation(model, contacts, time, ws.structure_prediction.displacement, ws.problem.deviation);
@@ -274,7 +265,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   ws.problem.vehicle_compliance = hht.load_weight() * op.vehicle.compliance();
 
   set_force_rule(hht, state.contact, ws.problem);
-  solve_coupling(model, op, limits, contacts, ws, report);
+  solve_coupling(model, op, limits, state, contacts, ws, report);
   if (report.converged) close_step(model, op, contacts, state, ws, report);
   return report;
 }

@@ -23,8 +23,6 @@ std::string wheel_name(std::size_t wheel) {
   return fmt::format("wheelset {} {}", wheel / 2 + 1, wheel % 2 == 0 ? "left" : "right");
 }
 
-bool is_deck(const std::string& node_name) { return node_name.starts_with("deck"); }
-
 bool is_car_body(const std::string& body_name) { return body_name == "car-body" || body_name.ends_with("/car-body"); }
 
 std::string vehicle_of(const std::string& body_name) { return body_name.substr(0, body_name.find('/')); }

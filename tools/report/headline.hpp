@@ -60,8 +60,6 @@ class HeadlineCollector {
 
 /// "wheelset 3 left" for a wheel's index in StepRecord::wheels.
 [[nodiscard]] std::string wheel_name(std::size_t wheel);
-/// Nodes of the bridge deck are named deck….
-[[nodiscard]] bool is_deck(const std::string& node_name);
 /// Car bodies are named "<vehicle>/car-body".
 [[nodiscard]] bool is_car_body(const std::string& body_name);
 /// "coach-1" of "coach-1/car-body".

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace railtab {
@@ -53,6 +54,9 @@ struct ResultHeader {
   std::string wheel_profile, rail_profile;               ///< names
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]
 };
+
+/// Nodes of the bridge deck are named deck….
+[[nodiscard]] inline bool is_deck(std::string_view node_name) noexcept { return node_name.starts_with("deck"); }
 
 /// How the run ended and where its time went.
 struct RunSummary {

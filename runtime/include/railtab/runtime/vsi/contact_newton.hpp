@@ -58,13 +58,20 @@ struct ContactProblem {
   double mean_weight = 1.0;
 };
 
+/// What evaluations of the contact forces asked of the tables.
+struct ContactCounts {
+  long queries = 0, table_queries = 0;  ///< of the contact geometry, and those that the table alone answered
+  long outside_creep_table = 0;         ///< creep forces that the creep table left to Polach, wholly or in part
+  double seconds_lookup = 0.0;          ///< in the contact geometry
+
+  ContactCounts& operator+=(const ContactCounts& more) noexcept;
+};
+
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;           ///< corrections made
-  double correction = 0.0;      ///< largest last correction [m or rad]
-  double seconds_lookup = 0.0;  ///< in the contact geometry
-  long queries = 0, table_queries = 0;
-  long outside_creep_table = 0;  ///< creep forces that the creep table left to Polach, wholly or in part
+  int iterations = 0;       ///< corrections made
+  double correction = 0.0;  ///< largest last correction [m or rad]
+  ContactCounts counts;
 };
 
 struct NewtonLimits {

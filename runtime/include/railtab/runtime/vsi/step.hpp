@@ -42,22 +42,22 @@ struct StepReport {
   bool converged = false;
   int newton_iterations = 0;
   int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
-  long queries = 0, table_queries = 0, outside_creep_table = 0;
-  /// Contact: look-ups of the geometry, and all that the contact solution does besides.
-  double seconds_lookup = 0.0, seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
+  ContactCounts counts;
+  /// Contact: all that its solution does besides looking up the geometry.
+  double seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
 };
 
 /// Buffers of a step, reused.
 struct StepWorkspace {
   std::vector<Prediction> vehicle_prediction;
-  Prediction structure_prediction, local_prediction;
+  Prediction structure_prediction;
   std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
   Eigen::VectorXd vehicle_load;  ///< of one vehicle
   WheelContactModel contact;     ///< at the speed of the step's end
   DividedSubstitution structure_solution;
   std::vector<int> rail_dofs;          ///< unknowns of the structure that the wheels load
   std::vector<RailCoupling> local;     ///< static correction
-  Eigen::VectorXd local_displacement;  ///< of it, 3 per wheel
+  Eigen::VectorXd local_displacement;  ///< by it, 3 per wheel
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
   ContactSolution solution;

@@ -83,7 +83,9 @@ struct VsiState {
   double time = 0.0;
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
-  LinearMotion local;           ///< of rail heads, 3 per wheel, by the modes left out; empty without static correction
+  /// Displacement of rail heads by the modes left out, 3 per wheel; empty without static correction. They have no
+  /// inertia, and Newmark's velocities of two steps would swing about their mean: none is kept.
+  Eigen::VectorXd local;
   Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
   ContactSolution contact;
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
@@ -112,6 +114,9 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
 /// speed; and the vertical motion of the ground there, which rails that are rigid follow.
 [[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
 [[nodiscard]] VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept;
+
+/// Adds what the static correction displaces the rail heads by to the contact unknowns.
+void add_local(const VsiState& state, Eigen::VectorXd& q) noexcept;
 
 /// The contact unknowns and their velocities as a state has them (`predicted`, with the track's deviation), nothing
 /// left to solve: for what is asked of the contacts outside the steps.
