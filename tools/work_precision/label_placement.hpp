@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace railtab::work_precision {
+
+/// A rectangle of the drawing, y downward [px].
+struct Box {
+  double left, top, right, bottom;
+};
+
+/// Where a label stands.
+struct LabelPlace {
+  double x, y;         ///< of the text's baseline, at its anchor
+  const char* anchor;  ///< start, middle or end
+  bool far;            ///< so far from its point that a line has to join them
+};
+
+/// Finds places for the labels of points: inside the frame, and over neither points nor other labels where there is
+/// room.
+class LabelPlacement {
+ public:
+  LabelPlacement(const Box& frame, double font_size) : frame_(frame), font_size_(font_size) {}
+  /// Keeps labels off.
+  void occupy(const Box& box) { occupied_.push_back(box); }
+  /// The best place beside the point, which it then occupies.
+  LabelPlace place(double x, double y, const std::string& text);
+
+ private:
+  [[nodiscard]] double overlap(const Box& box) const;
+
+  Box frame_;
+  double font_size_;
+  std::vector<Box> occupied_;
+};
+
+}  // namespace railtab::work_precision
