@@ -238,6 +238,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   }
   if (!resume) displace(scene, model, state);
   RunObserver selected = observer;
+  selected.contact_energy = observer.contact_energy || scene.output.energy;
   if (observer.record) {
     selected.record = [&](StepRecord& record) {
       selection.cut(record);
