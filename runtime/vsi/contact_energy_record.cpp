@@ -8,25 +8,27 @@ namespace railtab {
 namespace {
 
 constexpr double longest_impact = 10e-3;  // s: a flange's last 6 to 7 ms
-
-/// Patches under load of every wheel.
-std::vector<int> loaded_patches(const VsiState& state) {
-  std::vector<int> count;
-  for (std::size_t wheel = 0; wheel < state.contact.patches.size(); ++wheel) {
-    int loaded = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(state.contact.patches[wheel].count); ++i) {
-      loaded += state.contact.normal[wheel][i] > 0.0 ? 1 : 0;
-    }
-    count.push_back(loaded);
-  }
-  return count;
-}
+constexpr double flange_angle = 0.2;      // rad: steeper than any tread
 
 }  // namespace
 
+std::vector<ContactEnergyRecord::Touch> ContactEnergyRecord::touches(const VsiState& state) {
+  std::vector<Touch> result;
+  for (std::size_t wheel = 0; wheel < state.contact.patches.size(); ++wheel) {
+    Touch touch = Touch::none;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(state.contact.patches[wheel].count); ++i) {
+      if (state.contact.normal[wheel][i] <= 0.0) continue;
+      const bool flange = std::abs(state.contact.patches[wheel].patch[i].angle) > flange_angle;
+      touch = std::max(touch, flange ? Touch::flange : Touch::tread);
+    }
+    result.push_back(touch);
+  }
+  return result;
+}
+
 ContactEnergyRecord::ContactEnergyRecord(const EnergyAccount& account, const VsiState& state)
     : time_(state.time),
-      patches_(loaded_patches(state)),
+      touch_(touches(state)),
       energy_(account.wheelset_energy().begin(), account.wheelset_energy().end()),
       impacts_(energy_.size()) {}
 
@@ -39,17 +41,17 @@ void ContactEnergyRecord::step(const EnergyAccount& account, const VsiState& sta
     summary_.largest_step = all;
     summary_.largest_step_time = state.time;
   }
-  const std::vector<int> patches = loaded_patches(state);
+  const std::vector<Touch> touch = touches(state);
   for (std::size_t w = 0; w < impacts_.size(); ++w) {
     bool gained = false, lost = false;
     for (const std::size_t wheel : {2 * w, 2 * w + 1}) {
-      gained = gained || patches[wheel] > patches_[wheel];
-      lost = lost || patches[wheel] < patches_[wheel];
+      gained = gained || touch[wheel] > touch_[wheel];
+      lost = lost || touch[wheel] < touch_[wheel];
     }
     follow(w, account, state.time, gained, lost);
     energy_[w] = account.wheelset_energy()[w];
   }
-  patches_ = patches;
+  touch_ = touch;
   time_ = state.time;
 }
 

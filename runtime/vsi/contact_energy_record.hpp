@@ -18,6 +18,10 @@ class ContactEnergyRecord {
   [[nodiscard]] const ContactEnergy& summary() const noexcept { return summary_; }
 
  private:
+  /// How a wheel touches the rail: one that comes down or meets the rail with its flange begins an impact.
+  enum class Touch { none, tread, flange };
+  [[nodiscard]] static std::vector<Touch> touches(const VsiState& state);
+
   struct Impact {
     bool going_on = false;
     double begin = 0.0;   // [s]
@@ -29,7 +33,7 @@ class ContactEnergyRecord {
 
   ContactEnergy summary_;
   double time_;
-  std::vector<int> patches_;     // under load, per wheel, after the last step
+  std::vector<Touch> touch_;     // per wheel, after the last step
   std::vector<double> energy_;   // [J] of the contact springs, per wheelset, after the last step
   std::vector<Impact> impacts_;  // per wheelset
 };

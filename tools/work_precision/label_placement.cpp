@@ -12,6 +12,7 @@ namespace {
 
 constexpr double mean_letter = 0.56;    // width of a letter over the size of the font
 constexpr double outside_frame = 10.0;  // an area there counts so many times one that is occupied
+constexpr double crossed_letter = 4.0;  // a letter under a line counts as so much area occupied [px²]
 constexpr std::array near_rings{9.0};
 constexpr std::array far_rings{20.0, 32.0, 44.0, 58.0, 74.0, 92.0};  // [px]
 constexpr int directions = 16;
@@ -27,7 +28,18 @@ Box common(const Box& a, const Box& b) {
 double LabelPlacement::overlap(const Box& box) const {
   double sum = outside_frame * (area(box) - area(common(box, frame_)));
   for (const Box& other : occupied_) sum += area(common(box, other));
+  for (const auto& [x, y] : crossed_) {
+    if (x > box.left && x < box.right && y > box.top && y < box.bottom) sum += crossed_letter;
+  }
   return sum;
+}
+
+void LabelPlacement::cross(double x0, double y0, double x1, double y1) {
+  const int count = 1 + static_cast<int>(std::hypot(x1 - x0, y1 - y0) / (mean_letter * font_size_));
+  for (int i = 0; i <= count; ++i) {
+    const double s = static_cast<double>(i) / count;
+    crossed_.emplace_back(x0 + s * (x1 - x0), y0 + s * (y1 - y0));
+  }
 }
 
 LabelPlace LabelPlacement::place(double x, double y, const std::string& text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace railtab::work_precision {
@@ -24,6 +25,8 @@ class LabelPlacement {
   LabelPlacement(const Box& frame, double font_size) : frame_(frame), font_size_(font_size) {}
   /// Keeps labels off.
   void occupy(const Box& box) { occupied_.push_back(box); }
+  /// Keeps labels off a straight line where there is room beside it.
+  void cross(double x0, double y0, double x1, double y1);
   /// The best place beside the point, which it then occupies.
   LabelPlace place(double x, double y, const std::string& text);
 
@@ -33,6 +36,7 @@ class LabelPlacement {
   Box frame_;
   double font_size_;
   std::vector<Box> occupied_;
+  std::vector<std::pair<double, double>> crossed_;  // points along lines, as far apart as a letter is wide
 };
 
 }  // namespace railtab::work_precision

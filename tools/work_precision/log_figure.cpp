@@ -14,7 +14,7 @@ namespace railtab::work_precision {
 
 namespace {
 
-constexpr double width = 680, height = 400, left = 84, right = 190, above = 60, below = 56;
+constexpr double width = 680, height = 400, left = 84, right = 230, above = 60, below = 56;
 constexpr std::array colours{"#0b6aa2", "#c8442f", "#d98e04", "#2e7d52", "#7a4fa3", "#5b6675", "#b0348b", "#2a9d9d"};
 
 /// Logarithmic, over round numbers.
@@ -109,12 +109,17 @@ std::vector<Mark> marks_of(const WorkFigure& figure, const Frame& frame, const s
   return marks;
 }
 
-/// From one point of the front to the next, no further right or up than what they reach.
-std::string front_line(std::vector<Mark> marks) {
+/// Marks on the Pareto front, from left to right.
+std::vector<Mark> sorted_front(std::vector<Mark> marks) {
   std::erase_if(marks, [](const Mark& m) { return !m.front; });
   std::sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
+  return marks;
+}
+
+/// From one point of the front to the next, no further right or up than what they reach.
+std::string front_line(const std::vector<Mark>& marks) {
   std::string line;
-  for (const Mark& m : marks) {
+  for (const Mark& m : sorted_front(marks)) {
     if (line.empty()) {
       line = fmt::format("M{:.1f} {}V{:.1f}", m.x, above, m.y);
     } else {
@@ -132,7 +137,8 @@ std::string lines(const std::vector<Mark>& marks, const std::vector<std::string>
     const char* colour = "";
     for (const Mark& m : marks) {
       if (m.point->method != method) continue;
-      fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', m.x, m.y);
+      fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}", line.empty() || !m.point->joined ? 'M' : 'L', m.x,
+                     m.y);
       colour = m.colour;
     }
     fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" d=\"{}\"/>\n", colour, line);
@@ -164,6 +170,15 @@ std::string labels(const std::vector<Mark>& marks) {
   for (const Mark& m : marks) {
     const double r = m.point->standard ? 9.0 : 5.0;
     placement.occupy({m.x - r, m.y - r, m.x + r, m.y + r});
+  }
+  for (std::size_t i = 1; i < marks.size(); ++i) {
+    if (marks[i].point->method != marks[i - 1].point->method || !marks[i].point->joined) continue;
+    placement.cross(marks[i - 1].x, marks[i - 1].y, marks[i].x, marks[i].y);
+  }
+  const std::vector<Mark> front_marks = sorted_front(marks);
+  for (std::size_t i = 1; i < front_marks.size(); ++i) {
+    placement.cross(front_marks[i - 1].x, front_marks[i - 1].y, front_marks[i].x, front_marks[i - 1].y);
+    placement.cross(front_marks[i].x, front_marks[i - 1].y, front_marks[i].x, front_marks[i].y);
   }
   std::string svg;
   for (const bool front : {true, false}) {

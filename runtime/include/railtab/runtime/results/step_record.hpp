@@ -60,8 +60,8 @@ struct ResultHeader {
 [[nodiscard]] inline bool is_deck(std::string_view node_name) noexcept { return node_name.starts_with("deck"); }
 
 /// What the normal contacts made of a run's energy [J]: EnergyBalance::contact_gain, of all and where it was largest in
-/// amount. An impact of a wheelset begins with a step that gives one of its wheels a patch more (after a flight, or on
-/// the flange) and ends with one that takes a patch away, or after 10 ms.
+/// amount. An impact of a wheelset begins with a step in which one of its wheels touches after a flight or begins to
+/// touch with its flange (contact angle above 0.2 rad), and ends with one that ends that contact, or after 10 ms.
 struct ContactEnergy {
   double gain = 0;            ///< of the whole run
   double stiffness_work = 0;  ///< the part of it that is none of the time integration's, see EnergyBalance
