@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "column_file.hpp"
+#include "railtab/runtime/text/column_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "column_file.hpp"
+#include "railtab/runtime/text/column_file.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {
 
 constexpr double slowest = 0.1, fastest = 200.0;  // m/s: creepages are relative to the running speed
+constexpr double hardest = 100.0;                 // m/s²: more than any brake, less than a slip of the pen
 
 /// First point of the line that holds `value`, for columns that increase.
 std::size_t line_at(const std::vector<double>& points, double value) {
@@ -37,6 +38,11 @@ SpeedProfile::SpeedProfile(std::vector<double> time, std::vector<double> speed)
     if (!(time_[i] > time_[i - 1]) || !std::isfinite(time_[i])) {
       throw input_error(fmt::format("speed profile, point {}", i + 1), fmt::format("t = {} s", time_[i]),
                         fmt::format("more than {} s of the point before", time_[i - 1]));
+    }
+    const double rate = (speed_[i] - speed_[i - 1]) / (time_[i] - time_[i - 1]);
+    if (!(std::abs(rate) <= hardest)) {
+      throw input_error(fmt::format("speed profile, point {}", i + 1),
+                        fmt::format("{:.4g} m/s2 since the one before", rate), fmt::format("at most {} m/s2", hardest));
     }
     travel_[i] = travel_[i - 1] + 0.5 * (speed_[i - 1] + speed_[i]) * (time_[i] - time_[i - 1]);
   }

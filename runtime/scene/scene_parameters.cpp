@@ -67,18 +67,23 @@ void IntegrationParameters::validate() const {
 namespace {
 
 void check_loads(const SceneParameters& scene, const std::string& place) {
+  int number = 0;
   for (const LoadParameters& load : scene.loads) {
+    const std::string which = fmt::format("{}: [[load]] {} of {}", place, ++number, scene.loads.size());
     const bool components = std::any_of(load.load.begin(), load.load.end(), [](double f) { return f != 0.0; });
     if (load.file.empty() != components) {
-      throw input_error(
-          place, fmt::format("a [[load]] with {}", components ? "file and components" : "neither file nor component"),
-          "load.file, or components Fx to Mz");
+      throw input_error(which, components ? "file and components" : "neither file nor component",
+                        "load.file, or components Fx to Mz");
     }
     if (!load.file.empty() && load.gust_duration > 0.0) {
-      throw input_error(place, "load.gust_duration beside load.file", "one of them");
+      throw input_error(which, "load.gust_duration beside load.file", "one of them");
+    }
+    if (load.file.empty() && load.gust_duration == 0.0 && load.start != 0.0) {
+      throw input_error(which, fmt::format("load.start = {} s of a constant load", load.start),
+                        "load.gust_duration or load.file with it, or no load.start");
     }
     if (load.coach > scene.train.count) {
-      throw input_error(place, fmt::format("load.coach = {}", load.coach),
+      throw input_error(which, fmt::format("load.coach = {}", load.coach),
                         fmt::format("0 to {}, the coaches of the train", scene.train.count));
     }
   }
@@ -89,6 +94,10 @@ void check_ground_motion(const SceneParameters& scene, const std::string& place)
     if (ground.file.empty()) throw input_error(place, "a [[ground_motion]] without a file", "ground_motion.file");
     if (ground.wave_speed != 0.0 && scene.ground_motion.size() > 1) {
       throw input_error(place, "ground_motion.wave_speed with several records", "a single record that travels");
+    }
+    if (ground.x != 0.0 && scene.ground_motion.size() == 1) {
+      throw input_error(place, fmt::format("ground_motion.x = {} m of a single record", ground.x),
+                        "several [[ground_motion]], or no ground_motion.x: one record holds everywhere");
     }
     require(std::abs(ground.wave_speed) >= 10.0 || ground.wave_speed == 0.0, "ground_motion.wave_speed",
             ground.wave_speed, "0, or 10 m/s and more forward or backward");

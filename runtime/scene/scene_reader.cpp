@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -68,7 +69,9 @@ struct Assign {
     member.clear();
     for (const toml::node& entry : *list) {
       const toml::value<std::string>* text = entry.as_string();
-      if (!text || text->get().empty()) throw error(expected);
+      if (!text || text->get().empty()) {
+        throw leaf_error(file, leaf, text ? "an empty text in the list" : found_text(*leaf.node), expected);
+      }
       member.push_back(text->get());
     }
   }
@@ -248,6 +251,42 @@ void refuse_profiles_beside_table(const SceneDraft& draft, const std::filesystem
   }
 }
 
+/// A key that would be read and not used is a misunderstanding: it is refused, with what it needs.
+void refuse_idle_keys(const SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+  struct Rule {
+    std::string_view prefix;
+    bool used;
+    std::string_view found, expected;
+  };
+  const Reduction reduction = draft.parameters.reduction.kind;
+  const bool random = !draft.spectrum_name.empty();
+  // "none", written out, is a reduction that was switched off: its keys may stay
+  const bool off = reduction == Reduction::none && std::any_of(leaves.begin(), leaves.end(), [](const Leaf& leaf) {
+                     return leaf.path == "structure.reduction";
+                   });
+  const bool modes = off || reduction == Reduction::modal || reduction == Reduction::craig_bampton;
+  const bool imported = !draft.parameters.structure.files.stiffness.empty();
+  const std::array rules{
+      Rule{"irregularity.seed", random, "no irregularity.spectrum", "one, or no seed"},
+      Rule{"irregularity.shortest_wave", random, "no irregularity.spectrum", "one, or no wavelengths"},
+      Rule{"irregularity.longest_wave", random, "no irregularity.spectrum", "one, or no wavelengths"},
+      Rule{"structure.modes", modes, "a structure.reduction without modes", "\"modal\" or \"craig-bampton\""},
+      Rule{"structure.static_correction", off || reduction == Reduction::modal, "a structure.reduction without it",
+           "\"modal\""},
+      Rule{"structure.window_", off || reduction == Reduction::window, "a structure.reduction without window",
+           "\"window\""},
+      Rule{"structure.damping_", imported, "no structure.stiffness",
+           "an imported structure, or damping_ratio and damping_type in [[bridge]]"},
+      Rule{"structure.mass_damping", imported, "no structure.stiffness", "an imported structure"},
+      Rule{"structure.stiffness_damping", imported, "no structure.stiffness", "an imported structure"},
+  };
+  for (const Leaf& leaf : leaves) {
+    for (const Rule& rule : rules) {
+      if (!rule.used && leaf.path.starts_with(rule.prefix)) throw leaf_error(file, leaf, rule.found, rule.expected);
+    }
+  }
+}
+
 /// ":12" of the key that a message begins with, where the scene names it once.
 std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
   std::string line;
@@ -295,6 +334,7 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
   }
   settle_deviation(draft, file, leaves);
   refuse_profiles_beside_table(draft, file, leaves);
+  refuse_idle_keys(draft, file, leaves);
   refuse_two_dampings(file, leaves);
   if (!draft.spectrum_name.empty()) {
     if (!draft.irregularity.empty()) {

@@ -12,13 +12,13 @@ namespace railtab {
 
 namespace {
 
-int body_index(const VsiModel& model, const std::string& name) {
+int body_index(const VsiModel& model, const std::string& name, const std::string& place) {
   std::vector<std::string> names;
   for (std::size_t b = 0; b < model.vehicle.bodies.size(); ++b) {
     if (model.vehicle.bodies[b].name == name) return static_cast<int>(b);
     names.push_back(model.vehicle.bodies[b].name);
   }
-  throw input_error("scene: load.body", name, fmt::format("one of {}", fmt::join(names, ", ")));
+  throw input_error(place, fmt::format("load.body = \"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
 LoadHistory load_history(const LoadParameters& load) {
@@ -43,10 +43,12 @@ void check_components(const VsiModel& model, const BodyLoad& load, const std::st
 }
 
 void add_body_loads(const SceneParameters& scene, VsiModel& model) {
+  int number = 0;
   for (const LoadParameters& load : scene.loads) {
-    BodyLoad acting{load.coach == 0 ? BodyLoad::every_vehicle : load.coach - 1, body_index(model, load.body),
+    const std::string place = fmt::format("scene: [[load]] {} of {}", ++number, scene.loads.size());
+    BodyLoad acting{load.coach == 0 ? BodyLoad::every_vehicle : load.coach - 1, body_index(model, load.body, place),
                     load_history(load)};
-    check_components(model, acting, load.file.empty() ? "scene: load" : load.file.string());
+    check_components(model, acting, place);
     model.loads.push_back(std::move(acting));
   }
 }

@@ -82,19 +82,6 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
   return header;
 }
 
-// Wheelsets (and with them their vehicle) displaced from the equilibrium, for hunting studies.
-void displace(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
-  for (LinearMotion& motion : state.vehicle) {
-    for (const DofIndices& dof : model.vehicle.dof) {
-      if (dof[1] != held) motion.displacement[dof[1]] += scene.train.initial_lateral_shift;
-    }
-    for (int body : model.vehicle.wheelsets) {
-      const int yaw = model.vehicle.dof[static_cast<std::size_t>(body)][5];
-      if (yaw != held) motion.displacement[yaw] += scene.train.initial_yaw;
-    }
-  }
-}
-
 // Time that a train runs before its scene begins, so that what the steady start leaves out, the rhythm of the sleepers,
 // is there: as long as the modelled track reaches back, for where the rails are rigid there is none. The published
 // method has its own state to settle to.
@@ -236,7 +223,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     summary.contact_mode = contact_mode_name(scene.contact);
     return summary;
   }
-  if (!resume) displace(scene, model, state);
+  if (!resume) displace_train(model, scene.train.initial_lateral_shift, scene.train.initial_yaw, state);
   RunObserver selected = observer;
   selected.contact_energy = observer.contact_energy || scene.output.energy;
   if (observer.record) {

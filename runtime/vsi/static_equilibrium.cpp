@@ -96,30 +96,51 @@ double vertical_force(const VsiModel& model, const ContactProblem& problem, cons
   return -wheel_force(model.contact, wheel_side, motion, rail, patches).wheelset[2];
 }
 
-// Lowers every wheelset onto its rails until each wheel carries half its static load: where Newton starts. From above
-// the rails, with one wheel in the air or from deep inside, its first corrections would be worth nothing.
-void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::VectorXd& displacement) {
+const DofIndices& wheelset_dof(const VsiModel& model, int w) {
+  return model.vehicle.dof[index(model.vehicle.wheelsets[index(w % model.wheelsets_per_vehicle())])];
+}
+
+// Lowers or lifts wheelset w, as it is turned and rolled, until the wheel on `side` carries `load` [N].
+double level_of_wheel(const VsiModel& model, const ContactProblem& problem, double load, int w, int side,
+                      Eigen::VectorXd& displacement) {
   constexpr double range = 0.02;  // m, about the nominal height: rail deviations are less
   constexpr double accuracy = 1e-9;
+  double& z = displacement[wheelset_unknowns * w + 2];
+  double high = -range, low = range;
+  while (low - high > accuracy) {
+    z = 0.5 * (low + high);
+    (vertical_force(model, problem, displacement, w, side) > load ? low : high) = z;
+  }
+  return z;
+}
+
+// Lowers a wheelset onto its rails, level, until each wheel carries half its static load: where Newton starts. From
+// above the rails, with one wheel in the air or from deep inside, its first corrections would be worth nothing.
+void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::VectorXd& displacement) {
   for (int w = 0; w < model.wheelsets(); ++w) {
-    const DofIndices& dof = model.vehicle.dof[index(model.vehicle.wheelsets[index(w % model.wheelsets_per_vehicle())])];
+    const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
-    double& z = displacement[wheelset_unknowns * w + 2];
-    std::array<double, 2> level{};
-    for (int side = 0; side < 2; ++side) {
-      double high = -range, low = range;
-      while (low - high > accuracy) {
-        z = 0.5 * (low + high);
-        const bool enough =
-            vertical_force(model, problem, displacement, w, side) > 0.5 * model.vehicle.static_load[dof[2]];
-        (enough ? low : high) = z;
-      }
-      level[index(side)] = z;
-    }
-    z = 0.5 * (level[0] + level[1]);
+    const double load = 0.5 * model.vehicle.static_load[dof[2]];
+    const double left = level_of_wheel(model, problem, load, w, 0, displacement);
+    const double right = level_of_wheel(model, problem, load, w, 1, displacement);
+    displacement[wheelset_unknowns * w + 2] = 0.5 * (left + right);
     if (dof[3] == held) continue;
-    displacement[wheelset_unknowns * w + 3] =
-        (level[1] - level[0]) / (2.0 * model.geometry->pair().tape_circle_offset());
+    displacement[wheelset_unknowns * w + 3] = (right - left) / (2.0 * model.geometry->pair().tape_circle_offset());
+  }
+}
+
+// Height and roll at which the wheels of wheelset w carry these loads [N].
+void seat(const VsiModel& model, const ContactProblem& problem, const std::array<double, 2>& load, int w,
+          Eigen::VectorXd& displacement) {
+  constexpr int most_passes = 50;  // rolling moves the contact points by a tenth of what the pass before did
+  constexpr double level_enough = 2e-9;
+  const double half_distance = model.geometry->pair().tape_circle_offset();
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const double left = level_of_wheel(model, problem, load[0], w, 0, displacement);
+    const double right = level_of_wheel(model, problem, load[1], w, 1, displacement);
+    displacement[wheelset_unknowns * w + 2] = 0.5 * (left + right);
+    if (wheelset_dof(model, w)[3] == held || std::abs(right - left) < level_enough) return;
+    displacement[wheelset_unknowns * w + 3] += (right - left) / (2.0 * half_distance);
   }
 }
 
@@ -294,6 +315,40 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
     report.converged = report.converged && r.converged;
   }
   return report;
+}
+
+void displace_train(const VsiModel& model, double shift, double yaw, VsiState& state) {
+  if (shift == 0.0 && yaw == 0.0) return;
+  const bool seated = model.normal_contact == NormalContact::hertz;
+  std::vector<std::array<double, 2>> load(index(model.wheelsets()));
+  if (seated) {
+    const ContactProblem before = present_contact(model, state);
+    for (int w = 0; w < model.wheelsets(); ++w) {
+      for (int side = 0; side < 2; ++side) {
+        load[index(w)][index(side)] = vertical_force(model, before, before.predicted, w, side);
+      }
+    }
+  }
+  for (LinearMotion& motion : state.vehicle) {
+    for (const DofIndices& dof : model.vehicle.dof) {
+      if (dof[1] != held) motion.displacement[dof[1]] += shift;
+    }
+    for (int body : model.vehicle.wheelsets) {
+      const int turned = model.vehicle.dof[index(body)][5];
+      if (turned != held) motion.displacement[turned] += yaw;
+    }
+  }
+  if (!seated) return;
+  const ContactProblem displaced = present_contact(model, state);
+  Eigen::VectorXd displacement = displaced.predicted;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const DofIndices& dof = wheelset_dof(model, w);
+    if (dof[2] == held) continue;
+    seat(model, displaced, load[index(w)], w, displacement);
+    LinearMotion& motion = state.vehicle[index(w / model.wheelsets_per_vehicle())];
+    motion.displacement[dof[2]] = displacement[wheelset_unknowns * w + 2];
+    if (dof[3] != held) motion.displacement[dof[3]] = displacement[wheelset_unknowns * w + 3];
+  }
 }
 
 }  // namespace railtab

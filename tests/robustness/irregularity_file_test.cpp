@@ -66,18 +66,27 @@ TEST_F(IrregularityFile, ReadsPositionsInMillimetres) {
   EXPECT_DOUBLE_EQ(irregularity.at(RailSide::left, 0.25).y, 1e-3);
 }
 
+TEST_F(IrregularityFile, ReadsAFileWithAByteOrderMark) {
+  const Irregularity irregularity =
+      read("\xEF\xBB\xBFx[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,1,0,0,0\n2,0,0,0,0\n");
+  EXPECT_DOUBLE_EQ(irregularity.at(RailSide::left, 1.0).y, 1e-3);
+}
+
 TEST_F(IrregularityFile, RefusesAHeaderWithoutUnits) {
   EXPECT_EQ(message_of("x[m],y_left,z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n"),
-            "track.csv:1: found header 'y_left', expected 'y_left[m]' or 'y_left[mm]'");
-  EXPECT_EQ(message_of("# comment\nx[km],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n"),
-            "track.csv:2: found header 'x[km]', expected 'x[m]' or 'x[mm]'");
-  EXPECT_EQ(message_of("0,0,0,0,0\n1,0,0,0,0\n"), "track.csv:1: found header '0', expected 'x[m]' or 'x[mm]'");
-  EXPECT_EQ(message_of("x[m],z_left[mm],y_left[mm],y_right[mm],z_right[mm]\n"),
-            "track.csv:1: found header 'z_left[mm]', expected 'y_left[m]' or 'y_left[mm]'");
+            "track.csv:1: found header 'y_left', expected name[unit]");
+  EXPECT_EQ(message_of("# comment\nx[km],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n"),
+            "track.csv:2: column x: found unit [km], expected x[m], x[mm]");
+  EXPECT_EQ(message_of("0,0,0,0,0\n1,0,0,0,0\n"), "track.csv:1: found header '0', expected name[unit]");
+  EXPECT_EQ(message_of("x[m],z_left[mm],y_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n"),
+            "track.csv:1: column z_left: found column 'z_left', expected 'y_left'; 5 columns: x, y_left, z_left, "
+            "y_right, z_right");
 }
 
 TEST_F(IrregularityFile, RefusesAWrongNumberOfColumns) {
-  const std::string expected = "expected 5: x, y_left, z_left, y_right, z_right";
+  const std::string expected = "expected 5, as in the header";
+  EXPECT_EQ(message_of("x[m],z[mm]\n0,0\n1,0\n"),
+            "track.csv:1: column x: found 2 columns, expected 5 columns: x, y_left, z_left, y_right, z_right");
   EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0,0,0\n"), "track.csv:3: found 4 columns, " + expected);
   EXPECT_EQ(message_of(header + "0,0,0,0,0,\n"), "track.csv:2: found 6 columns, " + expected);
   EXPECT_EQ(message_of(header + "0;0;0;0;0\n"), "track.csv:2: found 1 columns, " + expected);
@@ -86,22 +95,22 @@ TEST_F(IrregularityFile, RefusesAWrongNumberOfColumns) {
 TEST_F(IrregularityFile, RefusesWhatIsNoFiniteNumber) {
   for (const std::string cell : {"nan", "inf", "-inf", "1.0.0", "", "1e", "one", "1e999"}) {
     EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0," + cell + ",0,0\n"),
-              "track.csv:3: found '" + cell + "' in column z_left, expected a finite number");
+              "track.csv:3: column z_left: found '" + cell + "', expected a finite number");
   }
 }
 
 TEST_F(IrregularityFile, RefusesPositionsThatDoNotIncrease) {
   EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0,0,0,0\n1,0,0,0,0\n"),
-            "track.csv:4: found x = 1 m, expected more than 1 m of the point before");
+            "track.csv:4: column x: found 1, expected more than 1 of the row before");
   EXPECT_EQ(message_of(header + "0,0,0,0,0\n2,0,0,0,0\n1.5,0,0,0,0\n"),
-            "track.csv:4: found x = 1.5 m, expected more than 2 m of the point before");
+            "track.csv:4: column x: found 1.5, expected more than 2 of the row before");
 }
 
 TEST_F(IrregularityFile, RefusesAFileWithoutPoints) {
-  const std::string expected = "expected a header row and at least 2 points";
-  EXPECT_EQ(message_of(""), "track.csv: found 0 points, " + expected);
-  EXPECT_EQ(message_of(header), "track.csv: found 0 points, " + expected);
-  EXPECT_EQ(message_of(header + "0,0,0,0,0\n"), "track.csv: found 1 points, " + expected);
+  const std::string expected = "expected a header row and at least 2 rows";
+  EXPECT_EQ(message_of(""), "track.csv: found 0 rows, " + expected);
+  EXPECT_EQ(message_of(header), "track.csv: found 0 rows, " + expected);
+  EXPECT_EQ(message_of(header + "0,0,0,0,0\n"), "track.csv: found 1 rows, " + expected);
 }
 
 TEST_F(IrregularityFile, RefusesBinaryAndMissingFiles) {

@@ -172,6 +172,25 @@ TEST_F(SweepCommand, ShardsAndAKillMakeTheSameSummary) {
   EXPECT_NE(one.header.scene_text.find("# vsi sweep: train.speed = 27.77"), std::string::npos);
 }
 
+// A wind that lifts the train off its rails is an answer, which the summary has to give.
+TEST_F(SweepCommand, ATrainThatDerailsHasItsRow) {
+  write("storm.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 3.0\n"
+        "[[load]]\nFy = 3e5\nMx = 6e5\nstart = 0.05\ngust_duration = 4.0\n");
+  EXPECT_EQ(vsi({"sweep", "storm.toml", "--speed", "40", "-o", "out", "--quiet"}), 1);
+  const std::vector<std::string> rows = lines_of(text("out/summary.csv"));
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_TRUE(rows[1].starts_with("v040.000,40,144,0,0,")) << rows[1];
+  EXPECT_NE(rows[1].find("has left the rails"), std::string::npos) << rows[1];
+  const auto written = fs::last_write_time(folder_ / "out/v040.000.h5");
+  EXPECT_EQ(vsi({"sweep", "storm.toml", "--speed", "40", "-o", "out", "--quiet"}), 1);
+  EXPECT_EQ(fs::last_write_time(folder_ / "out/v040.000.h5"), written) << "what has ended was run again";
+
+  write("out/v040.000.row", "v040.000,40,144,0,1,\n");
+  EXPECT_EQ(vsi({"sweep", "storm.toml", "--speed", "40", "-o", "out", "--quiet"}), 2);
+  EXPECT_NE(text("log").find("v040.000.row: found no row of this run"), std::string::npos) << text("log");
+}
+
 TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   write("scene.toml", scene);
   write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");

@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/track/irregularity_spectrum.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -226,6 +227,25 @@ Ends ends_of(const std::string& range) {
 }
 
 /// A scene with one key set, and what has to stand beside it.
+/// What a key of no use by itself stands beside.
+std::string companion(const std::string& key) {
+  if (key.starts_with("span_deviation.")) return "span_deviation.shape = \"bending\"\n";
+  const std::string both_waves = key.ends_with("shortest_wave")  ? "irregularity.longest_wave = 500.0\n"
+                                 : key.ends_with("longest_wave") ? "irregularity.shortest_wave = 0.1\n"
+                                                                 : "";
+  if (key.starts_with("irregularity."))
+    return "irregularity.spectrum = \"" + spectrum_names().front() + "\"\n" + both_waves;
+  if (key == "structure.modes") return "structure.reduction = \"modal\"\n";
+  if (key.starts_with("structure.window")) return "structure.reduction = \"window\"\n";
+  if (key.starts_with("structure.") && key.find("damping") != std::string::npos) {
+    std::string files = "track.kind = \"imported\"\n";
+    for (const char* file : {"mass", "stiffness", "damping", "dofs"})
+      files += fmt::format("structure.{} = \"pair.h5\"\n", file);
+    return files;
+  }
+  return "";
+}
+
 std::string scene_with(const std::string& key, double value, bool integer) {
   std::string contact = "mode = \"online\"\n", bridge = "[[bridge]]\n", rest;
   const std::string number = integer ? fmt::format("{}", static_cast<long>(value)) : fmt::format("{:.17e}", value);
@@ -240,13 +260,14 @@ std::string scene_with(const std::string& key, double value, bool integer) {
   } else if (key.starts_with("ground_motion."))
     bridge += "[[ground_motion]]\nfile = \"pair.h5\"\n" + line(14);
   else
-    rest = (key.starts_with("span_deviation.") ? "span_deviation.shape = \"bending\"\n" : "") + line(0);
+    rest = companion(key) + line(0);
+  if (key.find("damping") != std::string::npos && key.starts_with("structure.")) bridge.clear();
   return rest + "[contact]\n" + contact + bridge;
 }
 
 /// What the guide says of a range holds to its ends, through every check that a scene passes before it is built.
 TEST_F(Scene, RangesHoldToTheirEnds) {
-  // the rail's height and that of its head bound each other
+  // the rail's height and that of its head bound each other, and so do the two wavelengths
   int checked = 0;
   for (const SceneKey& key : scene_keys()) {
     if (key.type != "number" && key.type != "integer" && key.type != "ratio") continue;
@@ -269,12 +290,12 @@ TEST_F(Scene, RangesHoldToTheirEnds) {
     if (ends.low) {
       EXPECT_NE(outcome(beyond(*ends.low, -1.0)), "no error") << key.path;
       const double in = ends.open_low ? beyond(*ends.low, 1.0) : *ends.low == -0.333333 ? -1.0 / 3.0 : *ends.low;
-      if (key.path != "track.rail.height") {
+      if (key.path != "track.rail.height" && key.path != "irregularity.longest_wave") {
         EXPECT_EQ(outcome(in), "no error") << key.path << ' ' << in;
       }
       ++checked;
     }
-    if (ends.high && key.path != "track.rail.head_height") {
+    if (ends.high && key.path != "track.rail.head_height" && key.path != "irregularity.shortest_wave") {
       EXPECT_EQ(outcome(*ends.high), "no error") << key.path << ' ' << *ends.high;
       EXPECT_NE(outcome(beyond(*ends.high, 1.0)), "no error") << key.path;
       ++checked;
@@ -286,6 +307,25 @@ TEST_F(Scene, RangesHoldToTheirEnds) {
 TEST_F(Scene, RulesOverSeveralKeysNameALine) {
   EXPECT_EQ(message(std::string(online) + "[track]\nrail.head_height = 0.2\n").substr(0, 40),
             "scene.toml:4: track.rail.head_height: fo");
+}
+
+TEST_F(Scene, KeysThatNothingWouldUseAreRefused) {
+  const auto refused = [&](const std::string& rest) { return message(online + rest); };
+  EXPECT_EQ(refused("[irregularity]\nseed = 3\n"),
+            "scene.toml:4: irregularity.seed: found no irregularity.spectrum, expected one, or no seed");
+  EXPECT_EQ(refused("[structure]\nmodes = 30\n"),
+            "scene.toml:4: structure.modes: found a structure.reduction without modes, expected \"modal\" or "
+            "\"craig-bampton\"");
+  EXPECT_EQ(refused("[structure]\nreduction = \"modal\"\nwindow_ahead = 30\n"),
+            "scene.toml:5: structure.window_ahead: found a structure.reduction without window, expected \"window\"");
+  EXPECT_EQ(refused("[structure]\nreduction = \"none\"\nwindow_ahead = 30\nmodes = 20\n"), "no error");
+  EXPECT_EQ(refused("[structure]\ndamping_ratio = 0.01\n[[bridge]]\n"),
+            "scene.toml:4: structure.damping_ratio: found no structure.stiffness, expected an imported structure, or "
+            "damping_ratio and damping_type in [[bridge]]");
+  EXPECT_NE(refused("[[load]]\nFy = 1.0\n[[load]]\nFy = 1.0\nstart = 2.0\n").find("[[load]] 2 of 2"),
+            std::string::npos);
+  EXPECT_NE(refused("[[ground_motion]]\nfile = \"pair.h5\"\nx = 3.0\n").find("ground_motion.x = 3 m of a single"),
+            std::string::npos);
 }
 
 /// The guide's key list is written from the reader's own table; a key, range or default that changes must change there.

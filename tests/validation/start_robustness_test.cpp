@@ -52,6 +52,30 @@ TEST(Start, RestDoesNotDependOnTheSpeed) {
   }
 }
 
+// A wheelset that is moved aside rises and rolls with its treads: wheel loads stay what they were.
+TEST(Start, MovedAsideEveryWheelCarriesItsLoad) {
+  for (const double shift : {-4e-3, 1e-3, 3e-3}) {
+    SceneParameters scene = coach_on_rigid_track(50.0);
+    scene.train.initial_lateral_shift = shift;
+    scene.train.initial_yaw = 2e-3;
+    double largest = 0.0;
+    std::vector<double> first;
+    RunObserver observer;
+    observer.record = [&](const StepRecord& record) {
+      for (const WheelRecord& wheel : record.wheels) {
+        if (record.time == 0.0) first.push_back(wheel.Q);
+        largest = std::max(largest, wheel.Q);
+      }
+    };
+    const VsiModel model = build_model(scene);
+    const double load = train_weight(model) / (2.0 * model.wheelsets());
+    ASSERT_TRUE(run_scene(scene, observer).complete);
+    std::printf("moved aside by %g mm: largest wheel load %.3f of the static one\n", 1e3 * shift, largest / load);
+    for (const double Q : first) EXPECT_NEAR(Q, load, 0.02 * load) << 1e3 * shift << " mm";
+    EXPECT_LT(largest, 1.4 * load) << 1e3 * shift << " mm";
+  }
+}
+
 // At rest there is nothing to integrate: forces must stay. At 0.01 m/s a step is 5 um of way, and a wheel slides
 // after 0.1 nm of it.
 TEST(Start, RunsAtAnySpeedWithoutHalvedSteps) {

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -60,7 +61,7 @@ class Sweep {
   Sweep(const SceneParameters& scene, fs::path folder, bool quiet)
       : scene_(scene), folder_(std::move(folder)), quiet_(quiet) {}
 
-  /// @return exit code: 1 where a run failed, 130 after Ctrl-C
+  /// @return exit code: 1 where a run failed or ended early, 130 after Ctrl-C
   int run(const std::vector<SweepRun>& runs, std::size_t processes) {
     signal(SIGINT, [](int) { asked_ = 1; });
     int code = done;
@@ -76,7 +77,7 @@ class Sweep {
     return asked_ != 0 ? interrupted : code;
   }
 
-  /// A run is finished when its row is there: it is written last.
+  /// A run is finished when its row is there: it is written last, where the train has derailed too.
   [[nodiscard]] bool finished(const SweepRun& run) const { return fs::exists(file(run, ".row")); }
   [[nodiscard]] fs::path file(const SweepRun& run, const char* suffix) const { return folder_ / (run.name + suffix); }
 
@@ -96,7 +97,7 @@ class Sweep {
       std::string row;
       RunOptions options{file(run, ".h5").string(), false, true, true};
       options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
-        if (summary.complete) row = summary_row(run, headline, summary);
+        if (!summary.interrupted) row = summary_row(run, headline, summary);
       };
       const int code = run_to_file(scene_of(scene_, run), options);
       if (!row.empty()) write_text_file(file(run, ".row"), row);
@@ -117,7 +118,7 @@ class Sweep {
     const SweepRun& run = *ended->second;
     going_.erase(ended);
     const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
-    if (!quiet_) fmt::print("{}: {}\n", run.name, complete ? "done" : "not finished");
+    if (!quiet_) fmt::print("{}: {}\n", run.name, complete ? "done" : finished(run) ? "ended early" : "not finished");
     std::fflush(stdout);
     return complete ? done : failed;
   }
@@ -129,17 +130,28 @@ class Sweep {
   std::map<pid_t, const SweepRun*> going_;
 };
 
-/// All finished runs of the whole sweep, whichever process or shard made them. @return their number
-std::size_t write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
+struct SweepCount {
+  std::size_t finished = 0, ended_early = 0;
+};
+
+/// All finished runs of the whole sweep, whichever process or shard made them. @throws InputError
+SweepCount write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
   std::string text = summary_columns();
-  std::size_t finished = 0;
+  SweepCount count;
   for (const SweepRun& run : runs) {
     if (!sweep.finished(run)) continue;
-    text += whole_text(sweep.file(run, ".row"));
-    ++finished;
+    const std::string row = whole_text(sweep.file(run, ".row"));
+    const std::optional<bool> complete = complete_of_row(run, row);
+    if (!complete) {
+      throw input_error(sweep.file(run, ".row").string(), "no row of this run",
+                        "the one that vsi sweep wrote; without the file the run is made again");
+    }
+    text += row;
+    ++count.finished;
+    count.ended_early += !*complete;
   }
   write_text_file(file, text);
-  return finished;
+  return count;
 }
 
 /// A folder holds the runs of one scene and of the same contents of the files that it names.
@@ -161,7 +173,8 @@ void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
 
 std::vector<double> speeds_of(const po::variables_map& values) {
   const bool si = values.contains("speed"), kmh = values.contains("speed-kmh");
-  if (si == kmh) throw InputError("vsi sweep: one of --speed LO:HI:STEP (m/s) and --speed-kmh LO:HI:STEP is needed");
+  if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
+  if (!si && !kmh) throw input_error("vsi sweep", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
   const std::string option = si ? "speed" : "speed-kmh";
   std::vector<double> speeds = values_of_range("--" + option, values[option].as<std::string>());
   if (kmh) std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double v) { return v / 3.6; });
@@ -206,17 +219,19 @@ int sweep_command(const Arguments& arguments) {
     return code;
   }
   const fs::path summary = folder / "summary.csv";
-  const std::size_t finished = write_summary(sweep, all, summary);
+  const SweepCount count = write_summary(sweep, all, summary);
   if (json) {
     fmt::print("{}\n", JsonObject()
                            .add("runs", static_cast<long>(all.size()))
-                           .add("finished", static_cast<long>(finished))
+                           .add("finished", static_cast<long>(count.finished))
+                           .add("ended_early", static_cast<long>(count.ended_early))
                            .add("summary", summary.string())
                            .text());
   } else if (!quiet) {
-    fmt::print("{} of {} runs finished: {}\n", finished, all.size(), summary.string());
+    fmt::print("{} of {} runs finished, {} of them ended early: {}\n", count.finished, all.size(), count.ended_early,
+               summary.string());
   }
-  return code;
+  return code == done && count.ended_early > 0 ? failed : code;
 }
 
 }  // namespace railtab::vsi

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -23,6 +23,10 @@ double number(const std::string& option, const std::string& text, std::string_vi
 }
 
 std::string cell(const report::Extreme& extreme) { return extreme.found() ? fmt::format("{:.8g}", extreme.value) : ""; }
+
+std::string row_begin(const SweepRun& run) {
+  return fmt::format("{},{:.6g},{:.6g},{},", run.name, run.speed, 3.6 * run.speed, run.seed);
+}
 
 }  // namespace
 
@@ -98,13 +102,23 @@ std::string summary_row(const SweepRun& run, const report::Headline& headline, c
   for (char& letter : message) {
     if (letter == ',' || letter == '\n' || letter == '"') letter = ';';
   }
-  return fmt::format("{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},{},{},{},{:.6g},{},{},{:.3f},{}\n", run.name,
-                     run.speed, 3.6 * run.speed, run.seed, summary.complete ? 1 : 0, cell(headline.deck_acceleration),
-                     cell(headline.deck_displacement), cell(headline.car_body_vertical),
-                     cell(headline.car_body_lateral), cell(headline.derailment), cell(headline.derailment_2m),
-                     cell(headline.track_shift_2m), cell(headline.unloading), cell(headline.largest_Q),
-                     cell(headline.smallest_Q), headline.simulated_time, summary.steps, summary.halved_steps,
-                     summary.seconds_total, message);
+  return fmt::format("{}{},{},{},{},{},{},{},{},{},{},{},{:.6g},{},{},{:.3f},{}\n", row_begin(run),
+                     summary.complete ? 1 : 0, cell(headline.deck_acceleration), cell(headline.deck_displacement),
+                     cell(headline.car_body_vertical), cell(headline.car_body_lateral), cell(headline.derailment),
+                     cell(headline.derailment_2m), cell(headline.track_shift_2m), cell(headline.unloading),
+                     cell(headline.largest_Q), cell(headline.smallest_Q), headline.simulated_time, summary.steps,
+                     summary.halved_steps, summary.seconds_total, message);
+}
+
+std::optional<bool> complete_of_row(const SweepRun& run, const std::string& row) {
+  const std::string columns = summary_columns();
+  const std::string before = row_begin(run);
+  const bool whole = row.starts_with(before) && row.find('\n') == row.size() - 1 &&
+                     std::count(row.begin(), row.end(), ',') == std::count(columns.begin(), columns.end(), ',');
+  if (!whole) return std::nullopt;
+  const std::string complete = row.substr(before.size(), 2);
+  if (complete == "1,") return true;
+  return complete == "0," ? std::optional(false) : std::nullopt;
 }
 
 }  // namespace railtab::vsi

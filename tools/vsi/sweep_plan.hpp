@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,7 @@ struct SweepRun {
 /// One row of the summary and the names of its columns.
 [[nodiscard]] std::string summary_columns();
 [[nodiscard]] std::string summary_row(const SweepRun& run, const report::Headline& headline, const RunSummary& summary);
+/// Whether a run came to its end, from its row; empty where the text is not that row.
+[[nodiscard]] std::optional<bool> complete_of_row(const SweepRun& run, const std::string& row);
 
 }  // namespace railtab::vsi

@@ -27,4 +27,9 @@ struct EquilibriumReport {
 /// vibration.
 [[nodiscard]] EquilibriumReport steady_start(const VsiModel& model, VsiState& state);
 
+/// The train moved to the right by `shift` [m] and its wheelsets turned by `yaw` [rad], from a state of rest: where a
+/// hunting study begins. Wheelsets rise and roll with their treads, so that every wheel carries what it did; without
+/// that a shift of millimetres begins with an impact.
+void displace_train(const VsiModel& model, double shift, double yaw, VsiState& state);
+
 }  // namespace railtab

@@ -1,4 +1,4 @@
-#include "column_file.hpp"
+#include "railtab/runtime/text/column_file.hpp"
 
 #include <fmt/format.h>
 
@@ -76,6 +76,8 @@ std::vector<FileColumn> read_columns(const std::filesystem::path& file) {
   std::vector<FileColumn> columns;
   std::string text;
   for (long line = 1; std::getline(stream, text); ++line) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // some spreadsheets begin a file with it
+    if (line == 1 && text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') continue;
     if (columns.empty()) {
