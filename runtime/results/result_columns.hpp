@@ -7,7 +7,7 @@
 namespace railtab::result_columns {
 
 /// What the results file holds and under which name: one list for the writer and the reader.
-inline constexpr int format_version = 4;
+inline constexpr int format_version = 5;
 
 template <typename Owner, typename Value>
 struct Column {
@@ -110,6 +110,20 @@ inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total"
                                             SummaryEntry<double>{"seconds_structure", &RunSummary::seconds_structure},
                                             SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},
                                             SummaryEntry<double>{"seconds_output", &RunSummary::seconds_output}};
+
+struct ContactEnergyEntry {
+  const char* name;
+  double ContactEnergy::*value;
+};
+inline constexpr std::array summary_contact_energy{
+    ContactEnergyEntry{"contact_energy_gain", &ContactEnergy::gain},
+    ContactEnergyEntry{"contact_energy_stiffness_work", &ContactEnergy::stiffness_work},
+    ContactEnergyEntry{"contact_energy_largest_step", &ContactEnergy::largest_step},
+    ContactEnergyEntry{"contact_energy_largest_step_time", &ContactEnergy::largest_step_time},
+    ContactEnergyEntry{"contact_energy_largest_impact", &ContactEnergy::largest_impact},
+    ContactEnergyEntry{"contact_energy_largest_impact_time", &ContactEnergy::largest_impact_time},
+    ContactEnergyEntry{"contact_energy_largest_impact_stored", &ContactEnergy::largest_impact_stored}};
+inline constexpr const char* contact_energy_impacts = "contact_energy_impacts";  // -1 where no account was kept
 
 inline constexpr const char* summary_group = "summary";
 inline constexpr std::array checkpoint_slots{"checkpoint/a", "checkpoint/b"};

@@ -60,6 +60,14 @@ RunSummary read_summary(const ArrayFileReader& in) {
   for (const auto& entry : columns::summary_seconds) {
     summary.*entry.value = in.number(columns::summary_group, entry.name);
   }
+  const auto impacts = static_cast<long>(in.number(columns::summary_group, columns::contact_energy_impacts));
+  if (impacts >= 0) {
+    ContactEnergy& energy = summary.contact_energy.emplace();
+    energy.impacts = impacts;
+    for (const auto& entry : columns::summary_contact_energy) {
+      energy.*entry.value = in.number(columns::summary_group, entry.name);
+    }
+  }
   return summary;
 }
 
@@ -114,6 +122,11 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   }
   for (const auto& entry : columns::summary_seconds) {
     out.attribute(columns::summary_group, entry.name, summary.*entry.value);
+  }
+  const ContactEnergy energy = summary.contact_energy.value_or(ContactEnergy{.impacts = -1});
+  out.attribute(columns::summary_group, columns::contact_energy_impacts, static_cast<std::int64_t>(energy.impacts));
+  for (const auto& entry : columns::summary_contact_energy) {
+    out.attribute(columns::summary_group, entry.name, energy.*entry.value);
   }
   // Last: what says that all the others are true.
   out.attribute(columns::summary_group, "complete", static_cast<std::int64_t>(summary.complete));

@@ -99,6 +99,8 @@ std::vector<KeyBinding> integration_keys() {
        IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.output.every; }, 1, 1000000}},
       {"output.wheels", "", "record contact forces and contact positions",
        SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.output.wheels; }}},
+      {"output.energy", "", "account for the energy that normal contacts gain or lose, for the summary",
+       SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.output.energy; }}},
       {"output.bodies", "", "bodies to record, by name; * stands for any letters",
        TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.parameters.output.bodies; }}},
       {"output.nodes", "", "nodes of the structure to record, by name",

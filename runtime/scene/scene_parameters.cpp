@@ -160,6 +160,10 @@ void SceneParameters::validate() const {
     throw input_error(place, "structure.reduction = \"modal\" with contact.normal = \"rigid\"",
                       "another reduction: wheels that follow the rails need their curvature, which few modes have not");
   }
+  if (output.energy && contact.normal == NormalContact::rigid) {
+    throw input_error(place, "output.energy with contact.normal = \"rigid\"",
+                      "contact.normal = \"hertz\": wheels that follow the rails have no contact springs");
+  }
   if (span_deviation) span_deviation->validate();
   check_loads(*this, place);
   check_ground_motion(*this, place);

@@ -27,6 +27,7 @@ double contact_energy(const WheelContactModel& model, const WheelsetPose& pose, 
 EnergyAccount::EnergyAccount(const VsiModel& model, const VsiState& state)
     : model_(model), contact_(model.contact), frictionless_(model.contact) {
   frictionless_.friction = 0.0;
+  wheelset_gain_.assign(index(model.wheelsets()), 0.0);
   last_ = observe(state);
   balance_.initial = balance_.energy();
 }
@@ -61,6 +62,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
   now.mean_force = now.mean_normal_force = Eigen::VectorXd::Zero(problem.predicted.size());
   now.step_load = state.contact.step_load;
   const WheelRailPair& pair = model_.geometry->pair();
+  now.contact_energy.assign(index(model_.wheelsets()), 0.0);
   for (int w = 0; w < model_.wheelsets(); ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, problem.predicted, w);
     for (int side = 0; side < 2; ++side) {
@@ -68,7 +70,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
       const RailHeadMotion rail = rail_motion(problem, problem.predicted, w, side);
       const WheelsetPose pose = relative_pose(pair, wheel_side, motion, rail);
       const ContactPatches patches = model_.geometry->patches(pose);
-      b.contact += contact_energy(contact_, pose, patches);
+      now.contact_energy[index(w)] += contact_energy(contact_, pose, patches);
       const std::size_t number = now.contact.size();
       const int k = wheelset_unknowns * w, r = rail_unknown(2 * w + side);
       now.wheel_displacement.segment<3>(r) = rail.displacement;
@@ -84,6 +86,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
       add(contact_, last_.contact, now.contact, now.mean_force);
       add(frictionless_, last_.normal, now.normal, now.mean_normal_force);
     }
+    b.contact += now.contact_energy[index(w)];
   }
   return now;
 }
@@ -111,13 +114,20 @@ void EnergyAccount::step(double gamma, const VsiState& state) {
     const int r = rail_unknown(wheel);
     material.segment<3>(r) = 0.5 * time_step * (last_.wheel_velocity.segment<3>(r) + now.wheel_velocity.segment<3>(r));
   }
-  const double creep_work = (now.mean_force - now.mean_normal_force).dot(material);
-  const double traction_work = now.mean_normal_force.dot(material - moved);
-  const double work = ((1.0 - gamma) * last_.step_load + gamma * now.step_load).dot(material);
-  balance_.creep_work += creep_work;
-  balance_.traction_work += traction_work;
+  const Eigen::VectorXd creep_force = now.mean_force - now.mean_normal_force;
+  const Eigen::VectorXd load = (1.0 - gamma) * last_.step_load + gamma * now.step_load;
+  balance_.creep_work += creep_force.dot(material);
+  balance_.traction_work += now.mean_normal_force.dot(material - moved);
   balance_.stiffness_work += balance_.contact - contact_before + now.mean_normal_force.dot(moved);
-  balance_.contact_gain += balance_.contact - contact_before + work - creep_work - traction_work;
+  for (int w = 0; w < model_.wheelsets(); ++w) {
+    const auto of = [w](const Eigen::VectorXd& v) {
+      return v.segment<wheelset_unknowns>(static_cast<Eigen::Index>(wheelset_unknowns) * w);
+    };
+    const double work = (of(load) - of(creep_force) - of(now.mean_normal_force)).dot(of(material)) +
+                        of(now.mean_normal_force).dot(of(moved));
+    wheelset_gain_[index(w)] = now.contact_energy[index(w)] - last_.contact_energy[index(w)] + work;
+    balance_.contact_gain += wheelset_gain_[index(w)];
+  }
   last_ = std::move(now);
 }
 

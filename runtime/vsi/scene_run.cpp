@@ -225,6 +225,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   }
   if (!resume) displace_train(model, scene.train.initial_lateral_shift, scene.train.initial_yaw, state);
   RunObserver selected = observer;
+  selected.contact_energy = observer.contact_energy || scene.output.energy;
   if (observer.record) {
     selected.record = [&](StepRecord& record) {
       selection.cut(record);

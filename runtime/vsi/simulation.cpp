@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "contact_energy_record.hpp"
 #include "derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "stopwatch.hpp"
@@ -24,7 +25,11 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 class Integrator {
  public:
   Integrator(const VsiModel& model, const IntegrationParameters& p, const RunObserver& observer, double& seconds_setup)
-      : model_(model), parameters_(p), workspace_(model), energy_(observer.energy) {
+      : model_(model),
+        parameters_(p),
+        workspace_(model),
+        energy_(observer.energy),
+        contact_energy_(observer.contact_energy) {
     if (model.structure) active_ = {0, model.structure->dofs()};
     if (model.window) window_.emplace(model, p.time_step);
     // The tolerance counts relative to a contact displacement of 1 mm.
@@ -44,7 +49,12 @@ class Integrator {
   void begin(VsiState& state) {
     workspace_.newton.factor.clear();
     if (parameters_.contact_force == ContactForceRule::energy) remember_contact(model_, state);
-    if (energy_ && !account_ && model_.normal_contact == NormalContact::hertz) account_.emplace(model_, state);
+    if (account_ || (!energy_ && !contact_energy_) || model_.normal_contact != NormalContact::hertz) return;
+    account_.emplace(model_, state);
+    if (contact_energy_) energy_record_.emplace(*account_, state);
+  }
+  [[nodiscard]] std::optional<ContactEnergy> contact_energy() const {
+    return energy_record_ ? std::optional(energy_record_->summary()) : std::nullopt;
   }
 
  private:
@@ -77,7 +87,8 @@ class Integrator {
     summary.seconds_vehicle += report.seconds_vehicle;
     if (report.converged) {
       if (account_) account_->step(step_operators.scheme.gamma(), state);
-      if (account_) energy_(account_->balance());
+      if (energy_record_) energy_record_->step(*account_, state);
+      if (account_ && energy_) energy_(account_->balance());
       return true;
     }
     if (level == parameters_.max_halvings) return false;
@@ -91,7 +102,9 @@ class Integrator {
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
   std::function<void(const EnergyBalance&)> energy_;
+  bool contact_energy_;
   std::optional<EnergyAccount> account_;
+  std::optional<ContactEnergyRecord> energy_record_;
   DofRange active_;  // unknowns of the structure that take part
   std::optional<MovingWindow> window_;
 };
@@ -220,6 +233,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
     if (!summary.message.empty()) break;
     if (observer.progress) observer.progress(static_cast<double>(summary.steps) / static_cast<double>(steps));
   }
+  summary.contact_energy = integrator.contact_energy();
   if (!recorded) emit();  // after a checkpoint: a resumed run leaves the record away again
   summary.complete = summary.steps == steps && summary.message.empty();
   summary.seconds_total = seconds_since(begin);

@@ -109,6 +109,8 @@ RollingContactSolution RollingContact::solve(const Creepage& creepage, const std
   ElementField traction = impl_->start(nullptr);
   const double untouched = impl_->newton.residual(traction, impl_->rigid_slip);
   const double tolerance = options.tolerance * untouched;
+  // Without creepage p = 0 is the solution, and no residual but 0 would do: Newton from another start may only near it.
+  if (untouched == 0.0) start = nullptr;
   traction = impl_->start(start);
   auto outcome = impl_->newton.solve(impl_->rigid_slip, traction, tolerance, options.max_iterations);
   if (!outcome.converged) {

@@ -134,6 +134,14 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
     *value = static_cast<double>(++count) / 3.0;
   }
   summary.contact_mode = "table";
+  summary.contact_energy = {.gain = 1.5,
+                            .stiffness_work = -2.5,
+                            .largest_step = 3.5,
+                            .largest_step_time = 4.5,
+                            .impacts = 5,
+                            .largest_impact = -6.5,
+                            .largest_impact_time = 7.5,
+                            .largest_impact_stored = 8.5};
   {
     ResultWriter out(file_, header_, 7);
     for (long i = 0; i < 500; ++i) out.append(made_up_record(i, header_));
@@ -169,6 +177,17 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   EXPECT_EQ((std::vector<double>{s.seconds_total, s.seconds_setup, s.seconds_lookup, s.seconds_contact,
                                  s.seconds_structure, s.seconds_vehicle, s.seconds_output}),
             (std::vector<double>{10 / 3.0, 11 / 3.0, 12 / 3.0, 13 / 3.0, 14 / 3.0, 15 / 3.0, 16 / 3.0}));
+  ASSERT_TRUE(s.contact_energy.has_value());
+  const ContactEnergy& e = *s.contact_energy;
+  EXPECT_EQ(e.impacts, 5);
+  EXPECT_EQ((std::vector<double>{e.gain, e.stiffness_work, e.largest_step, e.largest_step_time, e.largest_impact,
+                                 e.largest_impact_time, e.largest_impact_stored}),
+            (std::vector<double>{1.5, -2.5, 3.5, 4.5, -6.5, 7.5, 8.5}));
+}
+
+TEST_F(ResultFile, HasNoEnergyWhereNoneWasAccountedFor) {
+  { ResultWriter(file_, header_, 7).finish({}); }
+  EXPECT_FALSE(read_results(file_).summary.contact_energy.has_value());
 }
 
 TEST_F(ResultFile, ARunWithoutNodesOrRecordsIsReadable) {

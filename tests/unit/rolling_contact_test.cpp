@@ -164,6 +164,23 @@ TEST(RollingContact, StartDoesNotChangeTheAnswer) {
   }
 }
 
+TEST(RollingContact, NothingIsLeftOfAnotherCaseWithoutCreepage) {
+  // As a sweep meets zero spin: its start is the solution of the case before, which no residual scales with.
+  for (const double ratio : {1e-3, 0.112, 1.0, 1e3}) {
+    for (const int n : {10, 16, 20, 40}) {
+      ExtrapolatedRollingContact contact(ratio, kNu, grid(n));
+      const ExtrapolatedContactSolution before = contact.solve({0.0, 0.0, -1.0 / 9.0});
+      ASSERT_NE(before.force.moment, 0.0);
+      const ExtrapolatedContactSolution s = contact.solve({}, &before.coarse.traction);
+      EXPECT_TRUE(s.coarse.converged && s.fine.converged) << ratio << ' ' << n;
+      EXPECT_FALSE(s.coarse.safe_method || s.fine.safe_method) << ratio << ' ' << n;
+      EXPECT_EQ(s.force.x, 0.0);
+      EXPECT_EQ(s.force.y, 0.0);
+      EXPECT_EQ(s.force.moment, 0.0);
+    }
+  }
+}
+
 TEST(RollingContact, FullSliding) {
   for (const double ratio : {1e-3, 0.1, 1.0, 10.0, 1e3}) {
     RollingContact contact(ratio, kNu, grid(40));

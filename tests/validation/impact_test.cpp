@@ -37,6 +37,8 @@ struct Bouncing {
   double largest = 0.0;        ///< of these
   double total = 0.0;          ///< energy in the last flight less that of the fall [J]
   EnergyBalance balance;       ///< then
+  ContactEnergy contacts;      ///< what the run's summary says
+  double most_made = 0.0;      ///< of the energy in one impact, by amount [J]
 };
 
 // Height of the wheelset at which the wheels touch: z, down.
@@ -65,6 +67,7 @@ Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double he
   double energy = fall;
   bool was_loaded = false;
   RunObserver observer;
+  observer.contact_energy = true;
   observer.energy = [&](const EnergyBalance& balance) { result.balance = balance; };
   observer.record = [&](const StepRecord& record) {
     const bool loaded = record.wheels[0].Q + record.wheels[1].Q > 0.0;
@@ -73,6 +76,7 @@ Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double he
       const double now =
           0.5 * mass * motion.velocity[2] * motion.velocity[2] - mass * g * (motion.displacement[2] - touch);
       result.change.push_back(now / energy - 1.0);
+      if (std::abs(now - energy) > std::abs(result.most_made)) result.most_made = now - energy;
       energy = now;
     }
     was_loaded = loaded;
@@ -86,6 +90,7 @@ Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double he
   if (!run.interrupted) throw std::runtime_error("too few impacts: " + run.message);
   for (const double change : result.change) result.largest = std::max(result.largest, std::abs(change));
   result.total = energy - fall;
+  result.contacts = run.contact_energy.value();
   return result;
 }
 
@@ -132,6 +137,16 @@ TEST(Impact, EnergyAccountFindsWhatTheImpactsMade) {
     if (rule == ContactForceRule::energy) {
       EXPECT_NEAR(b.balance.stiffness_work, b.total, 1e-6 * b.balance.energy());
     }
+    EXPECT_EQ(b.contacts.gain, b.balance.contact_gain);
+    EXPECT_EQ(b.contacts.stiffness_work, b.balance.stiffness_work);
+    EXPECT_EQ(b.contacts.impacts, 8);
+    std::printf("  most in an impact by the summary %+.4f J of %.2f J, by the flights %+.4f J; in a step %+.4f J\n",
+                b.contacts.largest_impact, b.contacts.largest_impact_stored, b.most_made, b.contacts.largest_step);
+    EXPECT_NEAR(b.contacts.largest_impact, b.most_made, 1e-6 * b.balance.energy());
+    // The springs take up what the mass falls with, and what it falls further while they yield or has gained before.
+    const double fall = 11000.0 * 9.81 * 5e-3;
+    EXPECT_GT(b.contacts.largest_impact_stored, 0.99 * fall);
+    EXPECT_LT(b.contacts.largest_impact_stored, 1.1 * fall);
     EXPECT_EQ(b.balance.dissipated, 0.0);
     EXPECT_EQ(b.balance.traction_work, 0.0);
   }

@@ -37,6 +37,34 @@ void member(JsonObject& json, std::string_view name, const report::Extreme& extr
   json.add(name, JsonObject().add("value", extreme.value).add("time", extreme.time).add("where", extreme.where));
 }
 
+std::string contact_energy_text(const ContactEnergy& e) {
+  std::string text = fmt::format(
+      "Energy of the normal contacts: gained {:.3g} J, {:.3g} J of it by stiffness that varies; most in a step {:.3g} "
+      "J, "
+      "t = {:.4f} s\n",
+      e.gain, e.stiffness_work, e.largest_step, e.largest_step_time);
+  if (e.impacts > 0) {
+    fmt::format_to(std::back_inserter(text),
+                   "  {} impacts of wheelsets, most in one {:.3g} J of {:.3g} J, t = {:.4f} s\n", e.impacts,
+                   e.largest_impact, e.largest_impact_stored, e.largest_impact_time);
+  }
+  return text;
+}
+
+JsonObject contact_energy_json(const ContactEnergy& e) {
+  JsonObject json;
+  json.add("gain", e.gain).add("stiffness_work", e.stiffness_work);
+  json.add("largest_step", JsonObject().add("value", e.largest_step).add("time", e.largest_step_time));
+  json.add("impacts", e.impacts);
+  if (e.impacts > 0) {
+    json.add("largest_impact", JsonObject()
+                                   .add("value", e.largest_impact)
+                                   .add("time", e.largest_impact_time)
+                                   .add("stored", e.largest_impact_stored));
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string headline_text(const report::Headline& headline, const RunSummary& summary) {
@@ -59,6 +87,7 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
     fmt::format_to(std::back_inserter(text), "Outside the creep table, by Polach: {} creep forces\n",
                    summary.outside_creep_table);
   }
+  if (summary.contact_energy) text += contact_energy_text(*summary.contact_energy);
   const double total = summary.seconds_total;
   const std::string speed =
       headline.real_time_factor > 0.0 ? fmt::format(", {:.3g} times real time", headline.real_time_factor) : "";
@@ -110,6 +139,7 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
                           .add("structure", summary.seconds_structure)
                           .add("vehicle", summary.seconds_vehicle)
                           .add("output", summary.seconds_output));
+  if (summary.contact_energy) json.add("contact_energy", contact_energy_json(*summary.contact_energy));
   if (headline.real_time_factor > 0.0) json.add("real_time_factor", headline.real_time_factor);
   return json;
 }

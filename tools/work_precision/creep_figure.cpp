@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/tablegen/creep_verification.hpp"
 #include "railtab/tables/creep_table_file.hpp"
 
@@ -20,16 +21,17 @@ WorkFigure creep_figure(const std::vector<std::filesystem::path>& tables, bool q
   CreepVerificationOptions options;
   options.samples = quick ? 200 : 4000;
   options.seed = 7;
+  const std::string standard_law = ContactParameters{}.creep_law;
   bool first = true;
   for (const std::filesystem::path& file : tables) {
     const CreepVerification v =
         verify_creep_table(TableCreep{std::make_shared<const CreepTable>(read_creep_table(file))}, options);
     const auto add = [&](const std::string& method, const std::string& setting, const CreepLawErrors& law,
-                         const std::string& note) {
-      figure.points.push_back({method, setting, law.time_ns, law.force.p99, law.force.max, note});
+                         const std::string& note, bool standard) {
+      figure.points.push_back({method, setting, law.time_ns, law.force.p99, law.force.max, note, standard});
     };
     add("table", first ? "shipped" : file.stem().string(), v.table,
-        fmt::format("{:.1f} MiB", static_cast<double>(v.bytes) / 1048576.0));
+        fmt::format("{:.1f} MiB", static_cast<double>(v.bytes) / 1048576.0), first && standard_law == "table");
     if (!first) continue;
     first = false;
     for (const CreepLawErrors& law : v.laws) {
@@ -40,7 +42,7 @@ WorkFigure creep_figure(const std::vector<std::filesystem::path>& tables, bool q
       add(fastsim            ? "FASTSIM"
           : name == "polach" ? "Polach"
                              : "linear saturated",
-          fastsim ? grid + " x " + grid : "", law, "");
+          fastsim ? grid + " x " + grid : "", law, "", standard_law == law.name);
     }
   }
   return figure;

@@ -27,7 +27,10 @@ std::vector<double> channels(const MeasuredRun& run, const StepRecord& record, Q
       }
       break;
     case Quantity::deck_acceleration:
-      for (const MotionRecord& node : record.nodes) values.push_back(node.acceleration[2]);
+      for (std::size_t i = 0; i < record.nodes.size(); ++i) {
+        if (i < run.node_names.size() && !is_deck(run.node_names[i])) continue;
+        values.push_back(record.nodes[i].acceleration[2]);
+      }
       break;
   }
   return values;
@@ -39,7 +42,10 @@ MeasuredRun measured(const std::function<RunSummary(const RunObserver&)>& run) {
   MeasuredRun result;
   std::clock_t begin = std::clock();
   RunObserver observer;
-  observer.start = [&](const ResultHeader& header) { result.body_names = header.body_names; };
+  observer.start = [&](const ResultHeader& header) {
+    result.body_names = header.body_names;
+    result.node_names = header.node_names;
+  };
   observer.ready = [&] { begin = std::clock(); };
   observer.record = [&](const StepRecord& record) { result.records.push_back(record); };
   result.summary = run(observer);

@@ -11,7 +11,7 @@ namespace railtab::work_precision {
 /// A run and what it cost.
 struct MeasuredRun {
   RunSummary summary;
-  std::vector<std::string> body_names;
+  std::vector<std::string> body_names, node_names;
   std::vector<StepRecord> records;
   double seconds = 0.0;  ///< processor time from the first step on, without the set-up
 };
@@ -23,7 +23,7 @@ struct MeasuredRun {
 enum class Quantity {
   wheel_forces,           ///< Q and Y of every wheel [N]
   car_body_acceleration,  ///< vertical and lateral, of every body that is not a wheelset or a bogie [m/s²]
-  deck_acceleration,      ///< vertical, of every node that the structure names [m/s²]
+  deck_acceleration,      ///< vertical, of the nodes of the deck [m/s²]
 };
 
 /// Difference of two runs at the same times: over the rms of the reference's dynamic part (each channel without its

@@ -17,7 +17,8 @@ namespace railtab::work_precision {
 namespace {
 
 constexpr int steps = 40;
-constexpr double coach_length = 26.0;  // m, more than that of any vehicle here
+constexpr double longest_side = 10000.0;  // m, of the track before and after the bridge: the scene's limit
+constexpr double coach_length = 26.0;     // m, more than that of any vehicle here
 
 struct TrackRun {
   long unknowns = 0;
@@ -34,7 +35,7 @@ TrackRun run_on_track(double length, int coaches, const std::filesystem::path& t
   scene.contact.mode = table.empty() ? ContactMode::online : ContactMode::table;
   scene.contact.table = table;
   const double train = coaches * coach_length;
-  scene.track.length_before = std::max(train, 0.5 * (length + train));
+  scene.track.length_before = std::min(longest_side, std::max(train, 0.5 * (length + train)));
   scene.track.length_after = std::max(4.0, length - scene.track.length_before);
   scene.integration.duration = steps * scene.integration.time_step;
   const std::clock_t begin = std::clock();

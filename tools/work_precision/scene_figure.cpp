@@ -18,6 +18,7 @@ struct Variant {
   std::string method, setting;
   SceneParameters scene;
   bool standard = false;
+  bool joined = false;
 };
 
 std::vector<Variant> variants(const SceneParameters& base, const SceneTables& tables, bool quick) {
@@ -48,7 +49,7 @@ std::vector<Variant> variants(const SceneParameters& base, const SceneTables& ta
   }
   if (tables.geometry.empty()) return result;
   const auto add_reduced = [&](const std::string& setting, const ReductionParameters& reduction) {
-    add("geometry table, reduced structure", ContactMode::table, ContactParameters{}.creep_law, step);
+    add("reduced structure", ContactMode::table, ContactParameters{}.creep_law, step);
     result.back().setting += ", " + setting;
     result.back().scene.reduction = reduction;
     result.back().standard = false;
@@ -56,9 +57,12 @@ std::vector<Variant> variants(const SceneParameters& base, const SceneTables& ta
   add_reduced("window of 20 m", {.kind = Reduction::window});
   if (quick) return result;
   add_reduced("200 modes", {.kind = Reduction::modal, .modes = 200});
-  for (const double other : {4 * step, 2 * step, step / 2, step / 4}) {
-    add("geometry table, other steps", ContactMode::table, "table", other);
-    add("geometry table, other steps", ContactMode::table, "polach", other);
+  for (const char* law : {"table", "polach"}) {
+    const std::string method = fmt::format("geometry table, {}, other steps", law);
+    for (const double other : {4 * step, 2 * step, step / 2, step / 4}) {
+      add(method, ContactMode::table, law, other);
+      result.back().joined = true;
+    }
   }
   return result;
 }
@@ -127,7 +131,7 @@ std::vector<WorkFigure> scene_figures(const SceneTables& tables, bool quick) {
       std::nth_element(seconds[i].begin(), seconds[i].begin() + static_cast<std::ptrdiff_t>(seconds[i].size() / 2),
                        seconds[i].end());
       figure.points.push_back({all[i].method, all[i].setting, 1e9 * seconds[i][seconds[i].size() / 2], error.rms,
-                               error.largest, note_of(last[i].summary), all[i].standard});
+                               error.largest, note_of(last[i].summary), all[i].standard, all[i].joined});
     }
     figures.push_back(figure);
   }

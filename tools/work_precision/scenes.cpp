@@ -51,7 +51,9 @@ SceneParameters hunting_coach() {
   scene.train.initial_lateral_shift = 5e-3;
   scene.contact.mode = ContactMode::online;
   scene.contact.wheel = "conic-arc-stand-in";
-  scene.track_kind = TrackKind::rigid;
+  scene.train.start = 0.0;
+  scene.track.length_before = 40.0;
+  scene.track.length_after = 70.0;
   scene.integration.duration = 0.5;
   return scene;
 }

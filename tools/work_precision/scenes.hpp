@@ -14,8 +14,9 @@ void write_wavy_track(const std::filesystem::path& file);
 /// A coach (S1002 on 60E1 1:40, online search) at 50 m/s over ballasted track and a 20 m span, 0.6 s.
 [[nodiscard]] SceneParameters coach_over_bridge(const std::filesystem::path& irregularity);
 
-/// A coach with conical treads on rigid track at 100 m/s, all its wheelsets 5 mm beside the centre at t = 0: they hunt
-/// and strike the rails with their flanges, 0.5 s.
+/// A coach with conical treads on smooth ballasted track at 100 m/s, all its wheelsets 5 mm beside the centre at t = 0:
+/// they hunt and strike the rails with their flanges, 0.5 s. On rigid rails nothing would damp the wheels' vibration on
+/// their contact springs after a blow, and runs would differ by its phase.
 [[nodiscard]] SceneParameters hunting_coach();
 
 /// The sprung mass of [YangYau1997] over its simple beam, from rest: 100 km/h, 25 m.

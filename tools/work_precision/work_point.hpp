@@ -7,13 +7,14 @@ namespace railtab::work_precision {
 
 /// One setting of one method: what an evaluation costs and how far off it is.
 struct WorkPoint {
-  std::string method;     ///< points of one method are joined by a line
+  std::string method;     ///< points of one method have a colour
   std::string setting;    ///< what distinguishes this point
   double x;               ///< time, median over interleaved passes [ns], or size
   double y;               ///< the error that the figure names, in its unit, or time [ns]
   double largest_error;   ///< 0 where y is no error
   std::string note;       ///< memory, share of fallback: for the table of values
   bool standard = false;  ///< what a user gets who asks for nothing else
+  bool joined = true;     ///< by a line with the point of its method before it
 };
 
 /// What a figure shows.

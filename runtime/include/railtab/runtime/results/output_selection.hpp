@@ -9,8 +9,9 @@ namespace railtab {
 
 /// What a run records, and how often.
 struct OutputParameters {
-  int every = 1;       ///< steps between records, >= 1
-  bool wheels = true;  ///< contact forces and positions
+  int every = 1;        ///< steps between records, >= 1
+  bool wheels = true;   ///< contact forces and positions
+  bool energy = false;  ///< RunSummary::contact_energy: some time for every step
   /// Patterns of names with * and ?; nothing is recorded of what none of them fits.
   std::vector<std::string> bodies{"*"}, nodes{"*"};
 };

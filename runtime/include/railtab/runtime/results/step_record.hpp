@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,18 @@ struct ResultHeader {
 /// Nodes of the bridge deck are named deck….
 [[nodiscard]] inline bool is_deck(std::string_view node_name) noexcept { return node_name.starts_with("deck"); }
 
+/// What the normal contacts made of a run's energy [J]: EnergyBalance::contact_gain, of all and where it was largest in
+/// amount. An impact of a wheelset begins with a step in which one of its wheels touches after a flight or begins to
+/// touch with its flange (contact angle above 0.2 rad), and ends with one that ends that contact, or after 10 ms.
+struct ContactEnergy {
+  double gain = 0;            ///< of the whole run
+  double stiffness_work = 0;  ///< the part of it that is none of the time integration's, see EnergyBalance
+  double largest_step = 0, largest_step_time = 0;      ///< of all contacts in one step; end of that step [s]
+  long impacts = 0;                                    ///< that have ended
+  double largest_impact = 0, largest_impact_time = 0;  ///< of a wheelset in one impact; its begin [s]
+  double largest_impact_stored = 0;  ///< most that the wheelset's contact springs took up in that impact
+};
+
 /// How the run ended and where its time went.
 struct RunSummary {
   bool complete = false;
@@ -71,7 +84,8 @@ struct RunSummary {
   double seconds_total = 0, seconds_setup = 0, seconds_lookup = 0, seconds_contact = 0, seconds_structure = 0,
          seconds_vehicle = 0, seconds_output = 0;
   long structure_dofs = 0, vehicle_dofs = 0;
-  std::string contact_mode;  ///< table, online, paper
+  std::string contact_mode;                     ///< table, online, paper
+  std::optional<ContactEnergy> contact_energy;  ///< where output.energy asks for it
 };
 
 }  // namespace railtab

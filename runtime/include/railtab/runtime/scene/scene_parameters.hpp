@@ -42,8 +42,8 @@ struct ContactParameters {
   std::string wheel = "S1002";  ///< where no table is named (online, paper)
   std::string rail = "60E1";
   double rail_inclination = 1.0 / 40.0;
-  PairDimensions dimensions;  ///< where no table is named
-  std::string creep_law = "polach";
+  PairDimensions dimensions;          ///< where no table is named
+  std::string creep_law = "table";    ///< the shipped table is for nu = 0.28
   std::filesystem::path creep_table;  ///< of the law "table"; empty: the shipped one
   double friction = 0.30;             ///< Coulomb coefficient [-], 0..2
   ElasticMaterial material;

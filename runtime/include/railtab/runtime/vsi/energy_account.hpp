@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
@@ -42,6 +45,10 @@ class EnergyAccount {
   /// @param gamma of the step that led to `state` (HhtScheme)
   void step(double gamma, const VsiState& state);
   [[nodiscard]] const EnergyBalance& balance() const noexcept { return balance_; }
+  /// The last step's part of contact_gain, per wheelset [J].
+  [[nodiscard]] std::span<const double> wheelset_gain() const noexcept { return wheelset_gain_; }
+  /// Energy of the contact springs now, per wheelset [J].
+  [[nodiscard]] std::span<const double> wheelset_energy() const noexcept { return last_.contact_energy; }
 
  private:
   /// What a step's works are made of.
@@ -54,6 +61,7 @@ class EnergyAccount {
     Eigen::VectorXd mean_force, mean_normal_force;  ///< means over the step that ended here, on wheelsets and rails
     Eigen::VectorXd step_load;                      ///< ContactSolution::step_load
     std::vector<Eigen::VectorXd> vehicle_load;      ///< besides gravity; empty where there is none
+    std::vector<double> contact_energy;             ///< of the contact springs, per wheelset [J]
   };
   [[nodiscard]] Instant observe(const VsiState& state);
 
@@ -61,6 +69,7 @@ class EnergyAccount {
   WheelContactModel contact_, frictionless_;  ///< at the speed of the instant
   Instant last_;
   EnergyBalance balance_;
+  std::vector<double> wheelset_gain_;
 };
 
 }  // namespace railtab

@@ -35,6 +35,7 @@ struct RunObserver {
   /// After every step, halved ones too: the energy account, kept only where somebody listens. Not for wheels that
   /// follow the rails.
   std::function<void(const EnergyBalance&)> energy;
+  bool contact_energy = false;  ///< whether the summary shall say what the account says of the contacts
   std::function<void(double fraction)> progress;                             ///< 0..1
   std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
   long checkpoint_every = 2000;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "railtab/runtime/results/step_record.hpp"
+#include "railtab/runtime/vsi/energy_account.hpp"
+
+namespace railtab {
+
+/// Takes from the energy account of a run what its summary says of the contacts.
+class ContactEnergyRecord {
+ public:
+  ContactEnergyRecord(const EnergyAccount& account, const VsiState& state);
+  /// After every step.
+  void step(const EnergyAccount& account, const VsiState& state);
+  /// An impact that goes on does not count.
+  [[nodiscard]] const ContactEnergy& summary() const noexcept { return summary_; }
+
+ private:
+  /// How a wheel touches the rail: one that comes down or meets the rail with its flange begins an impact.
+  enum class Touch { none, tread, flange };
+  [[nodiscard]] static std::vector<Touch> touches(const VsiState& state);
+
+  struct Impact {
+    bool going_on = false;
+    double begin = 0.0;   // [s]
+    double gain = 0.0;    // [J] since then
+    double before = 0.0;  // [J] in the contact springs of the wheelset before
+    double stored = 0.0;  // [J] most in them since then, above that
+  };
+  void follow(std::size_t wheelset, const EnergyAccount& account, double time, bool gained, bool lost);
+
+  ContactEnergy summary_;
+  double time_;
+  std::vector<Touch> touch_;     // per wheel, after the last step
+  std::vector<double> energy_;   // [J] of the contact springs, per wheelset, after the last step
+  std::vector<Impact> impacts_;  // per wheelset
+};
+
+}  // namespace railtab
