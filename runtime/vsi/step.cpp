@@ -122,6 +122,7 @@ void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLi
     double seconds_newton = 0.0;
     {
       const Stopwatch watch(seconds_newton);
+      ws.newton.forces_known = pass > 0;  // the structure's answer has moved nothing but q_free
       newton = solve_contact_by_continuation(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
     }
     report.newton_iterations += newton.iterations;
