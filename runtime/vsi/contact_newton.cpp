@@ -115,29 +115,30 @@ void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::Ve
   }
 }
 
-// I − C T of one vehicle, factorised.
-void factorise(const ContactProblem& problem, int vehicle, NewtonWorkspace& ws) {
-  const int per_vehicle = problem.wheelsets_per_vehicle;
-  const int size = wheelset_unknowns * per_vehicle;
+// I − C T of the wheelsets of one group, factorised.
+void factorise(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
+  const int wheelsets = problem.wheelsets_per_group;
+  const int size = wheelset_unknowns * wheelsets;
+  const int first = group * wheelsets;
+  const int of_vehicle = first % problem.wheelsets_per_vehicle;
   ws.compliance.setZero(size, size);
-  for (int i = 0; i < per_vehicle; ++i) {
-    for (int j = 0; j < per_vehicle; ++j) {
-      ws.compliance.block<6, 6>(12 * i, 12 * j) = problem.vehicle_compliance.block<6, 6>(6 * i, 6 * j);
+  for (int i = 0; i < wheelsets; ++i) {
+    for (int j = 0; j < wheelsets; ++j) {
+      ws.compliance.block<6, 6>(12 * i, 12 * j) =
+          problem.vehicle_compliance.block<6, 6>(6 * (of_vehicle + i), 6 * (of_vehicle + j));
     }
   }
-  const int first_wheel = 2 * per_vehicle * vehicle;
   for (const RailCoupling& c : problem.rail) {
-    const int i = c.i - first_wheel;
-    const int j = c.j - first_wheel;
-    if (i < 0 || j < 0 || i >= 2 * per_vehicle || j >= 2 * per_vehicle) continue;
+    const int i = c.i - 2 * first;
+    const int j = c.j - 2 * first;
+    if (i < 0 || j < 0 || i >= 2 * wheelsets || j >= 2 * wheelsets) continue;
     ws.compliance.block<3, 3>(rail_unknown(i), rail_unknown(j)) = c.compliance;
   }
   ws.jacobian.setIdentity(size, size);
-  for (int j = 0; j < per_vehicle; ++j) {
-    ws.jacobian.middleCols<12>(12 * j).noalias() -=
-        ws.compliance.middleCols<12>(12 * j) * ws.tangent[index(vehicle * per_vehicle + j)];
+  for (int j = 0; j < wheelsets; ++j) {
+    ws.jacobian.middleCols<12>(12 * j).noalias() -= ws.compliance.middleCols<12>(12 * j) * ws.tangent[index(first + j)];
   }
-  ws.factor[index(vehicle)].compute(ws.jacobian);
+  ws.factor[index(group)].compute(ws.jacobian);
 }
 
 // Holds every wheelset with its rails to the largest move, in its own proportions. Pitch turns no profile; where its
@@ -152,7 +153,7 @@ void limit_moves(const ContactProblem& problem, Eigen::Ref<Eigen::VectorXd> corr
   }
 }
 
-// What a correction changes the forces of a vehicle's contacts by, to first order: the largest [N, N m].
+// What a correction changes the contact forces of some wheelsets by, to first order: the largest [N, N m].
 double force_change(const NewtonWorkspace& ws, int first, int last) {
   double largest = 0.0;
   for (int w = first; w < last; ++w) {
@@ -163,38 +164,46 @@ double force_change(const NewtonWorkspace& ws, int first, int last) {
   return largest;
 }
 
-// Newton of the whole train: vehicles iterate side by side, each with its own tangent and step control, and rest where
-// they are while that is good enough.
+long n_diff = 0;
+struct Say {
+  ~Say() { std::fprintf(stderr, "tangents of vehicles %ld\n", n_diff); }
+} say;
+// Newton of the whole train: groups of wheelsets iterate side by side, each with its own tangent and step control, and
+// rest where they are while that is good enough.
 class TrainNewton {
  public:
   TrainNewton(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
               ContactSolution& solution, NewtonWorkspace& ws)
       : model_(model), problem_(problem), limits_(limits), s_(solution), ws_(ws) {
     const auto wheelsets = static_cast<int>(s_.displacement.size()) / wheelset_unknowns;
+    const int groups = wheelsets / problem.wheelsets_per_group;
     ws.tangent.resize(index(wheelsets));
     ws.start.resize(s_.displacement.size());
     ws.correction.resize(s_.displacement.size());
     ws.found.resize(model.geometry->is_paper() ? 2 * ws.tangent.size() : 0);
     ws.found_at.resize(ws.found.size());
-    // The tangent of the step before serves as long as it is good enough.
-    ws.vehicle.assign(index(wheelsets / problem.wheelsets_per_vehicle),
-                      VehicleNewton{.moved = !ws.forces_known, .new_tangent = ws.factor.empty()});
-    ws.factor.resize(ws.vehicle.size());
+    // The tangents of the step before serve as long as they are good enough, with the compliance of this one.
+    ws.group.assign(index(groups), GroupNewton{.moved = !ws.forces_known, .new_tangent = ws.factor.empty()});
+    if (ws.factor.empty()) {
+      ws.factor.resize(index(groups));
+    } else if (!ws.forces_known) {
+      for (int g = 0; g < groups; ++g) factorise(problem, g, ws);
+    }
     ws.forces_known = false;
   }
 
   NewtonReport solve() {
-    const int vehicles = static_cast<int>(ws_.vehicle.size());
+    const int groups = static_cast<int>(ws_.group.size());
     for (report_.iterations = 0; report_.iterations <= limits_.max_iterations; ++report_.iterations) {
-      for (int v = 0; v < vehicles; ++v) {
-        if (ws_.vehicle[index(v)].moved) evaluate_vehicle(v);
+      for (int g = 0; g < groups; ++g) {
+        if (ws_.group[index(g)].moved) evaluate_group(g);
       }
       residual(problem_, s_, ws_.residual);
       if (!ws_.residual.allFinite()) break;
       report_.correction = 0.0;
       report_.converged = true;
-      for (int v = 0; v < vehicles; ++v) {
-        if (!rests(v)) report_.converged = false;
+      for (int g = 0; g < groups; ++g) {
+        if (!rests(g)) report_.converged = false;
       }
       if (report_.converged) break;
     }
@@ -202,53 +211,53 @@ class TrainNewton {
   }
 
  private:
-  [[nodiscard]] int first_wheelset(int vehicle) const { return vehicle * problem_.wheelsets_per_vehicle; }
-  [[nodiscard]] auto part_of(Eigen::VectorXd& vector, int vehicle) const {
-    const int size = wheelset_unknowns * problem_.wheelsets_per_vehicle;
-    return vector.segment(size * vehicle, size);
+  [[nodiscard]] int first_wheelset(int group) const { return group * problem_.wheelsets_per_group; }
+  [[nodiscard]] auto part_of(Eigen::VectorXd& vector, int group) const {
+    const int size = wheelset_unknowns * problem_.wheelsets_per_group;
+    return vector.segment(size * group, size);
   }
 
-  void evaluate_vehicle(int v) {
-    const bool searches = ws_.found.empty() || ++ws_.vehicle[index(v)].evaluations <= paper_searches;
-    evaluate(model_, problem_, searches ? Pairs::searched : Pairs::held, first_wheelset(v), first_wheelset(v + 1), s_,
+  void evaluate_group(int g) {
+    const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
+    evaluate(model_, problem_, searches ? Pairs::searched : Pairs::held, first_wheelset(g), first_wheelset(g + 1), s_,
              ws_, report_);
   }
 
-  // Whether a vehicle may stay where it is; if not, it has been moved on.
-  bool rests(int v) {
+  // Whether a group may stay where it is; if not, it has been moved on.
+  bool rests(int g) {
     constexpr double fast_enough = 0.2;           // of the residual, per iteration with a kept tangent
     constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
-    VehicleNewton& n = ws_.vehicle[index(v)];
-    auto displacement = part_of(s_.displacement, v);
-    auto correction = part_of(ws_.correction, v);
-    const double size = part_of(ws_.residual, v).cwiseAbs().maxCoeff();
+    GroupNewton& n = ws_.group[index(g)];
+    auto displacement = part_of(s_.displacement, g);
+    auto correction = part_of(ws_.correction, g);
+    const double size = part_of(ws_.residual, g).cwiseAbs().maxCoeff();
     const bool moved = n.moved;
     n.moved = false;
     if (size < limits_.tolerance) return true;
     if (moved && size > 2.0 * n.previous && n.part > shortest_part) {
       // The last correction made it worse (a patch gained or lost, an old tangent): take half of it back.
       n.part *= 0.5;
-      displacement = part_of(ws_.start, v) + n.part * correction;
+      displacement = part_of(ws_.start, g) + n.part * correction;
       n.moved = true;
       return false;
     }
     if (n.new_tangent || (moved && size > fast_enough * n.previous)) {
-      differentiate(model_, problem_, first_wheelset(v), first_wheelset(v + 1), s_, ws_);
-      factorise(problem_, v, ws_);
+      differentiate(model_, problem_, first_wheelset(g), first_wheelset(g + 1), s_, ws_);
+      factorise(problem_, g, ws_);
       n.new_tangent = false;
     }
     const bool gains = size < 0.5 * n.previous;
     n.previous = size;
     n.part = 1.0;
-    correction = ws_.factor[index(v)].solve(part_of(ws_.residual, v));
+    correction = ws_.factor[index(g)].solve(part_of(ws_.residual, g));
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
     if (change < limits_.tolerance || (!gains && change < limits_.rounding) ||
-        force_change(ws_, first_wheelset(v), first_wheelset(v + 1)) < limits_.force_tolerance) {
+        force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
       return true;
     }
     limit_moves(problem_, correction);
-    part_of(ws_.start, v) = displacement;
+    part_of(ws_.start, g) = displacement;
     displacement += correction;
     n.moved = true;
     return false;

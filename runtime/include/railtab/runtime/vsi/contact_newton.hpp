@@ -44,6 +44,9 @@ struct ContactSolution {
 /// docs/theory/coupling.md from Eq. 16.
 struct ContactProblem {
   int wheelsets_per_vehicle = 4;
+  /// Wheelsets whose coupling enters Newton's Jacobian, a divisor of wheelsets_per_vehicle: all of a vehicle at rest,
+  /// one in a time step, within which each answers almost alone.
+  int wheelsets_per_group = 4;
   /// dv/dq [1/s] of a wheelset and of a rail head: gamma/(beta·dt) in a time step. At rest 0, but for the wheelset's
   /// pitch, whose unknown is then its deviation from the nominal rotation.
   Vector6 velocity_rate = Vector6::Zero();
@@ -85,8 +88,8 @@ struct NewtonLimits {
   double rounding = 0.0;
 };
 
-/// Where the iteration of one vehicle is.
-struct VehicleNewton {
+/// Where the iteration of one group of wheelsets is.
+struct GroupNewton {
   bool moved = true;                                          ///< since its forces were computed
   bool new_tangent = false;                                   ///< whether one is wanted before the next correction
   double previous = std::numeric_limits<double>::infinity();  ///< largest residual before the last correction [m, rad]
@@ -98,9 +101,9 @@ struct VehicleNewton {
 struct NewtonWorkspace {
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
   std::vector<Matrix12> tangent;                             ///< per wheelset, df/dq
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per vehicle, of I − C df/dq
-  Eigen::MatrixXd compliance, jacobian;                      ///< of one vehicle
-  std::vector<VehicleNewton> vehicle;
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per group, of I − C df/dq
+  Eigen::MatrixXd compliance, jacobian;                      ///< of one group
+  std::vector<GroupNewton> group;
   Eigen::VectorXd residual, correction, start;
   /// Set before solve_contact() where the solution's forces are those at its displacement already.
   bool forces_known = false;
@@ -116,11 +119,11 @@ struct NewtonWorkspace {
 /// Forces at solution.displacement, written into the solution.
 NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
 
-/// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over vehicles: their
-/// coupling through the rail enters the residual only, so the solution is exact. Each vehicle keeps its block while it
-/// makes the residual five times smaller per iteration, from one step to the next too: a tangent costs five
-/// evaluations of the forces. Without factors in the workspace it is made first of all. A vehicle that has converged
-/// rests while others iterate, unless its neighbours disturb it.
+/// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over the groups of
+/// wheelsets: their coupling through vehicles and rails enters the residual only, so the solution is exact. Each group
+/// keeps its tangent while it makes the residual five times smaller per iteration, from one step to the next too: a
+/// tangent costs five evaluations of the forces. Without factors in the workspace it is made first of all. A group that
+/// has converged rests while others iterate, unless its neighbours disturb it.
 /// The published method's pairs jump as a wheel moves: they are searched in the first evaluations and then held,
 /// each moving with its bodies' particles, so that Newton ends on forces that are smooth.
 /// Converged: the residual is below the tolerance or the next correction below one of the limits; the forces are those
