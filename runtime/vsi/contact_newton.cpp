@@ -227,6 +227,7 @@ class TrainNewton {
   bool rests(int g) {
     constexpr double fast_enough = 0.2;           // of the residual, per iteration with a kept tangent
     constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
+    constexpr double first_order = 1e-8;  // m, rad: a wheel in the air, whose tangent is zero, gains 0.1 N at most
     GroupNewton& n = ws_.group[index(g)];
     auto displacement = part_of(s_.displacement, g);
     auto correction = part_of(ws_.correction, g);
@@ -252,7 +253,8 @@ class TrainNewton {
     correction = ws_.factor[index(g)].solve(part_of(ws_.residual, g));
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
-    if (change < limits_.tolerance || (!gains && change < limits_.rounding) ||
+    if (change < limits_.tolerance || (!gains && change < limits_.rounding)) return true;
+    if (change < first_order &&
         force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
       return true;
     }
