@@ -6,7 +6,7 @@ namespace polish {
 
 PairStatus take_more_steps(const WheelRailPair& pair, const WheelsetCentre& centre, const PoseTrigonometry& trig,
                            ContactPatch& patch) noexcept {
-  constexpr int most_steps = 7;
+  constexpr int most_steps = 3;  // starts that need more lead nowhere as a rule: a search is then the shorter way
   PairStatus status = PairStatus::not_converged;
   for (int n = 0; n < most_steps; ++n) {
     if (take_step(pair, centre, trig, patch.s_wheel, patch.s_rail, patch, status) != Outcome::again) return status;

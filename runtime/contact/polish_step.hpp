@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "railtab/runtime/contact/contact_pair.hpp"
 
@@ -157,7 +156,8 @@ enum class Outcome : std::uint8_t { accepted, refused, again };
 [[gnu::always_inline]] inline Outcome take_step(const WheelRailPair& pair, const WheelsetCentre& centre,
                                                 const PoseTrigonometry& trig, double s_wheel, double s_rail,
                                                 ContactPatch& patch, PairStatus& status) noexcept {
-  constexpr double last_step = 20e-6;  // [m]
+  constexpr double last_step = 20e-6;    // [m]
+  constexpr double largest_step = 1e-3;  // [m] beyond it, to the pair of another branch
   const ProfileCurve& wheel = pair.wheel();
   const ProfileCurve& rail = pair.rail();
   const std::size_t wheel_piece = wheel.piece_of(s_wheel);
@@ -170,7 +170,7 @@ enum class Outcome : std::uint8_t { accepted, refused, again };
   const double size = std::abs(step.wheel) + std::abs(step.rail);
   if (!(size <= last_step && wheel.piece_contains(wheel_piece, patch.s_wheel) &&
         rail.piece_contains(rail_piece, patch.s_rail))) [[unlikely]] {
-    if (size < std::numeric_limits<double>::infinity()) return Outcome::again;
+    if (size <= largest_step) return Outcome::again;
     status = PairStatus::not_converged;
     return Outcome::refused;
   }
