@@ -10,12 +10,15 @@ OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
   const SilhouettePoint w = placed(
       silhouette_point(pair_.wheel().at(s_wheel), pair_.tape_circle_offset(), pair_.nominal_radius(), trigonometry_),
       centre_, trigonometry_);
-  // The rail's foot point by Newton. A last step below `small` is not evaluated: its part in the penetration is
-  // counted to second order, and what a step of the rail's curvature within it leaves is rounding.
+  // The rail's foot point by Newton. A last step is not evaluated where its part in the penetration, counted to second
+  // order, leaves rounding: up to `small_on_piece` on one cubic of the profile, of which the third order is below
+  // 1e-11 m, and up to `small` across a joint, where curvature may jump.
   constexpr int iterations = 8;
-  constexpr double small = 1e-8;
+  constexpr double small = 1e-8, small_on_piece = 1e-5;
+  const ProfileCurve& rail = pair_.rail();
   for (int i = 0;; ++i) {
-    const CurvePoint r = pair_.rail().at(s_rail);
+    const std::size_t piece = rail.piece_of(s_rail);
+    const CurvePoint r = rail.on_piece(piece, s_rail);
     const double ey = w.y - r.y;
     const double ez = w.z - r.z;
     const double tangent2 = r.dy * r.dy + r.dz * r.dz;
@@ -23,7 +26,8 @@ OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
     const double change = tangent2 - r.ddy * ey - r.ddz * ez;
     const double step = along / change;
     s_rail += step;
-    if (std::abs(step) >= small && i < iterations) continue;
+    const double size = std::abs(step);
+    if (!(size < small || (size < small_on_piece && rail.piece_contains(piece, s_rail))) && i < iterations) continue;
     const double length = std::sqrt(tangent2);
     // Into the rail, turned to the foot point.
     const double turn = step * (r.dy * r.ddz - r.dz * r.ddy) / tangent2;
@@ -67,19 +71,21 @@ double Overlap::reach(const ContactPatch& patch, int direction, double level, do
   double far = std::max(0.0, direction * (limit - patch.s_wheel));
   double s = std::min(fall / std::sqrt(B), far);
   constexpr int iterations = 24;
-  constexpr double tolerance = 1e-6;  // of the distance; Newton: the last step leaves its square
+  // Of the distance. Newton's last step leaves its square, and the area above the level counts the square of that.
+  constexpr double newton_tolerance = 1e-3, bisection_tolerance = 1e-6;
   for (int i = 0; i < iterations; ++i) {
     const OverlapPoint point = at(patch.s_wheel + direction * s, patch.s_rail + direction * s);
     const double root = std::sqrt(std::max(d - point.penetration, 0.0));
     (point.penetration > level ? near : far) = s;
     double next = s - (root - fall) * 2.0 * root / (-direction * point.slope);
-    if (!(next > near && next < far)) {
+    const bool newton = next > near && next < far;
+    if (!newton) {
       if (near >= far) break;
       next = 0.5 * (near + far);
     }
     const double step = std::abs(next - s);
     s = next;
-    if (step < tolerance * s) break;
+    if (step < (newton ? newton_tolerance : bisection_tolerance) * s) break;
   }
   return s;
 }

@@ -92,9 +92,9 @@ WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const Whee
 }
 
 WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                       const RailHeadMotion& rail, const ContactPatches& patches) noexcept {
+                       const RailHeadMotion& rail, std::span<const PatchLoad> loads) noexcept {
   WheelForce result;
-  if (patches.count == 0) return result;
+  if (loads.empty()) return result;
   const WheelRailPair& pair = model.geometry->pair();
   const WheelsetMotion w = on_right(side, wheelset);
   const RailHeadMotion r = on_right(side, rail);
@@ -110,8 +110,7 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
   const Vector3 rotation = rail_axes.from_track({w.velocity[3] - r.velocity[2], 0.0, w.velocity[5]}) +
                            (w.velocity[4] - V / pair.nominal_radius()) * axle;
 
-  const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
     const ContactPatch& patch = loads[i].contact;
     // To the wheel's own undeformed surface, the penetration below the rail's: rolling radii are those of the wheel.
     const Vector3 arm = Vector3(patch.x, patch.y_rail - (pose.y - pair.rail_offset()),
@@ -136,6 +135,13 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
   }
   result.rail_x = -result.wheelset[0];
   return result;
+}
+
+WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                       const RailHeadMotion& rail, const ContactPatches& patches) noexcept {
+  const WheelsetPose pose = relative_pose(model.geometry->pair(), side, wheelset, rail);
+  return wheel_force(model, side, wheelset, rail,
+                     of_patches(patch_loads(model.normal, *model.geometry, pose, patches), patches));
 }
 
 ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatches& patches, const WheelsetPose& from,
@@ -167,12 +173,54 @@ double difference_step(double step, double velocity_rate, double speed) {
   return step * velocity_rate > creepage * speed ? creepage * speed / velocity_rate : step;
 }
 
+// A pose near by with its patches and loads.
+struct Neighbour {
+  WheelsetPose pose;
+  ContactPatches patches;
+  PatchLoads loads;
+};
+
+// What wheel_force() reads of a load, moved on by a share of its change towards another.
+void add_change(const PatchLoad& from, const PatchLoad& to, double share, PatchLoad& load) {
+  const auto move = [&](auto member) { load.*member += share * (to.*member - from.*member); };
+  const auto move_contact = [&](auto member) {
+    load.contact.*member += share * (to.contact.*member - from.contact.*member);
+  };
+  move(&PatchLoad::elastic_force);
+  load.hertz.a1 += share * (to.hertz.a1 - from.hertz.a1);
+  load.hertz.b1 += share * (to.hertz.b1 - from.hertz.b1);
+  move_contact(&ContactPatch::x);
+  move_contact(&ContactPatch::y_rail);
+  move_contact(&ContactPatch::z_rail);
+  move_contact(&ContactPatch::angle);
+  move_contact(&ContactPatch::penetration);
+}
+
+// Loads at a pose near by, to first order from those at poses moved in y, z and roll: only relative motion counts, so a
+// rail that rolls asks for no overlap of its own.
+PatchLoads combined_loads(const PatchLoads& here, int count, const WheelsetPose& from, const Neighbour& y,
+                          const Neighbour& z, const Neighbour& roll, const WheelsetPose& to) {
+  const Eigen::Vector2d by_y(y.pose.y - from.y, y.pose.z - from.z);
+  const Eigen::Vector2d by_z(z.pose.y - from.y, z.pose.z - from.z);
+  const Eigen::Vector2d wanted(to.y - from.y, to.z - from.z);
+  const double determinant = by_y[0] * by_z[1] - by_y[1] * by_z[0];
+  const double share_y = (wanted[0] * by_z[1] - wanted[1] * by_z[0]) / determinant;
+  const double share_z = (by_y[0] * wanted[1] - by_y[1] * wanted[0]) / determinant;
+  const double share_roll = (to.roll - from.roll) / (roll.pose.roll - from.roll);
+  PatchLoads loads = here;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    add_change(here[i], y.loads[i], share_y, loads[i]);
+    add_change(here[i], z.loads[i], share_z, loads[i]);
+    add_change(here[i], roll.loads[i], share_roll, loads[i]);
+  }
+  return loads;
+}
+
 }  // namespace
 
 Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                            const RailHeadMotion& rail, const ContactPatches& patches, const WheelForce& force,
-                            const Vector6& velocity_rate, double rail_velocity_rate,
-                            const ContactMemory* start) noexcept {
+                            const RailHeadMotion& rail, const ContactPatches& patches, const Vector6& velocity_rate,
+                            double rail_velocity_rate, const ContactMemory* start) noexcept {
   Matrix9 tangent = Matrix9::Zero();
   if (patches.count == 0 && (!start || start->count == 0)) return tangent;
   const WheelRailPair& pair = model.geometry->pair();
@@ -183,22 +231,30 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
     sum << f.wheelset, f.rail;
     return sum;
   };
-  const Vector9 here = total(pose, patches, force);
-  const auto difference = [&](const WheelsetMotion& w, const RailHeadMotion& r, bool moves_pose, double step) {
-    const WheelsetPose to = moves_pose ? relative_pose(pair, side, w, r) : pose;
-    const ContactPatches& moved = moves_pose ? moved_patches(*model.geometry, patches, pose, to) : patches;
-    const Vector9 there = total(to, moved, wheel_force(model, side, w, r, moved));
-    return Vector9((there - here) / step);
+  const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
+  const Vector9 here = total(pose, patches, wheel_force(model, side, wheelset, rail, of_patches(loads, patches)));
+  const auto difference = [&](const WheelsetMotion& w, const RailHeadMotion& r, const WheelsetPose& at,
+                              const ContactPatches& p, const PatchLoads& l, double step) {
+    return Vector9((total(at, p, wheel_force(model, side, w, r, of_patches(l, p))) - here) / step);
   };
   // Steps well above the Newton tolerance of the pair and well below the penetration [m, rad].
   constexpr std::array<double, 6> steps{1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7};
-  for (int j = 0; j < 6; ++j) {
-    const double step = difference_step(steps[static_cast<std::size_t>(j)], velocity_rate[j], model.speed);
+  std::array<Neighbour, 6> neighbour;
+  for (std::size_t j = 0; j < 6; ++j) {
+    const auto dof = static_cast<Eigen::Index>(j);
+    const double step = difference_step(steps[j], velocity_rate[dof], model.speed);
     WheelsetMotion perturbed = wheelset;
-    perturbed.displacement[j] += step;
-    perturbed.velocity[j] += velocity_rate[j] * step;
-    const bool moves_pose = j != 0 && j != 4;  // x and pitch leave the profiles where they are
-    tangent.col(j) = difference(perturbed, rail, moves_pose, step);
+    perturbed.displacement[dof] += step;
+    perturbed.velocity[dof] += velocity_rate[dof] * step;
+    if (j == 0 || j == 4) {  // x and pitch leave the profiles where they are
+      tangent.col(dof) = difference(perturbed, rail, pose, patches, loads, step);
+      continue;
+    }
+    Neighbour& n = neighbour[j];
+    n.pose = relative_pose(pair, side, perturbed, rail);
+    n.patches = moved_patches(*model.geometry, patches, pose, n.pose);
+    n.loads = patch_loads(model.normal, *model.geometry, n.pose, n.patches);
+    tangent.col(dof) = difference(perturbed, rail, n.pose, n.patches, n.loads, step);
   }
   // Moving the rail is moving the wheelset the other way; rolling it is a motion of its own about the rail head.
   tangent.col(6) = -tangent.col(1);
@@ -207,7 +263,10 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   RailHeadMotion rolled = rail;
   rolled.displacement[2] += roll_step;
   rolled.velocity[2] += rail_velocity_rate * roll_step;
-  tangent.col(8) = difference(wheelset, rolled, true, roll_step);
+  const WheelsetPose to = relative_pose(pair, side, wheelset, rolled);
+  tangent.col(8) =
+      difference(wheelset, rolled, to, moved_patches(*model.geometry, patches, pose, to),
+                 combined_loads(loads, patches.count, pose, neighbour[1], neighbour[2], neighbour[3], to), roll_step);
   return tangent;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "stopwatch.hpp"
 
@@ -31,17 +30,15 @@ ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, 
   return ws.found[wheel];
 }
 
-// Contact forces at q, and with `tangents` their derivative per wheelset.
-void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, ContactSolution& s,
-              NewtonWorkspace& ws, std::vector<Matrix12>* tangents, NewtonReport& report) {
-  const int wheelsets = static_cast<int>(s.displacement.size()) / wheelset_unknowns;
-  for (int w = 0; w < wheelsets; ++w) {
+// Contact forces at q of the wheelsets first, ..., last - 1.
+void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, int first, int last,
+              ContactSolution& s, NewtonWorkspace& ws, NewtonReport& report) {
+  for (int w = first; w < last; ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
     auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
     auto end_force = s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w);
     force.setZero();
     end_force.setZero();
-    if (tangents) (*tangents)[index(w)].setZero();
     for (int side = 0; side < 2; ++side) {
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
       const WheelSide wheel_side = sides[index(side)];
@@ -64,21 +61,35 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       report.counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
       s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
-      const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
-      if (start) {
+      if (problem.start) {
+        const ContactMemory& start = problem.start->memory[number];
         const Vector9 share = problem.mean_weight *
-                              (mean_force(model.geometry->pair(), *start, pose, patches, wheel) - 0.5 * start->force());
+                              (mean_force(model.geometry->pair(), start, pose, patches, wheel) - 0.5 * start.force());
         force.head<6>() += share.head<6>();
         force.segment<3>(r) = share.tail<3>();
       } else {
         force.head<6>() += wheel.wheelset;
         force.segment<3>(r) = wheel.rail;
       }
-      if (!tangents) continue;
-      const Matrix9 t = (start ? problem.mean_weight : 1.0) * wheel_force_tangent(model, wheel_side, motion, rail,
-                                                                                  patches, wheel, problem.velocity_rate,
-                                                                                  problem.rail_velocity_rate, start);
-      Matrix12& tangent = (*tangents)[index(w)];
+    }
+  }
+}
+
+// df/dq of the wheelsets first, ..., last - 1, where evaluate() has found their patches.
+void differentiate(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
+                   const ContactSolution& s, NewtonWorkspace& ws) {
+  for (int w = first; w < last; ++w) {
+    Matrix12& tangent = ws.tangent[index(w)];
+    tangent.setZero();
+    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
+    for (int side = 0; side < 2; ++side) {
+      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
+      const std::size_t number = index(2 * w + side);
+      const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
+      const Matrix9 t = (start ? problem.mean_weight : 1.0) *
+                        wheel_force_tangent(model, sides[index(side)], motion, rail, s.patches[number],
+                                            problem.velocity_rate, problem.rail_velocity_rate, start);
+      const int r = 6 + 3 * side;
       tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
       tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
       tangent.block<3, 6>(r, 0) += t.bottomLeftCorner<3, 6>();
@@ -104,48 +115,35 @@ void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::Ve
   }
 }
 
-// I − C T of every vehicle, factorised.
-void factorise(const ContactProblem& problem, NewtonWorkspace& ws) {
-  const int per_vehicle = problem.wheelsets_per_vehicle;
-  const int size = wheelset_unknowns * per_vehicle;
-  const int vehicles = static_cast<int>(ws.tangent.size()) / per_vehicle;
-  ws.factor.resize(index(vehicles));
-  for (int vehicle = 0; vehicle < vehicles; ++vehicle) {
-    ws.compliance.setZero(size, size);
-    for (int i = 0; i < per_vehicle; ++i) {
-      for (int j = 0; j < per_vehicle; ++j) {
-        ws.compliance.block<6, 6>(12 * i, 12 * j) = problem.vehicle_compliance.block<6, 6>(6 * i, 6 * j);
-      }
+// I − C T of the wheelsets of one group, factorised.
+void factorise(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
+  const int wheelsets = problem.wheelsets_per_group;
+  const int size = wheelset_unknowns * wheelsets;
+  const int first = group * wheelsets;
+  const int of_vehicle = first % problem.wheelsets_per_vehicle;
+  ws.compliance.setZero(size, size);
+  for (int i = 0; i < wheelsets; ++i) {
+    for (int j = 0; j < wheelsets; ++j) {
+      ws.compliance.block<6, 6>(12 * i, 12 * j) =
+          problem.vehicle_compliance.block<6, 6>(6 * (of_vehicle + i), 6 * (of_vehicle + j));
     }
-    const int first_wheel = 2 * per_vehicle * vehicle;
-    for (const RailCoupling& c : problem.rail) {
-      const int i = c.i - first_wheel;
-      const int j = c.j - first_wheel;
-      if (i < 0 || j < 0 || i >= 2 * per_vehicle || j >= 2 * per_vehicle) continue;
-      ws.compliance.block<3, 3>(rail_unknown(i), rail_unknown(j)) = c.compliance;
-    }
-    ws.jacobian.setIdentity(size, size);
-    for (int j = 0; j < per_vehicle; ++j) {
-      ws.jacobian.middleCols<12>(12 * j).noalias() -=
-          ws.compliance.middleCols<12>(12 * j) * ws.tangent[index(vehicle * per_vehicle + j)];
-    }
-    ws.factor[index(vehicle)].compute(ws.jacobian);
   }
-}
-
-// Correction of all vehicles: (I − C T) δ = r within each.
-void correct(const ContactProblem& problem, NewtonWorkspace& ws) {
-  const int size = wheelset_unknowns * problem.wheelsets_per_vehicle;
-  ws.correction.resize(ws.residual.size());
-  for (int vehicle = 0; vehicle < static_cast<int>(ws.factor.size()); ++vehicle) {
-    ws.correction.segment(size * vehicle, size) =
-        ws.factor[index(vehicle)].solve(ws.residual.segment(size * vehicle, size));
+  for (const RailCoupling& c : problem.rail) {
+    const int i = c.i - 2 * first;
+    const int j = c.j - 2 * first;
+    if (i < 0 || j < 0 || i >= 2 * wheelsets || j >= 2 * wheelsets) continue;
+    ws.compliance.block<3, 3>(rail_unknown(i), rail_unknown(j)) = c.compliance;
   }
+  ws.jacobian.setIdentity(size, size);
+  for (int j = 0; j < wheelsets; ++j) {
+    ws.jacobian.middleCols<12>(12 * j).noalias() -= ws.compliance.middleCols<12>(12 * j) * ws.tangent[index(first + j)];
+  }
+  ws.factor[index(group)].compute(ws.jacobian);
 }
 
 // Holds every wheelset with its rails to the largest move, in its own proportions. Pitch turns no profile; where its
 // unknown is a rate, its size says nothing.
-void limit_moves(const ContactProblem& problem, Eigen::VectorXd& correction) {
+void limit_moves(const ContactProblem& problem, Eigen::Ref<Eigen::VectorXd> correction) {
   constexpr int pitch = 4;
   for (int k = 0; k < correction.size(); k += wheelset_unknowns) {
     auto moves = correction.segment<wheelset_unknowns>(k);
@@ -154,6 +152,125 @@ void limit_moves(const ContactProblem& problem, Eigen::VectorXd& correction) {
     if (largest > problem.largest_move) moves *= problem.largest_move / largest;
   }
 }
+
+// What a correction changes the contact forces of some wheelsets by, to first order: the largest [N, N m].
+double force_change(const NewtonWorkspace& ws, int first, int last) {
+  double largest = 0.0;
+  for (int w = first; w < last; ++w) {
+    const Eigen::Matrix<double, wheelset_unknowns, 1> change =
+        ws.tangent[index(w)] * ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    largest = std::max(largest, change.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+long n_diff = 0;
+struct Say {
+  ~Say() { std::fprintf(stderr, "tangents of vehicles %ld\n", n_diff); }
+} say;
+// Newton of the whole train: groups of wheelsets iterate side by side, each with its own tangent and step control, and
+// rest where they are while that is good enough.
+class TrainNewton {
+ public:
+  TrainNewton(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
+              ContactSolution& solution, NewtonWorkspace& ws)
+      : model_(model), problem_(problem), limits_(limits), s_(solution), ws_(ws) {
+    const auto wheelsets = static_cast<int>(s_.displacement.size()) / wheelset_unknowns;
+    const int groups = wheelsets / problem.wheelsets_per_group;
+    ws.tangent.resize(index(wheelsets));
+    ws.start.resize(s_.displacement.size());
+    ws.correction.resize(s_.displacement.size());
+    ws.found.resize(model.geometry->is_paper() ? 2 * ws.tangent.size() : 0);
+    ws.found_at.resize(ws.found.size());
+    // The tangents of the step before serve as long as they are good enough, with the compliance of this one.
+    ws.group.assign(index(groups), GroupNewton{.moved = !ws.forces_known, .new_tangent = ws.factor.empty()});
+    if (ws.factor.empty()) {
+      ws.factor.resize(index(groups));
+    } else if (!ws.forces_known) {
+      for (int g = 0; g < groups; ++g) factorise(problem, g, ws);
+    }
+    ws.forces_known = false;
+  }
+
+  NewtonReport solve() {
+    const int groups = static_cast<int>(ws_.group.size());
+    for (report_.iterations = 0; report_.iterations <= limits_.max_iterations; ++report_.iterations) {
+      for (int g = 0; g < groups; ++g) {
+        if (ws_.group[index(g)].moved) evaluate_group(g);
+      }
+      residual(problem_, s_, ws_.residual);
+      if (!ws_.residual.allFinite()) break;
+      report_.correction = 0.0;
+      report_.converged = true;
+      for (int g = 0; g < groups; ++g) {
+        if (!rests(g)) report_.converged = false;
+      }
+      if (report_.converged) break;
+    }
+    return report_;
+  }
+
+ private:
+  [[nodiscard]] int first_wheelset(int group) const { return group * problem_.wheelsets_per_group; }
+  [[nodiscard]] auto part_of(Eigen::VectorXd& vector, int group) const {
+    const int size = wheelset_unknowns * problem_.wheelsets_per_group;
+    return vector.segment(size * group, size);
+  }
+
+  void evaluate_group(int g) {
+    const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
+    evaluate(model_, problem_, searches ? Pairs::searched : Pairs::held, first_wheelset(g), first_wheelset(g + 1), s_,
+             ws_, report_);
+  }
+
+  // Whether a group may stay where it is; if not, it has been moved on.
+  bool rests(int g) {
+    constexpr double fast_enough = 0.2;           // of the residual, per iteration with a kept tangent
+    constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
+    constexpr double first_order = 1e-8;  // m, rad: a wheel in the air, whose tangent is zero, gains 0.1 N at most
+    GroupNewton& n = ws_.group[index(g)];
+    auto displacement = part_of(s_.displacement, g);
+    auto correction = part_of(ws_.correction, g);
+    const double size = part_of(ws_.residual, g).cwiseAbs().maxCoeff();
+    const bool moved = n.moved;
+    n.moved = false;
+    if (size < limits_.tolerance) return true;
+    if (moved && size > 2.0 * n.previous && n.part > shortest_part) {
+      // The last correction made it worse (a patch gained or lost, an old tangent): take half of it back.
+      n.part *= 0.5;
+      displacement = part_of(ws_.start, g) + n.part * correction;
+      n.moved = true;
+      return false;
+    }
+    if (n.new_tangent || (moved && size > fast_enough * n.previous)) {
+      differentiate(model_, problem_, first_wheelset(g), first_wheelset(g + 1), s_, ws_);
+      factorise(problem_, g, ws_);
+      n.new_tangent = false;
+    }
+    const bool gains = size < 0.5 * n.previous;
+    n.previous = size;
+    n.part = 1.0;
+    correction = ws_.factor[index(g)].solve(part_of(ws_.residual, g));
+    const double change = correction.cwiseAbs().maxCoeff();
+    report_.correction = std::max(report_.correction, change);
+    if (change < limits_.tolerance || (!gains && change < limits_.rounding)) return true;
+    if (change < first_order && force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
+      return true;
+    }
+    limit_moves(problem_, correction);
+    part_of(ws_.start, g) = displacement;
+    displacement += correction;
+    n.moved = true;
+    return false;
+  }
+
+  const WheelContactModel& model_;
+  const ContactProblem& problem_;
+  const NewtonLimits& limits_;
+  ContactSolution& s_;
+  NewtonWorkspace& ws_;
+  NewtonReport report_;
+};
 
 }  // namespace
 
@@ -186,66 +303,14 @@ NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProbl
                               ContactSolution& solution) {
   NewtonReport report;
   NewtonWorkspace workspace;
-  evaluate(model, problem, Pairs::searched, solution, workspace, nullptr, report);
+  const int wheelsets = static_cast<int>(solution.displacement.size()) / wheelset_unknowns;
+  evaluate(model, problem, Pairs::searched, 0, wheelsets, solution, workspace, report);
   return report;
 }
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
-                           ContactSolution& solution, NewtonWorkspace& ws) {
-  constexpr double fast_enough = 0.2;           // of the residual, per iteration with a kept tangent
-  constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
-  NewtonReport report;
-  ws.tangent.resize(static_cast<std::size_t>(solution.displacement.size() / wheelset_unknowns));
-  const bool paper = model.geometry->is_paper();
-  ws.found.resize(paper ? 2 * ws.tangent.size() : 0);
-  ws.found_at.resize(ws.found.size());
-  int evaluations = 0;
-  const auto pairs = [&] { return paper && ++evaluations > paper_searches ? Pairs::held : Pairs::searched; };
-  double previous = std::numeric_limits<double>::infinity();
-  bool new_tangent = ws.factor.empty();  // that of the step before serves as long as it is good enough
-  double part = 1.0;
-
-  while (report.iterations < limits.max_iterations) {
-    evaluate(model, problem, pairs(), solution, ws, new_tangent ? &ws.tangent : nullptr, report);
-    residual(problem, solution, ws.residual);
-    const double size = ws.residual.cwiseAbs().maxCoeff();
-    if (!std::isfinite(size)) return report;
-    if (size < limits.tolerance) {
-      report.converged = true;
-      return report;
-    }
-    if (size > 2.0 * previous && part > shortest_part) {
-      // The last correction made it worse (a patch gained or lost, an old tangent): take half of it back.
-      part *= 0.5;
-      solution.displacement = ws.start + part * ws.correction;
-      ++report.iterations;
-      continue;
-    }
-    if (!new_tangent && size > fast_enough * previous) {
-      new_tangent = true;
-      continue;
-    }
-    if (new_tangent) {
-      factorise(problem, ws);
-      new_tangent = false;
-    }
-    const bool gains = size < 0.5 * previous;
-    previous = size;
-    part = 1.0;
-    correct(problem, ws);
-    ++report.iterations;
-    report.correction = ws.correction.cwiseAbs().maxCoeff();
-    limit_moves(problem, ws.correction);
-    ws.start = solution.displacement;
-    solution.displacement += ws.correction;
-    if (report.correction < limits.tolerance || (!gains && report.correction < limits.rounding)) {
-      report.converged = true;
-      break;
-    }
-  }
-  // Forces at the corrected displacement, so that motion and forces belong together.
-  evaluate(model, problem, pairs(), solution, ws, nullptr, report);
-  return report;
+                           ContactSolution& solution, NewtonWorkspace& workspace) {
+  return TrainNewton(model, problem, limits, solution, workspace).solve();
 }
 
 }  // namespace railtab

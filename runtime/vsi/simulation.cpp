@@ -21,6 +21,16 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
+// Mean of a vehicle's wheels [N].
+double static_wheel_load(const VehicleModel& vehicle) {
+  constexpr int vertical = 2;
+  double weight = 0.0;
+  for (const DofIndices& dof : vehicle.dof) {
+    if (dof[vertical] != held) weight += vehicle.static_load[dof[vertical]];
+  }
+  return weight / (2.0 * static_cast<double>(vehicle.wheelsets.size()));
+}
+
 // The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
 class Integrator {
  public:
@@ -32,8 +42,10 @@ class Integrator {
         contact_energy_(observer.contact_energy) {
     if (model.structure) active_ = {0, model.structure->dofs()};
     if (model.window) window_.emplace(model, p.time_step);
-    // The tolerance counts relative to a contact displacement of 1 mm.
-    limits_.newton = {.tolerance = 1e-3 * p.tolerance, .max_iterations = p.max_iterations};
+    // Forces that change a thousand times as fast as Hertz's, those of creep at walking pace, end by the displacement.
+    limits_.newton = {.tolerance = std::min(1e-11, 1e-3 * p.tolerance),
+                      .force_tolerance = p.tolerance * static_wheel_load(model.vehicle),
+                      .max_iterations = p.max_iterations};
     // What Newton leaves the structure's answer cannot take away.
     limits_.far_field_tolerance = std::max(limits_.far_field_tolerance, 2.0 * limits_.newton.tolerance);
     static_cast<void>(operators(0, p.time_step, seconds_setup));

@@ -68,6 +68,7 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
   const VehicleResponse& vehicle = rest.vehicle;
   ContactProblem problem;
   problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+  problem.wheelsets_per_group = problem.wheelsets_per_vehicle;
   problem.free = problem.predicted = problem.predicted_velocity =
       Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
   problem.vehicle_compliance = vehicle.compliance();

@@ -98,8 +98,9 @@ double answer_under_wheels(const StepOperators& op, const VsiState& state, const
   double missed = 0.0;
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
     const int k = rail_unknown(wheel);
-    Vector3 miss = ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) -
-                   ws.solution.displacement.segment<3>(k);
+    // What the contact solution has the rail do under its forces: where Newton ended, and what it left.
+    const Vector3 expected = ws.solution.displacement.segment<3>(k) + ws.newton.residual.segment<3>(k);
+    Vector3 miss = ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) - expected;
     if (op.local) miss += ws.local_displacement.segment<3>(3 * wheel);
     missed = std::max(missed, miss.cwiseAbs().maxCoeff());
     ws.problem.free.segment<3>(k) += miss;
@@ -122,6 +123,7 @@ void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLi
     double seconds_newton = 0.0;
     {
       const Stopwatch watch(seconds_newton);
+      ws.newton.forces_known = pass > 0;  // the structure's answer has moved nothing but q_free
       newton = solve_contact_by_continuation(ws.contact, ws.problem, limits.newton, ws.solution, ws.newton);
     }
     report.newton_iterations += newton.iterations;
@@ -233,6 +235,7 @@ StepWorkspace::StepWorkspace(const VsiModel& model) {
   solution = zero.contact;
   contact = model.contact;
   problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+  problem.wheelsets_per_group = 1;
   problem.free = problem.predicted = problem.predicted_velocity = solution.displacement;
 }
 

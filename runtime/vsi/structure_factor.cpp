@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <array>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -54,6 +55,35 @@ std::vector<Columns> supernodes(const Sparse& L) {
   return blocks;
 }
 
+// Columns are stored with zeros up to a multiple of four rows, so that the loops over them have no remainder.
+int stored_height(int rows) { return (rows + 3) & ~3; }
+
+using Four = Eigen::Array4d;
+
+/// sum <- sum + columns · factors, from row `begin` on, above which the columns are zero.
+template <int number>
+void add_columns(const double* column, int height, int begin, const double* factor, double* sum) {
+  for (int i = begin; i < height; i += 4) {
+    Four part = Eigen::Map<const Four>(sum + i);
+    for (int k = 0; k < number; ++k) part += factor[k] * Eigen::Map<const Four>(column + k * height + i);
+    Eigen::Map<Four>(sum + i) = part;
+  }
+}
+
+/// result <- columnsᵀ · vector, from row `begin` on.
+template <int number>
+void products(const double* column, int height, int begin, const double* vector, double* result) {
+  std::array<Four, number> sum;
+  sum.fill(Four::Zero());
+  for (int i = begin; i < height; i += 4) {
+    const Four part = Eigen::Map<const Four>(vector + i);
+    for (int k = 0; k < number; ++k) {
+      sum[static_cast<std::size_t>(k)] += part * Eigen::Map<const Four>(column + k * height + i);
+    }
+  }
+  for (int k = 0; k < number; ++k) result[k] = sum[static_cast<std::size_t>(k)].sum();
+}
+
 }  // namespace
 
 StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : first_(static_cast<int>(range.begin)) {
@@ -76,7 +106,7 @@ StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : 
     const int last = columns.end - 1;
     const int* const begin = L.innerIndexPtr() + L.outerIndexPtr()[last];
     rows_.insert(rows_.end(), begin, begin + columns.below);
-    const int height = block.columns + block.below;
+    const int height = stored_height(block.columns + block.below);
     values_.resize(values_.size() + static_cast<std::size_t>(block.columns) * static_cast<std::size_t>(height), 0.0);
     for (int j = columns.begin; j < columns.end; ++j) {
       double* const column = values_.data() + block.value + static_cast<std::size_t>((j - columns.begin) * height);
@@ -92,7 +122,16 @@ StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : 
       }
       block_of_[static_cast<std::size_t>(j)] = static_cast<int>(blocks_.size());
     }
-    most_below_ = std::max(most_below_, block.below);
+    // The triangle's inverse in its place, and the rows below times that: substituting in a block is a product with no
+    // column waiting for another.
+    Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> dense(
+        values_.data() + block.value, block.columns + block.below, block.columns, Eigen::OuterStride<>(height));
+    const Eigen::MatrixXd inverse = dense.topRows(block.columns)
+                                        .triangularView<Eigen::UnitLower>()
+                                        .solve(Eigen::MatrixXd::Identity(block.columns, block.columns));
+    dense.topRows(block.columns) = inverse;
+    dense.bottomRows(block.below) = (dense.bottomRows(block.below) * inverse).eval();
+    most_height_ = std::max(most_height_, height);
     blocks_.push_back(block);
   }
   for (Block& block : blocks_) {
@@ -132,54 +171,51 @@ void StructureFactor::out_of(const Vector& ordered, Vector& natural) const {
 }
 
 void StructureFactor::forward(double* y, const Block& block, double* scratch) const {
-  using Column = Eigen::Map<const Vector>;
-  const int height = block.columns + block.below;
-  const double* column = values_.data() + block.value;
+  const int height = stored_height(block.columns + block.below);
   double* const own = y + block.first;
-  Eigen::Map<Vector> change(scratch, block.below);
-  change.setZero();
-  for (int k = 0; k < block.columns; ++k, column += height) {
-    const double value = own[k];
-    for (int i = k + 1; i < block.columns; ++i) own[i] -= column[i] * value;
-    change += value * Column(column + block.columns, block.below);
-  }
+  Eigen::Map<Vector>(scratch, height).setZero();
+  const double* const value = values_.data() + block.value;
+  int k = 0;
+  for (; k + 4 <= block.columns; k += 4) add_columns<4>(value + k * height, height, k & ~3, own + k, scratch);
+  for (; k < block.columns; ++k) add_columns<1>(value + k * height, height, k & ~3, own + k, scratch);
+  std::copy(scratch, scratch + block.columns, own);
   const int* const row = rows_.data() + block.rows;
-  for (int i = 0; i < block.below; ++i) y[row[i]] -= scratch[i];
+  const double* const change = scratch + block.columns;
+  for (int i = 0; i < block.below; ++i) y[row[i]] -= change[i];
 }
 
 void StructureFactor::backward(double* x, const Block& block, double* scratch) const {
-  using Column = Eigen::Map<const Vector>;
-  const int height = block.columns + block.below;
-  const int* const row = rows_.data() + block.rows;
-  for (int i = 0; i < block.below; ++i) scratch[i] = x[row[i]];
-  const Column below(scratch, block.below);
+  const int height = stored_height(block.columns + block.below);
   double* const own = x + block.first;
-  const double* column = values_.data() + block.value + static_cast<std::size_t>((block.columns - 1) * height);
-  for (int k = block.columns - 1; k >= 0; --k, column -= height) {
-    double sum = Column(column + block.columns, block.below).dot(below);
-    for (int i = k + 1; i < block.columns; ++i) sum += column[i] * own[i];
-    own[k] -= sum;
-  }
+  const int* const row = rows_.data() + block.rows;
+  std::copy(own, own + block.columns, scratch);
+  double* const below = scratch + block.columns;
+  for (int i = 0; i < block.below; ++i) below[i] = -x[row[i]];
+  std::fill(below + block.below, scratch + height, 0.0);
+  const double* const value = values_.data() + block.value;
+  int k = 0;
+  for (; k + 4 <= block.columns; k += 4) products<4>(value + k * height, height, k & ~3, scratch, own + k);
+  for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
 void StructureFactor::forward(Vector& y) const {
-  Vector scratch(most_below_);
+  Vector scratch(most_height_);
   for (const Block& block : blocks_) forward(y.data(), block, scratch.data());
 }
 
 void StructureFactor::backward(Vector& x) const {
-  Vector scratch(most_below_);
+  Vector scratch(most_height_);
   x.array() *= inverse_D_.array();
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x.data(), *block, scratch.data());
 }
 
 void StructureFactor::forward(Vector& y, const Path& path) const {
-  Vector scratch(most_below_);
+  Vector scratch(most_height_);
   for (int b : path.blocks_) forward(y.data(), blocks_[static_cast<std::size_t>(b)], scratch.data());
 }
 
 void StructureFactor::backward(const Vector& y, Vector& x, const Path& path) const {
-  Vector scratch(most_below_);
+  Vector scratch(most_height_);
   for (auto b = path.blocks_.rbegin(); b != path.blocks_.rend(); ++b) {
     const Block& block = blocks_[static_cast<std::size_t>(*b)];
     x.segment(block.first, block.columns) =

@@ -234,6 +234,7 @@ ContactProblem present_contact(const VsiModel& model, const VsiState& state) {
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   ContactProblem problem;
   problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+  problem.wheelsets_per_group = problem.wheelsets_per_vehicle;
   problem.predicted = problem.predicted_velocity = Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
   for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
     gather_wheelsets(model, v, state.vehicle[index(v)].displacement, problem.predicted);

@@ -46,7 +46,7 @@ struct Chain {
   Chain() {
     model.geometry = geometry.get();
     model.speed = 30.0;
-    problem.wheelsets_per_vehicle = 1;
+    problem.wheelsets_per_vehicle = problem.wheelsets_per_group = 1;
     problem.predicted = problem.predicted_velocity = Eigen::VectorXd::Zero(wheelset_unknowns);
     problem.deviation.resize(1);
     end.displacement = end.force = end.end_force = end.step_load = Eigen::VectorXd::Zero(wheelset_unknowns);

@@ -132,9 +132,8 @@ TEST(WheelForce, TangentIsThatOfTheForce) {
       return wheel_force(model, WheelSide::right, w, r,
                          geometry->patches(relative_pose(geometry->pair(), WheelSide::right, w, r)));
     };
-    const WheelForce at = force(wheelset, rail);
     const ContactPatches patches = geometry->patches(relative_pose(geometry->pair(), WheelSide::right, wheelset, rail));
-    const Matrix9 tangent = wheel_force_tangent(model, WheelSide::right, wheelset, rail, patches, at, rate, rate[0]);
+    const Matrix9 tangent = wheel_force_tangent(model, WheelSide::right, wheelset, rail, patches, rate, rate[0]);
     for (int j = 0; j < 9; ++j) {
       const double step = 1e-8;
       const auto moved = [&](double h) {

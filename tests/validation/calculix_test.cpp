@@ -13,6 +13,7 @@
 #include <numbers>
 #include <string>
 
+#include "../measured.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
@@ -133,7 +134,7 @@ TEST(Calculix, FirstFiveBendingFrequenciesOfASlenderBridge) {
   }
   ASSERT_EQ(expected.size(), 5u);
   for (std::size_t n = 0; n < 5; ++n) {
-    RecordProperty("mode_" + std::to_string(n + 1), std::to_string(found[n] / expected[n] - 1.0));
+    testing::measured("calculix.mode_" + std::to_string(n + 1), 100 * (found[n] / expected[n] - 1));
     EXPECT_NEAR(found[n], expected[n], 0.005 * expected[n]) << "mode " << n + 1;
   }
 }
@@ -152,6 +153,7 @@ TEST(Calculix, AStoutBridgeFollowsTimoshenko) {
     for (double f : found) {
       if (std::abs(2 * std::numbers::pi * f - omega) < std::abs(nearest - omega)) nearest = 2 * std::numbers::pi * f;
     }
+    testing::measured("calculix.stout_" + std::to_string(n), 100 * (nearest / omega - 1));
     EXPECT_NEAR(nearest, omega, 5e-4 * omega) << n;
     EXPECT_GT(euler / omega - 1.0, 0.008 * n * n) << "the theories differ here";
   }
@@ -206,8 +208,8 @@ TEST(Calculix, MidspanUnderATrainIsThatOfTheBuiltInBridge) {
   span.axis_depth = 1.2;
   const Response imported = crossing(build_track_on_import(track, written.parameters), beam.length);
   const Response built = crossing(build_track_bridge(track, {span}), beam.length);
-  RecordProperty("deflection", std::to_string(imported.deflection / built.deflection - 1.0));
-  RecordProperty("acceleration", std::to_string(imported.acceleration / built.acceleration - 1.0));
+  testing::measured("calculix.deflection", 100 * (imported.deflection / built.deflection - 1));
+  testing::measured("calculix.acceleration", 100 * (imported.acceleration / built.acceleration - 1));
   EXPECT_GT(built.deflection, 1e-4);
   EXPECT_NEAR(imported.deflection, built.deflection, 0.01 * built.deflection);
   EXPECT_NEAR(imported.acceleration, built.acceleration, 0.01 * built.acceleration);

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
+#include "../measured.hpp"
 #include "flange_model.hpp"
 
 namespace railtab::hunting {
@@ -60,6 +62,9 @@ TEST(FlangeHunting, FollowsTheEquationsOfMotionUntilTheFlangeTouches) {
   const Agreement a = with_equations(run);
   std::printf("first touch at %.3f s; before it %.3f mm of %.3f mm apart, zeros %.2f ms\n", run.impacts[0].begin,
               1e3 * a.miss, 1e3 * a.peak, 1e3 * a.lag);
+  testing::measured("flange.first_touch", run.impacts[0].begin);
+  testing::measured("flange.zeros_ms", 1e3 * a.lag);
+  testing::measured("flange.heights_percent", 100 * a.miss / a.peak);
   EXPECT_GT(a.peak, 5e-3);
   EXPECT_LT(a.miss, 0.05 * a.peak);
   EXPECT_LT(a.lag, 1e-3);
@@ -68,9 +73,28 @@ TEST(FlangeHunting, FollowsTheEquationsOfMotionUntilTheFlangeTouches) {
   EXPECT_LT(largest, 1.05 * a.peak);
 }
 
+struct Range {
+  double least = 1e9, most = 0.0;
+  void add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  void measured(const std::string& name) const {
+    testing::measured(name + "_least", least);
+    testing::measured(name + "_most", most);
+  }
+};
+
 // The energy that the integration makes in an impact, against the lateral kinetic energy that comes with it.
 TEST(FlangeHunting, ImpactsKeepTheirEnergy) {
+  Range duration_ms, approach, force, energy;
+  double most_made = 0.0;
   for (const FlangeImpact& i : realistic_run().impacts) {
+    duration_ms.add(1e3 * (i.end - i.begin));
+    approach.add(1e3 * std::abs(i.approach));
+    force.add(1e-3 * i.largest_Y);
+    energy.add(i.kinetic_energy());
+    most_made = std::max(most_made, std::abs(i.created));
     std::printf("touch at %.3f s for %.0f ms, %+.1f mm/s, largest Y %.1f kN, made %+.1e of %.3f J\n", i.begin,
                 1e3 * (i.end - i.begin), 1e3 * i.approach, 1e-3 * i.largest_Y, i.created, i.kinetic_energy());
     EXPECT_LT(std::abs(i.created), 1e-2 * i.kinetic_energy());
@@ -79,6 +103,11 @@ TEST(FlangeHunting, ImpactsKeepTheirEnergy) {
       run_flanged(flanged_wheelset(FlangeRoot::realistic), ContactForceRule::endpoint, 1e-3, yaw, duration);
   const double made = total_created(realistic_run()), made_by_endpoint = total_created(endpoint);
   std::printf("all impacts together: %.1e J, endpoint rule %.1e J\n", made, made_by_endpoint);
+  duration_ms.measured("flange.duration_ms");
+  approach.measured("flange.approach");
+  force.measured("flange.force");
+  energy.measured("flange.energy");
+  testing::measured("flange.made_micro", 1e6 * most_made);
   EXPECT_LT(made, 0.01 * made_by_endpoint);
 }
 
@@ -89,6 +118,7 @@ TEST(FlangeHunting, SimplifiedRootTouchesSooner) {
       run_flanged(flanged_wheelset(FlangeRoot::simplified), ContactForceRule::energy, 1e-3, yaw, duration);
   std::printf("first touch: realistic %.3f s, simplified %.3f s\n", realistic.impacts.at(0).begin,
               simplified.impacts.at(0).begin);
+  testing::measured("flange.simplified_touch", simplified.impacts.at(0).begin);
   EXPECT_LT(simplified.impacts.at(0).begin, realistic.impacts.at(0).begin - 0.1);
 }
 

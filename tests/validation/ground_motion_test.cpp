@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "../measured.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
@@ -101,6 +102,8 @@ double sprung_mass_error(double time_step) {
 
 TEST(GroundMotion, SprungMassOnRigidTrackIsTheClosedFormOscillator) {
   const double coarse = sprung_mass_error(4e-3), fine = sprung_mass_error(2e-3);
+  testing::measured("ground.sprung_mass", 1e4 * fine);
+  testing::measured("ground.sprung_mass_order", std::log2(coarse / fine));
   std::printf("sprung mass on moving ground: %.2e of the largest deflection at 2 ms, order %.2f\n", fine,
               std::log2(coarse / fine));
   EXPECT_LT(fine, 2e-3);
@@ -146,6 +149,8 @@ double supported_mass_error(double time_step) {
 
 TEST(GroundMotion, SupportedMassIsTheClosedFormOscillator) {
   const double coarse = supported_mass_error(2e-3), fine = supported_mass_error(1e-3);
+  testing::measured("ground.supported_mass", 1e4 * fine);
+  testing::measured("ground.supported_mass_order", std::log2(coarse / fine));
   std::printf("mass on a moving support: %.2e of the largest deflection at 1 ms, order %.2f\n", fine,
               std::log2(coarse / fine));
   EXPECT_LT(fine, 2e-3);
@@ -199,6 +204,8 @@ double two_routes(double time_step) {
 
 TEST(GroundMotion, AbsoluteAndRelativeMotionOfTrackAndBridgeAgree) {
   const double coarse = two_routes(2e-3), fine = two_routes(1e-3);
+  testing::measured("ground.two_routes", 1e4 * fine);
+  testing::measured("ground.two_routes_order", std::log2(coarse / fine));
   std::printf("bridge on moving ground, absolute against relative: %.2e of the deflection at 1 ms, order %.2f\n", fine,
               std::log2(coarse / fine));
   // What is left at this level is of first order in the time step.
@@ -248,6 +255,9 @@ void expect_taken_along(TrackKind track) {
   const double static_load = first.wheels[0].Q;
   EXPECT_GT(least, 0.93 * static_load);
   EXPECT_LT(most, 1.07 * static_load);
+  const std::string name = track == TrackKind::rigid ? "ground.rigid" : "ground.flexible";
+  testing::measured(name + "_least", least / static_load);
+  testing::measured(name + "_most", most / static_load);
   std::printf("wheel loads %.3f to %.3f of the static one\n", least / static_load, most / static_load);
 }
 

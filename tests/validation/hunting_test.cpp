@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "../measured.hpp"
 #include "../reference_table.hpp"
 #include "hunting_model.hpp"
 
@@ -22,6 +23,7 @@ TEST(Hunting, CriticalSpeedIsThatOfTheEquationsOfMotion) {
   const double v = critical_speed({}, 230.0);
   std::printf("critical speed: %.4f km/h, Eq. 18: %.3f km/h, difference %.4f %%\n", v, critical_speed_of_eq_18,
               100 * (v / critical_speed_of_eq_18 - 1));
+  testing::measured("hunting.critical_speed", v);
   EXPECT_NEAR(v / critical_speed_of_eq_18, 1.0, 1e-3);
 }
 
@@ -91,30 +93,32 @@ TEST(Hunting, WhatEachAssumptionIsWorth) {
   Assumptions assume;
   const double none = critical_speed(assume, 233.0);
   double before = none;
-  const auto step = [&](const char* name) {
+  const auto step = [&](const char* name, const char* measured) {
     const double v = critical_speed(assume, before);
     std::printf("%-26s %9.3f km/h  %+6.2f %% of all assumptions' value, %+6.2f %% by this step\n", name, v,
                 100 * (v / none - 1), 100 * (v / before - 1));
     const double change = v / before - 1;
+    testing::measured(std::string("hunting.") + measured, 100 * change);
     before = v;
     return change;
   };
   assume.roll = Roll::free;
-  const double roll = step("roll free");
+  const double roll = step("roll free", "roll");
   assume.spin = Spin::included;
-  step("and spin creep");
+  step("and spin creep", "spin");
   assume.gravitational_stiffness = GravitationalStiffness::included;
-  step("and gravitational stiffness");
+  step("and gravitational stiffness", "gravitational");
   assume.gyroscopic_moments = GyroscopicMoments::included;
-  step("and gyroscopic moments");
+  step("and gyroscopic moments", "gyroscopic");
   assume = {.roll = Roll::free, .gyroscopic_moments = GyroscopicMoments::included};
   before = none * (1 + roll);
-  const double gyroscopic = step("roll, gyroscopic only");
+  const double gyroscopic = step("roll, gyroscopic only", "gyroscopic_alone");
   // The wheelset rolls by -y·gamma/(L - r0·gamma). The contact points move on the crowns, which raises the conicity by
   // (L + R·gamma)/(L - r0·gamma); the treads move sideways by more than y, which lengthens the wave (docs/validation).
   constexpr double gamma = 0.025, crown = 0.3;
   const double conicity = (Lcp + crown * gamma) / (Lcp - R0 * gamma);
   const double roll_rate = 1 + R0 * gamma / (Lcp - R0 * gamma);
+  testing::measured("hunting.roll_in_closed_form", 100 * (std::sqrt(roll_rate / conicity) - 1));
   EXPECT_NEAR(roll, std::sqrt(roll_rate / conicity) - 1, 1e-3);
   // The gyroscopic moment of the roll rate turns the wheelset against its yaw.
   EXPECT_GT(gyroscopic, 0.05);

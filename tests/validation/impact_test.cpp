@@ -1,5 +1,6 @@
 // Energy of contacts that part and meet again: a wheelset that bounces on rails without friction or damping.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "../measured.hpp"
 #include "hunting_model.hpp"
 
 namespace railtab::hunting {
@@ -100,6 +102,9 @@ TEST(Impact, KeepsItsEnergyWithinOnePercentAtOneMillisecond) {
       std::printf(
           "fall of %2.0f mm, alpha %5.2f, 1 ms: energy changes by up to %6.3f %% per impact, endpoint rule %.2f %%\n",
           1e3 * height, alpha, 100 * energy, 100 * endpoint);
+      const std::string name = fmt::format("impact.{:g}mm.{:g}", 1e3 * height, 100 * std::abs(alpha));
+      testing::measured(name + ".energy", 100 * energy);
+      testing::measured(name + ".endpoint", 100 * endpoint);
       EXPECT_LT(energy, 0.01);
       EXPECT_GT(endpoint, 0.01);  // the question is worth asking
     }
@@ -114,6 +119,7 @@ TEST(Impact, RemainderVanishesFasterThanTheSquareOfTheTimeStep) {
     const double order = 0.5 * std::log2(coarse / fine);
     std::printf("alpha %5.2f: %.2e of the energy per impact at 1 ms, %.2e at 0.25 ms, order %.2f\n", alpha, coarse,
                 fine, order);
+    testing::measured(fmt::format("impact.order.{:g}", 100 * std::abs(alpha)), order);
     EXPECT_GT(order, 2.0);
     EXPECT_LT(order, 4.5);
   }

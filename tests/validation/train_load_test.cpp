@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "../measured.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
@@ -61,6 +62,7 @@ TEST(Crosswind, ConstantWindIsPartOfTheStateOfRest) {
   double Y = 0.0;
   for (const WheelRecord& wheel : record.wheels) Y += wheel.Y;
   EXPECT_NEAR(Y, wind, 1e-4 * wind);
+  testing::measured("wind.constant_low_percent", 100 * (1 - overturning(model, record) / (wind * car_body_height)));
   EXPECT_NEAR(overturning(model, record), wind * car_body_height, 1e-2 * wind * car_body_height);
 }
 
@@ -88,6 +90,9 @@ TEST(Crosswind, SlowGustUnloadsWheelsByItsOverturningMoment) {
   const double textbook = wind * car_body_height / (4.0 * 1.5) / 54.55e3;
   std::printf("slow gust: moment within %.2f %% of the quasi-static one, unloading %.3f, F h/(4·2b Q0) = %.3f\n",
               100.0 * worst / (wind * car_body_height), unloading, textbook);
+  testing::measured("wind.gust_percent", 100 * worst / (wind * car_body_height));
+  testing::measured("wind.gust_unloading", unloading);
+  testing::measured("wind.gust_textbook", textbook);
   EXPECT_LT(worst, 0.02 * wind * car_body_height);
   EXPECT_NEAR(peak, wind * car_body_height, 0.01 * wind * car_body_height);
   EXPECT_NEAR(unloading, textbook, 0.1 * textbook);
@@ -142,6 +147,7 @@ TEST(SpeedProfile, RailsSlowTheWheelsRotation) {
   const double expected = 112.0 / (0.46 * 0.46) * acceleration / n;
   EXPECT_NEAR(acceleration / n, -4.0 * braking, 0.4 * braking);
   std::printf("force on the rails by the wheels' rotation: %.1f N, expected %.1f N\n", X / n, expected);
+  testing::measured("braking.force_percent", 100 * std::abs(X / n / expected - 1));
   EXPECT_NEAR(X / n, expected, 0.01 * std::abs(expected));
   EXPECT_NEAR(position, 40.0 * 3.0 - 0.5 * braking * 4.0, 1e-9);
 }
@@ -228,6 +234,7 @@ TEST(SpeedProfile, BrakingMassOnABeamFollowsItsEquations) {
     worst = std::max(worst, std::abs(u[i] - expected[i]));
   }
   std::printf("braking mass on a beam: midspan within %.2e of %.3f mm\n", worst / size, 1e3 * size);
+  testing::measured("braking.midspan", 1e4 * worst / size);
   EXPECT_LT(worst, 5e-3 * size);
 }
 

@@ -2,6 +2,7 @@
 // the rails rigidly, vertical only. The reference's files are not part of the repository; RAILTAB_EXTERNAL_DATA names
 // the folder that has them.
 
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS  // property_tree's header asks for them
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "../measured.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
@@ -231,7 +233,7 @@ class Ttb2d : public ::testing::TestWithParam<Case> {
   double time_step = 0;
 };
 
-void print(const char* name, const Case& c, double u_mid, double force, double ms, const RunSummary& s) {
+void report(const char* name, const Case& c, double u_mid, double force, double ms, const RunSummary& s) {
   const auto steps = static_cast<double>(s.steps);
   std::printf(
       "%s, %s: midspan %.4f %%, forces %.4f %% of the dynamic rms; %.4f ms of processor time per step, %.2f "
@@ -240,12 +242,17 @@ void print(const char* name, const Case& c, double u_mid, double force, double m
       c.folder, name, 100 * u_mid, 100 * force, ms, static_cast<double>(s.back_substitutions) / steps, c.ms_per_step,
       c.ms_per_step / ms, 1e3 * s.seconds_structure / steps, 1e3 * s.seconds_contact / steps,
       1e3 * s.seconds_vehicle / steps, s.seconds_setup);
+  const std::string key =
+      std::string("ttb2d.") + std::string(c.folder).substr(0, 5) + (name[0] == 'r' ? ".rigid" : ".hertz");
+  testing::measured(key + ".midspan", 100 * u_mid);
+  testing::measured(key + ".forces", 100 * force);
+  testing::measured(key + ".times_faster", c.ms_per_step / ms);
 }
 
 TEST_P(Ttb2d, RigidWheels) {
   const Found found = run(model(NormalContact::rigid));
   const auto [u_mid, force] = compare(found);
-  print("rigid wheels", GetParam(), u_mid, force, found.ms_per_step, found.summary);
+  report("rigid wheels", GetParam(), u_mid, force, found.ms_per_step, found.summary);
   EXPECT_LT(u_mid, 5e-3);
   EXPECT_LT(force, 1e-2);
 }
@@ -254,7 +261,7 @@ TEST_P(Ttb2d, RigidWheels) {
 TEST_P(Ttb2d, HertzianWheelsGiveTheSameBridge) {
   const Found found = run(model(NormalContact::hertz));
   const auto [u_mid, force] = compare(found);
-  print("Hertz", GetParam(), u_mid, force, found.ms_per_step, found.summary);
+  report("Hertz", GetParam(), u_mid, force, found.ms_per_step, found.summary);
   EXPECT_LT(u_mid, 1e-2);
 }
 

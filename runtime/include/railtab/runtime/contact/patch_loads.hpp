@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
@@ -16,6 +17,10 @@ struct PatchLoad {
   ContactPatch contact{};
 };
 using PatchLoads = std::array<PatchLoad, ContactPatches::capacity>;
+/// As many as there are patches. Refers to `loads`.
+[[nodiscard]] inline std::span<const PatchLoad> of_patches(const PatchLoads& loads, const ContactPatches& patches) {
+  return {loads.data(), static_cast<std::size_t>(patches.count)};
+}
 
 /// Parameters of the normal contact.
 struct NormalContactModel {

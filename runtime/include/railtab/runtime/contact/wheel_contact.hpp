@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
@@ -72,6 +73,10 @@ enum class WheelSide { left, right };
 [[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                      const RailHeadMotion& rail, const ContactPatches& patches) noexcept;
 
+/// The same from loads that are known: those of patch_loads() at that pose.
+[[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                                     const RailHeadMotion& rail, std::span<const PatchLoad> loads) noexcept;
+
 /// Pose of the wheelset against the rail head, as seen by a right wheel (mirrored on the left).
 [[nodiscard]] WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
                                          const RailHeadMotion& rail) noexcept;
@@ -86,12 +91,11 @@ struct ContactMemory;
 /// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
 /// velocities follow displacements with dv/da: `velocity_rate` per wheelset dof and `rail_velocity_rate` [1/s]
 /// (gamma/(beta dt) in a time step). By differences of the force itself along the wheelset's motions and the rail's
-/// roll; the rail's translations follow, since only relative motion matters.
+/// roll; the rail's translations follow, since only relative motion matters, and so do the loads when the rail rolls.
 /// @param start with the contact at the start of a time step, the derivative is that of mean_force()
 [[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
-                                          const ContactPatches& patches, const WheelForce& force,
-                                          const Vector6& velocity_rate, double rail_velocity_rate,
-                                          const ContactMemory* start = nullptr) noexcept;
+                                          const ContactPatches& patches, const Vector6& velocity_rate,
+                                          double rail_velocity_rate, const ContactMemory* start = nullptr) noexcept;
 
 }  // namespace railtab

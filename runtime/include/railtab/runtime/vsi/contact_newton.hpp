@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "railtab/runtime/contact/mean_force.hpp"
@@ -43,6 +44,9 @@ struct ContactSolution {
 /// docs/theory/coupling.md from Eq. 16.
 struct ContactProblem {
   int wheelsets_per_vehicle = 4;
+  /// Wheelsets whose coupling enters Newton's Jacobian, a divisor of wheelsets_per_vehicle: all of a vehicle at rest,
+  /// one in a time step, within which each answers almost alone.
+  int wheelsets_per_group = 4;
   /// dv/dq [1/s] of a wheelset and of a rail head: gamma/(beta·dt) in a time step. At rest 0, but for the wheelset's
   /// pitch, whose unknown is then its deviation from the nominal rotation.
   Vector6 velocity_rate = Vector6::Zero();
@@ -69,26 +73,40 @@ struct ContactCounts {
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;       ///< corrections made
+  int iterations = 0;       ///< corrections made of the wheelsets that needed most
   double correction = 0.0;  ///< largest last correction [m or rad]
   ContactCounts counts;
 };
 
 struct NewtonLimits {
   double tolerance = 1e-11;  ///< of the correction [m, rad]
+  /// Where a correction would change no contact force by more than this, to first order, it is not made [N, N m].
+  double force_tolerance = 0.0;
   int max_iterations = 20;
   /// A correction this small ends the iteration where it no longer gains: what is left is rounding of the forces [m or
   /// rad].
   double rounding = 0.0;
 };
 
+/// Where the iteration of one group of wheelsets is.
+struct GroupNewton {
+  bool moved = true;                                          ///< since its forces were computed
+  bool new_tangent = false;                                   ///< whether one is wanted before the next correction
+  double previous = std::numeric_limits<double>::infinity();  ///< largest residual before the last correction [m, rad]
+  double part = 1.0;                                          ///< of the last correction that is made
+  int evaluations = 0;
+};
+
 /// Tangents and factors, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
   std::vector<Matrix12> tangent;                             ///< per wheelset, df/dq
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per vehicle, of I − C df/dq
-  Eigen::MatrixXd compliance, jacobian;                      ///< of one vehicle
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per group, of I − C df/dq
+  Eigen::MatrixXd compliance, jacobian;                      ///< of one group
+  std::vector<GroupNewton> group;
   Eigen::VectorXd residual, correction, start;
+  /// Set before solve_contact() where the solution's forces are those at its displacement already.
+  bool forces_known = false;
   std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
 };
@@ -101,13 +119,15 @@ struct NewtonWorkspace {
 /// Forces at solution.displacement, written into the solution.
 NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
 
-/// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over vehicles (the
-/// coupling of neighbouring vehicles through the rail enters the residual only, so the solution is exact) and kept
-/// while it makes the residual five times smaller per iteration, from one step to the next too: a tangent costs seven
-/// evaluations of the forces. Without factors in the workspace it is made first of all.
+/// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over the groups of
+/// wheelsets: their coupling through vehicles and rails enters the residual only, so the solution is exact. Each group
+/// keeps its tangent while it makes the residual five times smaller per iteration, from one step to the next too: a
+/// tangent costs five evaluations of the forces. Without factors in the workspace it is made first of all. A group that
+/// has converged rests while others iterate, unless its neighbours disturb it.
 /// The published method's pairs jump as a wheel moves: they are searched in the first evaluations and then held,
 /// each moving with its bodies' particles, so that Newton ends on forces that are smooth.
-/// Converged: the residual or the last correction is below the tolerance; the forces are those at the displacement.
+/// Converged: the residual is below the tolerance or the next correction below one of the limits; the forces are those
+/// at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
                                          NewtonWorkspace& workspace);

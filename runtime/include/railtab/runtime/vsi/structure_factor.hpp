@@ -68,7 +68,7 @@ class StructureFactor {
   struct Block {
     int first, columns;  // first column and number of columns
     int below, rows;     // rows below the triangle: number, and place of the first in rows_
-    std::size_t value;   // place of the first column in values_, columns × (columns + below), column-major
+    std::size_t value;   // place of the first column in values_, columns × (columns + below), see there
     int parent;          // block of the first row below; -1: a root
   };
   void forward(double* y, const Block& block, double* scratch) const;
@@ -76,12 +76,14 @@ class StructureFactor {
 
   std::vector<Block> blocks_;
   std::vector<int> rows_;
+  /// Of every block with triangle T and rows B below it: T⁻¹ and B T⁻¹, column-major, a column's length rounded up to a
+  /// multiple of four.
   std::vector<double> values_;
   std::vector<int> block_of_;  // of a column
   std::vector<int> position_;  // of an unknown in the factor's order
   Vector inverse_D_;
   int first_ = 0;  // the unknown that the range begins with
-  int most_below_ = 0;
+  int most_height_ = 0;
 };
 
 }  // namespace railtab
