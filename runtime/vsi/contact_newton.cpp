@@ -254,8 +254,7 @@ class TrainNewton {
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
     if (change < limits_.tolerance || (!gains && change < limits_.rounding)) return true;
-    if (change < first_order &&
-        force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
+    if (change < first_order && force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
       return true;
     }
     limit_moves(problem_, correction);

@@ -21,6 +21,7 @@ SceneParameters rough_track(double speed) {
   SceneParameters scene;
   scene.train.speed = speed;
   scene.contact.mode = ContactMode::online;
+  scene.contact.creep_law = "polach";  // of the committed figures
   scene.track.length_before = 36.0;
   scene.track.length_after = 60.0;
   scene.irregularity = std::filesystem::path(RAILTAB_SOURCE_DIR) / "docs/examples/demo_irregularity.csv";

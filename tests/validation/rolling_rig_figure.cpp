@@ -47,6 +47,7 @@ SceneParameters scene_of(const Case& c) {
   // microns.
   if (c.direction == SpanDeviationDirection::vertical) scene.contact.normal = NormalContact::rigid;
   scene.contact.mode = ContactMode::online;
+  scene.contact.creep_law = "polach";  // of the committed figures
   scene.contact.wheel = "LMA-type";
   scene.contact.rail = "CHN60";
   scene.contact.dimensions.nominal_radius = 0.4575;

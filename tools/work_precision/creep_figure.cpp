@@ -16,7 +16,7 @@ WorkFigure creep_figure(const std::vector<std::filesystem::path>& tables, bool q
   figure.least_error = 1e-5;
   figure.advice =
       "Take the table: it is more than an order of magnitude nearer to exact theory than FASTSIM on any grid, at a "
-      "fraction of its time. Polach's closed form takes about half the table's time; it and linear theory are for "
+      "fraction of its time. Polach's closed form takes two thirds of the table's time; it and linear theory are for "
       "studies in which large spin and slender ellipses do not occur, where their largest errors are.";
   CreepVerificationOptions options;
   options.samples = quick ? 200 : 4000;

@@ -14,7 +14,7 @@ namespace railtab::work_precision {
 
 namespace {
 
-constexpr double width = 680, height = 400, left = 84, right = 230, above = 60, below = 56;
+constexpr double width = 680, height = 400, left = 84, right = 260, above = 60, below = 56;
 constexpr std::array colours{"#0b6aa2", "#c8442f", "#d98e04", "#2e7d52", "#7a4fa3", "#5b6675", "#b0348b", "#2a9d9d"};
 
 /// Logarithmic, over round numbers.
@@ -179,6 +179,9 @@ std::string labels(const std::vector<Mark>& marks) {
   for (std::size_t i = 1; i < front_marks.size(); ++i) {
     placement.cross(front_marks[i - 1].x, front_marks[i - 1].y, front_marks[i].x, front_marks[i - 1].y);
     placement.cross(front_marks[i].x, front_marks[i - 1].y, front_marks[i].x, front_marks[i].y);
+  }
+  if (!front_marks.empty()) {
+    placement.cross(front_marks.back().x, front_marks.back().y, left + width, front_marks.back().y);
   }
   std::string svg;
   for (const bool front : {true, false}) {

@@ -30,6 +30,7 @@ SceneParameters viaduct(const std::string& table) {
   scene.train.count = 2;
   scene.train.start = -5.0;
   scene.contact.table = table;
+  scene.contact.creep_law = "polach";  // of the committed figures
   scene.track.length_before = 90.0;
   scene.track.length_after = 60.0;
   scene.spans.resize(10);
