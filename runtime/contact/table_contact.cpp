@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "polish_step.hpp"
 
 namespace railtab {
 
@@ -57,44 +60,61 @@ double steepest_branch(const GeometryTableData& data) {
 TableContact::TableContact(GeometryTable table)
     : table_(std::move(table)), search_(pair_of(table_.data())), steepest_(steepest_branch(table_.data())) {}
 
-ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss) const noexcept {
+[[gnu::flatten]] ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss) const noexcept {
   ContactPatches result;
-  if (!patches_from_table(pose, near_miss, result)) {
+  if (!patches_from_table(pose, near_miss, result)) [[unlikely]] {
     result = search_.patches(pose, near_miss);
   }
   return result;
 }
 
-TableAnswer TableContact::answer(const WheelsetPose& pose, double near_miss, ContactPatches& result) const noexcept {
-  const GeometryTable::Lookup lookup = table_.lookup(pose.y, pose.z, pose.yaw, pose.roll);
-  if (lookup.status == GeometryTable::Status::outside || lookup.count == 0) return TableAnswer::none;
-  const double height = pose.z + near_miss * steepest_;
-  const double lowering = height - lookup.first_touch;
-  // A limit of 0 is a branch that may touch before all of these: it is to be searched at any height.
-  if (!(lookup.trusted_lowering > 0 && lowering <= lookup.trusted_lowering)) return TableAnswer::none;
-  const TableAnswer answer =
-      add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), height, near_miss, result);
-  result.from_table = answer != TableAnswer::none;
-  return answer;
+[[gnu::flatten]] TableAnswer TableContact::answer(const WheelsetPose& pose, double near_miss,
+                                                  ContactPatches& result) const noexcept {
+  const GeometryLeaf leaf = table_.leaf(pose.y, pose.yaw, pose.roll);
+  if (leaf.count == 0) return TableAnswer::none;
+  return add_branch_patches(search_, leaf, pose, pose.z + near_miss * steepest_, near_miss, result);
 }
 
-TableAnswer add_branch_patches(const ContactSearch& search, const GeometryTable::Lookup& lookup,
-                               const WheelsetPose& pose, const PoseTrigonometry& trig, double height, double near_miss,
-                               ContactPatches& result) noexcept {
+namespace {
+
+/// Starts that led to no pair of their own: 0.5 mm of the wheel profile about each is searched.
+struct Strays {
+  std::array<double, GeometryTable::max_branches> s_wheel;
+  int count = 0;
+};
+
+[[gnu::noinline, gnu::cold]] TableAnswer search_about(const Strays& strays, const ContactSearch& search,
+                                                      const WheelsetPose& pose, double near_miss,
+                                                      ContactPatches& result) noexcept {
+  const PoseTrigonometry trig(pose);
+  for (int n = 0; n < strays.count; ++n) {
+    search.add_patches_between(strays.s_wheel[n] - capture_distance, strays.s_wheel[n] + capture_distance, pose, trig,
+                               near_miss, result);
+  }
+  for (int n = 0; n < result.count; ++n) result.patch[n].source = PatchSource::table;
+  return result.overflow ? TableAnswer::none : TableAnswer::searched;
+}
+
+}  // namespace
+
+TableAnswer add_branch_patches(const ContactSearch& search, const GeometryLeaf& leaf, const WheelsetPose& pose,
+                               double height, double near_miss, ContactPatches& result) noexcept {
   static_assert(GeometryTable::max_branches <= ContactPatches::capacity);
   const WheelRailPair& pair = search.pair();
   const WheelsetCentre centre = wheelset_centre(pair, pose);
-  std::array<double, GeometryTable::max_branches> astray;  // starts that led to no pair of their own
-  int strays = 0;
-  for (int n = 0; n < lookup.count; ++n) {
-    const BranchStart& start = lookup.branch[n];
+  const PoseTrigonometry trig(pose);
+  double first_touch = std::numeric_limits<double>::infinity();
+  Strays strays;
+  for (int n = 0; n < leaf.count; ++n) {
+    const BranchStart start = leaf.start(n, pose.z);
+    first_touch = std::min(first_touch, start.z_touch);
     if (start.z_touch > height + height_margin) continue;
     ContactPatch& patch = result.patch[result.count];
-    bool own = polish_pair(pair, centre, trig, start.s_wheel, start.s_rail, patch) == PairStatus::converged &&
+    bool own = polish::polished(pair, centre, trig, start.s_wheel, start.s_rail, patch) == PairStatus::converged &&
                std::abs(patch.s_wheel - start.s_wheel) <= capture_distance;
     for (int m = 0; m < result.count && own; ++m) own = std::abs(result.patch[m].s_wheel - patch.s_wheel) >= same_pair;
-    if (!own) {
-      astray[strays++] = start.s_wheel;
+    if (!own) [[unlikely]] {
+      strays.s_wheel[strays.count++] = start.s_wheel;
       continue;
     }
     if (patch.penetration <= -near_miss) continue;
@@ -105,13 +125,14 @@ TableAnswer add_branch_patches(const ContactSearch& search, const GeometryTable:
       std::swap(result.patch[place - 1], result.patch[place]);
     }
   }
-  if (strays == 0) return TableAnswer::looked_up;
-  for (int n = 0; n < strays; ++n) {
-    search.add_patches_between(astray[n] - capture_distance, astray[n] + capture_distance, pose, trig, near_miss,
-                               result);
-  }
-  for (int n = 0; n < result.count; ++n) result.patch[n].source = PatchSource::table;
-  return result.overflow ? TableAnswer::none : TableAnswer::searched;
+  // A limit of 0 is a branch that may touch before all of these: it is to be searched at any height.
+  const auto trusted = static_cast<double>(leaf.trusted_lowering);
+  if (!(trusted > 0 && height - first_touch <= trusted)) [[unlikely]]
+    return TableAnswer::none;
+  result.from_table = true;
+  if (strays.count == 0) [[likely]]
+    return TableAnswer::looked_up;
+  return search_about(strays, search, pose, near_miss, result);
 }
 
 }  // namespace railtab

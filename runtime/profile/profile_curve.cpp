@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -52,7 +51,6 @@ ProfileCurve::ProfileCurve(ProfileKnots knots) : knots_(std::move(knots)) {
     tangent_.push_back({std::atan2(p.z1, p.y1), p.y1 * inverse_speed, p.z1 * inverse_speed});
   }
   start_ = k.s;
-  start_.back() = std::numeric_limits<double>::quiet_NaN();  // no s is beyond it
   fill_buckets();
 }
 
@@ -61,18 +59,20 @@ void ProfileCurve::fill_buckets() {
   const std::size_t n = s.size() - 1;
   double narrowest = s[1] - s[0];
   for (std::size_t i = 1; i < n; ++i) narrowest = std::min(narrowest, s[i + 1] - s[i]);
-  // Buckets a quarter as wide as the narrowest interval: few of them hold a knot, and only there an evaluation may have
+  // Buckets half as wide as the narrowest interval: few of them hold a knot, and only there an evaluation may have
   // to walk one interval beyond its bucket's first. Points that crowd far below the mean spacing are worth a short walk
   // rather than a large table.
   const double length = s.back() - s.front();
-  const double wanted = std::min(std::ceil(4.0 * length / narrowest), 16.0 * static_cast<double>(n));
+  const double wanted = std::min(std::ceil(2.0 * length / narrowest), 8.0 * static_cast<double>(n));
   const auto buckets = static_cast<std::size_t>(wanted);
   bucket_.resize(buckets);
-  bucket_origin_ = s.front();
   bucket_inverse_width_ = static_cast<double>(buckets) / length;
+  bucket_offset_ = s.front() * bucket_inverse_width_;
+  last_bucket_ = static_cast<double>(buckets - 1);
   std::size_t i = 0;
   for (std::size_t b = 0; b < buckets; ++b) {
-    const double left = bucket_origin_ + static_cast<double>(b) / bucket_inverse_width_;
+    constexpr double reserve = 1e-6;  // of a bucket: an s at its beginning may be counted to it by rounding
+    const double left = s.front() + (static_cast<double>(b) - reserve) / bucket_inverse_width_;
     while (start_[i + 1] <= left) ++i;
     bucket_[b] = static_cast<std::uint32_t>(i);
   }

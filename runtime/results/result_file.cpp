@@ -17,12 +17,16 @@ namespace columns = result_columns;
 
 namespace {
 
-/// The slots of a file that hold a whole checkpoint.
+/// The slots of a file that hold a whole checkpoint. One that was made longer and then not written, by a kill or on a
+/// full disk, cannot be read: the other one holds.
 std::vector<CheckpointSlot> whole_checkpoints(const ArrayFileReader& in) {
   std::vector<CheckpointSlot> whole;
   for (const char* slot : columns::checkpoint_slots) {
-    std::optional<CheckpointSlot> found = decode_checkpoint(in.read(slot).values);
-    if (found) whole.push_back(std::move(*found));
+    try {
+      std::optional<CheckpointSlot> found = decode_checkpoint(in.read(slot).values);
+      if (found) whole.push_back(std::move(*found));
+    } catch (const InputError&) {
+    }
   }
   return whole;
 }
@@ -212,7 +216,7 @@ ResultWriter::~ResultWriter() {
   try {
     impl_->flush();
     impl_->out.close();
-  } catch (const InputError&) {
+  } catch (const ComputationError&) {
     // The file keeps what was flushed before, and says that it is incomplete.
   }
 }

@@ -45,6 +45,10 @@ Eigen::SparseMatrix<double> read_matrix_market(const std::filesystem::path& file
   const long rows = reader.number<long>(words[0], "the number of rows");
   const long columns = reader.number<long>(words[1], "the number of columns");
   const long entries = reader.number<long>(words[2], "the number of entries");
+  if (symmetric && rows != columns) {
+    throw reader.error(fmt::format("{} rows and {} columns of a symmetric matrix", rows, columns),
+                       "as many rows as columns");
+  }
   require_possible_size(reader, rows, columns, entries, 6);  // "1 1 1" and the end of the line
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(static_cast<std::size_t>(symmetric ? 2 * entries : entries));

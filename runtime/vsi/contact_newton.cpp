@@ -18,6 +18,9 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Evaluations of one contact solution in which the published method searches its pairs.
 constexpr int paper_searches = 4;
 
+// K_h of F_n = K_h d^{3/2}, rounded up [N/m^{3/2}]: a wheel's on a rail is 1e11 at most.
+constexpr double stiffest_contact = 1e11;
+
 // Where an evaluation has its contact pairs from.
 enum class Pairs { searched, held };
 
@@ -164,17 +167,18 @@ double force_change(const NewtonWorkspace& ws, int first, int last) {
   return largest;
 }
 
-long n_diff = 0;
-struct Say {
-  ~Say() { std::fprintf(stderr, "tangents of vehicles %ld\n", n_diff); }
-} say;
 // Newton of the whole train: groups of wheelsets iterate side by side, each with its own tangent and step control, and
 // rest where they are while that is good enough.
 class TrainNewton {
  public:
   TrainNewton(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
               ContactSolution& solution, NewtonWorkspace& ws)
-      : model_(model), problem_(problem), limits_(limits), s_(solution), ws_(ws) {
+      : model_(model),
+        problem_(problem),
+        limits_(limits),
+        first_order_(std::pow(limits.force_tolerance / stiffest_contact, 2.0 / 3.0)),
+        s_(solution),
+        ws_(ws) {
     const auto wheelsets = static_cast<int>(s_.displacement.size()) / wheelset_unknowns;
     const int groups = wheelsets / problem.wheelsets_per_group;
     ws.tangent.resize(index(wheelsets));
@@ -227,7 +231,6 @@ class TrainNewton {
   bool rests(int g) {
     constexpr double fast_enough = 0.2;           // of the residual, per iteration with a kept tangent
     constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
-    constexpr double first_order = 1e-8;  // m, rad: a wheel in the air, whose tangent is zero, gains 0.1 N at most
     GroupNewton& n = ws_.group[index(g)];
     auto displacement = part_of(s_.displacement, g);
     auto correction = part_of(ws_.correction, g);
@@ -254,7 +257,8 @@ class TrainNewton {
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
     if (change < limits_.tolerance || (!gains && change < limits_.rounding)) return true;
-    if (change < first_order && force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
+    if (change < first_order_ &&
+        force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
       return true;
     }
     limit_moves(problem_, correction);
@@ -267,6 +271,8 @@ class TrainNewton {
   const WheelContactModel& model_;
   const ContactProblem& problem_;
   const NewtonLimits& limits_;
+  /// A wheel in the air, whose tangent is zero, gains no more than the tolerance by such a correction [m, rad].
+  double first_order_;
   ContactSolution& s_;
   NewtonWorkspace& ws_;
   NewtonReport report_;

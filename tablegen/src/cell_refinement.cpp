@@ -153,12 +153,18 @@ void CellRefinement::check_inside(const CellBox& box, int first, int end, Trial&
 void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>& local, const WheelsetPose& pose,
                                 const ContactPatches& online, Trial& trial) const {
   ++trial.checks;
-  GeometryTable::Lookup lookup;
-  const LocalPoint point{static_cast<float>(local[0]), static_cast<float>(local[1]), static_cast<float>(local[2])};
-  GeometryTable::evaluate(trial.coefficient.data(), trial.branches, yaw_axis_, roll_axis_, point,
-                          2.0 / (box.high[0] - box.low[0]), pose.z, lookup);
+  GeometryLeaf leaf;
+  leaf.coefficient = trial.coefficient.data();
+  leaf.count = trial.branches;
+  leaf.terms = branch_terms(yaw_axis_, roll_axis_);
+  leaf.point = {static_cast<float>(local[0]), static_cast<float>(local[yaw_axis_ ? 1 : 2]),
+                static_cast<float>(local[2])};
+  leaf.per_metre = static_cast<float>(2.0 / (box.high[0] - box.low[0]));
+  leaf.trusted_lowering = std::numeric_limits<float>::infinity();  // how far it is to be trusted is being found out
+  double first_touch = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < leaf.count; ++n) first_touch = std::min(first_touch, leaf.start(n, pose.z).z_touch);
   ContactPatches table;
-  const TableAnswer answer = add_branch_patches(search_, lookup, pose, PoseTrigonometry(pose), pose.z, 0.0, table);
+  const TableAnswer answer = add_branch_patches(search_, leaf, pose, pose.z, 0.0, table);
   trial.searched += answer == TableAnswer::searched;
   bool wrong = false;
   const auto missing = [&](const ContactPatches& from, const ContactPatches& in) {
@@ -167,17 +173,18 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
           in.begin(), in.end(), [&](const ContactPatch& q) { return std::abs(p.s_wheel - q.s_wheel) < same_pair; });
       if (found || p.penetration < grazing) continue;
       wrong = true;
-      const double height = pose.z - lookup.first_touch - p.penetration / std::cos(p.angle);
+      const double height = pose.z - first_touch - p.penetration / std::cos(p.angle);
       trial.trusted_lowering = std::min(trial.trusted_lowering, height - height_margin);
     }
   };
   missing(online, table);
   missing(table, online);
   trial.wrong += wrong;
-  for (int n = 0; n < lookup.count; ++n) {
-    if (lookup.branch[n].z_touch >= pose.z) continue;
+  for (int n = 0; n < leaf.count; ++n) {
+    const BranchStart start = leaf.start(n, pose.z);
+    if (start.z_touch >= pose.z) continue;
     double nearest = std::numeric_limits<double>::infinity();
-    for (const ContactPatch& p : table) nearest = std::min(nearest, std::abs(p.s_wheel - lookup.branch[n].s_wheel));
+    for (const ContactPatch& p : table) nearest = std::min(nearest, std::abs(p.s_wheel - start.s_wheel));
     if (std::isfinite(nearest)) trial.start_error = std::max(trial.start_error, nearest);
   }
 }

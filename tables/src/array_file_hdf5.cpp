@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "array_file_seal.hpp"
 
@@ -27,6 +29,12 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
+std::string innermost_error() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
+  return text;
+}
+
 }  // namespace
 
 Section::Section() : lock_(library_mutex()) {
@@ -37,9 +45,20 @@ Section::Section() : lock_(library_mutex()) {
 Section::~Section() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
 
 InputError failure(const std::string& place, std::string_view expected) {
-  std::string text;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
+  const std::string text = innermost_error();
   return input_error(place, text.empty() ? "an error of HDF5" : fmt::format("\"{}\"", text), expected);
+}
+
+ComputationError write_failure(const std::string& place) {
+  std::string text = innermost_error();
+  // HDF5 quotes the system's message between file names and addresses.
+  constexpr std::string_view before = "error message = '";
+  const std::size_t begin = text.find(before);
+  if (begin != std::string::npos) {
+    text.erase(0, begin + before.size());
+    text.erase(std::min(text.find('\''), text.size()));
+  }
+  return ComputationError(fmt::format("{}: could not be written: {}", place, text.empty() ? "an error of HDF5" : text));
 }
 
 std::string place(const std::filesystem::path& file, std::string_view path) {
@@ -162,6 +181,22 @@ FileState inspect_file(const std::filesystem::path& file) {
                       fmt::format("{} bytes: the file is cut short", end_of_file));
   }
   return state;
+}
+
+File open_for_reading(const std::filesystem::path& file, FileState& state) {
+  const Properties access = file_access();
+  // Beside a running writer HDF5 repeats a read whose checksum fails, each pause twice the one before: from 1 ns, these
+  // many come to 4 ms. Its own 100 attempts would wait for ever on a damaged file.
+  constexpr unsigned attempts = 22;
+  require(H5Pset_metadata_read_attempts(access.get(), attempts) >= 0, file.string(), "HDF5 1.10 or later");
+  while (true) {
+    const unsigned flags = H5F_ACC_RDONLY | (state.being_written ? H5F_ACC_SWMR_READ : 0U);
+    File handle(H5Fopen(file.c_str(), flags, access.get()));
+    if (handle.valid()) return handle;
+    const InputError refused = failure(file.string(), "a whole HDF5 file");
+    const bool was_written = std::exchange(state, inspect_file(file)).being_written;
+    if (state.being_written == was_written) throw refused;
+  }
 }
 
 void check_type(hid_t file, const std::filesystem::path& name, std::string_view filetype, int format_version) {

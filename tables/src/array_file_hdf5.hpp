@@ -67,6 +67,9 @@ inline void require(bool done, const std::string& place, std::string_view expect
   if (!done) throw failure(place, expected);
 }
 
+/// ComputationError at `place` with what the system said: an output could not be written.
+[[nodiscard]] ComputationError write_failure(const std::string& place);
+
 [[nodiscard]] std::string place(const std::filesystem::path& file, std::string_view path);
 [[nodiscard]] std::string place(const std::filesystem::path& file, std::string_view path, std::string_view attribute);
 
@@ -98,6 +101,10 @@ struct FileState {
 };
 /// Checks that the file exists, is HDF5 and, unless it is being written, not cut short. @throws InputError
 [[nodiscard]] FileState inspect_file(const std::filesystem::path& file);
+
+/// @param state of the file, found anew where a writer opens or closes it at this moment
+/// @throws InputError where HDF5 cannot open it
+[[nodiscard]] File open_for_reading(const std::filesystem::path& file, FileState& state);
 
 /// Checks the attributes "filetype" and "format_version" of the root group, in this order. @throws InputError
 void check_type(hid_t file, const std::filesystem::path& name, std::string_view filetype, int format_version);

@@ -20,18 +20,6 @@ using hdf5::Section;
 
 namespace {
 
-hdf5::File open_for_reading(const std::filesystem::path& file, const hdf5::FileState& state) {
-  const hdf5::Properties access = hdf5::file_access();
-  // Beside a running writer HDF5 repeats a read whose checksum fails, each pause twice the one before: from 1 ns, these
-  // many come to 4 ms. Its own 100 attempts would wait for ever on a damaged file.
-  constexpr unsigned attempts = 22;
-  require(H5Pset_metadata_read_attempts(access.get(), attempts) >= 0, file.string(), "HDF5 1.10 or later");
-  const unsigned flags = H5F_ACC_RDONLY | (state.being_written ? H5F_ACC_SWMR_READ : 0U);
-  hdf5::File handle(H5Fopen(file.c_str(), flags, access.get()));
-  require(handle.valid(), file.string(), "a whole HDF5 file");
-  return handle;
-}
-
 /// An open dataset and the part of it that is to be read.
 struct Source {
   hdf5::Object dataset;
@@ -71,12 +59,18 @@ std::size_t count_values(const Source& source, std::uint64_t file_bytes, const s
   return count;
 }
 
-/// Every byte to be read must lie in the file: HDF5 reads zeros where it does not.
-void check_stored(const Source& source, std::uint64_t file_bytes, const std::string& at) {
+/// Every byte to be read must lie in the file: HDF5 reads zeros where it does not. A file that is being written may
+/// have grown since it was opened.
+void check_stored(const Source& source, const std::filesystem::path& file, std::uint64_t file_bytes,
+                  const std::string& at) {
   const auto check = [&](haddr_t address, hsize_t bytes) {
-    if (address == HADDR_UNDEF || address > file_bytes || bytes > file_bytes - address) {
-      throw input_error(at, "values that are not in the file", "a whole file");
-    }
+    const auto inside = [&] {
+      return address != HADDR_UNDEF && address <= file_bytes && bytes <= file_bytes - address;
+    };
+    if (inside()) return;
+    std::error_code error;
+    file_bytes = std::filesystem::file_size(file, error);
+    if (error || !inside()) throw input_error(at, "values that are not in the file", "a whole file");
   };
   const hid_t dataset = source.dataset.get();
   const hdf5::Properties properties(H5Dget_create_plist(dataset));
@@ -128,6 +122,12 @@ struct ArrayFileReader::Impl {
   std::vector<std::uint64_t> block_sums;
   std::size_t block_width = 0;  ///< columns
 
+  /// Size of the file; of one that is being written, now.
+  [[nodiscard]] std::uint64_t bytes() const {
+    std::error_code error;
+    const std::uint64_t now = state.being_written ? std::filesystem::file_size(file, error) : state.bytes;
+    return error ? state.bytes : now;
+  }
   /// Type, shape and storage are checked before any value is read.
   [[nodiscard]] Source open(std::string_view path, H5T_class_t expected) const {
     const std::string at = place(file, path);
@@ -147,8 +147,8 @@ struct ArrayFileReader::Impl {
     source.extent.resize(static_cast<std::size_t>(rank));
     H5Sget_simple_extent_dims(space.get(), source.extent.data(), nullptr);
     limit_rows(source, at);
-    source.count = count_values(source, state.bytes, at);
-    if (source.count > 0) check_stored(source, state.bytes, at);
+    source.count = count_values(source, bytes(), at);
+    if (source.count > 0) check_stored(source, file, bytes(), at);
     return source;
   }
 
@@ -247,7 +247,7 @@ ArrayFileReader::ArrayFileReader(std::filesystem::path file, std::string_view fi
   {
     const Section section;
     impl_->state = hdf5::inspect_file(impl_->file);
-    impl_->handle = open_for_reading(impl_->file, impl_->state);
+    impl_->handle = hdf5::open_for_reading(impl_->file, impl_->state);
     hdf5::check_type(impl_->handle.get(), impl_->file, filetype, format_version);
     if (hdf5::contains(impl_->handle.get(), hdf5::records_dataset)) impl_->read_records();
   }
@@ -350,8 +350,8 @@ namespace {
 
 std::string root_text(const std::filesystem::path& file, const char* attribute) {
   const Section section;
-  const hdf5::FileState state = hdf5::inspect_file(file);
-  const hdf5::File handle = open_for_reading(file, state);
+  hdf5::FileState state = hdf5::inspect_file(file);
+  const hdf5::File handle = hdf5::open_for_reading(file, state);
   const hdf5::Object root = hdf5::open_object(handle.get(), file, "");
   return hdf5::text_attribute(root.get(), place(file, "", attribute), attribute);
 }

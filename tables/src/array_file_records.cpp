@@ -16,17 +16,17 @@ using hdf5::require;
 
 void ArrayFileWriter::Impl::begin_records() {
   assert(mode == Mode::growing);
+  if (broken) throw ComputationError(fmt::format("{}: could not be written before", file.string()));
   if (temporary.empty()) return;
-  if (broken) throw input_error(file.string(), "a file that could not be written before", "room on the disk");
-  broken = true;
   if (!growing.empty()) create_blocks();
   growing.clear();
-  require(handle.reset(), file.string(), "a file that can be written");
-  broken = false;
+  require_written(H5Fflush(handle.get(), H5F_SCOPE_LOCAL) >= 0, file.string());
+  require_written(handle.reset(), file.string());
   if (std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
   lock = WriterLock(temporary);
-  publish();
+  // Readers find the file by its name only when it says that it is being written.
   open_records();
+  publish();
 }
 
 namespace {
@@ -50,7 +50,8 @@ void ArrayFileWriter::Impl::open_for_writing() {
   const bool set =
       H5Pset(access.get(), "clear_status_flags", &yes) >= 0 && H5Pset(access.get(), "skip_eof_check", &yes) >= 0;
   require(set, file.string(), "HDF5 1.10 or later");
-  handle = hdf5::File(H5Fopen(file.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access.get()));
+  const std::filesystem::path& name = temporary.empty() ? file : temporary;
+  handle = hdf5::File(H5Fopen(name.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access.get()));
   require(handle.valid() && H5Fincrement_filesize(handle.get(), 0) >= 0, file.string(), "a file that can be written");
 }
 
@@ -98,14 +99,14 @@ void ArrayFileWriter::Impl::open_records() {
   cut_blocks(records);
 }
 
-void ArrayFileWriter::Impl::make_room(const std::string& path, Growing& dataset, std::size_t rows) const {
+void ArrayFileWriter::Impl::make_room(const std::string& path, Growing& dataset, std::size_t rows) {
   if (dataset.extent[0] >= rows) return;
   dataset.extent[0] = rows;
-  require(H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0, place(file, path), "room for more rows");
+  require_written(H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0, place(file, path));
 }
 
 void ArrayFileWriter::Impl::append_rows(const std::string& path, Growing& dataset, hid_t memory_type,
-                                        const void* values, std::size_t rows) const {
+                                        const void* values, std::size_t rows) {
   std::vector<hsize_t> start(dataset.extent.size(), 0);
   start[0] = dataset.rows;
   std::vector<hsize_t> count = dataset.extent;
@@ -116,7 +117,7 @@ void ArrayFileWriter::Impl::append_rows(const std::string& path, Growing& datase
   const bool done =
       H5Sselect_hyperslab(target.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
       H5Dwrite(dataset.dataset.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, values) >= 0;
-  require(done, place(file, path), "room for more rows");
+  require_written(done, place(file, path));
   dataset.rows += rows;
 }
 
@@ -124,8 +125,7 @@ void ArrayFileWriter::Impl::cut_to_rows() {
   const auto cut = [this](const std::string& path, Growing& entry) {
     if (!entry.dataset.valid() || entry.extent[0] == entry.rows) return;
     entry.extent[0] = entry.rows;
-    require(H5Dset_extent(entry.dataset.get(), entry.extent.data()) >= 0, place(file, path),
-            "rows that can be cut off");
+    require_written(H5Dset_extent(entry.dataset.get(), entry.extent.data()) >= 0, place(file, path));
   };
   for (auto& [path, entry] : growing) cut(path, entry);
   cut(hdf5::blocks_dataset, blocks);
@@ -172,7 +172,7 @@ void ArrayFileWriter::Impl::commit() {
   const bool done =
       H5Dwrite(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, count.data()) >= 0 &&
       H5Fflush(handle.get(), H5F_SCOPE_LOCAL) >= 0;
-  require(done, place(file, hdf5::records_dataset), "a file that can be written");
+  require_written(done, place(file, hdf5::records_dataset));
 }
 
 }  // namespace railtab

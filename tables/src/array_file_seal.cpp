@@ -49,7 +49,7 @@ void seal_file(const std::filesystem::path& file) {
   std::fstream out(file, std::ios::binary | std::ios::in | std::ios::out);
   out.write(block.data(), static_cast<std::streamsize>(block.size()));
   out.close();
-  if (!out) throw input_error(file.string(), std::strerror(errno), "a file that can be written to its end");
+  if (!out) throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(errno)));
 }
 
 bool is_sealed(const std::filesystem::path& file) {

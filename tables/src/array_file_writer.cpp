@@ -14,7 +14,7 @@ using hdf5::Section;
 
 namespace {
 
-std::size_t product(const std::vector<std::size_t>& shape) {
+[[maybe_unused]] std::size_t product(const std::vector<std::size_t>& shape) {
   std::size_t count = 1;
   for (const std::size_t extent : shape) count *= extent;
   return count;
@@ -181,7 +181,7 @@ void ArrayFileWriter::replace(std::string_view path, std::span<const double> val
   extent = content.size();
   const bool done = H5Dset_extent(dataset.get(), &extent) >= 0 &&
                     H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.data()) >= 0;
-  require(done, at, "a slot that can be overwritten");
+  impl_->require_written(done, at);
 }
 
 void ArrayFileWriter::flush() {
@@ -189,7 +189,7 @@ void ArrayFileWriter::flush() {
   const Section section;
   impl_->begin_records();
   impl_->append_block();
-  require(H5Fflush(impl_->handle.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.string(), "a file that can be written");
+  impl_->require_written(H5Fflush(impl_->handle.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.string());
   impl_->commit();
 }
 
@@ -197,10 +197,12 @@ void ArrayFileWriter::close() {
   if (impl_->mode == Mode::growing) flush();
   const Section section;
   impl_->cut_to_rows();
+  // All that needs room, while the file can still be abandoned.
+  impl_->require_written(H5Fflush(impl_->handle.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.string());
   impl_->records_dataset = {};
   impl_->growing.clear();
   impl_->blocks = {};
-  require(impl_->handle.reset(), impl_->file.string(), "a file that can be written to its end");
+  impl_->require_written(impl_->handle.reset(), impl_->file.string());
   if (!impl_->temporary.empty()) impl_->publish();
   impl_->lock = {};
 }

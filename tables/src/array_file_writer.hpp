@@ -22,7 +22,7 @@ struct ArrayFileWriter::Impl {
   std::filesystem::path file;       ///< the name at the end
   std::filesystem::path temporary;  ///< the name now; empty once the file has its own
   Mode mode = Mode::whole_or_nothing;
-  bool broken = false;  ///< could not be written whole under its temporary name, and must not get its own
+  bool broken = false;  ///< something could not be written: nothing more is, and the file gets no new name
   WriterLock lock;
   hdf5::File handle;
 
@@ -43,6 +43,11 @@ struct ArrayFileWriter::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
+
+  /// @throws ComputationError where a write failed, after abandon()
+  void require_written(bool done, const std::string& place);
+  /// Leaves the file as it is on the disk, as a kill would.
+  void abandon() noexcept;
 
   void create(std::string_view filetype, int format_version);
   void create_groups_of(std::string_view path);
@@ -67,9 +72,8 @@ struct ArrayFileWriter::Impl {
   void open_for_writing();
   /// Never less than there is: a chunk given back could be used again before the file stops naming its old place, and
   /// a process that ends in between leaves two owners of one place.
-  void make_room(const std::string& path, Growing& dataset, std::size_t rows) const;
-  void append_rows(const std::string& path, Growing& dataset, hid_t memory_type, const void* values,
-                   std::size_t rows) const;
+  void make_room(const std::string& path, Growing& dataset, std::size_t rows);
+  void append_rows(const std::string& path, Growing& dataset, hid_t memory_type, const void* values, std::size_t rows);
   /// The checksums of what came since the last block.
   void append_block();
   /// Forget the blocks beyond the one that ends at `rows`. @throws InputError where none does.

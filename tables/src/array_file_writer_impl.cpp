@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,23 +46,52 @@ std::filesystem::path temporary_name(const std::filesystem::path& file) {
   return name;
 }
 
-/// To the disk itself, so that the new name never stands for a file that a power failure emptied.
-void synchronise(const std::filesystem::path& path, int flags) {
+/// To the disk itself, so that the new name never stands for a file that a power failure emptied. @return 0, or the
+/// error: some file systems find only here that they are full
+int synchronise(const std::filesystem::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
+  if (descriptor < 0) return 0;
+  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
   ::close(descriptor);
+  return error == EIO || error == ENOSPC || error == EDQUOT ? error : 0;
 }
 
 }  // namespace
 
 ArrayFileWriter::Impl::~Impl() {
-  if (temporary.empty()) return;
-  growing.clear();
-  records_dataset = {};
-  static_cast<void>(handle.reset());
+  if (temporary.empty()) {
+    if (handle.valid() && H5Fflush(handle.get(), H5F_SCOPE_LOCAL) < 0) abandon();
+    return;
+  }
+  abandon();
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
+}
+
+void ArrayFileWriter::Impl::require_written(bool done, const std::string& place) {
+  if (done) return;
+  const ComputationError failure = hdf5::write_failure(place);
+  abandon();
+  throw failure;
+}
+
+void ArrayFileWriter::Impl::abandon() noexcept {
+  broken = true;
+  // HDF5 keeps what it could not write and tries again at the close of the file, piece by piece, whatever depends on
+  // whatever. Its descriptor is led to an empty file in memory first, which takes all of it.
+  int* descriptor = nullptr;
+  if (handle.valid() && H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, reinterpret_cast<void**>(&descriptor)) >= 0) {
+    const int nowhere = ::memfd_create("railtab", MFD_CLOEXEC);
+    if (nowhere >= 0) {
+      ::dup3(nowhere, *descriptor, O_CLOEXEC);
+      ::close(nowhere);
+    }
+  }
+  growing.clear();
+  blocks = {};
+  records_dataset = {};
+  static_cast<void>(handle.reset());
+  lock = {};
 }
 
 void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version) {
@@ -99,7 +129,7 @@ void ArrayFileWriter::Impl::create_group(const std::string& path) {
   if (H5Lexists(handle.get(), path.c_str(), H5P_DEFAULT) > 0) return;
   const hdf5::Properties properties = group_properties(H5P_GROUP_CREATE);
   const hdf5::Group group(H5Gcreate2(handle.get(), path.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
-  require(group.valid(), place(file, path), "a group that can be created");
+  require_written(group.valid(), place(file, path));
 }
 
 hdf5::Dataset ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties) {
@@ -107,7 +137,7 @@ hdf5::Dataset ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t
   create_groups_of(path);
   hdf5::Dataset dataset(
       H5Dcreate2(handle.get(), std::string(path).c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
-  require(dataset.valid(), place(file, path), "a dataset that can be created");
+  require_written(dataset.valid(), place(file, path));
   return dataset;
 }
 
@@ -119,8 +149,8 @@ void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t file_type
                                         : H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
   const hdf5::Dataset dataset = create_dataset(path, file_type, space.get(), H5P_DEFAULT);
   if (std::find(shape.begin(), shape.end(), 0U) == shape.end()) {
-    require(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, place(file, path),
-            "room for the values");
+    require_written(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0,
+                    place(file, path));
   }
   write_text(path, "unit", unit, 0);
   write_text(path, "description", description, 0);
@@ -168,8 +198,7 @@ void ArrayFileWriter::Impl::write_attribute(std::string_view path, std::string_v
     attribute =
         hdf5::Attribute(H5Acreate2(object.get(), key.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT));
   }
-  require(attribute.valid() && H5Awrite(attribute.get(), memory_type, value) >= 0, at,
-          "an attribute that can be written");
+  require_written(attribute.valid() && H5Awrite(attribute.get(), memory_type, value) >= 0, at);
 }
 
 void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view name, std::string_view value,
@@ -197,7 +226,9 @@ void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view n
 
 void ArrayFileWriter::Impl::publish() {
   if (mode == Mode::whole_or_nothing) seal_file(temporary);
-  synchronise(temporary, O_RDWR);
+  if (const int failed = synchronise(temporary, O_RDWR)) {
+    throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(failed)));
+  }
   std::error_code error;
   std::filesystem::rename(temporary, file, error);
   if (error) throw input_error(file.string(), error.message(), "a file that can be replaced");

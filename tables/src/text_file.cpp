@@ -1,5 +1,8 @@
 #include "railtab/tables/text_file.hpp"
 
+#include <fmt/format.h>
+
+#include <cerrno>
 #include <fstream>
 #include <system_error>
 
@@ -29,14 +32,17 @@ void write_text_file(const std::filesystem::path& named, std::string_view text) 
   std::filesystem::path unfinished = file;
   unfinished += ".part";
   std::ofstream stream(unfinished, std::ios::binary);
+  if (!stream) {
+    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
+  }
   stream << text;
   stream.close();
-  std::error_code failed;
+  std::error_code failed(stream ? 0 : errno, std::generic_category());
   if (stream) std::filesystem::rename(unfinished, file, failed);
   if (!stream || failed) {
     std::error_code ignored;
     std::filesystem::remove(unfinished, ignored);
-    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
+    throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), failed.message()));
   }
 }
 

@@ -112,6 +112,11 @@ TEST_F(FeFilesTest, MatrixMarketOfAbsurdSizeIsRefusedAtItsSizeLine) {
   EXPECT_TRUE(message(read_matrix_market, banner + "2 2 99999999999999999999\n").starts_with("f:2: found '9999"));
 }
 
+TEST_F(FeFilesTest, ASymmetricMatrixMarketFileIsSquare) {
+  EXPECT_TRUE(message(read_matrix_market, "%%MatrixMarket matrix coordinate real symmetric\n3 2 1\n3 2 1\n")
+                  .starts_with("f:2: found 3 rows and 2 columns of a symmetric matrix"));
+}
+
 TEST_F(FeFilesTest, CalculixMatrixAndRows) {
   const auto file = write("m.sti", "1 1  4.0\n1 2 -1.5\n2 2  5.0\n2 3  2.5e2\n3 3  6.0e5\n");
   EXPECT_TRUE(Eigen::MatrixXd(read_calculix_matrix(file, 3)).isApprox(expected, 0.0));

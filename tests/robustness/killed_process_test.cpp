@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "../../runtime/results/result_columns.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -166,31 +167,6 @@ TEST_F(KilledProcess, AMergedTableIsWholeOrNotThere) {
   EXPECT_EQ(done, kills());
 }
 
-// A full disk, by a limit of the size of files: 512-byte blocks in dash, 1024 in bash.
-TEST_F(KilledProcess, AFullDiskEndsWithAMessageAndNothingIsBelievedWrongly) {
-  for (const int blocks : {8, 100, 400, 800}) {
-    fs::remove(folder_ / "r.h5");
-    const std::string limit = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; ";
-    const Outcome run = shell(limit + "'" VSI_COMMAND "' run scene.toml -o r.h5 -q");
-    EXPECT_TRUE(run.exit_code == 1 || run.exit_code == 2) << blocks << ": " << run.exit_code << ' ' << run.err;
-    EXPECT_NE(run.err.find("r.h5"), std::string::npos) << run.err;
-    if (!fs::exists(folder_ / "r.h5")) continue;
-    // Either the run can be taken up, or its file is refused: HDF5's close after a failed write may leave it cut short.
-    try {
-      EXPECT_FALSE(read_results(folder_ / "r.h5").summary.complete);
-    } catch (const InputError& refused) {
-      EXPECT_NE(std::string(refused.what()).find("cut short"), std::string::npos) << refused.what();
-      continue;
-    }
-    EXPECT_EQ(vsi("run scene.toml -o r.h5 --resume -q").exit_code, 0);
-    EXPECT_TRUE(read_results(folder_ / "r.h5").summary.complete);
-  }
-  const Outcome table = shell("trap '' XFSZ; ulimit -f 8; '" TABLEGEN_COMMAND "' " + geometry + " -o t.h5");
-  EXPECT_TRUE(table.exit_code == 1 || table.exit_code == 2) << table.exit_code << ' ' << table.err;
-  EXPECT_NE(table.err.find("t.h5"), std::string::npos) << table.err;
-  EXPECT_FALSE(fs::exists(folder_ / "t.h5"));
-}
-
 TEST_F(KilledProcess, AFolderThatCannotBeWrittenIsSaidAtOnce) {
   // no one can create files there, root included
   const Outcome run = vsi("run scene.toml -o /proc/r.h5 -q");
@@ -199,6 +175,37 @@ TEST_F(KilledProcess, AFolderThatCannotBeWrittenIsSaidAtOnce) {
   const Outcome table = tablegen(geometry + "-o /proc/t.h5");
   EXPECT_EQ(table.exit_code, 2) << table.err;
   EXPECT_NE(table.err.find("/proc/t.h5"), std::string::npos) << table.err;
+}
+
+// The file grows between the moments at which a reader looks at its size, at "records" and at the rows.
+TEST_F(KilledProcess, ALiveRunCanBeReadAtAnyTime) {
+  const fs::path file = folder_ / "r.h5";
+  std::string scene = contents(folder_ / "scene.toml");
+  scene.replace(scene.find("8.0"), 3, "60.0");
+  std::ofstream(folder_ / "scene.toml") << scene;
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) == 0) execl(VSI_COMMAND, "vsi", "run", "scene.toml", "-o", "r.h5", "-q", nullptr);
+    _exit(127);
+  }
+  std::size_t records = 0;
+  int reads = 0, growths = 0, status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (!fs::exists(file)) continue;
+    const ArrayFileReader live(file, results_filetype, result_columns::format_version);
+    const std::size_t now = live.read("wheels/Q").shape.at(0);
+    ASSERT_EQ(now, live.records());
+    ASSERT_GE(now, records);
+    growths += now > records ? 1 : 0;
+    records = now;
+    ++reads;
+  }
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_GT(reads, 20);
+  EXPECT_GT(growths, 5);
+  const RunResults whole = read_results(file);
+  EXPECT_TRUE(whole.summary.complete);
+  EXPECT_GE(whole.steps.size(), records);
 }
 
 TEST_F(KilledProcess, ASecondRunOfOneNameIsRefused) {

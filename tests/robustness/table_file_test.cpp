@@ -204,7 +204,7 @@ TEST_F(TableFile, MissingMisshapenInfiniteOrChangedDatasetsAreNamed) {
   }
 }
 
-TEST_F(TableFile, AFullDiskIsAnInputErrorAndKeepsTheOldTable) {
+TEST_F(TableFile, AFullDiskIsAComputationErrorAndKeepsTheOldTable) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -214,7 +214,7 @@ TEST_F(TableFile, AFullDiskIsAnInputErrorAndKeepsTheOldTable) {
     int code = 1;
     try {
       write_geometry_table(file_, table_);
-    } catch (const InputError&) {
+    } catch (const ComputationError&) {
       code = 0;
     }
     ::_exit(code);

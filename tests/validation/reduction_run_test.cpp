@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <tuple>
 #include <vector>
 
 #include "railtab/runtime/vsi/reduction_check.hpp"
@@ -46,15 +47,20 @@ TEST(ReducedRun, SpansBehindTheWindowVibrateOn) {
   EXPECT_GT(e.deck_max, 0.0);
 }
 
-// Contact forces only: what the deck differs by is in docs/validation/reduction.md, and is not understood.
-TEST(ReducedRun, CraigBamptonFollowsTheForces) {
+// Sleepers on their pads vibrate at 190 Hz under rails that are held: modes of a span that the deck's accelerations
+// need. With all of them Craig-Bampton is a change of coordinates; the first thirty end below.
+TEST(ReducedRun, CraigBamptonIsExactWithTheModesOfTheSleepers) {
   SceneParameters scene = coach_on_spans(Reduction::craig_bampton);
   scene.spans.resize(1);
-  scene.reduction.modes = 30;
-  const ReductionError e = check_reduction(scene, 0.1);
-  std::printf("force %.2e, rms %.2e; deck %.2e, rms %.2e\n", e.force_max, e.force_rms, e.deck_max, e.deck_rms);
-  EXPECT_LT(e.force_max, 0.05);
-  EXPECT_GT(e.force_max, 0.0);
+  for (const auto& [modes, force, deck] : {std::tuple{30, 0.05, 0.3}, std::tuple{200, 1e-5, 2e-3}}) {
+    scene.reduction.modes = modes;
+    const ReductionError e = check_reduction(scene, 0.1);
+    std::printf("%d modes: force %.2e, rms %.2e; deck %.2e, rms %.2e\n", modes, e.force_max, e.force_rms, e.deck_max,
+                e.deck_rms);
+    EXPECT_LT(e.force_max, force);
+    EXPECT_LT(e.deck_max, deck);
+    EXPECT_GT(e.force_max, 0.0);
+  }
 }
 
 struct RecordedRun {

@@ -24,6 +24,7 @@ const char* outcome_name(Outcome outcome) noexcept {
 
 std::vector<StabilityCase> all_cases() {
   std::vector<StabilityCase> cases = run_cases();
+  for (StabilityCase& one : energy_cases()) cases.push_back(std::move(one));
   for (StabilityCase& one : contact_cases()) cases.push_back(std::move(one));
   return cases;
 }

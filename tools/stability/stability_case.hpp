@@ -15,13 +15,28 @@ enum class Outcome {
 };
 [[nodiscard]] const char* outcome_name(Outcome outcome) noexcept;
 
+/// What the time integration gains (positive) or loses of the energy, by the run's energy account.
+struct EnergyResult {
+  bool kept = false;  ///< the run keeps an account, and something moves
+  /// Largest of a step, relative to the energy that the motion moves: the most of kinetic energy and of the changes of
+  /// strain energy, potential and contact springs.
+  double step = 0.0;
+  double total = 0.0;   ///< of the run, relative to the same
+  double gained = 0.0;  ///< most by any instant of the run, relative to the same
+  int impacts = 0;      ///< wheels that land after at least 2 ms in the air
+  /// Largest that the contacts gain in an impact, relative to the most that their springs take up in it; of impacts
+  /// with at least 1 % of the hardest one's energy.
+  double impact = 0.0;
+};
+
 struct CaseResult {
   Outcome outcome = Outcome::wrong;
   double error = 0.0;     ///< what `StabilityCase::measure` names
   double seconds = 0.0;   ///< processor time
   long steps = 0;         ///< of a run
   long halved_steps = 0;  ///< of a run
-  std::string note{};     ///< the message of a case that was refused or ended; what else is worth knowing
+  EnergyResult energy{};
+  std::string note{};  ///< the message of a case that was refused or ended; what else is worth knowing
 };
 
 /// One cell of the matrix.
@@ -37,6 +52,8 @@ struct StabilityCase {
 
 /// Cases of runs: train on track.
 [[nodiscard]] std::vector<StabilityCase> run_cases();
+/// Cases whose energy is the question: systems without contact, landings.
+[[nodiscard]] std::vector<StabilityCase> energy_cases();
 /// Cases of the contact's parts: Hertz's ellipse, creep laws, profiles.
 [[nodiscard]] std::vector<StabilityCase> contact_cases();
 [[nodiscard]] std::vector<StabilityCase> all_cases();

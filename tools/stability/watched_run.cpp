@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "energy_watch.hpp"
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab::stability {
@@ -145,10 +146,16 @@ WatchedRun watched_run(const VsiModel& start, const VsiModel& model, const Integ
   if (disturb) disturb(state);
   const Pair before = momentum(model, state);
   Watch watch(model, run);
+  EnergyWatch energy;
   RunObserver observer;
-  observer.record = [&](const StepRecord& record) { watch(record); };
+  observer.energy = [&](const EnergyBalance& balance) { energy.take(balance); };
+  observer.record = [&](const StepRecord& record) {
+    watch(record);
+    energy.record(record);
+  };
   const VsiState first = state;
   run.summary = simulate(model, integration, duration, 1, state, observer);
+  run.energy = energy.result();
   if (run.summary.halved_steps > 0 && run.summary.complete && !model.structure) {
     // The balance needs the forces of halved steps too.
     run.records = 0;
@@ -170,6 +177,7 @@ CaseResult judged(const WatchedRun& run) {
   result.steps = run.summary.steps;
   result.halved_steps = run.summary.halved_steps;
   result.error = run.impulse_error;
+  result.energy = run.energy;
   result.note = run.summary.message;
   const bool sound = run.finite && std::isfinite(run.impulse_error);
   result.outcome = !sound ? Outcome::wrong : run.summary.complete ? Outcome::converged : Outcome::ended;
@@ -184,6 +192,20 @@ SceneParameters coach_on_rigid_track() {
   scene.track_kind = TrackKind::rigid;
   scene.integration.duration = 0.3;
   return scene;
+}
+
+VsiModel sprung_wheelset() {
+  VsiModel model = build_model(coach_on_rigid_track());
+  const double R0 = model.geometry->pair().dimensions().nominal_radius;
+  DofIndices heave;
+  heave.fill(held);
+  heave[2] = 0;
+  const std::vector<RigidBody> bodies{{"wheelset", 1500.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}},
+                                      {"mass", 8500.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -2.0 * R0}}};
+  const std::vector<Suspension> spring{{0, 1, {0.0, 0.0, -1.5 * R0}, {0.0, 0.0, 1.2e6}, {0.0, 0.0, 1e4}}};
+  model.vehicle = assemble_vehicle("sprung wheelset", bodies, spring, {0}, {heave, heave}, R0, 10.0);
+  model.vehicle_x = {0.0};
+  return model;
 }
 
 SceneParameters coach_on_bridge() {

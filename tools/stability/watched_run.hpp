@@ -16,6 +16,7 @@ struct WatchedRun {
   /// lateral together, relative to the impulse of the weight plus that of the wheel forces: a balance that holds
   /// whatever the contact does, up to the error of the trapezoidal rule over the steps.
   double impulse_error = 0.0;
+  EnergyResult energy;
   double longest_flight = 0.0;  ///< longest time that a wheel was without contact [s]
   double largest_load = 0.0;    ///< largest Q [N]
   double largest_shift = 0.0;   ///< of a wheelset [m]
@@ -35,7 +36,9 @@ struct WatchedRun {
 
 /// A coach on straight, level, rigid track with online contact: the scene that cases vary.
 [[nodiscard]] SceneParameters coach_on_rigid_track();
-/// The same on ballasted track with a span of 20 m.
+/// A wheelset with a sprung mass that both heave only, on the coach's track at its speed: the smallest train.
+[[nodiscard]] VsiModel sprung_wheelset();
+/// The coach on ballasted track with a span of 20 m.
 [[nodiscard]] SceneParameters coach_on_bridge();
 
 }  // namespace railtab::stability

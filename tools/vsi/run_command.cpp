@@ -149,6 +149,14 @@ class RunRecorder {
     return observer;
   }
 
+  /// Whether the results of a run that cannot go on have a checkpoint.
+  [[nodiscard]] bool resumable() {
+    if (!writer_) return false;
+    writer_.reset();
+    if (!std::filesystem::exists(options_.output)) return false;
+    return ResultWriter::read_checkpoint(options_.output).has_value();
+  }
+
   /// @return exit code
   [[nodiscard]] int finish(RunSummary summary) {
     setup_.end();
@@ -262,7 +270,13 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     }
     from = recorder.take_up(before);
   }
-  return recorder.finish(run_scene(scene, recorder.observer(), from));
+  try {
+    return recorder.finish(run_scene(scene, recorder.observer(), from));
+  } catch (const ComputationError& failure) {
+    if (!recorder.resumable()) throw;
+    throw ComputationError(fmt::format("{}; the same command with --resume goes on from the last checkpoint in {}",
+                                       failure.what(), options.output));
+  }
 }
 
 int run_command(const Arguments& arguments) {

@@ -162,7 +162,7 @@ void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
   text += '\n';
   try {
     if (!fs::exists(file)) write_text_file(file, text);
-  } catch (const InputError&) {
+  } catch (const std::runtime_error&) {
     if (!fs::exists(file)) throw;  // else another shard was first
   }
   if (whole_text(file) != text) {

@@ -12,7 +12,9 @@
 namespace railtab {
 
 /// The one door to HDF5: files of named arrays with attributes. Paths are "group/dataset"; groups are created as
-/// needed; "" is the root group. Every error is an InputError that names the file and the dataset or attribute.
+/// needed; "" is the root group. Every error is an InputError that names the file and the dataset or attribute, except
+/// that what cannot be written once a file is begun (a full disk) is a ComputationError. The writer is then of no more
+/// use; a growing file stays as its last flush left it.
 /// Two threads may use two files; one object belongs to one thread at a time.
 ///
 /// An array of any rank in C order; `shape` empty means a scalar.

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "railtab/tables/geometry_leaf.hpp"
 #include "railtab/tables/profile_knots.hpp"
 #include "railtab/tables/provenance.hpp"
 #include "railtab/tables/table_shard.hpp"
@@ -71,27 +74,9 @@ struct GeometryTableData {
 [[nodiscard]] std::pair<std::int64_t, std::int64_t> root_range(const TableShard& shard, std::int64_t roots) noexcept;
 [[nodiscard]] std::int64_t root_cells(const GeometryTableData& data) noexcept;
 
-/// Local coordinates in a leaf, -1..1 on each axis, 0 on a fixed one: a lateral, b yaw², c roll.
-struct LocalPoint {
-  float a, b, c;
-};
-
-constexpr int branch_quantities = 4;
-constexpr int most_branch_terms = 12;
-/// Terms of a branch's polynomials, by the axes that are not fixed: 1 a a² a³, and with yaw² b b² ab a²b, and with
-/// roll c c² ac bc. A single one of the two counts as b.
-[[nodiscard]] constexpr int branch_terms(bool yaw_axis, bool roll_axis) noexcept {
-  return 4 * (1 + static_cast<int>(yaw_axis) + static_cast<int>(roll_axis));
-}
 /// The terms at a point, the first branch_terms() of them, in the order of the stored coefficients.
 [[nodiscard]] std::array<double, most_branch_terms> branch_monomials(bool yaw_axis, bool roll_axis, double a, double b,
                                                                      double c) noexcept;
-
-/// Where Newton is to start for a wheel on one branch.
-struct BranchStart {
-  double z_touch;          ///< centre height of a wheel that just touches on this branch [m]
-  double s_wheel, s_rail;  ///< the deepest pair, about [m]
-};
 
 /// Look-up over the stored cells: const, allocation-free, thread-safe.
 class GeometryTable {
@@ -111,18 +96,13 @@ class GeometryTable {
     Status status = Status::outside;
   };
 
-  /// The branches of the cell of (y, yaw, roll), with starts for a wheel whose centre is at height z.
-  /// A wheel at (y, z) with penetration d along n touches, moved back by d n, at the same pair: the start is the
-  /// touching pair at y* = y - d n_y, where d = (z - z_touch) n_z.
-  /// @param y, z of the wheelset centre [m]; @param yaw, roll [rad]. Outside the axes, or off a fixed one by more than
-  /// 1e-12: status outside and no branch.
-  [[nodiscard]] Lookup lookup(double y, double z, double yaw, double roll) const noexcept;
+  /// The leaf of (y, yaw, roll). Outside the axes, or off a fixed one by more than 1e-12: without branches, not inside.
+  /// Most leaves are whole root cells: the way to them has no loop.
+  /// @param y of the wheelset centre [m]; @param yaw, roll [rad]
+  [[nodiscard]] GeometryLeaf leaf(double y, double yaw, double roll) const noexcept;
 
-  /// What lookup() makes of the branches of one leaf.
-  /// @param coefficient `count` branches of branch_terms(yaw_axis, roll_axis) x 4 floats, 16-byte aligned
-  /// @param inverse_half_width of the leaf along the lateral axis [1/m]
-  static void evaluate(const float* coefficient, int count, bool yaw_axis, bool roll_axis, const LocalPoint& point,
-                       double inverse_half_width, double z, Lookup& result) noexcept;
+  /// The branches of the leaf of (y, yaw, roll), with their starts for a wheel whose centre is at height z [m].
+  [[nodiscard]] Lookup lookup(double y, double z, double yaw, double roll) const noexcept;
 
   [[nodiscard]] const GeometryTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].
@@ -138,24 +118,65 @@ class GeometryTable {
     std::array<float, 16> value;
   };
   struct Axis {
-    double low, inverse_width, cells;
+    double low = 0, inverse_width = 0;
+    std::int32_t cells = 1;
+    bool fixed = true;
+    [[nodiscard]] double place(double at) const noexcept { return (at - low) * inverse_width; }
+    [[nodiscard]] bool holds(double place) const noexcept { return place >= 0 && place <= cells; }
+    [[nodiscard]] std::int32_t cell(double place) const noexcept {
+      return std::min(static_cast<std::int32_t>(place), cells - 1);
+    }
   };
-  struct Leaf {
+
+  struct Place {  // a leaf's node and a point in it
     Node node;
     LocalPoint point;
-    double inverse_half_width;  // [1/m]
+    float per_metre;
   };
 
   void pack();
-  [[nodiscard]] Leaf descend(Node node, const std::array<double, 3>& fraction) const noexcept;
-  template <bool yaw_axis, bool roll_axis>
-  void lookup(double y, double z, double yaw, double roll, Lookup& result) const noexcept;
+  [[nodiscard]] Place descend(Node root, double lateral, double squared, double rolled) const noexcept;
 
   GeometryTableData data_;
   std::array<Axis, 3> axis_{};
+  double fixed_yaw_ = 0;  // where that axis is fixed
   int terms_ = 0;
   std::vector<Node> node_;
   std::vector<Line> line_;
 };
+
+inline GeometryLeaf GeometryTable::leaf(double y, double yaw, double roll) const noexcept {
+  GeometryLeaf leaf;
+  const auto& [across, along, about] = axis_;
+  const double lateral = across.place(y - data_.nominal_radius * roll);
+  const double squared = along.place(yaw * yaw);
+  const double rolled = about.place(roll);
+  // On a fixed axis it is the yaw, not its square, that has to agree. NaN is outside.
+  leaf.inside = across.holds(lateral) &&
+                (along.fixed ? std::abs(std::abs(yaw) - fixed_yaw_) <= 1e-12 : along.holds(squared)) &&
+                (about.fixed ? std::abs(roll - about.low) <= 1e-12 : about.holds(rolled));
+  if (!leaf.inside) return leaf;
+  const std::int32_t cell_0 = across.cell(lateral);
+  const std::int32_t cell_1 = along.fixed ? 0 : along.cell(squared);
+  const std::int32_t cell_2 = about.fixed ? 0 : about.cell(rolled);
+  const std::int64_t root = (static_cast<std::int64_t>(cell_2) * along.cells + cell_1) * across.cells + cell_0;
+  const double part_0 = lateral - cell_0;
+  const double part_1 = squared - cell_1;
+  const double part_2 = rolled - cell_2;
+  const auto local = [](double part) { return static_cast<float>(2.0 * part - 1.0); };
+  Place place{node_[static_cast<std::size_t>(root)],
+              {local(part_0), local(part_1), local(part_2)},
+              static_cast<float>(2.0 * across.inverse_width)};
+  if (!CellNode::is_leaf(place.node.code)) place = descend(place.node, part_0, part_1, part_2);
+  leaf.point = place.point;
+  if (along.fixed) leaf.point.b = leaf.point.c;
+  leaf.per_metre = place.per_metre;
+  leaf.trusted_lowering = place.node.trusted_lowering;
+  const std::uint32_t packed = CellNode::index(place.node.code);
+  leaf.count = static_cast<int>(packed & 15U);
+  leaf.terms = terms_;
+  leaf.coefficient = line_.data()->value.data() + static_cast<std::ptrdiff_t>(packed >> 4) * terms_ * branch_quantities;
+  return leaf;
+}
 
 }  // namespace railtab

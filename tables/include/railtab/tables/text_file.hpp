@@ -12,7 +12,7 @@ namespace railtab {
 
 /// Write a text file whole or not at all: to a temporary name beside `file`, then renamed.
 /// @throws InputError where the folder cannot be written, and where `file` is an HDF5 file: no text is meant to replace
-/// a table or results.
+/// a table or results. @throws ComputationError where the disk is full.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 /// An output must not destroy what is read. @throws InputError where `output` is one of the files `inputs` (names that

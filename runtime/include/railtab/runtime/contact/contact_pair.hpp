@@ -23,7 +23,8 @@ struct SilhouettePoint {
 /// sin and cos to rounding; of the small angles of a wheelset by their series, a tenth of the library's time.
 struct SineCosine {
   double sine, cosine;
-  explicit SineCosine(double angle) noexcept {
+  explicit SineCosine(double angle) noexcept : sine(0.0), cosine(1.0) {
+    if (angle == 0.0) return;             // most tracks have no cross-level
     constexpr double series_limit = 0.1;  // [rad] the first terms left out are 3e-18 of the sine, 3e-17 of the cosine
     const double x = angle * angle;
     if (x <= series_limit * series_limit) {

@@ -40,7 +40,7 @@ class ProfileCurve {
   [[nodiscard]] std::size_t piece_of(double s) const noexcept { return interval(s); }
   /// Whether s lies on that piece, its ends included.
   [[nodiscard]] bool piece_contains(std::size_t piece, double s) const noexcept {
-    return s >= start_[piece] && !(s > start_[piece + 1]);
+    return s >= start_[piece] && s <= start_[piece + 1];
   }
   /// Arc length at which a piece begins.
   [[nodiscard]] double piece_begin(std::size_t piece) const noexcept { return start_[piece]; }
@@ -95,20 +95,23 @@ class ProfileCurve {
   void fill_buckets();
 
   [[nodiscard]] std::size_t interval(double s) const noexcept {
-    const double q = (s - bucket_origin_) * bucket_inverse_width_;
-    const double last = static_cast<double>(bucket_.size() - 1);
-    std::size_t i = bucket_[static_cast<std::size_t>(q > 0 ? (q < last ? q : last) : 0)];
-    while (s >= start_[i + 1]) ++i;  // rarely: the processor need not wait for the answer
+    const double q = s * bucket_inverse_width_ - bucket_offset_;
+    std::size_t i =
+        bucket_[static_cast<std::size_t>(static_cast<std::int64_t>(q > 0 ? (q < last_bucket_ ? q : last_bucket_) : 0))];
+    if (s >= start_[i + 1]) [[unlikely]] {  // rarely: the processor need not wait for the answer
+      while (i + 1 < piece_.size() && s >= start_[i + 1]) ++i;
+    }
     return i;
   }
 
   ProfileKnots knots_;
   std::vector<Piece> piece_;           // one per interval between knots
-  std::vector<double> start_;          // arc length at which each piece begins, and a NaN that ends every walk
+  std::vector<double> start_;          // arc length at which each piece begins, and the end
   std::vector<Tangent> tangent_;       // there
   std::vector<std::uint32_t> bucket_;  // first interval that reaches into each uniform bucket of s
-  double bucket_origin_ = 0.0;
-  double bucket_inverse_width_ = 0.0;
+  double bucket_inverse_width_ = 0.0;  // s of a bucket's beginning times this, less the offset, is its number
+  double bucket_offset_ = 0.0;
+  double last_bucket_ = 0.0;  // its number
 };
 
 }  // namespace railtab

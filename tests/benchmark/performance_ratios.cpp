@@ -1,0 +1,193 @@
+// Prices of the parts that the project is about, relative to what they replace, against the committed ones:
+//
+//     performance_ratios BASELINE.csv             prints each ratio beside its baseline, and warns beyond 20 %
+//     performance_ratios BASELINE.csv --renew     writes the ratios of this machine as the new baseline
+//
+// Ratios of processor times in one process: medians over rounds in which each pair is measured one after the other.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/step.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
+
+namespace {
+
+using namespace railtab;
+
+constexpr double warning = 0.2;
+constexpr int rounds = 15;
+
+/// Returns a number that depends on the work, so that the work is not left out.
+using Work = std::function<double()>;
+
+double seconds_of(const Work& work) {
+  const std::clock_t begin = std::clock();
+  volatile double used = work();
+  static_cast<void>(used);
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+double median_ratio(const Work& part, const Work& whole) {
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round) {
+    const double first = seconds_of(part), second = seconds_of(whole);
+    ratios.push_back(first / second);
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + rounds / 2, ratios.end());
+  return ratios[rounds / 2];
+}
+
+/// Contact patches of S1002 on 60E1 from the table and by the search: y ±4 mm, yaw ±2 mrad, 0 to 0.3 mm below touch.
+double geometry_table_to_search() {
+  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 1.0 / 40)),
+                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40)),
+                                           PairDimensions{}));
+  GeometrySweepOptions options;
+  options.lateral = {-0.004, 0.004};
+  options.yaw = {0.0, 0.002};
+  options.roll = {0.0, 0.0};
+  const TableContact contact(GeometryTable(sweep_geometry(search, options)));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> y(-0.004, 0.004), yaw(-0.002, 0.002), lowering(0.0, 3e-4);
+  std::vector<WheelsetPose> poses;
+  while (poses.size() < 2048) {
+    WheelsetPose pose{y(random), 0.0, 0.0, yaw(random)};
+    pose.z = search.touch_height(pose.y, pose.roll, pose.yaw) + lowering(random);
+    ContactPatches answer;
+    if (std::isfinite(pose.z) && contact.patches_from_table(pose, 0.0, answer)) poses.push_back(pose);
+  }
+  const auto sum = [&](const auto& patches) {
+    double penetration = 0.0;
+    for (const WheelsetPose& pose : poses) penetration += patches(pose).patch[0].penetration;
+    return penetration;
+  };
+  return median_ratio([&] { return sum([&](const WheelsetPose& pose) { return contact.patches(pose); }); },
+                      [&] { return sum([&](const WheelsetPose& pose) { return contact.search().patches(pose); }); });
+}
+
+/// Creep forces of the shipped table and of FASTSIM with 20 × 20 elements, at cases that have nothing to do with each
+/// other.
+double creep_table_to_fastsim() {
+  struct Case {
+    double ratio;
+    Creepage creepage;
+  };
+  std::vector<Case> cases;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> decades(-1.5, 1.0), ratio(-0.9, 0.9), direction(-1.0, 1.0);
+  for (int i = 0; i < 4096; ++i) {
+    const double size = std::pow(10.0, decades(random));
+    cases.push_back({std::pow(10.0, ratio(random)),
+                     {size * direction(random), size * direction(random), size * direction(random)}});
+  }
+  const auto forces = [&](const CreepLaw& law) {
+    double sum = 0.0;
+    for (const Case& c : cases) sum += creep_force(law, c.ratio, c.creepage).y;
+    return sum;
+  };
+  const CreepLaw table = creep_law("table", 0.28), fastsim = FastsimCreep{.strips = 20, .elements = 20};
+  return median_ratio([&] { return forces(table); }, [&] { return forces(fastsim); });
+}
+
+/// A time step of a coach on a track with ten spans, online contact, and one back-substitution of its structure's
+/// factor.
+double step_to_back_substitution() {
+  SceneParameters scene;
+  scene.contact.mode = ContactMode::online;
+  scene.train.start = 20.0;
+  scene.track.length_before = scene.track.length_after = 200.0;
+  scene.spans.resize(10);
+  scene.irregularity = std::string(RAILTAB_SOURCE_DIR) + "/docs/examples/demo_irregularity.csv";
+  const VsiModel model = build_model(scene);
+  VsiState state(model);
+  if (!steady_start(model, state).converged) throw ComputationError("no static equilibrium");
+  const HhtScheme scheme{.alpha = scene.integration.alpha, .time_step = scene.integration.time_step};
+  StepOperators operators(model, scheme);
+  StepWorkspace workspace(model);
+  const DofRange all{0, model.structure->dofs()};
+  const StructureFactor& factor = operators.structure->factor();
+  const Eigen::VectorXd load = Eigen::VectorXd::Ones(model.structure->dofs());
+  constexpr int repeated = 20;
+  const auto steps = [&] {
+    double iterations = 0.0;
+    for (int i = 0; i < repeated; ++i) {
+      operators.follow(model, state.time + scheme.time_step, all);
+      const StepReport report = advance(model, operators, {}, state, workspace);
+      if (!report.converged) throw ComputationError("a step that does not converge");
+      iterations += report.newton_iterations;
+    }
+    return iterations;
+  };
+  steps();
+  return median_ratio(steps, [&] {
+    double sum = 0.0;
+    for (int i = 0; i < repeated; ++i) sum += factor.solve(load)[i];
+    return sum;
+  });
+}
+
+std::map<std::string, double> read_baseline(const std::string& file) {
+  std::map<std::string, double> ratios;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t comma = line.find(',');
+    if (line.empty() || line[0] == '#' || line.starts_with("ratio,") || comma == std::string::npos) continue;
+    ratios[line.substr(0, comma)] = std::stod(line.substr(comma + 1));
+  }
+  return ratios;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print(stderr, "performance_ratios BASELINE.csv [--renew]\n");
+    return 2;
+  }
+  const std::string file = argv[1];
+  const bool renew = argc > 2 && std::strcmp(argv[2], "--renew") == 0;
+  const std::map<std::string, double> baseline = read_baseline(file);
+  std::string text =
+      "# Ratios of processor times that tools/test compares its own with; build type dev.\n"
+      "# Made by tools/regenerate performance_ratios.\nratio,value\n";
+  struct Price {
+    const char* name;
+    double (*ratio)();
+  };
+  for (const auto& [name, measure] : {Price{"contact geometry: table / online search", geometry_table_to_search},
+                                      Price{"creep forces: table / FASTSIM 20 x 20", creep_table_to_fastsim},
+                                      Price{"time step / back-substitution", step_to_back_substitution}}) {
+    const double ratio = measure();
+    text += fmt::format("{},{:.4g}\n", name, ratio);
+    const auto known = baseline.find(name);
+    if (known == baseline.end()) {
+      fmt::print("{:<42}{:>9.4f}\n", name, ratio);
+      continue;
+    }
+    const double change = ratio / known->second - 1.0;
+    fmt::print("{:<42}{:>9.4f}   baseline {:.4f}, {:+.0f} %{}\n", name, ratio, known->second, 100.0 * change,
+               std::abs(change) > warning && !renew ? "   WARNING: more than 20 %" : "");
+  }
+  if (renew) write_text_file(file, text);
+  return 0;
+}

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "watched_run.hpp"
+
+namespace railtab::stability {
+namespace {
+
+using Cases = std::vector<StabilityCase>;
+
+/// Every vertical dof of the train.
+template <class Change>
+void for_vertical_dofs(const VsiModel& model, VsiState& state, const Change& change) {
+  for (LinearMotion& motion : state.vehicle) {
+    for (std::size_t body = 0; body < model.vehicle.dof.size(); ++body) {
+      const int z = model.vehicle.dof[body][2];
+      if (z != held) change(motion, z, body);
+    }
+  }
+}
+
+/// Accelerations that go with displacements and velocities where no wheel touches its rail: Newmark's energy is that of
+/// equilibrium at both ends of a step.
+void balance_accelerations(const VsiModel& model, VsiState& state) {
+  const Eigen::MatrixXd damping = model.vehicle_damping(model.contact.speed);
+  for (LinearMotion& m : state.vehicle) {
+    m.acceleration = model.vehicle.mass.ldlt().solve(model.vehicle.static_load - damping * m.velocity -
+                                                     model.vehicle.stiffness * m.displacement);
+  }
+  if (!model.structure) return;
+  LinearMotion& m = state.structure;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(model.structure->mass);
+  m.acceleration = mass.solve(-(model.structure->damping * m.velocity) - model.structure->stiffness * m.displacement);
+}
+
+/// A train that falls from 1 m above its rails, wheels in the air, with its suspension and its track struck: a linear
+/// system, whose energy Newmark's steps keep but for what dampers take.
+CaseResult closed_system(SceneParameters scene) {
+  scene.integration.alpha = 0.0;
+  scene.integration.duration = 0.2;
+  const VsiModel model = build_model(scene);
+  const WatchedRun run = watched_run(model, scene.integration, scene.integration.duration, [&](VsiState& state) {
+    for_vertical_dofs(model, state, [](LinearMotion& motion, int z, std::size_t body) {
+      motion.displacement[z] -= 1.0;
+      motion.velocity[z] += 0.1 * static_cast<double>(body % 3);
+    });
+    if (model.structure) {
+      for (Eigen::Index i = 0; i < state.structure.velocity.size(); i += 7) state.structure.velocity[i] += 0.1;
+    }
+    balance_accelerations(model, state);
+  });
+  CaseResult result = judged(run);
+  result.error = result.energy.step;
+  if (!result.energy.kept || run.longest_flight < 0.99 * scene.integration.duration) result.outcome = Outcome::wrong;
+  return result;
+}
+
+/// The whole train thrown up at t = 0.
+WatchedRun thrown_up(const VsiModel& model, const IntegrationParameters& integration, double upward_speed) {
+  constexpr double duration = 0.8;
+  return watched_run(model, integration, duration, [&](VsiState& state) {
+    for_vertical_dofs(model, state,
+                      [&](LinearMotion& motion, int z, std::size_t) { motion.velocity[z] -= upward_speed; });
+  });
+}
+
+CaseResult judged_flight(const WatchedRun& run, double least) {
+  CaseResult result = judged(run);
+  result.note +=
+      fmt::format("{}flight of {:.2f} s, {} landings, wheel load up to {:.0f} kN", result.note.empty() ? "" : "; ",
+                  run.longest_flight, result.energy.impacts, 1e-3 * run.largest_load);
+  if (result.outcome == Outcome::converged && run.longest_flight < least) {
+    result.outcome = Outcome::wrong;
+    result.note += ", shorter than meant";
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<StabilityCase> energy_cases() {
+  Cases cases;
+  cases.push_back({"linear systems, alpha 0", "a coach in the air", "energy of a step", 1e-12, Outcome::converged, true,
+                   [](double) { return closed_system(coach_on_rigid_track()); }});
+  cases.push_back({"linear systems, alpha 0", "the same over a bridge", "energy of a step", 1e-12, Outcome::converged,
+                   true, [](double) { return closed_system(coach_on_bridge()); }});
+  const auto add = [&](const std::string& setting, const char* measure, double allowed, bool quick,
+                       const std::function<CaseResult(double)>& run) {
+    cases.push_back({"lift-off and landing", setting, measure, allowed, Outcome::converged, quick, run});
+  };
+  for (const double dt : {1e-4, 5e-4, 2e-3}) {
+    add(fmt::format("a coach for 0.56 s, {:g} s", dt), "impulse balance", 1e-3, dt == 5e-4, [=](double) {
+      SceneParameters scene = coach_on_rigid_track();
+      scene.integration.time_step = dt;
+      return judged_flight(thrown_up(build_model(scene), scene.integration, 3.0), 0.5);
+    });
+  }
+  add("a coach for 0.2 s, 0.0005 s", "impulse balance", 1e-3, true, [](double) {
+    const SceneParameters scene = coach_on_rigid_track();
+    return judged_flight(thrown_up(build_model(scene), scene.integration, 2.1), 0.2);
+  });
+  for (const double dt : {1e-4, 5e-4, 2e-3}) {
+    add(fmt::format("a wheelset for 0.2 s, {:g} s, contact_force \"energy\"", dt), "energy of an impact", 1e-2,
+        dt == 5e-4, [=](double) {
+          IntegrationParameters integration;
+          integration.time_step = dt;
+          integration.contact_force = ContactForceRule::energy;
+          CaseResult result = judged_flight(thrown_up(sprung_wheelset(), integration, 1.5), 0.2);
+          result.error = result.energy.impact;
+          return result;
+        });
+    add(fmt::format("a wheelset for 0.2 s, {:g} s", dt), "impulse balance", 1e-3, dt == 5e-4, [=](double) {
+      IntegrationParameters integration;
+      integration.time_step = dt;
+      return judged_flight(thrown_up(sprung_wheelset(), integration, 1.5), 0.2);
+    });
+  }
+  return cases;
+}
+
+}  // namespace railtab::stability
