@@ -103,19 +103,19 @@ std::vector<StabilityCase> energy_cases() {
     return judged_flight(thrown_up(build_model(scene), scene.integration, 2.1), 0.2);
   });
   for (const double dt : {1e-4, 5e-4, 2e-3}) {
-    add(fmt::format("a wheelset for 0.2 s, {:g} s, contact_force \"energy\"", dt), "energy of an impact", 1e-2,
+    add(fmt::format("a wheelset for 0.4 s, {:g} s, contact_force \"energy\"", dt), "energy of an impact", 1e-2,
         dt == 5e-4, [=](double) {
           IntegrationParameters integration;
           integration.time_step = dt;
           integration.contact_force = ContactForceRule::energy;
-          CaseResult result = judged_flight(thrown_up(sprung_wheelset(), integration, 1.5), 0.2);
+          CaseResult result = judged_flight(thrown_up(sprung_wheelset(), integration, 2.1), 0.2);
           result.error = result.energy.impact;
           return result;
         });
-    add(fmt::format("a wheelset for 0.2 s, {:g} s", dt), "impulse balance", 1e-3, dt == 5e-4, [=](double) {
+    add(fmt::format("a wheelset for 0.4 s, {:g} s", dt), "impulse balance", 1e-3, dt == 5e-4, [=](double) {
       IntegrationParameters integration;
       integration.time_step = dt;
-      return judged_flight(thrown_up(sprung_wheelset(), integration, 1.5), 0.2);
+      return judged_flight(thrown_up(sprung_wheelset(), integration, 2.1), 0.2);
     });
   }
   return cases;
