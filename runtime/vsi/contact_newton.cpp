@@ -237,7 +237,7 @@ class TrainNewton {
     const double size = part_of(ws_.residual, g).cwiseAbs().maxCoeff();
     const bool moved = n.moved;
     n.moved = false;
-    if (size < limits_.tolerance) return true;
+    if (size < limits_.tolerance || (moved && n.last)) return true;
     if (moved && size > 2.0 * n.previous && n.part > shortest_part) {
       // The last correction made it worse (a patch gained or lost, an old tangent): take half of it back.
       n.part *= 0.5;
@@ -256,11 +256,13 @@ class TrainNewton {
     correction = ws_.factor[index(g)].solve(part_of(ws_.residual, g));
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
-    if (change < limits_.tolerance || (!gains && change < limits_.rounding)) return true;
     if (change < first_order_ &&
         force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
       return true;
     }
+    // A correction so small ends the iteration, and is made: the forces then are those of a far smaller one.
+    n.last = change < limits_.tolerance || (!gains && change < limits_.rounding);
+    if (n.last && !moved) return true;
     limit_moves(problem_, correction);
     part_of(ws_.start, g) = displacement;
     displacement += correction;

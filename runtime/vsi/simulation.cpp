@@ -42,9 +42,11 @@ class Integrator {
         contact_energy_(observer.contact_energy) {
     if (model.structure) active_ = {0, model.structure->dofs()};
     if (model.window) window_.emplace(model, p.time_step);
+    // What Newton leaves of the forces makes energy: steps that keep it end by the displacement.
+    const bool by_force = p.contact_force == ContactForceRule::endpoint;
     // Forces that change a thousand times as fast as Hertz's, those of creep at walking pace, end by the displacement.
     limits_.newton = {.tolerance = std::min(1e-11, 1e-3 * p.tolerance),
-                      .force_tolerance = p.tolerance * static_wheel_load(model.vehicle),
+                      .force_tolerance = by_force ? p.tolerance * static_wheel_load(model.vehicle) : 0.0,
                       .max_iterations = p.max_iterations};
     // What Newton leaves the structure's answer cannot take away.
     limits_.far_field_tolerance = std::max(limits_.far_field_tolerance, 2.0 * limits_.newton.tolerance);

@@ -86,7 +86,6 @@ Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double he
   integration.time_step = time_step;
   integration.alpha = alpha;
   integration.contact_force = rule;
-  integration.tolerance = 1e-9;  // what Newton leaves of the forces makes energy, too: 2e-5 per impact by default
   const RunSummary run = simulate(model, integration, 5.0, 1, state, observer);
   if (!run.interrupted) throw std::runtime_error("too few impacts: " + run.message);
   for (const double change : result.change) result.largest = std::max(result.largest, std::abs(change));

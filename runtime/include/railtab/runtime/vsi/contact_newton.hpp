@@ -90,8 +90,9 @@ struct NewtonLimits {
 
 /// Where the iteration of one group of wheelsets is.
 struct GroupNewton {
-  bool moved = true;                                          ///< since its forces were computed
-  bool new_tangent = false;                                   ///< whether one is wanted before the next correction
+  bool moved = true;         ///< since its forces were computed
+  bool last = false;         ///< whether its last correction was below the displacement's tolerance
+  bool new_tangent = false;  ///< whether one is wanted before the next correction
   double previous = std::numeric_limits<double>::infinity();  ///< largest residual before the last correction [m, rad]
   double part = 1.0;                                          ///< of the last correction that is made
   int evaluations = 0;
