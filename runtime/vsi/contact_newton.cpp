@@ -186,12 +186,15 @@ class TrainNewton {
     ws.correction.resize(s_.displacement.size());
     ws.found.resize(model.geometry->is_paper() ? 2 * ws.tangent.size() : 0);
     ws.found_at.resize(ws.found.size());
-    // The tangents of the step before serve as long as they are good enough, with the compliance of this one.
-    ws.group.assign(index(groups), GroupNewton{.moved = !ws.forces_known, .new_tangent = ws.factor.empty()});
-    if (ws.factor.empty()) {
-      ws.factor.resize(index(groups));
-    } else if (!ws.forces_known) {
-      for (int g = 0; g < groups; ++g) factorise(problem, g, ws);
+    // The tangents of the step before serve as long as they are good enough, with the compliance of this one. A group
+    // that has rested since the beginning has none yet.
+    const bool fresh = ws.factor.empty();
+    ws.factor.resize(index(groups));
+    ws.group.resize(index(groups));
+    for (int g = 0; g < groups; ++g) {
+      GroupNewton& n = ws.group[index(g)];
+      n = {.moved = !ws.forces_known, .new_tangent = fresh || n.new_tangent};
+      if (!n.new_tangent && !ws.forces_known) factorise(problem, g, ws);
     }
     ws.forces_known = false;
   }

@@ -168,6 +168,21 @@ void scale(double share, std::vector<std::array<RailHeadMotion, 2>>& deviation) 
   }
 }
 
+// Whether a flange stands on its rail. There is rest there too, but no train comes to it by itself.
+bool climbed(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement) {
+  if (model.normal_contact != NormalContact::hertz) return false;
+  constexpr double highest = 15e-3;  // m: flanks lift a wheel by less, the tips of flanges by twice as much
+  const double b = model.geometry->pair().tape_circle_offset();
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const double z = displacement[wheelset_unknowns * w + 2], roll = displacement[wheelset_unknowns * w + 3];
+    for (int side = 0; side < 2; ++side) {
+      const double below = rail_motion(problem, displacement, w, side).displacement[1] - z;
+      if (below - (side == 0 ? -b : b) * roll > highest) return true;
+    }
+  }
+  return false;
+}
+
 // Equilibrium at state.time with `structure_load` on the structure besides the wheels, and a share of the track's
 // deviations.
 EquilibriumReport equilibrium_at(double share, const VsiModel& model, const RestOperators& rest,
@@ -233,6 +248,7 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
     report.converged = (contact_change < contact_tolerance && report.change < dof_tolerance) ||
                        (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
   }
+  if (report.converged && climbed(model, problem, state.contact.displacement)) report.converged = false;
   if (rest.local) local_at_rest(*rest.local, contacts, state);
   state.contact.step_load = state.contact.force;
   for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;

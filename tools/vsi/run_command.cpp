@@ -220,6 +220,10 @@ int print_reduction_error(const SceneParameters& scene, double seconds, const Ru
   if (scene.reduction.kind == Reduction::none) {
     throw input_error("--check-reduction", "a scene without structure.reduction", "one with a reduction to check");
   }
+  if (const double whole = run_duration(scene, build_model(scene)); seconds > whole) {
+    throw input_error("--check-reduction", fmt::format("{} s", seconds),
+                      fmt::format("at most {:.6g} s, the scene's duration", whole));
+  }
   const ReductionError e = check_reduction(scene, seconds);
   const auto step_ms = [](const RunSummary& s) {
     return 1e3 * (s.seconds_total - s.seconds_setup) / static_cast<double>(s.steps);
