@@ -24,7 +24,7 @@ struct GeometrySweepOptions {
   int yaw_roots = 4;                  ///< root cells along yaw², where yaw is an interval
   double roll_root = 2.5e-3;          ///< largest width of a root cell along roll, 1e-5..0.05 [rad]
   double searched_lowering = 0.4e-3;  ///< lowering below first touch up to which the table is made, 1e-6..0.01 [m]
-  double start_error = 8e-6;          ///< a cell is halved where its starts are further off along the wheel [m] ...
+  double start_error = 32e-6;         ///< a cell is halved where its starts are further off along the wheel [m] ...
   double iterated_cell = 2e-5;        ///< ... as long as this share of uniform queries or more falls into it
   double fallback_cell = 2e-6;        ///< ... and as long as this share of uniform queries is searched in it
   TableShard shard;                   ///< the slab of root cells that is made
