@@ -124,6 +124,14 @@ EquilibriumReport start(const SceneParameters& scene, const VsiModel& model, Vsi
   return steady_start(at_rest, state);
 }
 
+// Where a hunting study begins. @throws InputError where that is beside the rails
+void displace(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
+  const double shift = scene.train.initial_lateral_shift, yaw = scene.train.initial_yaw;
+  if (displace_train(model, shift, yaw, state)) return;
+  throw input_error("scene: train.initial_lateral_shift", fmt::format("{} m with a yaw of {} rad", shift, yaw),
+                    "a place of the wheelsets at which no flange stands on its rail");
+}
+
 std::string reduction_text(const ReductionParameters& reduction) {
   const std::string name = fmt::format("reduction of the structure: {}", reduction_name(reduction.kind));
   if (reduction.kind == Reduction::window) {
@@ -213,6 +221,7 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
   } else {
     setup("state of rest");
     rest = start(scene, model, state);
+    if (rest.converged) displace(scene, model, state);
   }
   const ResultHeader header = result_header(scene, model);
   const OutputSelection selection(scene.output, header);
@@ -223,7 +232,6 @@ RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
     summary.contact_mode = contact_mode_name(scene.contact);
     return summary;
   }
-  if (!resume) displace_train(model, scene.train.initial_lateral_shift, scene.train.initial_yaw, state);
   RunObserver selected = observer;
   selected.contact_energy = observer.contact_energy || scene.output.energy;
   if (observer.record) {

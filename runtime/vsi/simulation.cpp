@@ -219,7 +219,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
   integrator.begin(state);
   if (observer.ready) observer.ready();
   bool recorded = true;  // what has been reached
-  summary.steps = first_step;
+  summary.steps = summary.counted_from = first_step;
   if (first_step == 0) emit();
   while (summary.steps < steps) {
     const long iterations_before = summary.newton_iterations;

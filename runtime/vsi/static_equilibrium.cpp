@@ -101,13 +101,14 @@ const DofIndices& wheelset_dof(const VsiModel& model, int w) {
   return model.vehicle.dof[index(model.vehicle.wheelsets[index(w % model.wheelsets_per_vehicle())])];
 }
 
+constexpr double height_range = 0.02;  // m, of wheels about their nominal height: rail deviations are less
+
 // Lowers or lifts wheelset w, as it is turned and rolled, until the wheel on `side` carries `load` [N].
 double level_of_wheel(const VsiModel& model, const ContactProblem& problem, double load, int w, int side,
                       Eigen::VectorXd& displacement) {
-  constexpr double range = 0.02;  // m, about the nominal height: rail deviations are less
   constexpr double accuracy = 1e-9;
   double& z = displacement[wheelset_unknowns * w + 2];
-  double high = -range, low = range;
+  double high = -height_range, low = height_range;
   while (low - high > accuracy) {
     z = 0.5 * (low + high);
     (vertical_force(model, problem, displacement, w, side) > load ? low : high) = z;
@@ -130,8 +131,8 @@ void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::Vecto
   }
 }
 
-// Height and roll at which the wheels of wheelset w carry these loads [N].
-void seat(const VsiModel& model, const ContactProblem& problem, const std::array<double, 2>& load, int w,
+// Height and roll at which the wheels of wheelset w carry these loads [N]; false where there are none near its rails.
+bool seat(const VsiModel& model, const ContactProblem& problem, const std::array<double, 2>& load, int w,
           Eigen::VectorXd& displacement) {
   constexpr int most_passes = 50;  // rolling moves the contact points by a tenth of what the pass before did
   constexpr double level_enough = 2e-9;
@@ -140,9 +141,13 @@ void seat(const VsiModel& model, const ContactProblem& problem, const std::array
     const double left = level_of_wheel(model, problem, load[0], w, 0, displacement);
     const double right = level_of_wheel(model, problem, load[1], w, 1, displacement);
     displacement[wheelset_unknowns * w + 2] = 0.5 * (left + right);
-    if (wheelset_dof(model, w)[3] == held || std::abs(right - left) < level_enough) return;
+    const bool level = std::abs(right - left) < level_enough;
+    if (level || wheelset_dof(model, w)[3] == held) {
+      return std::max(std::abs(left), std::abs(right)) < 0.99 * height_range;
+    }
     displacement[wheelset_unknowns * w + 3] += (right - left) / (2.0 * half_distance);
   }
+  return false;
 }
 
 // What the static correction adds to the rail heads' displacement.
@@ -334,8 +339,8 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
   return report;
 }
 
-void displace_train(const VsiModel& model, double shift, double yaw, VsiState& state) {
-  if (shift == 0.0 && yaw == 0.0) return;
+bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& state) {
+  if (shift == 0.0 && yaw == 0.0) return true;
   const bool seated = model.normal_contact == NormalContact::hertz;
   std::vector<std::array<double, 2>> load(index(model.wheelsets()));
   if (seated) {
@@ -355,17 +360,18 @@ void displace_train(const VsiModel& model, double shift, double yaw, VsiState& s
       if (turned != held) motion.displacement[turned] += yaw;
     }
   }
-  if (!seated) return;
+  if (!seated) return true;
   const ContactProblem displaced = present_contact(model, state);
   Eigen::VectorXd displacement = displaced.predicted;
   for (int w = 0; w < model.wheelsets(); ++w) {
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
-    seat(model, displaced, load[index(w)], w, displacement);
+    if (!seat(model, displaced, load[index(w)], w, displacement)) return false;
     LinearMotion& motion = state.vehicle[index(w / model.wheelsets_per_vehicle())];
     motion.displacement[dof[2]] = displacement[wheelset_unknowns * w + 2];
     if (dof[3] != held) motion.displacement[dof[3]] = displacement[wheelset_unknowns * w + 3];
   }
+  return true;
 }
 
 }  // namespace railtab

@@ -11,6 +11,7 @@
 
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {
@@ -74,6 +75,12 @@ TEST(Start, MovedAsideEveryWheelCarriesItsLoad) {
     for (const double Q : first) EXPECT_NEAR(Q, load, 0.02 * load) << 1e3 * shift << " mm";
     EXPECT_LT(largest, 1.4 * load) << 1e3 * shift << " mm";
   }
+}
+
+TEST(Start, WithAFlangeOnTopOfItsRailIsRefused) {
+  SceneParameters scene = coach_on_rigid_track(50.0);
+  scene.train.initial_lateral_shift = 0.02;
+  EXPECT_THROW(static_cast<void>(run_scene(scene, {})), InputError);
 }
 
 // At rest there is nothing to integrate: forces must stay. At 0.01 m/s a step is 5 um of way, and a wheel slides

@@ -15,8 +15,9 @@ namespace {
 po::options_description common_options() {
   po::options_description options("All commands");
   options.add_options()("help,h", "this text")("version", "version of railtab")(
-      "threads", po::value<int>()->default_value(0)->value_name("N"), "threads to use, 0: all; this command uses one")(
-      "quiet,q", "no progress and no text, errors apart")("json", "one JSON object on stdout");
+      "threads", po::value<int>()->default_value(0)->value_name("N"),
+      "threads to use, 0: all; all commands but sweep use one")("quiet,q", "no progress and no text, errors apart")(
+      "json", "one JSON object on stdout");
   return options;
 }
 

@@ -68,7 +68,7 @@ JsonObject contact_energy_json(const ContactEnergy& e) {
 }  // namespace
 
 std::string headline_text(const report::Headline& headline, const RunSummary& summary) {
-  std::string text = "Largest values of the recorded steps:\n";
+  std::string text;
   line(text, "deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
   line(text, "deck displacement", headline.deck_displacement, 1e3, "mm");
   line(text, "car body, vertical", headline.car_body_vertical, 1.0, "m/s²");
@@ -79,6 +79,7 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   line(text, "wheel unloading", headline.unloading, 100.0, "%");
   line(text, "largest Q", headline.largest_Q, 1e-3, "kN");
   line(text, "smallest Q", headline.smallest_Q, 1e-3, "kN");
+  if (!text.empty()) text = "Largest values of the recorded steps:\n" + text;
   if (summary.contact_queries > 0) {
     fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
                    summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
@@ -92,7 +93,8 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   const std::string speed =
       headline.real_time_factor > 0.0 ? fmt::format(", {:.3g} times real time", headline.real_time_factor) : "";
   fmt::format_to(std::back_inserter(text), "Where the time went ({:.3f} s{}):\n", total, speed);
-  TimeTable times(text, total, static_cast<double>(summary.steps));
+  const auto steps = static_cast<double>(summary.steps - summary.counted_from);
+  TimeTable times(text, total, steps);
   times.once("set-up", summary.seconds_setup);
   times.every_step("structure", summary.seconds_structure);
   times.every_step("contact look-ups", summary.seconds_lookup);
@@ -102,10 +104,10 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   const double named = summary.seconds_setup + summary.seconds_lookup + summary.seconds_contact +
                        summary.seconds_structure + summary.seconds_vehicle + summary.seconds_output;
   times.every_step("other", total - named);
-  if (summary.structure_dofs > 0 && summary.steps > 0) {
+  if (summary.structure_dofs > 0 && steps > 0.0) {
     fmt::format_to(std::back_inserter(text), "  {:.3g} back-substitutions and {:.3g} Newton iterations per step\n",
-                   static_cast<double>(summary.back_substitutions) / static_cast<double>(summary.steps),
-                   static_cast<double>(summary.newton_iterations) / static_cast<double>(summary.steps));
+                   static_cast<double>(summary.back_substitutions) / steps,
+                   static_cast<double>(summary.newton_iterations) / steps);
   }
   if (summary.complete && !summary.message.empty()) text += summary.message + "\n";
   return text;
@@ -128,7 +130,8 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
   json.add("contact_mode", summary.contact_mode).add("contact_queries", summary.contact_queries);
   json.add("table_queries", summary.table_queries).add("table_share", headline.table_share);
   json.add("outside_creep_table", summary.outside_creep_table);
-  json.add("steps", summary.steps).add("newton_iterations", summary.newton_iterations);
+  json.add("steps", summary.steps).add("counted_from_step", summary.counted_from);
+  json.add("newton_iterations", summary.newton_iterations);
   json.add("halved_steps", summary.halved_steps).add("back_substitutions", summary.back_substitutions);
   json.add("structure_dofs", summary.structure_dofs).add("vehicle_dofs", summary.vehicle_dofs);
   json.add("seconds", JsonObject()

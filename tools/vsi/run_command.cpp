@@ -86,7 +86,7 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
   constexpr int interrupted = 130;  // as a shell says of a program that Ctrl-C has ended
   if (options.json) {
     fmt::print("{}\n", headline_json(headline, summary).add("results", options.output).text());
-  } else if (!options.quiet && headline.largest_Q.found()) {
+  } else if (!options.quiet && summary.steps > 0) {
     fmt::print("{}Results: {}\n", headline_text(headline, summary), options.output);
   }
   if (!options.quiet) warn_of_uncovered_queries(summary);

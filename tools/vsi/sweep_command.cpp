@@ -207,7 +207,9 @@ int sweep_command(const Arguments& arguments) {
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw input_error("-o", folder.string() + ", which is a file", "a folder");
   }
-  fs::create_directories(folder);
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw input_error("-o", folder.string() + ": " + failure.message(), "a folder that can be made");
   check_same_scene(scene, folder);
   const auto asked = static_cast<std::size_t>((*values)["threads"].as<int>());
   const std::size_t processes = asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());

@@ -29,7 +29,8 @@ struct EquilibriumReport {
 
 /// The train moved to the right by `shift` [m] and its wheelsets turned by `yaw` [rad], from a state of rest: where a
 /// hunting study begins. Wheelsets rise and roll with their treads, so that every wheel carries what it did; without
-/// that a shift of millimetres begins with an impact.
-void displace_train(const VsiModel& model, double shift, double yaw, VsiState& state);
+/// that a shift of millimetres begins with an impact. False where no height near the rails does that: a flange would
+/// stand on a rail.
+[[nodiscard]] bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& state);
 
 }  // namespace railtab
