@@ -238,51 +238,74 @@ void refuse_two_dampings(const std::filesystem::path& file, const std::vector<Le
   }
 }
 
-/// A table holds its own profiles and dimensions: keys that name others would be read and not used.
-void refuse_profiles_beside_table(const SceneDraft& draft, const std::filesystem::path& file,
-                                  const std::vector<Leaf>& leaves) {
-  if (draft.parameters.contact.table.empty()) return;
-  for (const Leaf& leaf : leaves) {
-    if (leaf.path == "contact.wheel" || leaf.path == "contact.rail" || leaf.path == "contact.rail_inclination" ||
-        leaf.path.starts_with("contact.dimensions.")) {
-      throw leaf_error(file, leaf, "contact.table too",
-                       "either contact.table, which has profiles and dimensions of its own, or keys that name them");
-    }
-  }
-}
-
-/// A key that would be read and not used is a misunderstanding: it is refused, with what it needs.
+/// A key that would be read and not used is a misunderstanding: it is refused, with what stands against it or is
+/// missing.
 void refuse_idle_keys(const SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
   struct Rule {
-    std::string_view prefix;
+    std::vector<std::string_view> keys;  ///< whole, or the beginning of several where it ends with . or _
     bool used;
     std::string_view found, expected;
+    [[nodiscard]] bool is_for(std::string_view path) const {
+      return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) {
+        return key.ends_with('.') || key.ends_with('_') ? path.starts_with(key) : path == key;
+      });
+    }
   };
-  const Reduction reduction = draft.parameters.reduction.kind;
+  const SceneParameters& scene = draft.parameters;
+  const Reduction reduction = scene.reduction.kind;
   const bool random = !draft.spectrum_name.empty();
   // "none", written out, is a reduction that was switched off: its keys may stay
   const bool off = reduction == Reduction::none && std::any_of(leaves.begin(), leaves.end(), [](const Leaf& leaf) {
                      return leaf.path == "structure.reduction";
                    });
   const bool modes = off || reduction == Reduction::modal || reduction == Reduction::craig_bampton;
-  const bool imported = !draft.parameters.structure.files.stiffness.empty();
+  const bool imported = !scene.structure.files.stiffness.empty();
   const std::array rules{
-      Rule{"irregularity.seed", random, "no irregularity.spectrum", "one, or no seed"},
-      Rule{"irregularity.shortest_wave", random, "no irregularity.spectrum", "one, or no wavelengths"},
-      Rule{"irregularity.longest_wave", random, "no irregularity.spectrum", "one, or no wavelengths"},
-      Rule{"structure.modes", modes, "a structure.reduction without modes", "\"modal\" or \"craig-bampton\""},
-      Rule{"structure.static_correction", off || reduction == Reduction::modal, "a structure.reduction without it",
+      Rule{{"train.speed"}, !draft.speed_kmh, "train.speed_kmh too", "either train.speed or train.speed_kmh"},
+      Rule{{"train.speed", "train.speed_kmh"},
+           scene.train.speed_file.empty(),
+           "train.speed_file too",
+           "either a constant speed or train.speed_file"},
+      Rule{{"contact.wheel", "contact.rail", "contact.rail_inclination", "contact.dimensions."},
+           scene.contact.table.empty(),
+           "contact.table too",
+           "either contact.table, which has profiles and dimensions of its own, or keys that name them"},
+      Rule{{"irregularity.spectrum"},
+           draft.irregularity.empty(),
+           "irregularity.file too",
+           "either irregularity.file or irregularity.spectrum"},
+      Rule{{"irregularity.seed"}, random, "no irregularity.spectrum", "one, or no seed"},
+      Rule{{"irregularity.shortest_wave", "irregularity.longest_wave"},
+           random,
+           "no irregularity.spectrum",
+           "one, or no wavelengths"},
+      Rule{{"structure.modes"}, modes, "a structure.reduction without modes", "\"modal\" or \"craig-bampton\""},
+      Rule{{"structure.static_correction"},
+           off || reduction == Reduction::modal,
+           "a structure.reduction without it",
            "\"modal\""},
-      Rule{"structure.window_", off || reduction == Reduction::window, "a structure.reduction without window",
+      Rule{{"structure.window_"},
+           off || reduction == Reduction::window,
+           "a structure.reduction without window",
            "\"window\""},
-      Rule{"structure.damping_", imported, "no structure.stiffness",
+      Rule{{"structure.damping_"},
+           imported,
+           "no structure.stiffness",
            "an imported structure, or damping_ratio and damping_type in [[bridge]]"},
-      Rule{"structure.mass_damping", imported, "no structure.stiffness", "an imported structure"},
-      Rule{"structure.stiffness_damping", imported, "no structure.stiffness", "an imported structure"},
+      Rule{{"structure.mass_damping", "structure.stiffness_damping"},
+           imported,
+           "no structure.stiffness",
+           "an imported structure"},
+      Rule{{"span_deviation.direction", "span_deviation.span", "span_deviation.amplitude", "span_deviation.start",
+            "span_deviation.beta"},
+           draft.deviation_shape != "none",
+           "no span_deviation.shape",
+           "one, \"bending\" or \"parallel-shift\""},
   };
-  for (const Leaf& leaf : leaves) {
-    for (const Rule& rule : rules) {
-      if (!rule.used && leaf.path.starts_with(rule.prefix)) throw leaf_error(file, leaf, rule.found, rule.expected);
+  for (const Rule& rule : rules) {
+    if (rule.used) continue;
+    for (const Leaf& leaf : leaves) {
+      if (rule.is_for(leaf.path)) throw leaf_error(file, leaf, rule.found, rule.expected);
     }
   }
 }
@@ -298,16 +321,9 @@ std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
   return line;
 }
 
-/// [span_deviation] has choices and numbers; without a shape the numbers would be read and not used.
-void settle_deviation(SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
-  if (draft.deviation_shape == "none") {
-    for (const Leaf& leaf : leaves) {
-      if (leaf.path.starts_with("span_deviation.") && leaf.path != "span_deviation.shape") {
-        throw leaf_error(file, leaf, "no span_deviation.shape", "one, \"bending\" or \"parallel-shift\"");
-      }
-    }
-    return;
-  }
+/// [span_deviation] has choices and numbers.
+void settle_deviation(SceneDraft& draft) {
+  if (draft.deviation_shape == "none") return;
   draft.deviation.shape =
       draft.deviation_shape == "bending" ? SpanDeviationShape::bending : SpanDeviationShape::parallel_shift;
   draft.deviation.direction =
@@ -317,32 +333,11 @@ void settle_deviation(SceneDraft& draft, const std::filesystem::path& file, cons
 
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
-  if (draft.speed_kmh) {
-    for (const Leaf& leaf : leaves) {
-      if (leaf.path == "train.speed") {
-        throw leaf_error(file, leaf, "train.speed_kmh too", "either train.speed or train.speed_kmh");
-      }
-    }
-    draft.parameters.train.speed = *draft.speed_kmh / 3.6;
-  }
-  if (!draft.parameters.train.speed_file.empty()) {
-    for (const Leaf& leaf : leaves) {
-      if (leaf.path == "train.speed" || leaf.path == "train.speed_kmh") {
-        throw leaf_error(file, leaf, "train.speed_file too", "either a constant speed or train.speed_file");
-      }
-    }
-  }
-  settle_deviation(draft, file, leaves);
-  refuse_profiles_beside_table(draft, file, leaves);
   refuse_idle_keys(draft, file, leaves);
   refuse_two_dampings(file, leaves);
+  if (draft.speed_kmh) draft.parameters.train.speed = *draft.speed_kmh / 3.6;
+  settle_deviation(draft);
   if (!draft.spectrum_name.empty()) {
-    if (!draft.irregularity.empty()) {
-      for (const Leaf& leaf : leaves) {
-        if (leaf.path == "irregularity.spectrum")
-          throw leaf_error(file, leaf, "irregularity.file too", "either irregularity.file or irregularity.spectrum");
-      }
-    }
     draft.parameters.spectrum = draft.spectrum;
     draft.parameters.spectrum->name = draft.spectrum_name;
   }
