@@ -59,8 +59,7 @@ TEST_F(CreepCommand, KilledAtAnyTimeItGoesOnToTheSameBits) {
   std::uniform_real_distribution<double> share(0.15, 0.4);
   int kills = 0;
   bool partial_seen = false;
-  while (kills < 8 &&
-         killed(arguments, std::chrono::milliseconds(1 + static_cast<long>(1e3 * whole * share(random))))) {
+  while (kills < 8 && killed(TABLEGEN_COMMAND, arguments, 1e-3 + whole * share(random))) {
     ++kills;
     partial_seen = partial_seen || fs::exists(folder_ / "killed.h5.partial");
     EXPECT_FALSE(fs::exists(folder_ / "killed.h5")) << "an unfinished table has its final name";
@@ -114,7 +113,7 @@ TEST_F(CreepCommand, ShardsThatDoNotBelongTogetherAreRefused) {
 
 TEST_F(CreepCommand, APartialFileBelongsToItsJob) {
   const std::vector<std::string> long_job{"creep", "--quiet", "--shard", "2/5", "-o", "shard.h5"};
-  ASSERT_TRUE(killed(long_job, std::chrono::milliseconds(700)));
+  ASSERT_TRUE(killed(TABLEGEN_COMMAND, long_job, 0.7));
   ASSERT_TRUE(fs::exists(folder_ / "shard.h5.partial"));
   expect_refused("creep --shard 2/5 --poisson 0.3 -o shard.h5", {"shard.h5.partial: poisson: found 0.28", "0.3"});
   expect_refused("creep --shard 3/5 -o shard.h5", {"shard.h5.partial: shard: found 2", "3"});

@@ -36,11 +36,7 @@ class FullDisk : public TablegenFixture {
  protected:
   void SetUp() override {
     TablegenFixture::SetUp();
-    // 10000 steps, so that there are checkpoints
-    std::ofstream(folder_ / "scene.toml")
-        << "[contact]\nmode = \"online\"\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[train]\nspeed = 50.0\n"
-           "[irregularity]\nfile = \"rough.csv\"\n[integration]\nduration = 5.0\n[output]\nevery = 2\n";
-    fs::copy_file(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv", folder_ / "rough.csv");
+    write_long_scene(5.0);
   }
 
   /// The command where no file can grow beyond `bytes`; 0: with room.
@@ -62,8 +58,7 @@ class FullDisk : public TablegenFixture {
     }
     int status = 0;
     waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
-            contents(folder_ / "stderr.txt")};
+    return outcome(status);
   }
 
   /// Sizes up to that of `file`, which lack the most one after the other: any, and those just short of it.

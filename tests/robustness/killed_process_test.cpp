@@ -30,38 +30,10 @@ class KilledProcess : public TablegenFixture {
  protected:
   void SetUp() override {
     TablegenFixture::SetUp();
-    std::ofstream(folder_ / "scene.toml")
-        << "[contact]\nmode = \"online\"\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[train]\nspeed = 50.0\n"
-           "[irregularity]\nfile = \"rough.csv\"\n[integration]\nduration = 8.0\n[output]\nevery = 2\n";
-    fs::copy_file(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv", folder_ / "rough.csv");
+    write_long_scene(8.0);
   }
 
-  [[nodiscard]] Outcome shell(const std::string& command) const {
-    const std::string all = "cd '" + folder_.string() + "' && { " + command + "; } >stdout.txt 2>stderr.txt";
-    const int status = std::system(all.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
-            contents(folder_ / "stderr.txt")};
-  }
   [[nodiscard]] Outcome vsi(const std::string& arguments) const { return shell("'" VSI_COMMAND "' " + arguments); }
-
-  /// Kills the command after a time; true where it had not ended by then.
-  [[nodiscard]] bool killed(const char* program, const std::vector<std::string>& arguments, double seconds) const {
-    std::vector<char*> argv{const_cast<char*>(program)};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
-      _exit(127);
-    }
-    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-    kill(child, SIGKILL);
-    int status = 0;
-    waitpid(child, &status, 0);
-    if (WIFSIGNALED(status)) return true;
-    EXPECT_EQ(WEXITSTATUS(status), 0);
-    return false;
-  }
 
   /// Time of a command from its start to its end [s].
   template <class Command>

@@ -222,9 +222,9 @@ TEST_F(TablegenCommand, KilledItGoesOnToTheSameTable) {
   ASSERT_EQ(tablegen(command.substr(0, command.find("-o")) + "-o whole.h5").exit_code, 0);
 
   const std::filesystem::path first = folder_ / "killed.h5.part-0-1", third = folder_ / "killed.h5.part-0-3";
-  ASSERT_TRUE(killed_when(arguments, [&] { return std::filesystem::exists(first); }));
+  ASSERT_TRUE(killed_when(TABLEGEN_COMMAND, arguments, [&] { return std::filesystem::exists(first); }));
   const auto made = std::filesystem::last_write_time(first);
-  ASSERT_TRUE(killed_when(arguments, [&] { return std::filesystem::exists(third); }));
+  ASSERT_TRUE(killed_when(TABLEGEN_COMMAND, arguments, [&] { return std::filesystem::exists(third); }));
   EXPECT_EQ(std::filesystem::last_write_time(first), made) << "a part that is done is made again";
   EXPECT_FALSE(std::filesystem::exists(folder_ / "killed.h5")) << "an unfinished table has its final name";
   std::filesystem::resize_file(first, std::filesystem::file_size(first) / 2);  // cut short: made anew

@@ -38,46 +38,72 @@ class TablegenFixture : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  [[nodiscard]] Outcome tablegen(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" TABLEGEN_COMMAND "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
+  /// scene.toml, a run on a rough track with checkpoints on its way, and its rough.csv.
+  void write_long_scene(double duration) const {
+    std::ofstream(folder_ / "scene.toml")
+        << "[contact]\nmode = \"online\"\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[train]\nspeed = 50.0\n"
+           "[irregularity]\nfile = \"rough.csv\"\n[integration]\nduration = "
+        << std::fixed << duration << "\n[output]\nevery = 2\n";
+    std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv", folder_ / "rough.csv");
+  }
+
+  /// Of a process that wrote stdout.txt and stderr.txt, from what waitpid() says of it.
+  [[nodiscard]] Outcome outcome(int status) const {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "stdout.txt"),
             contents(folder_ / "stderr.txt")};
   }
+  [[nodiscard]] Outcome shell(const std::string& command) const {
+    const std::string all = "cd '" + folder_.string() + "' && { " + command + "; } >stdout.txt 2>stderr.txt";
+    return outcome(std::system(all.c_str()));
+  }
+  [[nodiscard]] Outcome tablegen(const std::string& arguments) const {
+    return shell("'" TABLEGEN_COMMAND "' " + arguments);
+  }
 
-  /// Starts the command and kills it as soon as it is time. @returns true where it had not ended by then
-  [[nodiscard]] bool killed_when(const std::vector<std::string>& arguments,
+  /// Starts a program and kills it as soon as it is time. @returns true where it had not ended by then
+  [[nodiscard]] bool killed_when(const char* program, const std::vector<std::string>& arguments,
                                  const std::function<bool()>& it_is_time) const {
-    std::vector<char*> argv{const_cast<char*>(TABLEGEN_COMMAND)};
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
-      _exit(127);
-    }
+    const pid_t child = started(program, arguments);
     int status = 0;
     bool ended = false;
     while (!it_is_time() && !ended) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       ended = waitpid(child, &status, WNOHANG) == child;
     }
-    if (!ended) {
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
+    return ended ? by_signal(status) : killed(child);
+  }
+  [[nodiscard]] bool killed(const char* program, const std::vector<std::string>& arguments, double seconds) const {
+    const pid_t child = started(program, arguments);
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    return killed(child);
+  }
+
+  std::filesystem::path folder_;
+
+ private:
+  [[nodiscard]] pid_t started(const char* program, const std::vector<std::string>& arguments) const {
+    std::vector<char*> argv{const_cast<char*>(program)};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
+      _exit(127);
     }
+    return child;
+  }
+  [[nodiscard]] static bool killed(pid_t child) {
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return by_signal(status);
+  }
+  /// A process that has ended by itself is to have done so well.
+  [[nodiscard]] static bool by_signal(int status) {
     if (WIFSIGNALED(status)) return true;
     EXPECT_EQ(WEXITSTATUS(status), 0);
     return false;
   }
-
-  [[nodiscard]] bool killed(const std::vector<std::string>& arguments, std::chrono::milliseconds after) const {
-    const auto end = std::chrono::steady_clock::now() + after;
-    return killed_when(arguments, [end] { return std::chrono::steady_clock::now() >= end; });
-  }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace railtab
