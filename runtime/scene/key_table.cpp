@@ -76,7 +76,7 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                  },
                  [&](const NumberListKey&) { set("numbers", "any", ""); },
                  [&](const FileFormatKey&) { set("choice", "matrix-market, calculix, ansys", "matrix-market"); },
-                 [&](const ContactForceKey&) { set("choice", "endpoint, energy", "endpoint"); },
+                 [&](const ContactForceKey&) { set("choice", "automatic, endpoint, energy", "automatic"); },
              },
              key.value);
   return result;

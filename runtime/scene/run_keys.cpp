@@ -88,7 +88,9 @@ std::vector<KeyBinding> integration_keys() {
       {"integration.alpha", "1", "HHT α; 0 is Newmark's trapezoidal rule",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.alpha; }, {-1.0 / 3.0, 0.0}}},
       {"integration.contact_force", "",
-       "contact force of a step: that of its end, or such that a contact spring keeps its energy", ContactForceKey{}},
+       "contact force of a step: that of its end, such that contact springs keep their energy, or the latter at "
+       "impacts",
+       ContactForceKey{}},
       {"integration.tolerance", "1", "Newton: change of the contact forces relative to the static wheel load",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.tolerance; }, {0.0, 1e-2, true}}},
       {"integration.max_iterations", "1", "Newton iterations before a step is halved",

@@ -81,8 +81,11 @@ struct Assign {
     key.member(draft) = value->get();
   }
   void operator()(const ContactForceKey&) const {
-    draft.parameters.integration.contact_force =
-        one_of({"endpoint", "energy"}) == "energy" ? ContactForceRule::energy : ContactForceRule::endpoint;
+    const std::string name = one_of({"automatic", "endpoint", "energy"});
+    std::optional<ContactForceRule>& rule = draft.parameters.integration.contact_force;
+    if (name == "automatic") rule.reset();
+    if (name == "endpoint") rule = ContactForceRule::endpoint;
+    if (name == "energy") rule = ContactForceRule::energy;
   }
   void operator()(const NormalContactKey&) const {
     draft.parameters.contact.normal =

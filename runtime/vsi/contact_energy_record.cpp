@@ -8,27 +8,12 @@ namespace railtab {
 namespace {
 
 constexpr double longest_impact = 10e-3;  // s: a flange's last 6 to 7 ms
-constexpr double flange_angle = 0.2;      // rad: steeper than any tread
 
 }  // namespace
 
-std::vector<ContactEnergyRecord::Touch> ContactEnergyRecord::touches(const VsiState& state) {
-  std::vector<Touch> result;
-  for (std::size_t wheel = 0; wheel < state.contact.patches.size(); ++wheel) {
-    Touch touch = Touch::none;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(state.contact.patches[wheel].count); ++i) {
-      if (state.contact.normal[wheel][i] <= 0.0) continue;
-      const bool flange = std::abs(state.contact.patches[wheel].patch[i].angle) > flange_angle;
-      touch = std::max(touch, flange ? Touch::flange : Touch::tread);
-    }
-    result.push_back(touch);
-  }
-  return result;
-}
-
 ContactEnergyRecord::ContactEnergyRecord(const EnergyAccount& account, const VsiState& state)
     : time_(state.time),
-      touch_(touches(state)),
+      touch_(touches(state.contact)),
       energy_(account.wheelset_energy().begin(), account.wheelset_energy().end()),
       impacts_(energy_.size()) {}
 
@@ -41,7 +26,7 @@ void ContactEnergyRecord::step(const EnergyAccount& account, const VsiState& sta
     summary_.largest_step = all;
     summary_.largest_step_time = state.time;
   }
-  const std::vector<Touch> touch = touches(state);
+  const std::vector<Touch> touch = touches(state.contact);
   for (std::size_t w = 0; w < impacts_.size(); ++w) {
     bool gained = false, lost = false;
     for (const std::size_t wheel : {2 * w, 2 * w + 1}) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "contact_touch.hpp"
 #include "railtab/runtime/results/step_record.hpp"
 #include "railtab/runtime/vsi/energy_account.hpp"
 
@@ -18,10 +19,6 @@ class ContactEnergyRecord {
   [[nodiscard]] const ContactEnergy& summary() const noexcept { return summary_; }
 
  private:
-  /// How a wheel touches the rail: one that comes down or meets the rail with its flange begins an impact.
-  enum class Touch { none, tread, flange };
-  [[nodiscard]] static std::vector<Touch> touches(const VsiState& state);
-
   struct Impact {
     bool going_on = false;
     double begin = 0.0;   // [s]

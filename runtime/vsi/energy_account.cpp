@@ -120,6 +120,7 @@ void EnergyAccount::step(double gamma, const VsiState& state) {
   balance_.traction_work += now.mean_normal_force.dot(material - moved);
   balance_.stiffness_work += balance_.contact - contact_before + now.mean_normal_force.dot(moved);
   for (int w = 0; w < model_.wheelsets(); ++w) {
+    for (int k = 0; k < 2; ++k) balance_.contact_impulse[index(k)] += time_step * load[wheelset_unknowns * w + 1 + k];
     const auto of = [w](const Eigen::VectorXd& v) {
       return v.segment<wheelset_unknowns>(static_cast<Eigen::Index>(wheelset_unknowns) * w);
     };

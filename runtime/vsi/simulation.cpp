@@ -19,6 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// An impact lasts no longer: 1 to 3 ms of a wheel on its tread, 6 to 7 ms of a flange.
+constexpr double longest_impact = 10e-3;  // s
+
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 // Mean of a vehicle's wheels [N].
@@ -39,17 +42,25 @@ class Integrator {
         parameters_(p),
         workspace_(model),
         energy_(observer.energy),
-        contact_energy_(observer.contact_energy) {
+        contact_energy_(observer.contact_energy),
+        wheel_load_(static_wheel_load(model.vehicle)) {
     if (model.structure) active_ = {0, model.structure->dofs()};
     if (model.window) window_.emplace(model, p.time_step);
     // What Newton leaves of the forces makes energy: steps that keep it end by the displacement.
-    const bool by_force = p.contact_force == ContactForceRule::endpoint;
-    // Forces that change a thousand times as fast as Hertz's, those of creep at walking pace, end by the displacement.
-    limits_.newton = {.tolerance = std::min(1e-11, 1e-3 * p.tolerance),
-                      .force_tolerance = by_force ? p.tolerance * static_wheel_load(model.vehicle) : 0.0,
-                      .max_iterations = p.max_iterations};
+    // Forces that change a thousand times as fast as Hertz's, those of creep at walking pace, do in any case.
+    energy_limits_.newton = {.tolerance = std::min(1e-11, 1e-3 * p.tolerance), .max_iterations = p.max_iterations};
     // What Newton leaves the structure's answer cannot take away.
-    limits_.far_field_tolerance = std::max(limits_.far_field_tolerance, 2.0 * limits_.newton.tolerance);
+    energy_limits_.far_field_tolerance =
+        std::max(energy_limits_.far_field_tolerance, 2.0 * energy_limits_.newton.tolerance);
+    endpoint_limits_ = energy_limits_;
+    endpoint_limits_.newton.force_tolerance = p.tolerance * wheel_load_;
+    rule_ = p.contact_force;
+    // Contacts that jump, and modes that answer without inertia, keep no energy; a constraint has none.
+    const bool springs = model.normal_contact == NormalContact::hertz;
+    if (!springs || (!rule_ && (model.unreduced || model.contact.geometry->is_paper()))) {
+      rule_ = ContactForceRule::endpoint;
+    }
+    endpoint_limits_.smooth_only = !rule_;
     static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 
@@ -62,7 +73,7 @@ class Integrator {
   /// From here on as a run that begins here: nothing of earlier steps but the numbers of a checkpoint.
   void begin(VsiState& state) {
     workspace_.newton.factor.clear();
-    if (parameters_.contact_force == ContactForceRule::energy) remember_contact(model_, state);
+    if (rule_ != ContactForceRule::endpoint) remember_contact(model_, state);
     if (account_ || (!energy_ && !contact_energy_) || model_.normal_contact != NormalContact::hertz) return;
     account_.emplace(model_, state);
     if (contact_energy_) energy_record_.emplace(*account_, state);
@@ -73,13 +84,11 @@ class Integrator {
 
  private:
   // Operators of a step that ends at `time`.
-  const StepOperators& operators(int level, double time, double& seconds_setup) {
+  StepOperators& operators(int level, double time, double& seconds_setup) {
     const Stopwatch watch(seconds_setup);
     auto found = operators_.find(level);
     if (found == operators_.end()) {
-      const HhtScheme scheme{.alpha = parameters_.alpha,
-                             .time_step = std::ldexp(parameters_.time_step, -level),
-                             .contact_force = parameters_.contact_force};
+      const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
       found = operators_.emplace(level, StepOperators(model_, scheme)).first;
     }
     found->second.follow(model_, time, active_);
@@ -88,18 +97,17 @@ class Integrator {
 
   bool step(int level, VsiState& state, RunSummary& summary) {
     const double end = state.time + std::ldexp(parameters_.time_step, -level);
-    const StepOperators& step_operators = operators(level, end, summary.seconds_setup);
-    const StepReport report = advance(model_, step_operators, limits_, state, workspace_);
-    summary.newton_iterations += report.newton_iterations;
-    summary.back_substitutions += report.back_substitutions;
-    summary.contact_queries += report.counts.queries;
-    summary.table_queries += report.counts.table_queries;
-    summary.outside_creep_table += report.counts.outside_creep_table;
-    summary.seconds_lookup += report.counts.seconds_lookup;
-    summary.seconds_contact += report.seconds_contact;
-    summary.seconds_structure += report.seconds_structure;
-    summary.seconds_vehicle += report.seconds_vehicle;
+    StepOperators& step_operators = operators(level, end, summary.seconds_setup);
+    StepReport report = advance(rule_at(state), step_operators, state, summary);
+    // A wheel meets or leaves its rail: what its spring takes up it shall give back.
+    if (report.touch_changed && !report.converged) {
+      report = advance(ContactForceRule::energy, step_operators, state, summary);
+    }
     if (report.converged) {
+      if (report.touch_changed) state.impact_until = std::max(state.impact_until, state.time + longest_impact);
+      if (step_operators.scheme.contact_force == ContactForceRule::energy && swings(state)) {
+        state.impact_until = std::max(state.impact_until, state.time + 0.5 * step_operators.scheme.time_step);
+      }
       if (account_) account_->step(step_operators.scheme.gamma(), state);
       if (energy_record_) energy_record_->step(*account_, state);
       if (account_ && energy_) energy_(account_->balance());
@@ -110,13 +118,48 @@ class Integrator {
     return step(level + 1, state, summary) && step(level + 1, state, summary);
   }
 
+  // After an impact the contacts' part p of Eq. 12 alternates about the force, and a change of the rule would leave an
+  // impulse behind: whether it still does.
+  [[nodiscard]] bool swings(const VsiState& state) const {
+    constexpr double share = 1e-3;  // of the static wheel load
+    double largest = 0.0;
+    for (int wheel = 0; wheel < 2 * model_.wheelsets(); ++wheel) {
+      const auto force = [wheel](const Eigen::VectorXd& f) { return f.segment<2>(rail_unknown(wheel)); };
+      largest =
+          std::max(largest, (force(state.contact.step_load) - force(state.contact.end_force)).cwiseAbs().maxCoeff());
+    }
+    return largest > share * wheel_load_;
+  }
+
+  [[nodiscard]] ContactForceRule rule_at(const VsiState& state) const {
+    return rule_.value_or(state.time < state.impact_until ? ContactForceRule::energy : ContactForceRule::endpoint);
+  }
+
+  StepReport advance(ContactForceRule rule, StepOperators& step_operators, VsiState& state, RunSummary& summary) {
+    step_operators.scheme.contact_force = rule;
+    const StepLimits& limits = rule == ContactForceRule::energy ? energy_limits_ : endpoint_limits_;
+    const StepReport report = railtab::advance(model_, step_operators, limits, state, workspace_);
+    summary.newton_iterations += report.newton_iterations;
+    summary.back_substitutions += report.back_substitutions;
+    summary.contact_queries += report.counts.queries;
+    summary.table_queries += report.counts.table_queries;
+    summary.outside_creep_table += report.counts.outside_creep_table;
+    summary.seconds_lookup += report.counts.seconds_lookup;
+    summary.seconds_contact += report.seconds_contact;
+    summary.seconds_structure += report.seconds_structure;
+    summary.seconds_vehicle += report.seconds_vehicle;
+    return report;
+  }
+
   const VsiModel& model_;
   IntegrationParameters parameters_;
-  StepLimits limits_;
+  StepLimits endpoint_limits_, energy_limits_;
+  std::optional<ContactForceRule> rule_;  // none: automatic
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
   std::function<void(const EnergyBalance&)> energy_;
   bool contact_energy_;
+  double wheel_load_;  // static [N]
   std::optional<EnergyAccount> account_;
   std::optional<ContactEnergyRecord> energy_record_;
   DofRange active_;  // unknowns of the structure that take part

@@ -1,5 +1,6 @@
 #include "railtab/runtime/vsi/step.hpp"
 
+#include "contact_touch.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "stopwatch.hpp"
@@ -142,10 +143,14 @@ void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLi
 // What the contacts loaded a subsystem with in the step, from `load` of the solution's forces and from what went
 // before; for the next step.
 void close_load(const HhtScheme& hht, const Eigen::VectorXd& load, const DofRange& active, LinearMotion& motion) {
-  if (hht.contact_force == ContactForceRule::endpoint) return;
-  Eigen::VectorXd past;
-  past_contact_load(hht, motion, active, past);
-  active.of(motion.step_load) = hht.load_weight() * active.of(load) + active.of(past);
+  const double g = hht.gamma();
+  auto p = active.of(motion.step_load);
+  const auto f = active.of(motion.contact_load);  // at the beginning of the step
+  if (hht.contact_force == ContactForceRule::endpoint) {
+    p = hht.load_weight() * active.of(load) - hht.alpha * f;
+  } else {
+    p = hht.load_weight() * active.of(load) + (0.5 * f - (1.0 - g) * p) / g;
+  }
 }
 
 // The same in the contact unknowns.
@@ -197,7 +202,6 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
       vehicle(model.vehicle, vehicle_damping, hht),
       speed_(model.contact.speed) {
   if (model.normal_contact == NormalContact::rigid) {
-    scheme.contact_force = ContactForceRule::endpoint;  // a constraint has no spring
     rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
   }
   if (!model.structure) return;
@@ -269,6 +273,8 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
 
   set_force_rule(hht, state.contact, ws.problem);
   solve_coupling(model, op, limits, state, contacts, ws, report);
+  report.touch_changed = report.converged && touches(ws.solution) != touches(state.contact);
+  if (report.touch_changed && limits.smooth_only) report.converged = false;
   if (report.converged) close_step(model, op, contacts, state, ws, report);
   return report;
 }
@@ -288,6 +294,8 @@ void remember_contact(const VsiModel& model, VsiState& state) {
   if (model.structure) scatter_rail_forces(contacts, now.end_force, state.structure.contact_load);
   state.contact.end_force = std::move(now.end_force);
   state.contact.memory = std::move(now.memory);
+  state.contact.normal = std::move(now.normal);
+  state.contact.patches = std::move(now.patches);
 }
 
 }  // namespace railtab

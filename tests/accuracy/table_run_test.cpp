@@ -195,6 +195,7 @@ TEST(PaperRun, IsTheOnlineSearchOnStraightTreadsAndArcs) {
   const std::filesystem::path track = wavy_track();
   SceneParameters scene = led_by_flanges(track, ContactMode::paper);
   scene.contact.wheel = "conic-arc-stand-in";
+  scene.integration.contact_force = ContactForceRule::endpoint;  // as the published method has it
   const Outcome paper = run(scene);
   scene.contact.mode = ContactMode::online;
   const Outcome online = run(scene);

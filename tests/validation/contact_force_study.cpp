@@ -9,6 +9,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <optional>
 
 #include "railtab/runtime/vsi/simulation.hpp"
 
@@ -45,7 +46,9 @@ struct Outcome {
   double seconds = 0.0;
 };
 
-Outcome run(SceneParameters scene, ContactForceRule rule, double alpha, double time_step, bool account) {
+using Rule = std::optional<ContactForceRule>;  // none: automatic
+
+Outcome run(SceneParameters scene, Rule rule, double alpha, double time_step, bool account) {
   scene.integration.contact_force = rule;
   scene.integration.alpha = alpha;
   scene.integration.time_step = time_step;
@@ -85,7 +88,10 @@ double peak_Y(const Outcome& outcome) {
   return peak;
 }
 
-const char* name_of(ContactForceRule rule) { return rule == ContactForceRule::energy ? "energy" : "endpoint"; }
+const char* name_of(Rule rule) {
+  if (!rule) return "automatic";
+  return rule == ContactForceRule::energy ? "energy" : "endpoint";
+}
 
 void study(const char* name, const SceneParameters& scene) {
   constexpr double fine_step = 3.125e-5;
@@ -98,7 +104,7 @@ void study(const char* name, const SceneParameters& scene) {
       "gain [J] | iterations per step | halved | CPU [s] |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const double alpha : {0.0, -0.05, -0.1}) {
     for (const double step : {1e-3, 5e-4, 2.5e-4}) {
-      for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
+      for (const Rule rule : {Rule(ContactForceRule::endpoint), Rule(ContactForceRule::energy), Rule()}) {
         const Outcome o = run(scene, rule, alpha, step, false);
         const EnergyBalance energy = run(scene, rule, alpha, step, true).energy;
         const Difference d = difference(o, reference);

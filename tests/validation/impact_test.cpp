@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "../measured.hpp"
@@ -52,7 +55,7 @@ double touch_height(const VsiModel& model) {
 }
 
 // Falls from `height` [m] until it has met the rails `impacts` times; energies are taken in flight.
-Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double height, int impacts) {
+Bouncing bounce(std::optional<ContactForceRule> rule, double alpha, double time_step, double height, int impacts) {
   const VsiModel model = bouncing_mass();
   const int z = model.vehicle.dof[1][2];
   const double mass = model.vehicle.mass(z, z);
@@ -97,15 +100,21 @@ Bouncing bounce(ContactForceRule rule, double alpha, double time_step, double he
 TEST(Impact, KeepsItsEnergyWithinOnePercentAtOneMillisecond) {
   for (const double height : {1e-3, 5e-3, 2e-2}) {
     for (const double alpha : {0.0, -0.05, -0.1}) {
-      const auto largest = [&](ContactForceRule rule) { return bounce(rule, alpha, 1e-3, height, 8).largest; };
+      const auto largest = [&](std::optional<ContactForceRule> rule) {
+        return bounce(rule, alpha, 1e-3, height, 8).largest;
+      };
       const double endpoint = largest(ContactForceRule::endpoint), energy = largest(ContactForceRule::energy);
+      const double automatic = largest(std::nullopt);
       std::printf(
-          "fall of %2.0f mm, alpha %5.2f, 1 ms: energy changes by up to %6.3f %% per impact, endpoint rule %.2f %%\n",
-          1e3 * height, alpha, 100 * energy, 100 * endpoint);
+          "fall of %2.0f mm, alpha %5.2f, 1 ms: energy changes by up to %6.3f %% per impact, automatic rule %6.3f %%, "
+          "endpoint rule %.2f %%\n",
+          1e3 * height, alpha, 100 * energy, 100 * automatic, 100 * endpoint);
       const std::string name = fmt::format("impact.{:g}mm.{:g}", 1e3 * height, 100 * std::abs(alpha));
       testing::measured(name + ".energy", 100 * energy);
+      testing::measured(name + ".automatic", 100 * automatic);
       testing::measured(name + ".endpoint", 100 * endpoint);
       EXPECT_LT(energy, 0.01);
+      EXPECT_LT(automatic, 0.01);
       EXPECT_GT(endpoint, 0.01);  // the question is worth asking
     }
   }
@@ -113,16 +122,49 @@ TEST(Impact, KeepsItsEnergyWithinOnePercentAtOneMillisecond) {
 
 // What is left is HHT's damping (with alpha = 0 nothing, but for the stiffness that varies with the depth).
 TEST(Impact, RemainderVanishesFasterThanTheSquareOfTheTimeStep) {
-  for (const double alpha : {-0.05, -0.1, -0.3}) {
-    const auto loss = [&](double dt) { return bounce(ContactForceRule::energy, alpha, dt, 1e-3, 8).largest; };
-    const double coarse = loss(1e-3), fine = loss(2.5e-4);
-    const double order = 0.5 * std::log2(coarse / fine);
-    std::printf("alpha %5.2f: %.2e of the energy per impact at 1 ms, %.2e at 0.25 ms, order %.2f\n", alpha, coarse,
-                fine, order);
-    testing::measured(fmt::format("impact.order.{:g}", 100 * std::abs(alpha)), order);
-    EXPECT_GT(order, 2.0);
-    EXPECT_LT(order, 4.5);
+  for (const std::optional<ContactForceRule> rule : {std::optional(ContactForceRule::energy), {}}) {
+    for (const double alpha : {-0.05, -0.1, -0.3}) {
+      const auto loss = [&](double dt) { return bounce(rule, alpha, dt, 1e-3, 8).largest; };
+      const double coarse = loss(1e-3), fine = loss(2.5e-4);
+      const double order = 0.5 * std::log2(coarse / fine);
+      std::printf("%s, alpha %5.2f: %.2e of the energy per impact at 1 ms, %.2e at 0.25 ms, order %.2f\n",
+                  rule ? "energy" : "automatic", alpha, coarse, fine, order);
+      testing::measured(fmt::format("impact.order.{}{:g}", rule ? "" : "automatic.", 100 * std::abs(alpha)), order);
+      EXPECT_GT(order, 2.0);
+      EXPECT_LT(order, 4.5);
+    }
   }
+}
+
+// Checkpoints in flight, in an impact, and while its forces still keep their energy: from each the run goes on to the
+// last bit.
+TEST(Impact, ARunResumedFromAnImpactIsTheUninterruptedOne) {
+  const VsiModel model = bouncing_mass();
+  const int z = model.vehicle.dof[1][2];
+  VsiState state(model);
+  state.vehicle[0].displacement[z] = touch_height(model) - 1e-3;
+  IntegrationParameters integration;
+  std::vector<std::pair<long, std::vector<double>>> checkpoints;
+  RunObserver observer;
+  observer.checkpoint_every = 7;
+  observer.checkpoint = [&](long step, std::span<const double> numbers) {
+    checkpoints.emplace_back(step, std::vector<double>(numbers.begin(), numbers.end()));
+  };
+  constexpr double duration = 0.12;
+  ASSERT_TRUE(simulate(model, integration, duration, 1, state, observer).complete);
+  const std::vector<double> end = packed(state);
+  int in_impact = 0;
+  observer.checkpoint = [](long, std::span<const double>) {};
+  for (const auto& [step, numbers] : checkpoints) {
+    VsiState resumed(model);
+    unpack(numbers, resumed);
+    in_impact += resumed.time < resumed.impact_until ? 1 : 0;
+    static_cast<void>(simulate(model, integration, duration, 1, resumed, observer, step));
+    EXPECT_EQ(packed(resumed), end) << "from step " << step;
+  }
+  std::printf("%zu checkpoints, %d of them while contacts keep their energy\n", checkpoints.size(), in_impact);
+  EXPECT_GT(in_impact, 5);
+  EXPECT_LT(in_impact, static_cast<int>(checkpoints.size()) - 2);
 }
 
 // The account of a run against the energies of the flights.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
+#include <optional>
 
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
 #include "watched_run.hpp"
@@ -103,20 +104,23 @@ std::vector<StabilityCase> energy_cases() {
     return judged_flight(thrown_up(build_model(scene), scene.integration, 2.1), 0.2);
   });
   for (const double dt : {1e-4, 5e-4, 2e-3}) {
-    add(fmt::format("a wheelset for 0.4 s, {:g} s, contact_force \"energy\"", dt), "energy of an impact", 1e-2,
-        dt == 5e-4, [=](double) {
-          IntegrationParameters integration;
-          integration.time_step = dt;
-          integration.contact_force = ContactForceRule::energy;
-          CaseResult result = judged_flight(thrown_up(sprung_wheelset(), integration, 2.1), 0.2);
-          result.error = result.energy.impact;
-          return result;
-        });
-    add(fmt::format("a wheelset for 0.4 s, {:g} s", dt), "impulse balance", 1e-3, dt == 5e-4, [=](double) {
+    const auto wheelset = [dt](std::optional<ContactForceRule> rule) {
       IntegrationParameters integration;
       integration.time_step = dt;
+      integration.contact_force = rule;
       return judged_flight(thrown_up(sprung_wheelset(), integration, 2.1), 0.2);
-    });
+    };
+    const auto by_energy = [wheelset](std::optional<ContactForceRule> rule) {
+      CaseResult result = wheelset(rule);
+      result.error = result.energy.impact;
+      return result;
+    };
+    const std::string setting = fmt::format("a wheelset for 0.4 s, {:g} s", dt);
+    add(setting, "energy of an impact", 1e-2, dt == 5e-4, [=](double) { return by_energy({}); });
+    add(setting + ", contact_force \"energy\"", "energy of an impact", 1e-2, dt == 5e-4,
+        [=](double) { return by_energy(ContactForceRule::energy); });
+    add(setting + ", contact_force \"endpoint\"", "impulse balance", 1e-3, dt == 5e-4,
+        [=](double) { return wheelset(ContactForceRule::endpoint); });
   }
   return cases;
 }

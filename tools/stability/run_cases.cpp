@@ -63,9 +63,7 @@ void add_stiffness_cases(Cases& cases) {
     for (const double dt : {1e-6, 1e-5, 1e-4, 5e-4, 1e-3, 1e-2}) {
       const bool quick = (stiffness == 1e-3 || stiffness == 1.0 || stiffness == 1e3) && dt >= 5e-4;
       cases.push_back({"contact stiffness and time step", fmt::format("K_h x {:g}, {:g} s", stiffness, dt), impulse,
-                       1e-2,
-                       stiffness == 1e-3 || (stiffness >= 1e2 && dt == 1e-2) ? Outcome::ended : Outcome::converged,
-                       quick, [=](double) {
+                       1e-2, stiffness == 1e-3 ? Outcome::ended : Outcome::converged, quick, [=](double) {
                          SceneParameters scene = coach_on_rigid_track();
                          scale_stiffness(scene, stiffness);
                          set_step(scene, dt, 1500.0);
@@ -75,15 +73,14 @@ void add_stiffness_cases(Cases& cases) {
   }
   for (const double stiffness : {1.0, 1e2, 1e3}) {
     for (const double dt : {5e-4, 1e-3, 1e-2}) {
-      cases.push_back({"contact_force \"energy\"", fmt::format("K_h x {:g}, {:g} s", stiffness, dt), "energy gained",
-                       1e-2, Outcome::converged, dt == 1e-2, [=](double) {
+      // A wheel that bounces within a few steps leaves the rail with many times the energy that it came with.
+      cases.push_back({"contact_force \"endpoint\"", fmt::format("K_h x {:g}, {:g} s", stiffness, dt), impulse, 1e-2,
+                       stiffness >= 1e2 && dt == 1e-2 ? Outcome::ended : Outcome::converged, dt == 1e-2, [=](double) {
                          SceneParameters scene = coach_on_rigid_track();
-                         scene.integration.contact_force = ContactForceRule::energy;
+                         scene.integration.contact_force = ContactForceRule::endpoint;
                          scale_stiffness(scene, stiffness);
                          set_step(scene, dt, 1500.0);
-                         CaseResult result = run_of(scene, wave(3.0, 1e-3, 12.0));
-                         result.error = result.energy.gained;
-                         return result;
+                         return run_of(scene, wave(3.0, 1e-3, 12.0));
                        }});
     }
   }

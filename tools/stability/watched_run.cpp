@@ -59,7 +59,7 @@ bool all_finite(const StepRecord& record) {
   return finite;
 }
 
-/// Takes in record after record.
+/// Takes in record after record, and the account of every step.
 class Watch {
  public:
   Watch(const VsiModel& model, WatchedRun& run) : model_(&model), run_(&run) {}
@@ -68,7 +68,7 @@ class Watch {
     run_->finite = run_->finite && all_finite(record);
     const double step = run_->records > 0 ? record.time - time_ : 0.0;
     const Pair force = wheel_forces(record);
-    if (run_->records++ > 0) {
+    if (run_->records++ > 0 && !of_account_) {
       impulse_.y += 0.5 * step * (force_.y + force.y);
       impulse_.z += 0.5 * step * (force_.z + force.z);
     }
@@ -88,6 +88,11 @@ class Watch {
     }
   }
 
+  void operator()(const EnergyBalance& balance) {
+    impulse_ = {-balance.contact_impulse[0], -balance.contact_impulse[1]};
+    of_account_ = true;
+  }
+
   void conclude(const Pair& change) {
     const Pair weight = load(*model_);
     const double vertical = weight.z * time_ - impulse_.z - change.z;
@@ -101,31 +106,9 @@ class Watch {
   WatchedRun* run_;
   double time_ = 0.0;
   Pair force_, impulse_;
+  bool of_account_ = false;  // wheels that follow the rails have none
   std::vector<double> flight_;
 };
-
-StepRecord record_of(const VsiModel& model, const VsiState& state) {
-  StepRecord record;
-  fill_record(model, state, record);
-  return record;
-}
-
-/// Step n of level `level`, of length time_step/2^level, halved as a run halves it, every part watched.
-bool open_step(const VsiModel& model, const IntegrationParameters& integration, int level, long n, VsiState& state,
-               Watch& watch) {
-  IntegrationParameters own = integration;
-  own.time_step = std::ldexp(integration.time_step, -level);
-  own.max_halvings = 0;
-  VsiState tried = state;
-  if (simulate(model, own, static_cast<double>(n + 1) * own.time_step, 1, tried, {}, n).complete) {
-    state = std::move(tried);
-    watch(record_of(model, state));
-    return true;
-  }
-  if (level == integration.max_halvings) return false;
-  return open_step(model, integration, level + 1, 2 * n, state, watch) &&
-         open_step(model, integration, level + 1, 2 * n + 1, state, watch);
-}
 
 }  // namespace
 
@@ -148,25 +131,16 @@ WatchedRun watched_run(const VsiModel& start, const VsiModel& model, const Integ
   Watch watch(model, run);
   EnergyWatch energy;
   RunObserver observer;
-  observer.energy = [&](const EnergyBalance& balance) { energy.take(balance); };
+  observer.energy = [&](const EnergyBalance& balance) {
+    watch(balance);
+    energy.take(balance);
+  };
   observer.record = [&](const StepRecord& record) {
     watch(record);
     energy.record(record);
   };
-  const VsiState first = state;
   run.summary = simulate(model, integration, duration, 1, state, observer);
   run.energy = energy.result();
-  if (run.summary.halved_steps > 0 && run.summary.complete && !model.structure) {
-    // The balance needs the forces of halved steps too.
-    run.records = 0;
-    watch = Watch(model, run);
-    state = first;
-    const auto steps = std::lround(duration / integration.time_step);
-    watch(record_of(model, state));
-    for (long n = 0; n < steps; ++n) {
-      if (!open_step(model, integration, 0, n, state, watch)) break;
-    }
-  }
   const Pair after = momentum(model, state);
   watch.conclude({after.y - before.y, after.z - before.z});
   return run;

@@ -58,8 +58,10 @@ struct IntegrationParameters {
   double time_step = 5e-4;  ///< [s]
   double duration = 0.0;    ///< [s]; 0: until the last wheelset has left the last span
   double alpha = -0.05;     ///< HHT alpha, -1/3..0
-  ContactForceRule contact_force = ContactForceRule::endpoint;
-  double tolerance = 1e-5;  ///< Newton: change of contact forces relative to the static wheel load
+  /// None: automatic, `energy` in steps in which a wheel meets or leaves its rail and for some time after, else
+  /// `endpoint`.
+  std::optional<ContactForceRule> contact_force;
+  double tolerance = 1e-4;  ///< Newton: change of contact forces relative to the static wheel load
   int max_iterations = 20;
   int max_halvings = 6;   ///< of a step that does not converge
   void validate() const;  ///< @throws InputError naming the member out of range

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct EnergyBalance {
   double stiffness_work = 0;
 
   double initial = 0;  ///< energy at the beginning of the account
+  /// Impulse of the contact forces on the train since then, y and z, as the steps have them [N s].
+  std::array<double, 2> contact_impulse{};
   [[nodiscard]] double energy() const noexcept { return kinetic + strain + gravity + contact; }
   /// Energy that nothing accounts for: gained by the time integration as a whole, contact_gain included. HHT's
   /// numerical damping makes it negative; under Newmark (α = 0) the rest is the contacts'.

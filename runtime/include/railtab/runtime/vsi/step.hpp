@@ -36,10 +36,12 @@ struct StepLimits {
   NewtonLimits newton;
   double far_field_tolerance = 1e-9;  ///< largest rail displacement the contact solution may miss [m, rad]
   int max_passes = 6;                 ///< contact solutions per step
+  bool smooth_only = false;           ///< leave a step undone in which a wheel meets or leaves its rail
 };
 
 struct StepReport {
   bool converged = false;
+  bool touch_changed = false;  ///< a wheel meets or leaves its rail with tread or flange
   int newton_iterations = 0;
   int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
   ContactCounts counts;

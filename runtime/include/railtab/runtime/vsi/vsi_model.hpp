@@ -91,6 +91,7 @@ struct VsiState {
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].
   Eigen::VectorXd far_field;
+  double impact_until = 0.0;  ///< contacts keep their energy until then, where that is left to the run [s]
 
   explicit VsiState(const VsiModel& model);
 };

@@ -1,0 +1,24 @@
+#include "contact_touch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace railtab {
+
+std::vector<Touch> touches(const ContactSolution& contact) {
+  constexpr double flange_angle = 0.2;  // rad: steeper than any tread
+  std::vector<Touch> result;
+  result.reserve(contact.patches.size());
+  for (std::size_t wheel = 0; wheel < contact.patches.size(); ++wheel) {
+    const ContactPatches& patches = contact.patches[wheel];
+    Touch touch = Touch::none;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+      if (contact.normal[wheel][i] <= 0.0) continue;
+      touch = std::max(touch, std::abs(patches.patch[i].angle) > flange_angle ? Touch::flange : Touch::tread);
+    }
+    result.push_back(touch);
+  }
+  return result;
+}
+
+}  // namespace railtab
