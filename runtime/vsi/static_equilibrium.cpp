@@ -22,6 +22,7 @@ constexpr double dof_tolerance = 1e-7;  // m, rad
 // Where iterations no longer gain, what rounding leaves of the forces is the end: it moves the contact unknowns by some
 // 1e-9 and, over the weak eps M, the dofs by some 1e-7.
 constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
+constexpr double dof_apart = 1e-5;                              // m, rad: of contact unknowns and dofs
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
 
@@ -173,16 +174,31 @@ void scale(double share, std::vector<std::array<RailHeadMotion, 2>>& deviation) 
   }
 }
 
-// Whether a flange stands on its rail. There is rest there too, but no train comes to it by itself.
-bool climbed(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement) {
+// How far wheelsets are from where their contacts are solved: nothing but where forces jump (wheels deep in their
+// rails) and a correction of nothing is left of a residual that has not vanished [m, rad].
+double apart(const VsiModel& model, const VsiState& state) {
+  Eigen::VectorXd q = state.contact.displacement;
+  for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
+    gather_wheelsets(model, v, state.vehicle[index(v)].displacement, q);
+  }
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const int k = wheelset_unknowns * w + pitch;
+    q[k] = state.contact.displacement[k];
+  }
+  return (q - state.contact.displacement).cwiseAbs().maxCoeff();
+}
+
+// Whether a wheel is not where it runs: its flange on top of the rail, where there is rest too but no train comes to by
+// itself, or the wheel itself deep in the rail or below.
+bool off_its_rail(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement) {
   if (model.normal_contact != NormalContact::hertz) return false;
-  constexpr double highest = 15e-3;  // m: flanks lift a wheel by less, the tips of flanges by twice as much
+  constexpr double farthest = 15e-3;  // m: flanks lift a wheel by less, the tips of flanges by twice as much
   const double b = model.geometry->pair().tape_circle_offset();
   for (int w = 0; w < model.wheelsets(); ++w) {
     const double z = displacement[wheelset_unknowns * w + 2], roll = displacement[wheelset_unknowns * w + 3];
     for (int side = 0; side < 2; ++side) {
       const double below = rail_motion(problem, displacement, w, side).displacement[1] - z;
-      if (below - (side == 0 ? -b : b) * roll > highest) return true;
+      if (std::abs(below - (side == 0 ? -b : b) * roll) > farthest) return true;
     }
   }
   return false;
@@ -252,8 +268,9 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
     const bool gains = report.change < 0.5 * change_before;
     report.converged = (contact_change < contact_tolerance && report.change < dof_tolerance) ||
                        (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
+    if (report.converged && apart(model, state) > dof_apart) return {.iterations = report.iterations + 1};
   }
-  if (report.converged && climbed(model, problem, state.contact.displacement)) report.converged = false;
+  if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
   if (rest.local) local_at_rest(*rest.local, contacts, state);
   state.contact.step_load = state.contact.force;
   for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;
