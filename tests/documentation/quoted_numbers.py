@@ -9,11 +9,11 @@ import re
 from decimal import Decimal
 from pathlib import Path
 
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.]*")
+NAME = re.compile(r"(?<![0-9.])[A-Za-z][A-Za-z0-9_.]*")
 CELL = re.compile(r"\[([^\]]+)\]")
 GROUPED = r"[−+-]?\d{1,3}(?:\u00a0\d{3})*"
 PLAIN = r"[−+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-MARK = re.compile(rf"(?P<shown>{GROUPED}(?=<!--[^>]*%')|{PLAIN}|)<!--(?P<value>[a-z(\[][^<>]*?) %(?P<form>[^ <>]+)-->")
+MARK = re.compile(rf"(?P<shown>{GROUPED}(?=<!--[^>]*%')|{PLAIN}|)<!--(?P<value>[a-z0-9(\[][^<>]*?) %(?P<form>[^ <>]+)-->")
 TABLE = re.compile(
     r"<!--table (?P<file>\S+)(?: where (?P<where>[^\n]+))?\n(?P<row>[^\n]+)\n-->\n"
     r"(?P<head>(?:[^\n]*\n)?(?:\|[ -]+)+\|\n)(?P<body>(?:\|[^\n]*\n)*)")
@@ -45,7 +45,7 @@ def shown(value, form):
         sign, form = ("+", form[1:]) if form.startswith("+") else ("", form)
         text = f"{Decimal(f'{value:{form}}'):{sign}f}"
     else:
-        text = f"%{form}" % value
+        text = re.sub(r"e([+-])0*(?=\d)", lambda m: "e" + m[1].strip("+"), f"%{form}" % value)
     return text.replace("-", "−", 1) if text.startswith("-") else text
 
 
@@ -64,6 +64,7 @@ class Measurements:
 
     def table(self, name):
         """Rows of a CSV, by its path in docs/validation or its bare name, without .csv."""
+        name = name.removesuffix(".csv")
         if name not in self.rows:
             found = [f for f in self.files if f.with_suffix("").as_posix().endswith("/" + name)]
             if len(found) != 1:
@@ -72,9 +73,9 @@ class Measurements:
         return self.rows[name]
 
     def cell(self, reference):
-        """[file; first field; second field; ...; column]: the one row that begins with these fields."""
+        """[file; first field; second field; ...; column]: the one row that begins with these fields, * being any."""
         name, *key, column = [part.strip() for part in reference.split(";")]
-        found = [row for row in self.table(name) if list(row.values())[:len(key)] == key]
+        found = [row for row in self.table(name) if all(k in ("*", field) for k, field in zip(key, row.values()))]
         if len(found) != 1 or column not in found[0]:
             raise QuoteError(f"{len(found)} rows [{reference}], or no such column")
         return float(found[0][column])
