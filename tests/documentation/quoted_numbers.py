@@ -10,7 +10,7 @@ from decimal import Decimal
 from pathlib import Path
 
 NAME = re.compile(r"(?<![0-9.])[A-Za-z][A-Za-z0-9_.]*")
-CELL = re.compile(r"\[([^\]]+)\]")
+CELL = re.compile(r"(max|min|)\[([^\]]+)\]")
 GROUPED = r"[−+-]?\d{1,3}(?:\u00a0\d{3})*"
 PLAIN = r"[−+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 MARK = re.compile(rf"(?P<shown>{GROUPED}(?=<!--[^>]*%')|{PLAIN}|)<!--(?P<value>[a-z0-9(\[][^<>]*?) %(?P<form>[^ <>]+)-->")
@@ -72,13 +72,15 @@ class Measurements:
             self.rows[name] = read_rows(found[0])
         return self.rows[name]
 
-    def cell(self, reference):
-        """[file; first field; second field; ...; column]: the one row that begins with these fields, * being any."""
+    def cell(self, choice, reference):
+        """[file; first field; second field; ...; column]: the one row that begins with these fields, * being any.
+
+        With max or min before it, that of all rows that do."""
         name, *key, column = [part.strip() for part in reference.split(";")]
         found = [row for row in self.table(name) if all(k in ("*", field) for k, field in zip(key, row.values()))]
-        if len(found) != 1 or column not in found[0]:
+        if not found or (len(found) > 1 and not choice) or column not in found[0]:
             raise QuoteError(f"{len(found)} rows [{reference}], or no such column")
-        return float(found[0][column])
+        return {"max": max, "min": min, "": max}[choice](float(row[column]) for row in found if row[column])
 
     def value(self, expression):
         """Names and cells, joined by arithmetic."""
@@ -88,7 +90,7 @@ class Measurements:
             return repr(self.named[match[0]])
 
         cells = []
-        text = CELL.sub(lambda match: cells.append(self.cell(match[1])) or "\0", expression)
+        text = CELL.sub(lambda match: cells.append(self.cell(match[1], match[2])) or "\0", expression)
         text = NAME.sub(name, text)
         for cell in cells:
             text = text.replace("\0", repr(cell), 1)
