@@ -18,6 +18,11 @@ TABLE = re.compile(
     r"<!--table (?P<file>\S+)(?: where (?P<where>[^\n]+))?\n(?P<row>[^\n]+)\n-->\n"
     r"(?P<head>(?:[^\n]*\n)?(?:\|[ -]+)+\|\n)(?P<body>(?:\|[^\n]*\n)*)")
 
+NUMBER = r"[−+-]?\d[\d.,]*(?:·10[⁻⁰¹²³⁴-⁹]+)?"
+MEASURED = re.compile(rf"{NUMBER}\s?(?:%|(?:ns|µs|ms|s|min|minutes|hours|kB|MB|GB|KiB|MiB|GiB)(?![\w/²]))")
+INPUT = re.compile(  # steps of 1 ms, at 0.5 ms, a step of 1 ms and 2 ms
+    rf"\b(?:steps?(?: of| at| up to)?|at|from|to|in|and|or|,)\s{NUMBER}(?:(?: to| and| or|,) {NUMBER})* [mµ]s\b(?: steps)?")
+
 
 class QuoteError(Exception):
     """A mark that no measurement answers."""
@@ -72,12 +77,18 @@ class Measurements:
             self.rows[name] = read_rows(found[0])
         return self.rows[name]
 
+    @staticmethod
+    def begins_with(row, key):
+        """Whether the row's fields, themselves parted where they contain semicolons, begin with the key's."""
+        fields = [part.strip() for field in row.values() for part in (field or "").split(";")]
+        return len(fields) >= len(key) and all(k in ("*", field) for k, field in zip(key, fields))
+
     def cell(self, choice, reference):
         """[file; first field; second field; ...; column]: the one row that begins with these fields, * being any.
 
         With max or min before it, that of all rows that do."""
         name, *key, column = [part.strip() for part in reference.split(";")]
-        found = [row for row in self.table(name) if all(k in ("*", field) for k, field in zip(key, row.values()))]
+        found = [row for row in self.table(name) if self.begins_with(row, key)]
         if not found or (len(found) > 1 and not choice) or column not in found[0]:
             raise QuoteError(f"{len(found)} rows [{reference}], or no such column")
         return {"max": max, "min": min, "": max}[choice](float(row[column]) for row in found if row[column])
@@ -106,7 +117,7 @@ class Measurements:
 
             def field(match):
                 value = eval(match[1], {"__builtins__": {}}, fields)
-                return shown(value, match[2]) if match[2] else str(value) if isinstance(value, str) else f"{value:g}"
+                return value if isinstance(value, str) else shown(value, match[2] or "g")
 
             if where is None or eval(where, {"__builtins__": {}}, fields):
                 body += re.sub(r"\{([^{}:]+)(?::([^{}]+))?\}", field, row_form) + "\n"
@@ -155,3 +166,23 @@ def renewed(text, measurements):
             wrong.append("a <!--table that is not followed by a row's form, --> and the head of a table")
         new = TABLE.sub(table, new)
     return new, differing, wrong, marks
+
+
+def without(pattern, text):
+    """The text without what matches, lines kept."""
+    return pattern.sub(lambda match: "\n" * match[0].count("\n"), text)
+
+
+def unmarked(text):
+    """Numbers of time, memory and per cent, with their lines, that have no mark and stand neither in a generated table nor
+    in code nor on a line that says <!--given-->. Time steps, inputs on nearly every line, are known by their words.
+    """
+    text = re.sub(r"(<!-- outcomes -->).*?(<!-- end -->)", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
+    text = without(re.compile(r"^```.*?^```|^ {4,}\S[^\n]*|`[^`\n]*`", re.M | re.S), text)
+    given = {number for number, line in enumerate(text.splitlines(), 1) if "<!--given-->" in line}
+    text = re.sub(rf"{MARK.pattern}\s?(?:%|\w+)?", "", without(TABLE, text))
+    found = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if number not in given:
+            found += [(number, match[0]) for match in MEASURED.finditer(INPUT.sub("", line))]
+    return found
