@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "../measured.hpp"
 #include "../reference_table.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/tablegen/creep_layout.hpp"
@@ -48,7 +49,8 @@ TEST(ShippedCreepTable, AgreesWithContact) {
     largest = std::max(largest, error);
   }
   const double mean = sum / static_cast<double>(t["ratio"].size());
-  std::printf("against CONTACT 120 x 120: mean %.5f max %.5f\n", mean, largest);
+  testing::measured("creep_table.contact.mean", mean);
+  testing::measured("creep_table.contact.max", largest);
   EXPECT_LT(mean, 0.0025);
   EXPECT_LT(largest, 0.02);
 }
@@ -61,7 +63,8 @@ TEST(ShippedCreepTable, IsNearTheExactSolutionWhereInterpolationIsHard) {
     force = std::max(force, std::hypot(f.x - t["fx"][i], f.y - t["fy"][i]));
     moment = std::max(moment, std::abs(f.moment - t["mz"][i]));
   }
-  std::printf("hard cases: force %.5f moment %.5f\n", force, moment);
+  testing::measured("creep_table.hard.force", force);
+  testing::measured("creep_table.hard.moment", moment);
   EXPECT_EQ(t["ratio"].size(), 41U);
   EXPECT_LT(force, 0.02);
   EXPECT_LT(moment, 0.02);

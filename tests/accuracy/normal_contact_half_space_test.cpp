@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "../measured.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/overlap.hpp"
 #include "railtab/runtime/contact/patch_loads.hpp"
@@ -202,10 +202,10 @@ TEST(HalfSpaceContact, ForceOfTheOverlapAtRandomPositions) {
     point_largest = std::max(point_largest, std::abs(point_error));
   }
   const double rms = std::sqrt(squares / compared), point_rms = std::sqrt(point_squares / compared);
-  std::printf(
-      "force against the half-space, %d positions: rms %.2f %%, largest %.1f %%; curvature at the point: rms "
-      "%.1f %%, largest %.0f %%\n",
-      compared, 100 * rms, 100 * largest, 100 * point_rms, 100 * point_largest);
+  testing::measured("half_space.rms_percent", 100 * rms);
+  testing::measured("half_space.largest_percent", 100 * largest);
+  testing::measured("half_space.point_rms_percent", 100 * point_rms);
+  testing::measured("half_space.point_largest_percent", 100 * point_largest);
   EXPECT_GT(compared, 100);
   EXPECT_LT(rms, 0.012);
   EXPECT_LT(largest, 0.045);

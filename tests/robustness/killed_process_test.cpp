@@ -116,12 +116,14 @@ TEST_F(KilledProcess, AGeometryTableIsWholeOrNotThereWithAnyThreads) {
   }
   arguments.insert(arguments.end(), {"--threads", "2", "-o", "table.h5"});
   const int wanted = std::max(1, kills() / 4);
-  for (int done = 0, tries = 0; done < wanted && tries < 4 * wanted; ++tries) {
+  int done = 0;
+  for (int tries = 0; done < wanted && tries < 4 * wanted; ++tries) {
     done += killed(TABLEGEN_COMMAND, arguments, time(random_)) ? 1 : 0;
     if (!fs::exists(folder_ / "table.h5")) continue;
     EXPECT_EQ(array_file_checksum(folder_ / "table.h5"), array_file_checksum(folder_ / "whole.h5"));
     fs::remove(folder_ / "table.h5");
   }
+  EXPECT_EQ(done, wanted);
 }
 
 TEST_F(KilledProcess, AMergedTableIsWholeOrNotThere) {

@@ -1,6 +1,5 @@
 #include "railtab/runtime/structure/track_bridge.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../measured.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -129,8 +129,7 @@ TEST(TrackBridge, RailBendsAsABeamOnWinklerFoundation) {
       error = std::max(error, std::abs(head_z(model, RailSide::right, x, a) - winkler(force, EI, k, x)) / peak);
     }
     EXPECT_NEAR(head_z(model, RailSide::left, 0.6, a), head_z(model, RailSide::right, 0.6, a), 1e-9 * peak);
-    fmt::print("sleeper spacing {:.3f} m: deflection under the load {:.4f} mm, Winkler {:.4f} mm, worst error {:.2e}\n",
-               track.sleeper_spacing, 1e3 * head_z(model, RailSide::right, 0, a), 1e3 * peak, error);
+    testing::measured(density == 1 ? "track.winkler.apart" : "track.winkler.close", error);
   }
   // the error of the discrete supports falls with the fourth power of their spacing: 8⁴ = 4096
   EXPECT_LT(worst[0], 5e-3);
@@ -182,7 +181,8 @@ TEST(TrackBridge, DeckUnderUniformVerticalLoadFollowsBeamTheory) {
   const double bending = a[deck[2]] / (5 * q * std::pow(L, 4) / (384 * span.E * span.Iy));
   // a track right of the axis turns the deck clockwise as seen forwards
   const double twist = a[deck[3]] / (q * span.track_offset * L * L / (8 * span.G * span.J));
-  fmt::print("uniform vertical load: bending {:.6f}, twist {:.6f} of beam theory\n", bending, twist);
+  testing::measured("deck.vertical_load.bending", bending);
+  testing::measured("deck.vertical_load.twist", twist);
   EXPECT_NEAR(bending, 1.0 - sleeper_sum_error, 1e-5);
   EXPECT_NEAR(twist, 1.0, 1e-5);
 }
@@ -196,7 +196,8 @@ TEST(TrackBridge, DeckUnderUniformLateralLoadBendsAndTwistsByItsDepth) {
   const DofIndices& deck = node(model, "deck-midspan-1").dof;
   const double bending = a[deck[1]] / (5 * q * std::pow(L, 4) / (384 * span.E * span.Iz));
   const double twist = a[deck[3]] / (q * span.axis_depth * L * L / (8 * span.G * span.J));
-  fmt::print("uniform lateral load: bending {:.6f}, twist {:.6f} of beam theory\n", bending, twist);
+  testing::measured("deck.lateral_load.bending", bending);
+  testing::measured("deck.lateral_load.twist", twist);
   EXPECT_NEAR(bending, 1.0 - sleeper_sum_error, 1e-5);
   EXPECT_NEAR(twist, 1.0, 1e-5);
 }
@@ -221,7 +222,7 @@ TEST(TrackBridge, TrackStiffensTheDeckOnlySlightly) {
   const DofIndices& deck = node(model, "deck-midspan-1").dof;
   load[deck[2]] = 1.0;
   const double share = deflection(model, load)[deck[2]] * 48 * span.E * span.Iy / std::pow(span.length, 3);
-  fmt::print("deck deflection with the track's own stiffness: {:.4f} of the bare beam's\n", share);
+  testing::measured("deck.track_takes_percent", 100.0 * (1.0 - share));
   EXPECT_LT(share, 1.0);
   EXPECT_GT(share, 0.9);
 }

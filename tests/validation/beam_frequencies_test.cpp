@@ -1,14 +1,15 @@
 // Frequencies of simply supported beams against ω_n = (nπ/L)²·sqrt(EI/m): the test beam of the moving-load solutions,
 // and the deck of the three-dimensional track–bridge model.
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "../measured.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 
@@ -39,8 +40,9 @@ TEST(SimpleBeam, FrequenciesConvergeWithTheFourthOrder) {
       error[refined] = circular_frequencies(build_simple_beam(p))[n - 1] / exact - 1;
     }
     const double order = std::log2(error[0] / error[1]);
-    fmt::print("mode {}: relative error {:.2e} at 8 elements, {:.2e} at 16, order {:.3f}\n", n, error[0], error[1],
-               order);
+    const std::string mode = "beam.mode_" + std::to_string(n);
+    testing::measured(mode + ".order", order);
+    testing::measured(mode + ".error", error[1]);
     EXPECT_GT(error[1], 0.0);  // a displacement model is too stiff
     EXPECT_GT(order, 3.8);
     EXPECT_LT(order, 4.2);
@@ -89,10 +91,8 @@ TEST(TrackBridge, BareDeckHasTheFrequenciesOfASimplySupportedBeam) {
   const double lateral = pi * pi / (L * L) * std::sqrt(span.E * span.Iz / span.mass);
   const double torsion = pi / L * std::sqrt(span.G * span.J / span.rotary_inertia);
   const double vertical_found = deck_frequency(model, 2), torsion_found = deck_frequency(model, 3);
-  fmt::print("first vertical frequency {:.4f} Hz, beam theory {:.4f} Hz\n", vertical_found / (2 * pi),
-             vertical / (2 * pi));
-  fmt::print("first torsional frequency {:.4f} Hz, beam theory {:.4f} Hz\n", torsion_found / (2 * pi),
-             torsion / (2 * pi));
+  testing::measured("deck.bending_Hz", vertical_found / (2 * pi));
+  testing::measured("deck.torsion_Hz", torsion_found / (2 * pi));
   EXPECT_NEAR(vertical_found / vertical, 1.0, 1e-6);
   // linear shapes with consistent mass: relative error (π/elements)²/24 = 4.0e-4
   EXPECT_NEAR(torsion_found / torsion - 1.0, std::pow(pi / span.elements, 2) / 24, 1e-5);
@@ -108,8 +108,7 @@ TEST(TrackBridge, TrackChangesTheFrequencyByItsMassAndStiffness) {
   const double found = deck_frequency(model, 2);
   const double track_mass = 2 * 60.21 + 251.0 / 0.6;
   const double by_mass_alone = bare * std::sqrt(span.mass / (span.mass + track_mass));
-  fmt::print("with track {:.4f} Hz, bare {:.4f} Hz, with the track's mass alone {:.4f} Hz\n", found / (2 * pi),
-             bare / (2 * pi), by_mass_alone / (2 * pi));
+  testing::measured("deck.bending_with_track_Hz", found / (2 * pi));
   EXPECT_GT(found, by_mass_alone);
   EXPECT_LT(found, 1.05 * bare);
 }

@@ -1,6 +1,7 @@
 // What the rule of the contact force (integration.contact_force) is worth in scenes: errors of wheel forces against
 // fine steps, energy that the time integration of the contacts makes, Newton iterations, processor time. Not a test:
-// prints the table of docs/validation/contact_force.md.
+//
+//     contact_force_study FOLDER     writes FOLDER/contact_force.csv, the numbers of docs/validation/contact_force.md
 
 #include <fmt/format.h>
 
@@ -10,8 +11,10 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace {
 
@@ -93,38 +96,52 @@ const char* name_of(Rule rule) {
   return rule == ContactForceRule::energy ? "energy" : "endpoint";
 }
 
-void study(const char* name, const SceneParameters& scene) {
+std::string row(const char* name, Rule rule, double alpha, double step, const Outcome& o, const Difference& d,
+                const EnergyBalance& energy) {
+  const std::string text =
+      fmt::format("{},{:g},{:g},{},{:.1f},{:.1f},{:.2f},{:.3f},{:.3f},{:.3f},{},{},{:.3f}\n", name, alpha, 1e3 * step,
+                  name_of(rule), d.Q, d.Y, 1e-3 * peak_Y(o), energy.contact_gain - energy.stiffness_work, energy.gain(),
+                  static_cast<double>(o.summary.newton_iterations) / static_cast<double>(o.summary.steps),
+                  o.summary.halved_steps, o.summary.complete ? 1 : 0, o.seconds);
+  fmt::print("{}", text);
+  std::fflush(stdout);
+  return text;
+}
+
+std::string study(const char* name, const SceneParameters& scene) {
   constexpr double fine_step = 3.125e-5;
   const Outcome reference = run(scene, ContactForceRule::energy, 0.0, fine_step, false);
-  const Difference of_fine = difference(run(scene, ContactForceRule::endpoint, 0.0, fine_step, false), reference);
-  fmt::print("{}: largest |Y| {:.1f} kN; both rules at {} us differ by {:.0f} N in Q, {:.0f} N in Y\n", name,
-             1e-3 * peak_Y(reference), 1e6 * fine_step, of_fine.Q, of_fine.Y);
-  fmt::print(
-      "| alpha | step [ms] | rule | rms error Q [N] | rms error Y [N] | largest Y [kN] | gain of contacts [J] | "
-      "gain [J] | iterations per step | halved | CPU [s] |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const double alpha : {0.0, -0.05, -0.1}) {
+  std::string rows = row(name, ContactForceRule::energy, 0.0, fine_step, reference, {}, {});
+  const Outcome fine = run(scene, ContactForceRule::endpoint, 0.0, fine_step, false);
+  rows += row(name, ContactForceRule::endpoint, 0.0, fine_step, fine, difference(fine, reference), {});
+  for (const double alpha : {0.0, -0.05}) {
     for (const double step : {1e-3, 5e-4, 2.5e-4}) {
       for (const Rule rule : {Rule(ContactForceRule::endpoint), Rule(ContactForceRule::energy), Rule()}) {
-        const Outcome o = run(scene, rule, alpha, step, false);
         const EnergyBalance energy = run(scene, rule, alpha, step, true).energy;
-        const Difference d = difference(o, reference);
-        fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.1f} | {:+.2f} | {:+.2f} | {:.2f} | {} | {:.2f} |{}\n", alpha,
-                   1e3 * step, name_of(rule), d.Q, d.Y, 1e-3 * peak_Y(o), energy.contact_gain - energy.stiffness_work,
-                   energy.gain(),
-                   static_cast<double>(o.summary.newton_iterations) / static_cast<double>(o.summary.steps),
-                   o.summary.halved_steps, o.seconds, o.summary.complete ? "" : " incomplete");
-        std::fflush(stdout);
+        const Outcome o = run(scene, rule, alpha, step, false);
+        rows += row(name, rule, alpha, step, o, difference(o, reference), energy);
       }
     }
   }
+  return rows;
 }
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("contact_force_study FOLDER\n", stderr);
+    return 2;
+  }
   try {
-    study("rough track, 300 km/h", rough_track(300.0 / 3.6));
-    study("flange impact, 400 km/h", flange_impact());
+    std::string text =
+        "# error_Q, error_Y: rms difference from the first row of the scene [N]; contact_gain: made by the integration "
+        "of\n"
+        "# the contacts, gain: of the whole step [J], not accounted for in the two rows of the finest step\n"
+        "scene,alpha,step_ms,rule,error_Q,error_Y,largest_Y_kN,contact_gain,gain,iterations,halved,complete,cpu_s\n";
+    text += study("rough", rough_track(300.0 / 3.6));
+    text += study("flange", flange_impact());
+    write_text_file(std::filesystem::path(argv[1]) / "contact_force.csv", text);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

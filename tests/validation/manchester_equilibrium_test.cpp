@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <string>
 
+#include "../measured.hpp"
 #include "../reference_table.hpp"
 #include "manchester_wheelset.hpp"
 
@@ -30,9 +31,12 @@ struct Differences {
     grow(height, wheel.z - z);
     ++count;
   }
-  void print(const char* name) const {
-    std::printf("%s (%d wheels): penetration %.1f %%, normal force %.2f %%, position %.3f mm, height %.4f mm\n", name,
-                count, 100 * penetration, 100 * normal_force, position / mm, height / mm);
+  void record(const std::string& name) const {
+    testing::measured(name + ".count", count);
+    testing::measured(name + ".penetration_percent", 100 * penetration);
+    testing::measured(name + ".force_percent", 100 * normal_force);
+    testing::measured(name + ".position_mm", position / mm);
+    testing::measured(name + ".height_um", 1e6 * height);
   }
 };
 
@@ -56,9 +60,9 @@ TEST(ManchesterEquilibrium, WheelsetInEquilibriumAgainstContact) {
     Differences& group = beside_jump(y, side) ? jump : std::abs(wheel.angle) > 0.7 ? flange : tread;
     group.add(wheel, r.at("approach")[i] * mm, r.at("normal_force")[i], r.at("ycp_r")[i] * mm, r.at("z_ws")[i] * mm);
   }
-  tread.print("tread and root");
-  flange.print("flange");
-  jump.print("beside a jump");
+  tread.record("manchester.equilibrium.tread");
+  flange.record("manchester.equilibrium.flange");
+  jump.record("manchester.equilibrium.jump");
   EXPECT_EQ(tread.count + flange.count + jump.count, 84);
   EXPECT_EQ(flange.count, 16);
   EXPECT_EQ(jump.count, 14);

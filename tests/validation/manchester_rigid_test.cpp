@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../measured.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 
@@ -124,10 +124,11 @@ TEST(ManchesterRigid, CaseA11ContactPointsOfBothWheels) {
     EXPECT_NEAR(left.y_wheel, r[11] * mm, 0.01 * mm);
     EXPECT_NEAR(right.y_wheel, r[12] * mm, 0.01 * mm);
   }
-  std::printf(
-      "A1.1 against CONTACT: positions within %.4f mm, angle %.3f mrad, rolling radius %.4f mm; %d steps beside a jump "
-      "left out, %d at a joint within %.4f mm and %.3f mrad\n",
-      position / mm, 1e3 * angle, radius / mm, beside_jump, joints, joint_position / mm, 1e3 * joint_angle);
+  testing::measured("manchester.a11.position_mm", position / mm);
+  testing::measured("manchester.a11.angle_mrad", 1e3 * angle);
+  testing::measured("manchester.a11.radius_mm", radius / mm);
+  testing::measured("manchester.a11.joint_position_mm", joint_position / mm);
+  testing::measured("manchester.a11.joint_angle_mrad", 1e3 * joint_angle);
   EXPECT_EQ(beside_jump, 6);
   EXPECT_LE(joints, 2);
 }
@@ -148,7 +149,7 @@ TEST(ManchesterRigid, CaseA11RollAndJumpsOfTheFreeWheelset) {
   const int steps = static_cast<int>(rows.size());
   const auto own = jumps([&](int k) { return y_wheel[static_cast<std::size_t>(k)]; }, steps);
   const auto reference = jumps([&](int k) { return rows[static_cast<std::size_t>(k)][12] * mm; }, steps);
-  std::printf("roll from equal contact within %.2f %%\n", 100 * roll);
+  testing::measured("manchester.a11.roll_percent", 100 * roll);
   EXPECT_EQ(own, reference);
   EXPECT_EQ(own, (std::vector<int>{2, 48, 62}));
 }
@@ -160,7 +161,7 @@ TEST(ManchesterRigid, CaseA12ContactPointsWithYaw) {
   for (const auto& r : rows) {
     const double side = r[0];
     const ContactPosition p = touching(r[1] * mm, r[3], r[2], side);
-    SCOPED_TRACE(testing::Message() << "y " << r[1] << " mm, side " << side);
+    SCOPED_TRACE(::testing::Message() << "y " << r[1] << " mm, side " << side);
     const bool flange = std::abs(r[10]) > 0.7;
     position = std::max({position, std::abs(p.y_rail - r[6] * mm), std::abs(p.y_wheel - r[8] * mm)});
     angle = std::max(angle, std::abs(p.angle - r[10]));
@@ -172,10 +173,10 @@ TEST(ManchesterRigid, CaseA12ContactPointsWithYaw) {
     EXPECT_NEAR(p.angle, r[10], 0.5e-3);
     EXPECT_NEAR(p.radius, r[11] * mm, 0.005 * mm);
   }
-  std::printf(
-      "A1.2 against CONTACT: positions within %.4f mm, longitudinal shift %.4f mm (%.4f mm on the flange), angle %.3f "
-      "mrad\n",
-      position / mm, shift / mm, flange_shift / mm, 1e3 * angle);
+  testing::measured("manchester.a12.position_mm", position / mm);
+  testing::measured("manchester.a12.shift_mm", shift / mm);
+  testing::measured("manchester.a12.flange_shift_mm", flange_shift / mm);
+  testing::measured("manchester.a12.angle_mrad", 1e3 * angle);
 }
 
 }  // namespace

@@ -6,12 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
+#include "../measured.hpp"
 #include "../reference_table.hpp"
 #include "manchester_wheelset.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
@@ -112,11 +114,6 @@ TEST(ManchesterRolling, CreepagesAndCreepForcesOfBothCases) {
     (close_to_ellipse ? elliptic : others).take(creepage, spin, force, direction);
     if (!close_to_ellipse) {
       ++left_out;
-      std::printf(
-          "A%g, %s wheel, y = %g mm: CONTACT's patch has %.0f %% of its ellipse's area; creepage %.1e, spin "
-          "%.4f 1/m, force %.3f, %.1f degrees\n",
-          value("case", row), side > 0 ? "right" : "left", value("y_ws", row), 100.0 * value("area", row) / ellipse,
-          creepage, spin, force, direction);
       continue;
     }
     SCOPED_TRACE(::testing::Message() << "case A" << value("case", row) << ", side " << side
@@ -127,11 +124,15 @@ TEST(ManchesterRolling, CreepagesAndCreepForcesOfBothCases) {
     EXPECT_LE(direction, 3.0);
     EXPECT_NEAR(own.fx_of_run, own.fx, 0.02);
   }
-  std::printf(
-      "%zu wheels: creepages within %.1e, spin %.4f 1/m, force %.3f of friction, direction %.2f degrees; %d left "
-      "out: %.1e, %.4f 1/m, %.3f, %.1f degrees\n",
-      rows, elliptic.creepage, elliptic.spin, elliptic.force, elliptic.direction, left_out, others.creepage,
-      others.spin, others.force, others.direction);
+  const auto record = [](const std::string& name, const Largest& largest) {
+    testing::measured(name + ".creepage", largest.creepage);
+    testing::measured(name + ".spin", largest.spin);
+    testing::measured(name + ".force", largest.force);
+    testing::measured(name + ".direction", largest.direction);
+  };
+  record("manchester.rolling", elliptic);
+  record("manchester.rolling.others", others);
+  testing::measured("manchester.rolling.others.count", left_out);
   EXPECT_LE(left_out, 10);
 }
 

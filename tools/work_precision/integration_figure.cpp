@@ -46,7 +46,7 @@ std::vector<Setting> settings(const Steps& steps, bool quick) {
     for (const double step : steps.others) add(fmt::format("alpha = {:.2g}", alpha), step, alpha, standard.tolerance);
   }
   if (quick) return result;
-  for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-7}) {
+  for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-7}) {
     add("Newton's tolerance, standard alpha", steps.standard, standard.alpha, tolerance);
   }
   return result;

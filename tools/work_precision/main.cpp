@@ -32,7 +32,7 @@ constexpr const char* usage =
     "-o "
     "FOLDER\n"
     "Measures error against run time and writes, for each figure, FOLDER/<figure>.csv and .svg, and all of them in\n"
-    "FOLDER/index.html. NAME: geometry, creep, integration, scene, scaling; all of them where none is named.\n"
+    "FOLDER/index.html. NAME: geometry, creep, integration, scene, scaling, threads; all of them where none is named.\n"
     "--table: geometry table of S1002 on 60E1 1:40 for scenes and scaling. --paper-creep: creep table in the "
     "published\n"
     "layout (tablegen creep --layout paper). --quick: fewer queries and settings.\n";
@@ -55,7 +55,8 @@ constexpr std::array groups{
     Group{"creep", [](const Options& o) { return Figures{creep_figure(o.creep_tables, o.quick)}; }},
     Group{"integration", [](const Options& o) { return integration_figures(o.quick); }},
     Group{"scene", [](const Options& o) { return scene_figures(o.tables, o.quick); }},
-    Group{"scaling", [](const Options& o) { return scaling_figures(o.tables.geometry, o.quick); }}};
+    Group{"scaling", [](const Options& o) { return scaling_figures(o.tables.geometry, o.quick); }},
+    Group{"threads", [](const Options& o) { return Figures{threads_figure(o.quick)}; }}};
 
 Options parse(const std::vector<std::string>& arguments) {
   Options options;
@@ -73,7 +74,7 @@ Options parse(const std::vector<std::string>& arguments) {
       options.figures.push_back(value());
       const std::string& name = options.figures.back();
       if (std::none_of(groups.begin(), groups.end(), [&](const Group& g) { return g.name == name; })) {
-        throw input_error("work_precision: --figure", name, "geometry, creep, integration, scene or scaling");
+        throw input_error("work_precision: --figure", name, "geometry, creep, integration, scene, scaling or threads");
       }
     } else if (argument == "--creep-table") {
       options.creep_tables.emplace_back(value());

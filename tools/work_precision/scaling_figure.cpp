@@ -67,38 +67,6 @@ WorkFigure size_figure(const std::string& name, const std::string& title, const 
   return figure;
 }
 
-WorkFigure threads_figure(bool quick) {
-  WorkFigure figure =
-      size_figure("scaling_threads", "Scaling: a geometry table over threads", "threads", "wall time of the table [s]",
-                  "A sweep's root cells are independent: use as many threads as there are cores. A run is serial; many "
-                  "runs at once are "
-                  "what further cores are for.");
-  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
-                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
-                                           PairDimensions{}));
-  GeometrySweepOptions options;
-  options.iterated_cell = 1e-3;
-  options.fallback_cell = 1e-4;
-  if (quick) options.lateral = {-1e-3, 1e-3};
-  const int most = omp_get_num_procs();
-  std::vector<int> threads{1};
-  while (2 * threads.back() <= most) threads.push_back(2 * threads.back());
-  std::vector<std::function<double()>> passes;
-  for (const int n : threads) {
-    passes.push_back([&search, &options, n] {
-      omp_set_num_threads(n);
-      return static_cast<double>(sweep_geometry(search, options).node.size());
-    });
-  }
-  const std::vector<double> seconds = interleaved_medians(passes, quick ? 1 : 5);
-  omp_set_num_threads(most);
-  for (std::size_t i = 0; i < threads.size(); ++i) {
-    figure.points.push_back({"sweep of S1002 on 60E1, coarse cells", "", static_cast<double>(threads[i]), seconds[i],
-                             0.0, fmt::format("{:.2f} times as fast as one thread", seconds[0] / seconds[i])});
-  }
-  return figure;
-}
-
 }  // namespace
 
 std::vector<WorkFigure> scaling_figures(const std::filesystem::path& geometry_table, bool quick) {
@@ -142,7 +110,39 @@ std::vector<WorkFigure> scaling_figures(const std::filesystem::path& geometry_ta
                              static_cast<double>(run.wheels), run.step_seconds, 0.0,
                              fmt::format("{:.1f} µs per wheel", 1e6 * run.step_seconds / run.wheels)});
   }
-  return {step, setup, wheels, threads_figure(quick)};
+  return {step, setup, wheels};
+}
+
+WorkFigure threads_figure(bool quick) {
+  WorkFigure figure =
+      size_figure("scaling_threads", "Scaling: a geometry table over threads", "threads", "wall time of the table [s]",
+                  "A sweep's root cells are independent: use as many threads as there are cores. A run is serial; many "
+                  "runs at once are "
+                  "what further cores are for.");
+  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
+                                           PairDimensions{}));
+  GeometrySweepOptions options;
+  options.iterated_cell = 1e-3;
+  options.fallback_cell = 1e-4;
+  if (quick) options.lateral = {-1e-3, 1e-3};
+  const int most = omp_get_num_procs();
+  std::vector<int> threads{1};
+  while (2 * threads.back() <= most) threads.push_back(2 * threads.back());
+  std::vector<std::function<double()>> passes;
+  for (const int n : threads) {
+    passes.push_back([&search, &options, n] {
+      omp_set_num_threads(n);
+      return static_cast<double>(sweep_geometry(search, options).node.size());
+    });
+  }
+  const std::vector<double> seconds = interleaved_medians(passes, quick ? 1 : 5);
+  omp_set_num_threads(most);
+  for (std::size_t i = 0; i < threads.size(); ++i) {
+    figure.points.push_back({"sweep of S1002 on 60E1, coarse cells", "", static_cast<double>(threads[i]), seconds[i],
+                             0.0, fmt::format("{:.2f} times as fast as one thread", seconds[0] / seconds[i])});
+  }
+  return figure;
 }
 
 }  // namespace railtab::work_precision
