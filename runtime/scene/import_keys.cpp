@@ -48,21 +48,21 @@ std::vector<KeyBinding> damping_keys() {
   return {
       {"structure.mass_damping", "1/s", "Rayleigh damping, times the mass",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.mass_factor; },
-                         not_negative}},
+                         {0.0, 1e4}}},
       {"structure.stiffness_damping", "s", "Rayleigh damping, times the stiffness",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.stiffness_factor; },
-                         not_negative}},
+                         {0.0, 10.0}}},
       {"structure.damping_ratio", "1", "of critical, at two frequencies",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.ratio; },
                          {0.0, 0.5}}},
       {"structure.damping_type", "", "the damping_ratio that EN 1991-2, Table 6.6, has as lower bound for damping_span",
        TextKey{[](SceneDraft& d) -> std::string& { return import_of(d).damping.type; }, bridge_damping_types}},
       {"structure.damping_span", "m", "span for damping_type",
-       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.span; }, not_negative}},
+       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.span; }, {0.0, 1e4, true}}},
       {"structure.damping_frequency_low", "Hz", "at which the ratio holds; 0: the first natural frequency",
-       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[0]; }, not_negative}},
+       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[0]; }, {0.0, 1e4}}},
       {"structure.damping_frequency_high", "Hz", "at which the ratio holds; 0: the third natural frequency",
-       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[1]; }, not_negative}},
+       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[1]; }, {0.0, 1e4}}},
   };
 }
 

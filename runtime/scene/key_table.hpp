@@ -39,8 +39,6 @@ struct Range {
   [[nodiscard]] std::string text() const;
 };
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
-inline constexpr Range any_number{};
-inline constexpr Range positive{0.0, unbounded, true};
 inline constexpr Range not_negative{0.0, unbounded, false};
 
 template <class T>

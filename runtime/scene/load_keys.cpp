@@ -34,9 +34,9 @@ std::vector<KeyBinding> deviation_keys() {
       {"span_deviation.amplitude", "m", "largest deviation, down or to the right",
        NumberKey{of_deviation<&SpanDeviationParameters::amplitude>, {-0.5, 0.5}}},
       {"span_deviation.start", "m", "where the first span that turns begins",
-       NumberKey{of_deviation<&SpanDeviationParameters::start>, any_number}},
+       NumberKey{of_deviation<&SpanDeviationParameters::start>, {-1e6, 1e6}}},
       {"span_deviation.beta", "1/m", "relative bending stiffness of rails and pads; 0: 1.387 vertical, 3.239 lateral",
-       NumberKey{of_deviation<&SpanDeviationParameters::beta>, not_negative}},
+       NumberKey{of_deviation<&SpanDeviationParameters::beta>, {0.0, 1e3}}},
   };
 }
 
@@ -47,16 +47,16 @@ std::vector<KeyBinding> body_load_keys() {
       {"load.coach", "1", "counted from the front; 0: every one", IntegerKey{of_load<&LoadParameters::coach>, 0, 100}},
       {"load.file", "", "history over time or position; not together with the six components",
        FileKey{of_load<&LoadParameters::file>}},
-      {"load.Fx", "N", "force forward at the centre of gravity", NumberKey{load_component<0>, any_number}},
-      {"load.Fy", "N", "force to the right", NumberKey{load_component<1>, any_number}},
-      {"load.Fz", "N", "force down", NumberKey{load_component<2>, any_number}},
-      {"load.Mx", "N m", "moment about x", NumberKey{load_component<3>, any_number}},
-      {"load.My", "N m", "moment about y", NumberKey{load_component<4>, any_number}},
-      {"load.Mz", "N m", "moment about z", NumberKey{load_component<5>, any_number}},
+      {"load.Fx", "N", "force forward at the centre of gravity", NumberKey{load_component<0>, {-1e8, 1e8}}},
+      {"load.Fy", "N", "force to the right", NumberKey{load_component<1>, {-1e8, 1e8}}},
+      {"load.Fz", "N", "force down", NumberKey{load_component<2>, {-1e8, 1e8}}},
+      {"load.Mx", "N m", "moment about x", NumberKey{load_component<3>, {-1e9, 1e9}}},
+      {"load.My", "N m", "moment about y", NumberKey{load_component<4>, {-1e9, 1e9}}},
+      {"load.Mz", "N m", "moment about z", NumberKey{load_component<5>, {-1e9, 1e9}}},
       {"load.start", "s", "begin of the gust, or added to the times (positions, in m) of the file",
-       NumberKey{of_load<&LoadParameters::start>, any_number}},
+       NumberKey{of_load<&LoadParameters::start>, {-1e6, 1e6}}},
       {"load.gust_duration", "s", "of a one-minus-cosine gust with the components as its peak; 0: they are constant",
-       NumberKey{of_load<&LoadParameters::gust_duration>, not_negative}},
+       NumberKey{of_load<&LoadParameters::gust_duration>, {0.0, 1e5}}},
   };
 }
 
@@ -65,14 +65,16 @@ std::vector<KeyBinding> ground_keys() {
       {"ground_motion.file", "", "record of the ground's acceleration or displacement",
        FileKey{of_ground<&GroundMotionParameters::file>}},
       {"ground_motion.x", "m", "place of the record along the track, where there are several",
-       NumberKey{of_ground<&GroundMotionParameters::x>, any_number}},
+       NumberKey{of_ground<&GroundMotionParameters::x>, {-1e6, 1e6}}},
       {"ground_motion.factor", "1", "times the record",
-       NumberKey{of_ground<&GroundMotionParameters::factor>, any_number}},
+       NumberKey{of_ground<&GroundMotionParameters::factor>, {-1e4, 1e4}}},
       {"ground_motion.start", "s", "added to the times of the record",
-       NumberKey{of_ground<&GroundMotionParameters::start>, not_negative}},
+       NumberKey{of_ground<&GroundMotionParameters::start>, {0.0, 1e5}}},
       {"ground_motion.wave_speed", "m/s",
-       "of a single record that travels along the track, backward where negative; 0: it is everywhere alike",
-       NumberKey{of_ground<&GroundMotionParameters::wave_speed>, any_number}},
+       "of a single record that travels along the track at 10 m/s or more, backward where negative; 0: it is "
+       "everywhere "
+       "alike",
+       NumberKey{of_ground<&GroundMotionParameters::wave_speed>, {-1e5, 1e5}}},
   };
 }
 

@@ -23,14 +23,14 @@ void check_structure(const SceneParameters& scene, const std::string& place) {
     const bool all_files =
         !files.mass.empty() && !files.damping.empty() && !files.stiffness.empty() && !files.dofs.empty();
     if (!all_files) {
-      throw input_error(place, "track.kind = \"imported\" without all its files",
+      throw input_error("track.kind", "\"imported\" without all its files",
                         "structure.mass, structure.damping, structure.stiffness and structure.dofs");
     }
     return;
   }
   if (scene.track_kind == TrackKind::imported) {
     if (!structure.rail_left.given() || !structure.rail_right.given()) {
-      throw input_error(place, "track.kind = \"imported\" without both rails",
+      throw input_error("track.kind", "\"imported\" without both rails",
                         "structure.rail_left and structure.rail_right, or track.kind = \"flexible\"");
     }
     structure.validate();
@@ -66,10 +66,10 @@ void IntegrationParameters::validate() const {
 
 namespace {
 
-void check_loads(const SceneParameters& scene, const std::string& place) {
+void check_loads(const SceneParameters& scene) {
   int number = 0;
   for (const LoadParameters& load : scene.loads) {
-    const std::string which = fmt::format("{}: [[load]] {} of {}", place, ++number, scene.loads.size());
+    const std::string which = fmt::format("[[load]] {} of {}", ++number, scene.loads.size());
     const bool components = std::any_of(load.load.begin(), load.load.end(), [](double f) { return f != 0.0; });
     if (load.file.empty() != components) {
       throw input_error(which, components ? "file and components" : "neither file nor component",
@@ -114,15 +114,18 @@ void check_ground_motion(const SceneParameters& scene, const std::string& place)
 }
 
 // Wheels that follow the rails have no lateral motion that could answer.
-void check_vertical(const SceneParameters& scene, const std::string& place) {
+void check_vertical(const SceneParameters& scene) {
   if (scene.contact.normal != NormalContact::rigid) return;
+  int number = 0;
   for (const LoadParameters& load : scene.loads) {
+    ++number;
     if (load.load[1] == 0.0 && load.load[3] == 0.0 && load.load[5] == 0.0) continue;
-    throw input_error(place, "a [[load]] along y or about x or z with contact.normal = \"rigid\"",
+    throw input_error(fmt::format("[[load]] {} of {}", number, scene.loads.size()),
+                      "a load along y or about x or z with contact.normal = \"rigid\"",
                       "contact.normal = \"hertz\": a vertical scene has no lateral motion");
   }
   if (scene.span_deviation && scene.span_deviation->direction == SpanDeviationDirection::lateral) {
-    throw input_error(place, "span_deviation.direction = \"lateral\" with contact.normal = \"rigid\"",
+    throw input_error("span_deviation.direction", "\"lateral\" with contact.normal = \"rigid\"",
                       "contact.normal = \"hertz\": a vertical scene has no lateral motion");
   }
 }
@@ -136,14 +139,13 @@ void SceneParameters::validate() const {
                       "a geometry table (tablegen geometry makes one), or contact.mode = \"online\"");
   }
   if (!contact.creep_table.empty() && contact.creep_law != "table") {
-    throw input_error(place, fmt::format("contact.creep_table with contact.creep_law = \"{}\"", contact.creep_law),
+    throw input_error("contact.creep_table", fmt::format("one with contact.creep_law = \"{}\"", contact.creep_law),
                       "contact.creep_law = \"table\", or no contact.creep_table");
   }
   if (track_kind != TrackKind::flexible && !spans.empty()) {
-    throw input_error(
-        place,
-        fmt::format("a [[bridge]] on track.kind = \"{}\"", track_kind == TrackKind::rigid ? "rigid" : "imported"),
-        "track.kind = \"flexible\" or no bridge");
+    throw input_error("track.kind",
+                      fmt::format("\"{}\" and a [[bridge]]", track_kind == TrackKind::rigid ? "rigid" : "imported"),
+                      "\"flexible\", or no bridge");
   }
   check_structure(*this, place);
   if (train.count < 1) throw input_error(place, fmt::format("train.count = {}", train.count), ">= 1");
@@ -153,21 +155,21 @@ void SceneParameters::validate() const {
   if (spectrum) spectrum->validate();
   if (reduction.kind == Reduction::modal && reduction.static_correction &&
       integration.contact_force == ContactForceRule::energy) {
-    throw input_error(place, "integration.contact_force = \"energy\" with structure.static_correction",
+    throw input_error("integration.contact_force", "\"energy\" with structure.static_correction",
                       "structure.static_correction = false: the answer of modes without inertia follows no mean force");
   }
   if (reduction.kind == Reduction::modal && contact.normal == NormalContact::rigid) {
-    throw input_error(place, "structure.reduction = \"modal\" with contact.normal = \"rigid\"",
+    throw input_error("structure.reduction", "\"modal\" with contact.normal = \"rigid\"",
                       "another reduction: wheels that follow the rails need their curvature, which few modes have not");
   }
   if (output.energy && contact.normal == NormalContact::rigid) {
-    throw input_error(place, "output.energy with contact.normal = \"rigid\"",
+    throw input_error("output.energy", "true with contact.normal = \"rigid\"",
                       "contact.normal = \"hertz\": wheels that follow the rails have no contact springs");
   }
   if (span_deviation) span_deviation->validate();
-  check_loads(*this, place);
+  check_loads(*this);
   check_ground_motion(*this, place);
-  check_vertical(*this, place);
+  check_vertical(*this);
   if (track_kind == TrackKind::flexible) {
     track.validate();
     for (const BridgeParameters& span : spans) span.validate();

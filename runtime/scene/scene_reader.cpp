@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <utility>
 
+#include "idle_keys.hpp"
 #include "key_table.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
@@ -230,94 +230,13 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
   if (heading) finish_entry(draft, heading->path);
 }
 
-/// The bound of a type of bridge, or a ratio.
-void refuse_two_dampings(const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
-  for (const Leaf& type : leaves) {
-    if (type.path != "bridge.damping_type") continue;
-    for (const Leaf& leaf : leaves) {
-      if (leaf.path != "bridge.damping_ratio" || leaf.entry != type.entry) continue;
-      throw leaf_error(file, leaf, "bridge.damping_type too", "either damping_ratio or damping_type of a bridge");
-    }
-  }
-}
-
-/// A key that would be read and not used is a misunderstanding: it is refused, with what stands against it or is
-/// missing.
-void refuse_idle_keys(const SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
-  struct Rule {
-    std::vector<std::string_view> keys;  ///< whole, or the beginning of several where it ends with . or _
-    bool used;
-    std::string_view found, expected;
-    [[nodiscard]] bool is_for(std::string_view path) const {
-      return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) {
-        return key.ends_with('.') || key.ends_with('_') ? path.starts_with(key) : path == key;
-      });
-    }
-  };
-  const SceneParameters& scene = draft.parameters;
-  const Reduction reduction = scene.reduction.kind;
-  const bool random = !draft.spectrum_name.empty();
-  // "none", written out, is a reduction that was switched off: its keys may stay
-  const bool off = reduction == Reduction::none && std::any_of(leaves.begin(), leaves.end(), [](const Leaf& leaf) {
-                     return leaf.path == "structure.reduction";
-                   });
-  const bool modes = off || reduction == Reduction::modal || reduction == Reduction::craig_bampton;
-  const bool imported = !scene.structure.files.stiffness.empty();
-  const std::array rules{
-      Rule{{"train.speed"}, !draft.speed_kmh, "train.speed_kmh too", "either train.speed or train.speed_kmh"},
-      Rule{{"train.speed", "train.speed_kmh"},
-           scene.train.speed_file.empty(),
-           "train.speed_file too",
-           "either a constant speed or train.speed_file"},
-      Rule{{"contact.wheel", "contact.rail", "contact.rail_inclination", "contact.dimensions."},
-           scene.contact.table.empty(),
-           "contact.table too",
-           "either contact.table, which has profiles and dimensions of its own, or keys that name them"},
-      Rule{{"irregularity.spectrum"},
-           draft.irregularity.empty(),
-           "irregularity.file too",
-           "either irregularity.file or irregularity.spectrum"},
-      Rule{{"irregularity.seed"}, random, "no irregularity.spectrum", "one, or no seed"},
-      Rule{{"irregularity.shortest_wave", "irregularity.longest_wave"},
-           random,
-           "no irregularity.spectrum",
-           "one, or no wavelengths"},
-      Rule{{"structure.modes"}, modes, "a structure.reduction without modes", "\"modal\" or \"craig-bampton\""},
-      Rule{{"structure.static_correction"},
-           off || reduction == Reduction::modal,
-           "a structure.reduction without it",
-           "\"modal\""},
-      Rule{{"structure.window_"},
-           off || reduction == Reduction::window,
-           "a structure.reduction without window",
-           "\"window\""},
-      Rule{{"structure.damping_"},
-           imported,
-           "no structure.stiffness",
-           "an imported structure, or damping_ratio and damping_type in [[bridge]]"},
-      Rule{{"structure.mass_damping", "structure.stiffness_damping"},
-           imported,
-           "no structure.stiffness",
-           "an imported structure"},
-      Rule{{"span_deviation.direction", "span_deviation.span", "span_deviation.amplitude", "span_deviation.start",
-            "span_deviation.beta"},
-           draft.deviation_shape != "none",
-           "no span_deviation.shape",
-           "one, \"bending\" or \"parallel-shift\""},
-  };
-  for (const Rule& rule : rules) {
-    if (rule.used) continue;
-    for (const Leaf& leaf : leaves) {
-      if (rule.is_for(leaf.path)) throw leaf_error(file, leaf, rule.found, rule.expected);
-    }
-  }
-}
-
-/// ":12" of the key that a message begins with, where the scene names it once.
+/// ":12" of what a message begins with: a key, where the scene names it once, or "[[load]] 2 of 3".
 std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
   std::string line;
   for (const Leaf& leaf : leaves) {
-    if (!message.starts_with(leaf.path + ":")) continue;
+    const bool heading = is_list_section(leaf.path);
+    const std::string entry = fmt::format("[[{}]] {} of ", leaf.path, leaf.entry + 1);
+    if (!message.starts_with(heading ? entry : leaf.path + ":")) continue;
     if (!line.empty()) return {};
     line = fmt::format(":{}", leaf.line);
   }
@@ -337,7 +256,6 @@ void settle_deviation(SceneDraft& draft) {
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
   refuse_idle_keys(draft, file, leaves);
-  refuse_two_dampings(file, leaves);
   if (draft.speed_kmh) draft.parameters.train.speed = *draft.speed_kmh / 3.6;
   settle_deviation(draft);
   if (!draft.spectrum_name.empty()) {
@@ -345,13 +263,6 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     draft.parameters.spectrum->name = draft.spectrum_name;
   }
   if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
-  if (draft.parameters.track_kind == TrackKind::rigid) {
-    // named, but nothing that this run reads
-    const FeFiles& s = draft.parameters.structure.files;
-    std::erase_if(draft.parameters.files, [&](const std::filesystem::path& read) {
-      return read == s.mass || read == s.damping || read == s.stiffness || read == s.dofs || read == s.nodes;
-    });
-  }
   if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();
   try {
     draft.parameters.validate();

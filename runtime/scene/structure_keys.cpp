@@ -34,9 +34,9 @@ std::vector<KeyBinding> track_keys() {
       {"track.length_after", "m", "track after the last span, or after x = 0 where there is none",
        NumberKey{of_track<&TrackParameters::length_after>, {0.0, 1e4, true}}},
       {"track.pad_roll_stiffness", "N m/rad", "of one pad about x",
-       NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, positive}},
+       NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, {1.0, 1e12}}},
       {"track.pad_roll_damping", "N m s/rad", "of one pad about x",
-       NumberKey{of_track<&TrackParameters::pad_roll_damping>, not_negative}},
+       NumberKey{of_track<&TrackParameters::pad_roll_damping>, {0.0, 1e9}}},
       {"track.half_ballast_distance", "m", "track centre to the ballast spring under each sleeper half",
        NumberKey{of_track<&TrackParameters::half_ballast_distance>, {0.1, 3.0}}},
   };
@@ -45,55 +45,58 @@ std::vector<KeyBinding> track_keys() {
 std::vector<KeyBinding> rail_keys() {
   return {
       {"track.rail.E", "Pa", "Young's modulus",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::E>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::E>, {1e10, 1e13}}},
       {"track.rail.A", "m²", "cross-section",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::A>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::A>, {1e-4, 1.0}}},
       {"track.rail.Iy", "m⁴", "second moment, vertical bending",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iy>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iy>, {1e-8, 0.1}}},
       {"track.rail.Iz", "m⁴", "second moment, lateral bending",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iz>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iz>, {1e-8, 0.1}}},
       {"track.rail.GJ", "N m²", "torsional stiffness",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::GJ>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::GJ>, {100.0, 1e12}}},
       {"track.rail.mass", "kg/m", "mass per length",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass>, {1.0, 1e4}}},
       {"track.rail.rotary_inertia", "kg m²/m", "about x, per length",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::rotary_inertia>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::rotary_inertia>, {1e-4, 1e3}}},
       {"track.rail.height", "m", "rail-head top to rail foot",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::height>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::height>, {0.01, 1.0}}},
       {"track.rail.head_height", "m", "rail-head top above the centroid, at most track.rail.height",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::head_height>, positive}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::head_height>, {0.001, 1.0}}},
       {"track.rail.mass_damping", "1/s", "Rayleigh damping, times the mass",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass_damping>, not_negative}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass_damping>, {0.0, 1e4}}},
       {"track.rail.stiffness_damping", "s", "Rayleigh damping, times the stiffness",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::stiffness_damping>, not_negative}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::stiffness_damping>, {0.0, 1.0}}},
   };
 }
 
 std::vector<KeyBinding> sleeper_keys() {
   return {
       {"track.sleeper.mass", "kg", "mass of a sleeper",
-       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::mass>, positive}},
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::mass>, {1.0, 1e5}}},
       {"track.sleeper.Jx", "kg m²", "inertia about x",
-       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jx>, positive}},
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jx>, {0.01, 1e5}}},
       {"track.sleeper.Jy", "kg m²", "inertia about y",
-       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jy>, positive}},
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jy>, {0.01, 1e5}}},
       {"track.sleeper.Jz", "kg m²", "inertia about z",
-       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jz>, positive}},
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jz>, {0.01, 1e5}}},
       {"track.sleeper.height", "m", "height of a sleeper",
-       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::height>, positive}},
+       NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::height>, {0.01, 2.0}}},
   };
 }
+
+// A value beyond these is off by orders of magnitude: another unit, or a slip of the pen.
+constexpr Range spring{1e5, 1e13}, damper{0.0, 1e9};
 
 /// Six keys of one layer of springs and dampers.
 template <SupportParameters TrackParameters::*layer>
 std::vector<KeyBinding> support_keys(const std::array<std::string_view, 6>& paths) {
   return {
-      {paths[0], "N/m", "longitudinal stiffness", NumberKey{of_track<layer, &SupportParameters::kx>, positive}},
-      {paths[1], "N/m", "lateral stiffness", NumberKey{of_track<layer, &SupportParameters::ky>, positive}},
-      {paths[2], "N/m", "vertical stiffness", NumberKey{of_track<layer, &SupportParameters::kz>, positive}},
-      {paths[3], "N s/m", "longitudinal damping", NumberKey{of_track<layer, &SupportParameters::cx>, not_negative}},
-      {paths[4], "N s/m", "lateral damping", NumberKey{of_track<layer, &SupportParameters::cy>, not_negative}},
-      {paths[5], "N s/m", "vertical damping", NumberKey{of_track<layer, &SupportParameters::cz>, not_negative}},
+      {paths[0], "N/m", "longitudinal stiffness", NumberKey{of_track<layer, &SupportParameters::kx>, spring}},
+      {paths[1], "N/m", "lateral stiffness", NumberKey{of_track<layer, &SupportParameters::ky>, spring}},
+      {paths[2], "N/m", "vertical stiffness", NumberKey{of_track<layer, &SupportParameters::kz>, spring}},
+      {paths[3], "N s/m", "longitudinal damping", NumberKey{of_track<layer, &SupportParameters::cx>, damper}},
+      {paths[4], "N s/m", "lateral damping", NumberKey{of_track<layer, &SupportParameters::cy>, damper}},
+      {paths[5], "N s/m", "vertical damping", NumberKey{of_track<layer, &SupportParameters::cz>, damper}},
   };
 }
 
@@ -102,16 +105,16 @@ std::vector<KeyBinding> span_keys() {
       {"bridge.count", "1", "equal spans that this [[bridge]] stands for",
        IntegerKey{[](SceneDraft& d) -> int& { return d.span_count; }, 1, 1000}},
       {"bridge.length", "m", "span", NumberKey{of_span<&BridgeParameters::length>, {0.0, 1e3, true}}},
-      {"bridge.E", "Pa", "Young's modulus", NumberKey{of_span<&BridgeParameters::E>, positive}},
-      {"bridge.G", "Pa", "shear modulus", NumberKey{of_span<&BridgeParameters::G>, positive}},
-      {"bridge.A", "m²", "cross-section", NumberKey{of_span<&BridgeParameters::A>, positive}},
-      {"bridge.Iy", "m⁴", "second moment, vertical bending", NumberKey{of_span<&BridgeParameters::Iy>, positive}},
-      {"bridge.Iz", "m⁴", "second moment, lateral bending", NumberKey{of_span<&BridgeParameters::Iz>, positive}},
-      {"bridge.J", "m⁴", "torsion constant", NumberKey{of_span<&BridgeParameters::J>, positive}},
+      {"bridge.E", "Pa", "Young's modulus", NumberKey{of_span<&BridgeParameters::E>, {1e9, 1e13}}},
+      {"bridge.G", "Pa", "shear modulus", NumberKey{of_span<&BridgeParameters::G>, {1e8, 1e13}}},
+      {"bridge.A", "m²", "cross-section", NumberKey{of_span<&BridgeParameters::A>, {1e-3, 1e4}}},
+      {"bridge.Iy", "m⁴", "second moment, vertical bending", NumberKey{of_span<&BridgeParameters::Iy>, {1e-6, 1e5}}},
+      {"bridge.Iz", "m⁴", "second moment, lateral bending", NumberKey{of_span<&BridgeParameters::Iz>, {1e-6, 1e5}}},
+      {"bridge.J", "m⁴", "torsion constant", NumberKey{of_span<&BridgeParameters::J>, {1e-8, 1e5}}},
       {"bridge.mass", "kg/m", "with ballast and superimposed load, without rails and sleepers",
-       NumberKey{of_span<&BridgeParameters::mass>, positive}},
+       NumberKey{of_span<&BridgeParameters::mass>, {100.0, 1e7}}},
       {"bridge.rotary_inertia", "kg m²/m", "about x, per length",
-       NumberKey{of_span<&BridgeParameters::rotary_inertia>, positive}},
+       NumberKey{of_span<&BridgeParameters::rotary_inertia>, {0.1, 1e9}}},
       {"bridge.damping_ratio", "1", "of critical, at the first two vertical bending frequencies",
        NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}}},
       {"bridge.damping_type", "", "the damping_ratio that EN 1991-2, Table 6.6, has as lower bound for the span",

@@ -57,13 +57,16 @@ class LeanScene : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  [[nodiscard]] SceneParameters scene(const std::string& kind, const std::string& creep_law) const {
+  /// Every file named, whatever the track: parameters that a program has put together.
+  [[nodiscard]] SceneParameters scene(TrackKind kind, const std::string& creep_law) const {
     std::ofstream(folder_ / "scene.toml")
-        << "[contact]\nmode = \"online\"\ncreep_law = \"" << creep_law << "\"\n[track]\nkind = \"" << kind
-        << "\"\n[structure]\nmass = \"mass.mtx\"\ndamping = \"damping.mtx\"\n"
+        << "[contact]\nmode = \"online\"\ncreep_law = \"" << creep_law
+        << "\"\n[track]\nkind = \"imported\"\n[structure]\nmass = \"mass.mtx\"\ndamping = \"damping.mtx\"\n"
            "stiffness = \"stiffness.mtx\"\ndofs = \"dofs.csv\"\n"
            "[integration]\nduration = 0.01\n";
-    return read_scene(folder_ / "scene.toml");
+    SceneParameters parameters = read_scene(folder_ / "scene.toml");
+    parameters.track_kind = kind;
+    return parameters;
   }
 
   std::filesystem::path folder_;
@@ -72,25 +75,25 @@ class LeanScene : public ::testing::Test {
 
 TEST_F(LeanScene, RigidTrackWithALinearCreepLawOpensNoFile) {
   const Opens opens(files_);
-  const SceneParameters lean = scene("rigid", "linear");
+  const SceneParameters lean = scene(TrackKind::rigid, "linear");
   const RunSummary summary = run_scene(lean, {});
   EXPECT_TRUE(summary.complete) << summary.message;
   EXPECT_EQ(summary.structure_dofs, 0);
   EXPECT_EQ(summary.back_substitutions, 0);
   EXPECT_EQ(opens.count(), 0);
   // The count sees what is opened: the creep table by its law, the matrices by an imported track.
-  EXPECT_TRUE(run_scene(scene("rigid", "table"), {}).complete);
+  EXPECT_TRUE(run_scene(scene(TrackKind::rigid, "table"), {}).complete);
   EXPECT_GT(opens.count(), 0);
-  EXPECT_ANY_THROW(static_cast<void>(run_scene(scene("imported", "linear"), {})));
+  EXPECT_ANY_THROW(static_cast<void>(run_scene(scene(TrackKind::imported, "linear"), {})));
   EXPECT_GT(opens.count(), 0);
 }
 
 TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
-  const RunPlan lean = plan_run(scene("rigid", "linear"));
+  const RunPlan lean = plan_run(scene(TrackKind::rigid, "linear"));
   EXPECT_EQ(lean.structure_dofs, 0);
   EXPECT_EQ(lean.vehicle_dofs, 41);
   EXPECT_LT(lean.memory, 1e6);
-  SceneParameters vertical = scene("rigid", "linear");
+  SceneParameters vertical = scene(TrackKind::rigid, "linear");
   vertical.contact.normal = NormalContact::rigid;
   const RunPlan plan = plan_run(vertical);
   EXPECT_EQ(plan.vehicle_dofs, 16);

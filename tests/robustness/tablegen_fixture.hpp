@@ -41,7 +41,7 @@ class TablegenFixture : public ::testing::Test {
   /// scene.toml, a run on a rough track with checkpoints on its way, and its rough.csv.
   void write_long_scene(double duration) const {
     std::ofstream(folder_ / "scene.toml")
-        << "[contact]\nmode = \"online\"\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[train]\nspeed = 50.0\n"
+        << "[contact]\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[train]\nspeed = 50.0\n"
            "[irregularity]\nfile = \"rough.csv\"\n[integration]\nduration = "
         << std::fixed << duration << "\n[output]\nevery = 2\n";
     std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv", folder_ / "rough.csv");
