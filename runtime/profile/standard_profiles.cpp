@@ -39,6 +39,7 @@ struct Entry {
   std::string_view name;   ///< the name that is written to tables
   std::string_view alias;  ///< second name, or empty
   std::vector<ProfileSegment> (*segments)(double rail_inclination);
+  bool for_pairs = true;  ///< false: for tests of curves, since the contact search refuses it as too narrow
 };
 
 constexpr std::array<Entry, 9> entries{{
@@ -51,7 +52,7 @@ constexpr std::array<Entry, 9> entries{{
     {ProfileKind::rail, "CHN60", "", [](double inclination) { return rail_head_segments(rail_chn60, inclination); }},
     {ProfileKind::rail, "JIS60-stand-in", "",
      [](double inclination) { return rail_head_segments(rail_jis60_stand_in, inclination); }},
-    {ProfileKind::rail, "knife-edge", "", [](double) { return knife_edge_segments(); }},
+    {ProfileKind::rail, "knife-edge", "", [](double) { return knife_edge_segments(); }, false},
 }};
 
 bool same_ignoring_case(std::string_view a, std::string_view b) {
@@ -64,7 +65,7 @@ bool same_ignoring_case(std::string_view a, std::string_view b) {
 std::vector<std::string> standard_profile_names(ProfileKind kind) {
   std::vector<std::string> names;
   for (const Entry& e : entries) {
-    if (e.kind != kind) continue;
+    if (e.kind != kind || !e.for_pairs) continue;
     names.emplace_back(e.name);
     if (!e.alias.empty()) names.emplace_back(e.alias);
   }

@@ -10,6 +10,7 @@
 #include "idle_keys.hpp"
 #include "key_table.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "toml_leaves.hpp"
 
@@ -297,6 +298,16 @@ SceneParameters read_scene(const std::filesystem::path& file) {
   } catch (const toml::parse_error& wrong) {
     throw InputError(fmt::format("{}:{}: {}", file.string(), wrong.source().begin.line, wrong.description()));
   }
+}
+
+InputError with_scene_line(const InputError& wrong, const SceneParameters& scene, const std::filesystem::path& file) {
+  constexpr std::string_view prefix = "scene: ";
+  std::string_view message = wrong.what();
+  if (!message.starts_with(prefix)) return wrong;
+  message.remove_prefix(prefix.size());
+  const toml::table root = toml::parse(scene.text, file.string());
+  return InputError(
+      fmt::format("{}{}: {}", file.string(), scene::line_of(message, scene::leaves_of(root, file)), message));
 }
 
 }  // namespace railtab

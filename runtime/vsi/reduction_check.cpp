@@ -30,6 +30,12 @@ double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 ComparedHistory compared_history(const SceneParameters& scene, double duration) {
   SceneParameters stretch = scene;
   stretch.integration.duration = duration;
+  return compared_history(scene, build_model(stretch), duration);
+}
+
+ComparedHistory compared_history(const SceneParameters& scene, const VsiModel& model, double duration) {
+  SceneParameters stretch = scene;
+  stretch.integration.duration = duration;
   stretch.output = {};
   ComparedHistory history;
   std::vector<std::size_t> deck;
@@ -48,7 +54,7 @@ ComparedHistory compared_history(const SceneParameters& scene, double duration) 
   };
   std::clock_t begin = std::clock();
   observer.ready = [&] { begin = std::clock(); };
-  history.summary = run_scene(stretch, observer);
+  history.summary = run_scene(stretch, model, observer);
   history.seconds_steps = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   if (!history.summary.complete) {
     throw ComputationError(fmt::format("comparison with reduction \"{}\": {}", reduction_name(scene.reduction.kind),
@@ -80,6 +86,8 @@ ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& wh
       peak_acceleration = std::max(peak_acceleration, std::abs(other));
     }
   }
+  error.dynamic_force = dynamic;
+  error.deck_acceleration = largest_acceleration;
   error.force_max = ratio(force.max, dynamic);
   error.force_rms = ratio(force.rms(), dynamic);
   error.force_static = ratio(force.max, largest_load);
@@ -93,8 +101,16 @@ ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& wh
 ReductionError check_reduction(const SceneParameters& scene, double duration) {
   SceneParameters none = scene;
   none.reduction.kind = Reduction::none;
-  const ComparedHistory whole = compared_history(none, duration);
-  ReductionError error = compare(compared_history(scene, duration), whole);
+  ComparedHistory whole;
+  {
+    const VsiModel model = build_model(none);  // gone before the reduced one comes
+    if (const double all = run_duration(scene, model); duration > all) {
+      throw input_error("time to compare", fmt::format("{} s", duration),
+                        fmt::format("at most {:.6g} s, the scene's duration", all));
+    }
+    whole = compared_history(none, model, duration);
+  }
+  ReductionError error = compare(compared_history(scene, build_model(scene), duration), whole);
   error.duration = duration;
   return error;
 }

@@ -11,6 +11,7 @@
 #include "contact_energy_record.hpp"
 #include "derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
+#include "static_wheel_load.hpp"
 #include "stopwatch.hpp"
 
 namespace railtab {
@@ -25,13 +26,11 @@ constexpr double longest_impact = 10e-3;  // s
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 // Mean of a vehicle's wheels [N].
-double static_wheel_load(const VehicleModel& vehicle) {
-  constexpr int vertical = 2;
-  double weight = 0.0;
-  for (const DofIndices& dof : vehicle.dof) {
-    if (dof[vertical] != held) weight += vehicle.static_load[dof[vertical]];
-  }
-  return weight / (2.0 * static_cast<double>(vehicle.wheelsets.size()));
+double mean_wheel_load(const VehicleModel& vehicle) {
+  const int wheelsets = static_cast<int>(vehicle.wheelsets.size());
+  double sum = 0.0;
+  for (int w = 0; w < wheelsets; ++w) sum += static_wheel_load(vehicle, w);
+  return sum / wheelsets;
 }
 
 // The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
@@ -43,7 +42,7 @@ class Integrator {
         workspace_(model),
         energy_(observer.energy),
         contact_energy_(observer.contact_energy),
-        wheel_load_(static_wheel_load(model.vehicle)) {
+        wheel_load_(mean_wheel_load(model.vehicle)) {
     if (model.structure) active_ = {0, model.structure->dofs()};
     if (model.window) window_.emplace(model, p.time_step);
     // What Newton leaves of the forces makes energy: steps that keep it end by the displacement.
@@ -66,6 +65,7 @@ class Integrator {
 
   bool step(VsiState& state, RunSummary& summary) {
     if (window_) active_ = window_->move(state);
+    summary.active_dofs = std::max<long>(summary.active_dofs, active_.count);
     if (!step(0, state, summary)) return false;
     if (window_) window_->vibrate(state);
     return true;

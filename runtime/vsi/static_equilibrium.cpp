@@ -7,6 +7,7 @@
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
+#include "static_wheel_load.hpp"
 
 namespace railtab {
 
@@ -123,7 +124,7 @@ void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::Vecto
   for (int w = 0; w < model.wheelsets(); ++w) {
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
-    const double load = 0.5 * model.vehicle.static_load[dof[2]];
+    const double load = static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle());
     const double left = level_of_wheel(model, problem, load, w, 0, displacement);
     const double right = level_of_wheel(model, problem, load, w, 1, displacement);
     displacement[wheelset_unknowns * w + 2] = 0.5 * (left + right);
@@ -244,6 +245,7 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
     if (model.normal_contact == NormalContact::rigid) {
       rest_on_rails(problem, state.contact);
     } else if (!solve_contact_by_continuation(model.contact, problem, limits, state.contact, workspace).converged) {
+      ++report.iterations;
       return report;
     }
 

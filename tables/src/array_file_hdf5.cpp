@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -44,7 +45,19 @@ Section::Section() : lock_(library_mutex()) {
 
 Section::~Section() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
 
+namespace {
+
+// HDF5 before 1.14.5 loses memory where an object's header is damaged, although nothing of it is open, and says at the
+// end of the process that it cannot close itself (HDFGroup/hdf5, issue 3790) unless it may not print errors.
+void let_process_end_quietly() {
+  static std::once_flag asked;
+  std::call_once(asked, [] { std::atexit([] { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }); });
+}
+
+}  // namespace
+
 InputError failure(const std::string& place, std::string_view expected) {
+  let_process_end_quietly();
   const std::string text = innermost_error();
   return input_error(place, text.empty() ? "an error of HDF5" : fmt::format("\"{}\"", text), expected);
 }

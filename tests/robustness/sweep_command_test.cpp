@@ -191,6 +191,35 @@ TEST_F(SweepCommand, ATrainThatDerailsHasItsRow) {
   EXPECT_NE(text("log").find("v040.000.row: found no row of this run"), std::string::npos) << text("log");
 }
 
+// What is missing or damaged in a sweep's folder is made again, and no row is believed without its numbers.
+TEST_F(SweepCommand, MissingAndDamagedResultsAreMadeAgain) {
+  write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.02\n");
+  const std::vector<std::string> sweep{"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"};
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
+  const std::string row = text("out/v030.000.row");
+  fs::remove(folder_ / "out/v030.000.h5");
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
+  EXPECT_TRUE(fs::exists(folder_ / "out/v030.000.h5")) << "a run without its results counted as finished";
+  EXPECT_EQ(numbers_of(text("out/v030.000.row")), numbers_of(row));
+
+  fs::remove(folder_ / "out/v030.000.row");
+  fs::resize_file(folder_ / "out/v030.000.h5", fs::file_size(folder_ / "out/v030.000.h5") / 2);
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
+  EXPECT_NE(text("log").find("set aside as v030.000.h5.damaged, the run is made again"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / "out/v030.000.h5.damaged"));
+  EXPECT_EQ(numbers_of(text("out/v030.000.row")), numbers_of(row));
+
+  const std::string whole = text("out/v030.000.row");
+  for (const char* wrong : {"nan", "many", "1e", "0.5.0"}) {
+    std::string changed = whole;
+    const std::size_t begin = changed.find(",1,") + 3;  // the first number after `complete`; may be empty
+    changed.replace(begin, changed.find(',', begin) - begin, wrong);
+    write("out/v030.000.row", changed);
+    EXPECT_EQ(vsi(sweep), 2) << wrong;
+  }
+  EXPECT_NE(text("log").find("v030.000.row: found no row of this run"), std::string::npos) << text("log");
+}
+
 TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   write("scene.toml", scene);
   write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
@@ -203,7 +232,9 @@ TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   refused({"sweep", "scene.toml", "--speed", "30", "--speed-kmh", "100", "-o", "out"});
   refused({"sweep", "scene.toml", "--speed", "30", "--shard", "3/2", "-o", "out"});
   refused({"sweep", "smooth.toml", "--speed", "30", "--seeds", "2", "-o", "out"});
+  refused({"sweep", "smooth.toml", "--speed", "30", "-o", "none/out"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
   ASSERT_EQ(vsi({"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"}), 0) << text("log");
   refused({"sweep", "scene.toml", "--speed", "30", "-o", "out"});  // another scene's folder
 }

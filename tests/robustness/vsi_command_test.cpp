@@ -1,59 +1,14 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
+#include "vsi_fixture.hpp"
+
+namespace railtab {
 namespace {
-
-struct Outcome {
-  int exit_code;  // 128 + signal where the program was killed
-  std::string output;
-};
-
-/// Runs the built vsi in a folder of its own; stdout and stderr together.
-class VsiCommand : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("vsi_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-
-  [[nodiscard]] Outcome vsi(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" VSI_COMMAND "' " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    if (!pipe) return {-1, "no shell"};
-    Outcome outcome{0, ""};
-    std::array<char, 4096> buffer;
-    for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-      outcome.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
-  }
-
-  /// Exit code 2, one message that begins with "vsi: " and has this text in it, and no output file.
-  void expect_refused(const std::string& arguments, const std::string& text) const {
-    const Outcome outcome = vsi(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
-    EXPECT_TRUE(outcome.output.starts_with("vsi: ")) << outcome.output;
-    EXPECT_NE(outcome.output.find(text), std::string::npos) << arguments << "\n" << outcome.output;
-    EXPECT_EQ(outcome.output.find("vsi: ", 1), std::string::npos) << outcome.output;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-  }
-
-  std::filesystem::path folder_;
-};
 
 TEST_F(VsiCommand, HelpAndVersionOfEveryCommand) {
   for (const char* command : {"", "contact ", "creep ", "run ", "report "}) {
@@ -210,9 +165,6 @@ TEST_F(VsiCommand, CreepForcesOfEveryLawInTheColumnsOfTheContract) {
   }
 }
 
-// A scene on rigid track that takes a few milliseconds per simulated second.
-constexpr const char* rigid_scene = "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\n";
-
 TEST_F(VsiCommand, ATableAndProfilesAreTwoPairs) {
   write("two.toml", "[contact]\ntable = \"t.h5\"\nrail_inclination = \"1:20\"\n");
   write("t.h5", "");
@@ -222,7 +174,7 @@ TEST_F(VsiCommand, ATableAndProfilesAreTwoPairs) {
 }
 
 TEST_F(VsiCommand, RunSaysWhereItsTimeWent) {
-  write("scene.toml", std::string(rigid_scene) + "duration = 0.05\n");
+  write("scene.toml", rigid_scene + "duration = 0.05\n");
   const Outcome outcome = vsi("run scene.toml -o r.h5");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   for (const char* part :
@@ -244,7 +196,7 @@ TEST_F(VsiCommand, RepairsOfAMeasuredProfileAreSaid) {
 
 // The signal goes to the program alone, once its results file is there.
 TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
-  write("scene.toml", std::string(rigid_scene) + "duration = 4.0\n[output]\nevery = 3\n");
+  write("scene.toml", rigid_scene + "duration = 4.0\n[output]\nevery = 3\n");
   const std::string interrupted =
       "--version; '" VSI_COMMAND
       "' run scene.toml -o r.h5 --json 2>&1 & pid=$!; while [ ! -e r.h5 ] && kill -0 $pid; do "
@@ -262,7 +214,7 @@ TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
 
 // What stands in the way of results must be results; a link is followed, to where there is nothing yet, too.
 TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
-  write("scene.toml", std::string(rigid_scene) + "duration = 0.01\n");
+  write("scene.toml", rigid_scene + "duration = 0.01\n");
   std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/tables/data/creep_table_nu028.h5", folder_ / "table.h5");
   const std::uintmax_t bytes = std::filesystem::file_size(folder_ / "table.h5");
   const auto refused = [&](const std::string& arguments, const std::string& words) {
@@ -291,7 +243,7 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
 
 TEST_F(VsiCommand, ARunIsNotResumedWithOtherInputFiles) {
   std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv", folder_ / "rough.csv");
-  write("scene.toml", std::string(rigid_scene) + "duration = 0.02\n[irregularity]\nfile = \"rough.csv\"\n");
+  write("scene.toml", rigid_scene + "duration = 0.02\n[irregularity]\nfile = \"rough.csv\"\n");
   ASSERT_EQ(vsi("run scene.toml -o r.h5 -q").exit_code, 0);
   EXPECT_EQ(vsi("run scene.toml -o r.h5 -q --resume").exit_code, 0);
   std::ofstream(folder_ / "rough.csv", std::ios::app) << "\n";
@@ -302,9 +254,9 @@ TEST_F(VsiCommand, ARunIsNotResumedWithOtherInputFiles) {
 }
 
 TEST_F(VsiCommand, WhatTheModelRefusesNamesTheScene) {
-  write("wheels.toml",
-        "[train]\nvehicle = \"chinese-high-speed-car\"\n" + std::string(rigid_scene) + "duration = 1.0\n");
+  write("wheels.toml", "[train]\nvehicle = \"chinese-high-speed-car\"\n" + rigid_scene + "duration = 1.0\n");
   expect_refused("run wheels.toml -o out", "wheels.toml: contact.dimensions.nominal_radius: found 0.46 m");
 }
 
 }  // namespace
+}  // namespace railtab

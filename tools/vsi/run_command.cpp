@@ -14,12 +14,13 @@
 #include "headline_text.hpp"
 #include "progress_bar.hpp"
 #include "railtab/runtime/results/result_file.hpp"
-#include "railtab/runtime/vsi/reduction_check.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
+#include "reduction_report.hpp"
 #include "run_command.hpp"
 
 namespace railtab::vsi {
@@ -33,8 +34,12 @@ ContactMode contact_mode(const std::string& name) {
   throw input_error("--contact", name, "table, online or paper");
 }
 
+void print_warning(std::string_view warning) { fmt::print(stderr, "vsi run: warning: {}\n", warning); }
+
 int print_plan(const SceneParameters& scene, const RunOptions& options) {
-  const RunPlan plan = plan_run(scene);
+  SetupProgress progress(options.quiet || options.json);
+  const RunPlan plan = plan_run(scene, [&](std::string_view part) { progress.show(part); });
+  progress.end();
   if (options.json) {
     JsonObject json;
     json.add("scene", scene.name).add("structure_dofs", plan.structure_dofs).add("vehicle_dofs", plan.vehicle_dofs);
@@ -42,7 +47,8 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
     json.add("duration", plan.duration)
         .add("memory_bytes", plan.memory)
         .add("built", plan.built)
-        .add("left_out", plan.left_out);
+        .add("left_out", plan.left_out)
+        .add("warnings", plan.warnings);
     fmt::print("{}\n", json.text());
     return 0;
   }
@@ -52,6 +58,7 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   fmt::print("  {:.3g} MB for what the steps work on, besides contact tables and records\n", 1e-6 * plan.memory);
   for (const std::string& part : plan.built) fmt::print("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) fmt::print("  left out: {}\n", part);
+  for (const std::string& warning : plan.warnings) print_warning(warning);
   return 0;
 }
 
@@ -130,6 +137,9 @@ class RunRecorder {
     observer.note = [this](std::string_view note) {
       if (!options_.quiet) fmt::print(stderr, "vsi run: note: {}\n", note);
     };
+    observer.warning = [this](std::string_view warning) {
+      if (!options_.quiet) print_warning(warning);
+    };
     observer.ready = [this] {
       setup_.end();
       Interrupt::listen();
@@ -207,58 +217,6 @@ void check_output(const SceneParameters& scene, const std::filesystem::path& sce
   require_replaceable(output, {results_filetype});
 }
 
-/// The model says "scene: " of what no single key can tell; the user has a file.
-InputError named_scene(const InputError& wrong, const std::filesystem::path& file) {
-  constexpr std::string_view scene = "scene: ";
-  const std::string message = wrong.what();
-  if (!message.starts_with(scene)) return wrong;
-  return InputError(fmt::format("{}: {}", file.string(), message.substr(scene.size())));
-}
-
-/// The error of the scene's reduction over the first `seconds`.
-int print_reduction_error(const SceneParameters& scene, double seconds, const RunOptions& options) {
-  if (scene.reduction.kind == Reduction::none) {
-    throw input_error("--check-reduction", "a scene without structure.reduction", "one with a reduction to check");
-  }
-  if (const double whole = run_duration(scene, build_model(scene)); seconds > whole) {
-    throw input_error("--check-reduction", fmt::format("{} s", seconds),
-                      fmt::format("at most {:.6g} s, the scene's duration", whole));
-  }
-  const ReductionError e = check_reduction(scene, seconds);
-  const auto step_ms = [](const RunSummary& s) {
-    return 1e3 * (s.seconds_total - s.seconds_setup) / static_cast<double>(s.steps);
-  };
-  if (options.json) {
-    fmt::print("{}\n", JsonObject()
-                           .add("reduction", std::string(reduction_name(scene.reduction.kind)))
-                           .add("seconds", e.duration)
-                           .add("force_max", e.force_max)
-                           .add("force_rms", e.force_rms)
-                           .add("force_of_static", e.force_static)
-                           .add("deck_max", e.deck_max)
-                           .add("deck_rms", e.deck_rms)
-                           .add("peak_force", e.peak_force)
-                           .add("peak_deck", e.peak_deck)
-                           .add("unknowns", e.reduced.structure_dofs)
-                           .add("unknowns_none", e.whole.structure_dofs)
-                           .add("step_ms", step_ms(e.reduced))
-                           .add("step_ms_none", step_ms(e.whole))
-                           .text());
-    return 0;
-  }
-  fmt::print("{}: reduction \"{}\" against \"none\" over {} s\n", scene.name, reduction_name(scene.reduction.kind),
-             e.duration);
-  fmt::print("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its dynamic part; {:.3g} % of the static load\n",
-             "vertical contact force", 100.0 * e.force_max, 100.0 * e.force_rms, 100.0 * e.force_static);
-  fmt::print("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its largest value\n", "deck acceleration",
-             100.0 * e.deck_max, 100.0 * e.deck_rms);
-  fmt::print("  {:<28}{:>9.3g} % of the largest Q, {:.3g} % of the largest deck acceleration\n", "peaks",
-             100.0 * e.peak_force, 100.0 * e.peak_deck);
-  fmt::print("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
-             e.reduced.structure_dofs, step_ms(e.whole), e.whole.structure_dofs);
-  return 0;
-}
-
 }  // namespace
 
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
@@ -302,23 +260,32 @@ int run_command(const Arguments& arguments) {
   const std::filesystem::path file = (*values)["scene"].as<std::string>();
   SceneParameters scene = read_scene(file);
   if (values->contains("contact")) {
+    if (scene.contact.normal == NormalContact::rigid) {
+      throw input_error("--contact", "a scene with contact.normal = \"rigid\"",
+                        "one whose wheels have contact patches");
+    }
     scene.contact.mode = contact_mode((*values)["contact"].as<std::string>());
     scene.validate();
   }
   RunOptions options{file.stem().string() + ".results.h5", values->contains("json"), values->contains("quiet"),
                      values->contains("resume")};
   if (values->contains("output")) options.output = (*values)["output"].as<std::string>();
+  for (const char* other : {"plan", "resume", "output"}) {
+    if (values->contains("check-reduction") && values->contains(other)) {
+      throw input_error("--check-reduction", fmt::format("--{} too", other), "one of them");
+    }
+  }
   try {
     if (values->contains("plan")) return print_plan(scene, options);
     if (values->contains("check-reduction")) {
       const double seconds = (*values)["check-reduction"].as<double>();
       if (!(seconds > 0.0)) throw input_error("--check-reduction", fmt::format("{}", seconds), "> 0 s");
-      return print_reduction_error(scene, seconds, options);
+      return print_reduction_error(scene, seconds, options.json);
     }
     check_output(scene, file, options.output);
     return run_to_file(scene, options);
   } catch (const InputError& wrong) {
-    throw named_scene(wrong, file);
+    throw with_scene_line(wrong, scene, file);
   }
 }
 

@@ -18,6 +18,7 @@
 #include "commands.hpp"
 #include "json_object.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "railtab/tables/text_file.hpp"
@@ -58,8 +59,8 @@ std::string whole_text(const fs::path& file) {
 /// The runs of a sweep in processes of their own: one that dies takes no other with it, and every one can be resumed.
 class Sweep {
  public:
-  Sweep(const SceneParameters& scene, fs::path folder, bool quiet)
-      : scene_(scene), folder_(std::move(folder)), quiet_(quiet) {}
+  Sweep(const SceneParameters& scene, fs::path scene_file, fs::path folder, bool quiet)
+      : scene_(scene), scene_file_(std::move(scene_file)), folder_(std::move(folder)), quiet_(quiet) {}
 
   /// @return exit code: 1 where a run failed or ended early, 130 after Ctrl-C
   int run(const std::vector<SweepRun>& runs, std::size_t processes) {
@@ -77,8 +78,11 @@ class Sweep {
     return asked_ != 0 ? interrupted : code;
   }
 
-  /// A run is finished when its row is there: it is written last, where the train has derailed too.
-  [[nodiscard]] bool finished(const SweepRun& run) const { return fs::exists(file(run, ".row")); }
+  /// A run is finished when its row is there, which is written last, where the train has derailed too, and so are its
+  /// results.
+  [[nodiscard]] bool finished(const SweepRun& run) const {
+    return fs::exists(file(run, ".row")) && fs::exists(file(run, ".h5"));
+  }
   [[nodiscard]] fs::path file(const SweepRun& run, const char* suffix) const { return folder_ / (run.name + suffix); }
 
  private:
@@ -90,22 +94,39 @@ class Sweep {
     return process;
   }
 
+  /// Results that cannot be read, cut off by a full disk or a kill, would stand in the way of their run for good.
+  void set_damaged_results_aside(const SweepRun& run) const {
+    const fs::path results = file(run, ".h5");
+    if (!fs::exists(results)) return;
+    try {
+      static_cast<void>(read_results(results));
+    } catch (const InputError& damaged) {
+      fs::rename(results, file(run, ".h5.damaged"));
+      fmt::print(stderr, "vsi sweep: {}: {}; set aside as {}.h5.damaged, the run is made again\n", run.name,
+                 damaged.what(), run.name);
+    }
+  }
+
   [[nodiscard]] int in_own_process(const SweepRun& run) const {
+    const SceneParameters scene = scene_of(scene_, run);
     try {
       signal(SIGINT, SIG_DFL);
       prctl(PR_SET_PDEATHSIG, SIGKILL);  // a sweep that is killed leaves no run behind that would hold its file
+      set_damaged_results_aside(run);
       std::string row;
       RunOptions options{file(run, ".h5").string(), false, true, true};
       options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
         if (!summary.interrupted) row = summary_row(run, headline, summary);
       };
-      const int code = run_to_file(scene_of(scene_, run), options);
+      const int code = run_to_file(scene, options);
       if (!row.empty()) write_text_file(file(run, ".row"), row);
       return code;
+    } catch (const InputError& wrong) {
+      fmt::print(stderr, "vsi sweep: {}: {}\n", run.name, with_scene_line(wrong, scene, scene_file_).what());
     } catch (const std::exception& failure) {
       fmt::print(stderr, "vsi sweep: {}: {}\n", run.name, failure.what());
-      return failed;
     }
+    return failed;
   }
 
   /// Waits for one of the processes; its exit code, at most 1.
@@ -125,7 +146,7 @@ class Sweep {
 
   static inline volatile std::sig_atomic_t asked_ = 0;
   const SceneParameters& scene_;
-  fs::path folder_;
+  fs::path scene_file_, folder_;
   bool quiet_;
   std::map<pid_t, const SweepRun*> going_;
 };
@@ -134,24 +155,47 @@ struct SweepCount {
   std::size_t finished = 0, ended_early = 0;
 };
 
-/// All finished runs of the whole sweep, whichever process or shard made them. @throws InputError
-SweepCount write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
-  std::string text = summary_columns();
+/// Row of a finished run, and whether it came to its end. @throws InputError
+std::pair<std::string, bool> row_of(const Sweep& sweep, const SweepRun& run) {
+  std::string row = whole_text(sweep.file(run, ".row"));
+  const std::optional<bool> complete = complete_of_row(run, row);
+  if (complete) return {std::move(row), *complete};
+  throw input_error(sweep.file(run, ".row").string(), "no row of this run",
+                    "the one that vsi sweep wrote; without the file the run is made again");
+}
+
+/// Finished runs; `rows` takes theirs where it is not null. @throws InputError
+SweepCount count_runs(const Sweep& sweep, const std::vector<SweepRun>& runs, std::string* rows = nullptr) {
   SweepCount count;
   for (const SweepRun& run : runs) {
     if (!sweep.finished(run)) continue;
-    const std::string row = whole_text(sweep.file(run, ".row"));
-    const std::optional<bool> complete = complete_of_row(run, row);
-    if (!complete) {
-      throw input_error(sweep.file(run, ".row").string(), "no row of this run",
-                        "the one that vsi sweep wrote; without the file the run is made again");
-    }
-    text += row;
+    const auto [row, complete] = row_of(sweep, run);
+    if (rows) *rows += row;
     ++count.finished;
-    count.ended_early += !*complete;
+    count.ended_early += !complete;
   }
+  return count;
+}
+
+/// All finished runs of the whole sweep, whichever process or shard made them. @throws InputError
+SweepCount write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
+  std::string text = summary_columns();
+  const SweepCount count = count_runs(sweep, runs, &text);
   write_text_file(file, text);
   return count;
+}
+
+/// The folder of the results is made, but none that would hold it: a path with a slip is refused, as for every -o.
+void make_folder(const fs::path& folder) {
+  if (fs::is_directory(folder)) return;
+  if (fs::exists(folder)) throw input_error("-o", folder.string() + ", which is a file", "a folder");
+  const fs::path parent = fs::absolute(folder / "").parent_path().parent_path();
+  if (!fs::is_directory(parent)) {
+    throw input_error("-o", fmt::format("no folder {}", parent.string()), "a new folder in an existing one");
+  }
+  std::error_code failure;
+  fs::create_directory(folder, failure);
+  if (failure) throw input_error("-o", folder.string() + ": " + failure.message(), "a folder that can be made");
 }
 
 /// A folder holds the runs of one scene and of the same contents of the files that it names.
@@ -204,34 +248,30 @@ int sweep_command(const Arguments& arguments) {
   for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) own.push_back(all[i]);
 
   const fs::path folder = (*values)["output"].as<std::string>();
-  if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw input_error("-o", folder.string() + ", which is a file", "a folder");
-  }
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw input_error("-o", folder.string() + ": " + failure.message(), "a folder that can be made");
+  make_folder(folder);
   check_same_scene(scene, folder);
   const auto asked = static_cast<std::size_t>((*values)["threads"].as<int>());
   const std::size_t processes = asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
   const bool json = values->contains("json"), quiet = values->contains("quiet") || json;
-  Sweep sweep(scene, folder, quiet);
+  Sweep sweep(scene, (*values)["scene"].as<std::string>(), folder, quiet);
   const int code = sweep.run(own, processes);
-  if (shard.count > 1) {
-    if (!quiet) fmt::print("the same command without --shard writes the summary of all shards\n");
-    return code;
-  }
+  const bool whole = shard.count == 1;
   const fs::path summary = folder / "summary.csv";
-  const SweepCount count = write_summary(sweep, all, summary);
+  const SweepCount count = whole ? write_summary(sweep, all, summary) : count_runs(sweep, own);
   if (json) {
-    fmt::print("{}\n", JsonObject()
-                           .add("runs", static_cast<long>(all.size()))
-                           .add("finished", static_cast<long>(count.finished))
-                           .add("ended_early", static_cast<long>(count.ended_early))
-                           .add("summary", summary.string())
-                           .text());
-  } else if (!quiet) {
+    JsonObject object;
+    object.add("runs", static_cast<long>(own.size())).add("finished", static_cast<long>(count.finished));
+    object.add("ended_early", static_cast<long>(count.ended_early));
+    if (whole) object.add("summary", summary.string());
+    fmt::print("{}\n", object.text());
+  } else if (!quiet && whole) {
     fmt::print("{} of {} runs finished, {} of them ended early: {}\n", count.finished, all.size(), count.ended_early,
                summary.string());
+  } else if (!quiet) {
+    fmt::print(
+        "shard {} of {}: {} of its {} runs finished, {} of them ended early; the sweep has {} runs, and the same "
+        "command without --shard writes the summary of all\n",
+        shard.index, shard.count, count.finished, own.size(), count.ended_early, all.size());
   }
   return code == done && count.ended_early > 0 ? failed : code;
 }

@@ -110,15 +110,37 @@ std::string summary_row(const SweepRun& run, const report::Headline& headline, c
                      summary.halved_steps, summary.seconds_total, message);
 }
 
+namespace {
+
+bool is_number_or_empty(const std::string& field) {
+  double value = 0.0;
+  const auto [stop, status] = std::from_chars(field.data(), field.data() + field.size(), value);
+  const bool whole = status == std::errc() && stop == field.data() + field.size();
+  return field.empty() || (whole && std::isfinite(value));
+}
+
+std::vector<std::string> fields_of(std::string row) {
+  if (row.ends_with('\n')) row.pop_back();
+  std::vector<std::string> fields;
+  for (std::size_t begin = 0; begin <= row.size();) {
+    const std::size_t end = std::min(row.find(',', begin), row.size());
+    fields.push_back(row.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return fields;
+}
+
+}  // namespace
+
 std::optional<bool> complete_of_row(const SweepRun& run, const std::string& row) {
-  const std::string columns = summary_columns();
+  constexpr std::size_t complete = 4;  // of the columns
   const std::string before = row_begin(run);
+  const std::vector<std::string> fields = fields_of(row);
   const bool whole = row.starts_with(before) && row.find('\n') == row.size() - 1 &&
-                     std::count(row.begin(), row.end(), ',') == std::count(columns.begin(), columns.end(), ',');
-  if (!whole) return std::nullopt;
-  const std::string complete = row.substr(before.size(), 2);
-  if (complete == "1,") return true;
-  return complete == "0," ? std::optional(false) : std::nullopt;
+                     fields.size() == fields_of(summary_columns()).size();
+  if (!whole || !std::all_of(fields.begin() + complete, fields.end() - 1, is_number_or_empty)) return std::nullopt;
+  if (fields[complete] != "0" && fields[complete] != "1") return std::nullopt;
+  return fields[complete] == "1";
 }
 
 }  // namespace railtab::vsi

@@ -23,6 +23,8 @@ class LoadHistory {
 
   [[nodiscard]] LoadArgument argument() const noexcept { return argument_; }
   [[nodiscard]] ForceAndMoment at(double point) const noexcept;
+  [[nodiscard]] double begin() const noexcept { return points_.front(); }  ///< first and last point
+  [[nodiscard]] double end() const noexcept { return points_.back(); }
   /// Components that are not zero throughout.
   [[nodiscard]] Eigen::Array<bool, 6, 1> acting() const noexcept;
 

@@ -12,15 +12,16 @@ namespace railtab {
 /// enough for the rounding of a position (1e-17 m) to leave its curvature alone.
 inline constexpr double knife_edge_radius = 1e-4;
 
-/// Names of the built-in profiles of one kind, for messages and --help.
+/// Names of the built-in profiles of one kind that pairs can be made of, for messages and --help.
 [[nodiscard]] std::vector<std::string> standard_profile_names(ProfileKind kind);
 
 /// A built-in profile by name (case is ignored): wheels "S1002", "LMA-type", "cone-1:20", "cone-1:40",
-/// "conic-arc-stand-in"; rails "60E1" (also "UIC60"), "CHN60", "JIS60-stand-in", "knife-edge". A name with "stand-in"
-/// is no standard's profile but has the main dimensions of one whose drawing was not at hand. `rail_inclination` is the
-/// tangent of the inclination (1/40, 1/20, 0) by which the rail head leans to the track centre, from 0 to 0.1; wheels
-/// and the knife-edge ignore it. Computed from the segment definitions, each smooth segment splined by itself with its
-/// exact end tangents, so that curvature may jump at the joints and nowhere else.
+/// "conic-arc-stand-in"; rails "60E1" (also "UIC60"), "CHN60", "JIS60-stand-in", and for tests of curves "knife-edge",
+/// which is too narrow for the contact search. A name with "stand-in" is no standard's profile but has the main
+/// dimensions of one whose drawing was not at hand. `rail_inclination` is the tangent of the inclination (1/40, 1/20,
+/// 0) by which the rail head leans to the track centre, from 0 to 0.1; wheels and the knife-edge ignore it. Computed
+/// from the segment definitions, each smooth segment splined by itself with its exact end tangents, so that curvature
+/// may jump at the joints and nowhere else.
 /// @throws InputError with the known names where the name is unknown.
 [[nodiscard]] ProfileKnots standard_profile(ProfileKind kind, std::string_view name, double rail_inclination);
 

@@ -85,6 +85,8 @@ struct RunSummary {
   double seconds_total = 0, seconds_setup = 0, seconds_lookup = 0, seconds_contact = 0, seconds_structure = 0,
          seconds_vehicle = 0, seconds_output = 0;
   long structure_dofs = 0, vehicle_dofs = 0;
+  long active_dofs = 0;  ///< most of the structure's unknowns that a step had, all or those of the moving window; not
+                         ///< in result files
   std::string contact_mode;                     ///< table, online, paper
   std::optional<ContactEnergy> contact_energy;  ///< where output.energy asks for it
 };

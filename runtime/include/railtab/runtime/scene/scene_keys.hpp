@@ -1,7 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 
@@ -17,5 +21,10 @@ struct SceneKey {
 
 /// All keys of a scene, in the order of the guide.
 [[nodiscard]] std::vector<SceneKey> scene_keys();
+
+/// What a model refuses in a scene, as the user has to see it: "scene: train.start: found …" becomes
+/// "scene.toml:7: train.start: found …", with the line where the scene names that key once. Other messages stay.
+[[nodiscard]] InputError with_scene_line(const InputError& wrong, const SceneParameters& scene,
+                                         const std::filesystem::path& file);
 
 }  // namespace railtab

@@ -28,6 +28,9 @@ class Irregularity {
   /// Constant time on evenly spaced points, O(log n) else; allocation-free.
   [[nodiscard]] RailDeviation at(RailSide side, double x) const noexcept;
   [[nodiscard]] bool empty() const noexcept { return x_.empty(); }
+  /// First and last measured position [m]. @pre not empty
+  [[nodiscard]] double begin() const noexcept { return x_.front(); }
+  [[nodiscard]] double end() const noexcept { return x_.back(); }
 
  private:
   /// Values and second derivatives of y_left, z_left, y_right, z_right at one point.

@@ -13,13 +13,15 @@ struct ReductionError {
   /// Vertical acceleration of the deck's nodes of interest: largest and root mean square difference over the largest
   /// acceleration.
   double deck_max = 0.0, deck_rms = 0.0;
-  double peak_force = 0.0;  ///< relative difference of the largest Q
-  double peak_deck = 0.0;   ///< relative difference of the largest deck acceleration
+  double dynamic_force = 0.0, deck_acceleration = 0.0;  ///< these largest amounts, without reduction [N], [m/s²]
+  double peak_force = 0.0;                              ///< relative difference of the largest Q
+  double peak_deck = 0.0;                               ///< relative difference of the largest deck acceleration
   RunSummary reduced, whole;
 };
 
 /// The first `duration` [s] of a scene with its reduction and without, step by step beside each other.
-/// @throws InputError as run_scene; ComputationError where one of the two does not come to its end
+/// @throws InputError as run_scene, and where the scene is shorter; ComputationError where one of the two does not come
+/// to its end
 [[nodiscard]] ReductionError check_reduction(const SceneParameters& scene, double duration);
 
 /// What of a run the comparison needs: Q of every wheel and the deck's vertical accelerations, step by step.
@@ -30,6 +32,8 @@ struct ComparedHistory {
   RunSummary summary;
 };
 [[nodiscard]] ComparedHistory compared_history(const SceneParameters& scene, double duration);
+/// With a model of the scene that is there already.
+[[nodiscard]] ComparedHistory compared_history(const SceneParameters& scene, const VsiModel& model, double duration);
 [[nodiscard]] ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& whole);
 
 }  // namespace railtab

@@ -22,14 +22,17 @@ struct RunPlan {
   double time_step = 0, duration = 0;  ///< [s]
   double memory = 0;                   ///< of what the steps work on [bytes]
   std::vector<std::string> built, left_out;
+  std::vector<std::string> warnings;  ///< as RunObserver::warning
 };
 
 /// Who listens to a run. Every member may be empty.
 struct RunObserver {
   std::function<void(std::string_view part)> setup;  ///< every part of the set-up as it begins
   std::function<void(std::string_view note)> note;   ///< what was repaired in measured profiles, sentence by sentence
-  std::function<void(const ResultHeader&)> start;    ///< once, before the first record
-  std::function<void()> ready;                       ///< once, when the set-up is over and the first step begins
+  /// What the scene names and nothing of its run meets, and a start with an impact, sentence by sentence.
+  std::function<void(std::string_view warning)> warning;
+  std::function<void(const ResultHeader&)> start;  ///< once, before the first record
+  std::function<void()> ready;                     ///< once, when the set-up is over and the first step begins
   /// The initial state, then every output.every steps, and the last step in any case. The listener may change it.
   std::function<void(StepRecord&)> record;
   /// After every step, halved ones too: the energy account, kept only where somebody listens. Not for wheels that
@@ -48,13 +51,19 @@ struct RunCheckpoint {
   std::vector<double> state;
 };
 
-/// @throws InputError
-[[nodiscard]] RunPlan plan_run(const SceneParameters& scene);
+/// @param setup every part of it as it begins; may be empty
+/// @throws InputError as run_scene() does before its first step, but for a train that has no state of rest
+[[nodiscard]] RunPlan plan_run(const SceneParameters& scene,
+                               const std::function<void(std::string_view part)>& setup = {});
 
 /// Run a scene. Wrong input throws InputError; a run that cannot go on returns a summary with complete = false and the
 /// reason, everything computed so far having been passed to the observer. A resumed run passes on what comes after its
 /// checkpoint, to the last bit what the uninterrupted run would have.
 [[nodiscard]] RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
+                                   const std::optional<RunCheckpoint>& resume = std::nullopt);
+
+/// The same with a model of the scene that is there already.
+[[nodiscard]] RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const RunObserver& observer,
                                    const std::optional<RunCheckpoint>& resume = std::nullopt);
 
 /// Time integration of a model from time 0 to `duration` [s], with steps halved where Newton fails: the core of

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "plan_memory.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "result_header.hpp"
+#include "scene_loads.hpp"
+#include "scene_structure.hpp"
+#include "scene_warnings.hpp"
+#include "step_count.hpp"
+
+namespace railtab {
+
+namespace {
+
+std::string reduction_text(const ReductionParameters& reduction) {
+  const std::string name = fmt::format("reduction of the structure: {}", reduction_name(reduction.kind));
+  if (reduction.kind == Reduction::window) {
+    return fmt::format("{}, {:g} m ahead of the train and {:g} m behind take part", name, reduction.ahead,
+                       reduction.behind);
+  }
+  if (reduction.kind == Reduction::modal) {
+    return fmt::format("{}, {} modes{}", name, reduction.modes,
+                       reduction.static_correction ? " with static correction" : "");
+  }
+  return fmt::format("{}, {} modes of each part", name, reduction.modes);
+}
+
+void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  if (model.geometry) {
+    plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
+                                     model.geometry->pair().wheel().knots().name,
+                                     model.geometry->pair().rail().knots().name));
+    plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+    if (scene.contact.mode != ContactMode::table) {
+      plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
+    }
+    return;
+  }
+  plan.built.emplace_back("wheels that follow the rails rigidly, vertical motion only");
+  plan.left_out.emplace_back("contact geometry, creep forces, loss of contact: contact.normal is \"rigid\"");
+  plan.left_out.emplace_back("lateral, roll and yaw unknowns of the vehicles: nothing moves them");
+  if (model.structure && structure_plane(scene) == MotionPlane::vertical && scene.track_kind == TrackKind::flexible) {
+    plan.left_out.emplace_back("lateral, roll and yaw unknowns of track and bridge: nothing loads them");
+  }
+}
+
+void describe_structure(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  if (model.structure) {
+    plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",
+                                     scene.track_kind == TrackKind::imported ? "imported" : "flexible",
+                                     2 * model.structure->rail[0].x.size(), scene.spans.size()));
+    if (scene.reduction.kind != Reduction::none) plan.built.push_back(reduction_text(scene.reduction));
+  } else {
+    plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
+  }
+  if (track_on_import(scene)) {
+    plan.built.push_back(fmt::format("bridge of {}", scene.structure.files.stiffness.filename().string()));
+  } else if (scene.spans.empty() && scene.track_kind != TrackKind::imported) {
+    plan.left_out.emplace_back("bridge: the scene names none");
+  }
+}
+
+void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  if (scene.spectrum) {
+    plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+  } else if (scene.irregularity) {
+    plan.built.push_back(fmt::format("irregularity of {}, measured at x = {:.6g} to {:.6g} m",
+                                     scene.irregularity->filename().string(), model.irregularity.begin(),
+                                     model.irregularity.end()));
+  } else {
+    plan.left_out.emplace_back("irregularity: the scene names none");
+  }
+}
+
+}  // namespace
+
+long step_count(const IntegrationParameters& integration, double duration) {
+  constexpr double most = 1e9;
+  const double steps = duration / integration.time_step;
+  if (!(steps >= 0.5 && steps <= most)) {
+    throw input_error("scene: integration.time_step",
+                      fmt::format("{:.3g} steps of {} s in {:.3g} s", steps, integration.time_step, duration),
+                      fmt::format("1 to {:.0e} steps", most));
+  }
+  return std::lround(steps);
+}
+
+RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
+  if (setup) setup("building the model");
+  const VsiModel model = build_model(scene);
+  RunPlan plan;
+  plan.structure_dofs = model.structure ? model.structure->dofs() : 0;
+  plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
+  plan.wheels = 2 * model.wheelsets();
+  plan.time_step = scene.integration.time_step;
+  plan.duration = run_duration(scene, model);
+  plan.steps = step_count(scene.integration, plan.duration);
+  static_cast<void>(OutputSelection(scene.output, model_header(model)));
+  plan.warnings = scene_warnings(scene, model);
+  plan.built.push_back(
+      fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  describe_contact(scene, model, plan);
+  describe_structure(scene, model, plan);
+  describe_track(scene, model, plan);
+  for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
+  if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
+  plan.memory = step_memory(model, scene.integration.time_step, scene.integration.alpha);
+  return plan;
+}
+
+}  // namespace railtab

@@ -1,0 +1,89 @@
+#include "start_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "static_wheel_load.hpp"
+
+namespace railtab {
+
+namespace {
+
+bool has_rest(const VsiModel& model, double time) {
+  VsiState state(model);
+  state.time = time;
+  return static_equilibrium(model, state).converged;
+}
+
+/// The train under its weight alone, and its acceleration where that stays.
+VsiModel without_loads(const VsiModel& model, double time, bool keep_acceleration) {
+  VsiModel bare = model;
+  bare.loads.clear();
+  if (keep_acceleration || !bare.speed_profile) return bare;
+  bare.contact.speed = model.speed(time);
+  bare.speed_profile.reset();
+  return bare;
+}
+
+}  // namespace
+
+std::string no_rest_message(const VsiModel& model, const EquilibriumReport& rest, double time) {
+  if (rest.deviation_share > 0.0) {
+    return fmt::format(
+        "no state of rest where the train stands: there is one up to {:.0f} % of the irregularity under it, beyond "
+        "that a wheelset leaves its rails; begin elsewhere (train.start) or with less irregularity",
+        100.0 * rest.deviation_share);
+  }
+  const std::string what =
+      fmt::format("no state of rest, also on the smooth track, after {} iterations", rest.iterations);
+  const double acceleration = model.acceleration(time);
+  const bool loads = !model.loads.empty();
+  if (acceleration != 0.0 && has_rest(without_loads(model, time, false), time)) {
+    const bool alone = !loads || !has_rest(without_loads(model, time, true), time);
+    return fmt::format(
+        "{}; there is one without {}: the train cannot bear {:.3g} m/s² at t = {:.3g} s, let train.speed_file begin "
+        "with less",
+        what, alone ? "the acceleration" : "acceleration and loads together", acceleration, time);
+  }
+  if (loads && has_rest(without_loads(model, time, true), time)) {
+    return fmt::format("{}; there is one without the loads that act at t = {:.3g} s: let them begin later or be less",
+                       what, time);
+  }
+  if (!model.geometry) return what;
+  const WheelRailPair& pair = model.geometry->pair();
+  return fmt::format(
+      "{}, {}: do the wheels fit on the rails ({} on {}, track gauge {} m, flange backs {} m apart, origins of profile "
+      "files)?",
+      what, loads || acceleration != 0.0 ? "nor is there one without the loads at t = 0" : "under its weight alone",
+      pair.wheel().knots().name, pair.rail().knots().name, pair.dimensions().track_gauge,
+      pair.dimensions().flange_back);
+}
+
+std::string displacement_warning(const SceneParameters& scene, const VsiModel& model, const VsiState& state) {
+  const bool displaced = scene.train.initial_lateral_shift != 0.0 || scene.train.initial_yaw != 0.0;
+  if (!displaced || !model.geometry) return {};
+  const ContactProblem present = present_contact(model, state);
+  double largest = 0.0, load = 0.0;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    load = std::max(load, static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
+    for (const WheelSide side : {WheelSide::left, WheelSide::right}) {
+      const WheelsetMotion motion = wheelset_motion(present, present.predicted, w);
+      const RailHeadMotion rail = rail_motion(present, present.predicted, w, side == WheelSide::left ? 0 : 1);
+      const ContactPatches patches = model.geometry->patches(relative_pose(model.geometry->pair(), side, motion, rail));
+      const double lateral = wheel_force(model.contact, side, motion, rail, patches).wheelset[1];
+      largest = std::max(largest, std::abs(lateral));
+    }
+  }
+  constexpr double steepest = 0.4;  // of the wheel load: treads and flange roots stay below 0.3
+  if (largest <= steepest * load) return {};
+  return fmt::format(
+      "the train begins {:.3g} mm aside with a yaw of {:.3g} mrad, where flanges carry wheels and push their rails by "
+      "{:.3g} "
+      "kN (static wheel load {:.3g} kN): the run begins with an impact",
+      1e3 * scene.train.initial_lateral_shift, 1e3 * scene.train.initial_yaw, 1e-3 * largest, 1e-3 * load);
+}
+
+}  // namespace railtab

@@ -1,0 +1,77 @@
+#include "reduction_report.hpp"
+
+#include <fmt/format.h>
+
+#include "json_object.hpp"
+#include "railtab/runtime/vsi/reduction_check.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab::vsi {
+namespace {
+
+double step_ms(const RunSummary& s) { return 1e3 * (s.seconds_total - s.seconds_setup) / static_cast<double>(s.steps); }
+
+void print_json(const SceneParameters& scene, const ReductionError& e) {
+  fmt::print("{}\n", JsonObject()
+                         .add("reduction", std::string(reduction_name(scene.reduction.kind)))
+                         .add("seconds", e.duration)
+                         .add("force_max", e.force_max)
+                         .add("force_rms", e.force_rms)
+                         .add("force_of_static", e.force_static)
+                         .add("force_dynamic", e.dynamic_force)
+                         .add("deck_max", e.deck_max)
+                         .add("deck_rms", e.deck_rms)
+                         .add("deck_acceleration", e.deck_acceleration)
+                         .add("peak_force", e.peak_force)
+                         .add("peak_deck", e.peak_deck)
+                         .add("unknowns", e.reduced.active_dofs)
+                         .add("unknowns_none", e.whole.active_dofs)
+                         .add("step_ms", step_ms(e.reduced))
+                         .add("step_ms_none", step_ms(e.whole))
+                         .text());
+}
+
+/// Errors are relative to the largest values, which say nothing before the train has moved anything.
+void print_text(const SceneParameters& scene, const ReductionError& e) {
+  constexpr double still_force = 1.0, still_deck = 1e-3;  // [N], [m/s²]: beside 1e3 N and 0.1 m/s² of a crossing
+  fmt::print("{}: reduction \"{}\" against \"none\" over {} s\n", scene.name, reduction_name(scene.reduction.kind),
+             e.duration);
+  if (e.dynamic_force > still_force) {
+    fmt::print(
+        "  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its dynamic part, {:.3g} kN; {:.3g} % of the static load\n",
+        "vertical contact force", 100.0 * e.force_max, 100.0 * e.force_rms, 1e-3 * e.dynamic_force,
+        100.0 * e.force_static);
+  } else {
+    fmt::print("  {:<28}{:>9.3g} % of the static load; its dynamic part is less than {} N, nothing to compare\n",
+               "vertical contact force", 100.0 * e.force_static, still_force);
+  }
+  if (e.deck_acceleration > still_deck) {
+    fmt::print("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its largest value, {:.3g} m/s²\n", "deck acceleration",
+               100.0 * e.deck_max, 100.0 * e.deck_rms, e.deck_acceleration);
+    fmt::print("  {:<28}{:>9.3g} % of the largest Q, {:.3g} % of the largest deck acceleration\n", "peaks",
+               100.0 * e.peak_force, 100.0 * e.peak_deck);
+  } else {
+    fmt::print("  {:<28} less than {} m/s², nothing to compare: compare until the train is on the bridge\n",
+               "deck acceleration", still_deck);
+    fmt::print("  {:<28}{:>9.3g} % of the largest Q\n", "peaks", 100.0 * e.peak_force);
+  }
+  fmt::print("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
+             e.reduced.active_dofs, step_ms(e.whole), e.whole.active_dofs);
+}
+
+}  // namespace
+
+int print_reduction_error(const SceneParameters& scene, double seconds, bool json) {
+  if (scene.reduction.kind == Reduction::none) {
+    throw input_error("--check-reduction", "a scene without structure.reduction", "one with a reduction to check");
+  }
+  const ReductionError e = check_reduction(scene, seconds);
+  if (json) {
+    print_json(scene, e);
+  } else {
+    print_text(scene, e);
+  }
+  return 0;
+}
+
+}  // namespace railtab::vsi
