@@ -46,8 +46,13 @@ TableCreep read_table_creep(const std::filesystem::path& file, double nu) {
   auto table = std::make_shared<const CreepTable>(read_creep_table(name));
   const double found = table->data().poisson;
   if (std::abs(found - nu) > same_poisson) {
-    throw input_error(name.string(), fmt::format("a creep table for Poisson's ratio {}", found),
-                      fmt::format("one for {}, as the material has", nu));
+    throw input_error(
+        name.string(),
+        fmt::format("{} for Poisson's ratio {}",
+                    file.empty() ? "the creep table that comes with railtab" : "a creep table", found),
+        fmt::format("one for {}, as the material has: tablegen creep --poisson {} makes it (contact.creep_table); or "
+                    "the law polach, fastsim or linear, or a material of {}",
+                    nu, nu, found));
   }
   return {std::move(table)};
 }

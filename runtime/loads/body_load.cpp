@@ -76,6 +76,8 @@ LoadHistory read_load_history(const std::filesystem::path& file, double start) {
     taken[component] = true;
     const double factor = component < 3 ? factor_to_si(columns[c], {{"N", 1.0}, {"kN", 1e3}})
                                         : factor_to_si(columns[c], {{"N m", 1.0}, {"kN m", 1e3}});
+    constexpr double largest_force = 1e8, largest_moment = 1e9;  // [N], [N m], as for a scene's own numbers
+    require_magnitude(columns[c], factor, component < 3 ? largest_force : largest_moment);
     for (std::size_t i = 0; i < loads.size(); ++i) {
       loads[i][static_cast<Eigen::Index>(component)] = factor * columns[c].values[i];
     }

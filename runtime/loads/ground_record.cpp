@@ -133,6 +133,8 @@ GroundRecord read_ground_record(const std::filesystem::path& file) {
       throw input_error(column.place(0), "accelerations and displacements", "either of them");
     }
     accelerations = acceleration;
+    constexpr double largest_acceleration = 100.0, largest_displacement = 20.0;  // [m/s²], [m]
+    require_magnitude(column, factor, acceleration ? largest_acceleration : largest_displacement);
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i][static_cast<Eigen::Index>(component)] = factor * column.values[i];
     }

@@ -71,7 +71,8 @@ struct Assign {
     for (const toml::node& entry : *list) {
       const toml::value<std::string>* text = entry.as_string();
       if (!text || text->get().empty()) {
-        throw leaf_error(file, leaf, text ? "an empty text in the list" : found_text(*leaf.node), expected);
+        const std::string found = text ? "an empty text" : found_text(entry);
+        throw leaf_error(file, leaf, found + " in the list", expected);
       }
       member.push_back(text->get());
     }
@@ -274,7 +275,10 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
 }
 
 std::string whole_file(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) throw input_error(file.string(), "no such file", "a TOML scene");
+  if (!std::filesystem::is_regular_file(file)) {
+    const bool folder = std::filesystem::is_directory(file);
+    throw input_error(file.string(), folder ? "a folder" : "no such file", "a TOML scene");
+  }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
   content << stream.rdbuf();

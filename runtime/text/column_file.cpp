@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -27,6 +28,15 @@ std::vector<std::string_view> cells_of(std::string_view text) {
     begin = end + 1;
   }
   return cells;
+}
+
+/// Spreadsheets of many languages write semicolons.
+void refuse_other_separator(std::string_view header, const std::string& place) {
+  if (header.find(',') != std::string_view::npos) return;
+  for (const auto& [separator, name] : {std::pair{"];", "semicolons"}, {"]\t", "tabs"}}) {
+    if (header.find(separator) == std::string_view::npos) continue;
+    throw input_error(place, fmt::format("columns separated by {}", name), "columns separated by commas");
+  }
 }
 
 FileColumn header_column(const std::string& file, long line, std::string_view cell) {
@@ -81,6 +91,7 @@ std::vector<FileColumn> read_columns(const std::filesystem::path& file) {
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') continue;
     if (columns.empty()) {
+      refuse_other_separator(content, fmt::format("{}:{}", file.string(), line));
       for (const std::string_view cell : cells_of(content)) {
         columns.push_back(header_column(file.string(), line, cell));
       }
@@ -101,6 +112,14 @@ double factor_to_si(const FileColumn& column, const std::vector<UnitFactor>& uni
     known += fmt::format("{}{}[{}]", known.empty() ? "" : ", ", column.name, u.unit);
   }
   throw input_error(column.place(0), fmt::format("unit [{}]", column.unit), known);
+}
+
+void require_magnitude(const FileColumn& column, double factor, double limit) {
+  for (std::size_t i = 0; i < column.values.size(); ++i) {
+    if (std::abs(factor * column.values[i]) <= limit) continue;
+    throw input_error(column.place(i + 1), fmt::format("{} {}", column.values[i], column.unit),
+                      fmt::format("-{0:g} to {0:g} {1}", limit / factor, column.unit));
+  }
 }
 
 }  // namespace railtab

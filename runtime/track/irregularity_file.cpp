@@ -23,6 +23,8 @@ Irregularity read_irregularity(const std::filesystem::path& file) {
                         fmt::format("'{}'; {}", names[c], expected));
     }
     const double factor = factor_to_si(columns[c], {{"m", 1.0}, {"mm", 1e-3}});
+    constexpr double largest = 0.5;  // [m]: no wheel follows more
+    if (c > 0) require_magnitude(columns[c], factor, largest);
     for (double& value : columns[c].values) value *= factor;
   }
   return Irregularity(std::move(columns[0].values), std::move(columns[1].values), std::move(columns[2].values),

@@ -61,12 +61,22 @@ std::string words_beyond(const std::string& text, const std::string& other) {
   return beyond.empty() ? text : beyond;
 }
 
+/// A name stays when the points behind it change: a file edited, another smoothing.
+void require_profile(const BatchPair& pair, std::string_view kind, const ProfileKnots& of_table,
+                     const ProfileKnots& wanted) {
+  if (same_profile(of_table, wanted)) return;
+  const bool renamed = of_table.name != wanted.name;
+  throw input_error(pair.output.string(), fmt::format("a table made of the {} profile {}", kind, of_table.name),
+                    fmt::format("{}{}; --overwrite makes it anew", wanted.name,
+                                renamed ? "" : " with the points that it has now (file, smoothing, inclination)"));
+}
+
 /// The options that the table in a job's place was made with, where they are not what the job asks for; empty where
-/// it is the job's own table. @throws InputError where the file is no geometry table
+/// it is the job's own table. @throws InputError where the file is no geometry table of the job's profiles
 std::string other_options(const BatchPair& pair, const GeometryRequest& request) {
   const GeometryTableData table = read_geometry_table(pair.output);
-  if (!same_profile(table.wheel, request.search.pair().wheel().knots())) return "another wheel profile";
-  if (!same_profile(table.rail, request.search.pair().rail().knots())) return "another rail profile";
+  require_profile(pair, "wheel", table.wheel, request.search.pair().wheel().knots());
+  require_profile(pair, "rail", table.rail, request.search.pair().rail().knots());
   std::string found;
   try {
     found = geometry_options_text(words(table.provenance.command_line));

@@ -33,6 +33,13 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
 std::string innermost_error() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
+  // HDF5 quotes the system's message between file names and addresses.
+  constexpr std::string_view before = "error message = '";
+  const std::size_t begin = text.find(before);
+  if (begin != std::string::npos) {
+    text.erase(0, begin + before.size());
+    text.erase(std::min(text.find('\''), text.size()));
+  }
   return text;
 }
 
@@ -63,14 +70,7 @@ InputError failure(const std::string& place, std::string_view expected) {
 }
 
 ComputationError write_failure(const std::string& place) {
-  std::string text = innermost_error();
-  // HDF5 quotes the system's message between file names and addresses.
-  constexpr std::string_view before = "error message = '";
-  const std::size_t begin = text.find(before);
-  if (begin != std::string::npos) {
-    text.erase(0, begin + before.size());
-    text.erase(std::min(text.find('\''), text.size()));
-  }
+  const std::string text = innermost_error();
   return ComputationError(fmt::format("{}: could not be written: {}", place, text.empty() ? "an error of HDF5" : text));
 }
 

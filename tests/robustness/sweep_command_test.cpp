@@ -110,7 +110,8 @@ TEST_P(KilledRun, ResumesToTheLastBit) {
   EXPECT_GE(killed, 3) << "the kills came too late to say anything";
   expect_same(railtab::read_results(folder_ / "killed.h5"), railtab::read_results(folder_ / "whole.h5"));
 }
-INSTANTIATE_TEST_SUITE_P(Reductions, KilledRun, ::testing::Values("none", "window"));
+INSTANTIATE_TEST_SUITE_P(Reductions, KilledRun, ::testing::Values("none", "window"),
+                         [](const auto& instance) { return std::string(instance.param); });
 
 constexpr const char* scene = R"([contact]
 mode = "online"

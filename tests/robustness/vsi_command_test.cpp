@@ -258,5 +258,37 @@ TEST_F(VsiCommand, WhatTheModelRefusesNamesTheScene) {
   expect_refused("run wheels.toml -o out", "wheels.toml: contact.dimensions.nominal_radius: found 0.46 m");
 }
 
+TEST_F(VsiCommand, MessagesNameWhatWasFound) {
+  write("q.csv", "ratio;ux;uy;phi\n1;0.1;0;0\n");
+  expect_refused("creep --query q.csv -o out",
+                 "q.csv:1: found columns separated by semicolons, expected the columns ratio");
+  expect_refused("creep --query q.csv -o out --law kalker", "--law: found kalker, expected table, polach");
+  expect_refused("run . -o out", ".: found a folder, expected a TOML scene");
+  const auto refused = [&](const std::string& more, const std::string& text) {
+    write("scene.toml", rigid_scene + "duration = 0.01\n" + more);
+    expect_refused("run scene.toml -o out", text);
+  };
+  refused("[output]\nbodies = [1]\n", "scene.toml:8: output.bodies: found 1 in the list, expected a list of texts");
+  write("rough.csv", "x[m];y_left[mm];z_left[mm];y_right[mm];z_right[mm]\n0;0;0;0;0\n1;0;0;0;0\n");
+  refused("[irregularity]\nfile = \"rough.csv\"\n", "rough.csv:1: found columns separated by semicolons");
+  write("rough.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n0,0,0,0,0\n1,0,2,0,0\n");
+  refused("[irregularity]\nfile = \"rough.csv\"\n", "rough.csv:3: column z_left: found 2 m, expected -0.5 to 0.5 m");
+  write("wind.csv", "t[s],Fy[kN]\n0,0\n1,2e6\n");
+  refused("[[load]]\nfile = \"wind.csv\"\n", "wind.csv:3: column Fy: found 2000000 kN, expected -100000 to 100000 kN");
+  write("quake.csv", "t[s],z[m]\n0,0\n1,0.1\n2,35\n");
+  refused("[[ground_motion]]\nfile = \"quake.csv\"\n", "quake.csv:4: column z: found 35 m, expected -20 to 20 m");
+  write("nu.toml",
+        "[contact]\nmode = \"online\"\nmaterial.nu = 0.3\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
+  expect_refused("run nu.toml -o out", "tablegen creep --poisson 0.3 makes it (contact.creep_table)");
+}
+
+TEST_F(VsiCommand, ResultsThatARunReplacesAreNamed) {
+  write("scene.toml", rigid_scene + "duration = 0.005\n");
+  const std::string note = "note: r.h5 holds the results of a whole run, which this one replaces";
+  EXPECT_EQ(vsi("run scene.toml -o r.h5").output.find(note), std::string::npos);
+  EXPECT_NE(vsi("run scene.toml -o r.h5").output.find(note), std::string::npos);
+  EXPECT_EQ(vsi("run scene.toml -o r.h5 --resume").output.find(note), std::string::npos);
+}
+
 }  // namespace
 }  // namespace railtab

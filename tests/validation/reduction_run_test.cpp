@@ -117,7 +117,12 @@ TEST_P(ResumedRun, IsTheUninterruptedOneToTheLastBit) {
 }
 INSTANTIATE_TEST_SUITE_P(Reductions, ResumedRun,
                          ::testing::Values(Reduction::none, Reduction::modal, Reduction::craig_bampton,
-                                           Reduction::window));
+                                           Reduction::window),
+                         [](const auto& instance) {
+                           std::string name(reduction_name(instance.param));
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace railtab

@@ -41,8 +41,10 @@ std::string tiles(const Headline& headline, const RunSummary& summary) {
     html += tile("Served by the table", shown(100.0 * headline.table_share, 4), "%",
                  fmt::format("of {} contact queries", summary.contact_queries));
   }
-  html += tile("Contact time", shown(summary.seconds_lookup + summary.seconds_contact), "s",
-               fmt::format("of {} s in all", shown(summary.seconds_total)));
+  if (summary.seconds_total > 0.0) {  // else ended from outside: nobody wrote the times
+    html += tile("Contact time", shown(summary.seconds_lookup + summary.seconds_contact), "s",
+                 fmt::format("of {} s in all", shown(summary.seconds_total)));
+  }
   if (headline.real_time_factor > 0.0) {
     html += tile("Real-time factor", shown(headline.real_time_factor), "×", "simulated time over run time");
   }

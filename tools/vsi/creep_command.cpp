@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -74,6 +77,10 @@ int creep_command(const Arguments& arguments) {
   const auto values = parse_command_line(syntax, arguments);
   if (!values) return 0;
   const std::string name = (*values)["law"].as<std::string>();
+  const std::vector<std::string> laws{"table", "polach", "fastsim", "linear"};
+  if (std::find(laws.begin(), laws.end(), name) == laws.end()) {
+    throw input_error("--law", name, "table, polach, fastsim or linear");
+  }
   const std::string query_file = (*values)["query"].as<std::string>();
   const std::string output = (*values)["output"].as<std::string>();
   require_writable_place(output, "-o");

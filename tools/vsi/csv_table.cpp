@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "railtab/tables/input_error.hpp"
 
@@ -31,10 +32,19 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+/// Spreadsheets of many languages write semicolons.
+void refuse_other_separator(std::string_view line, const std::string& place, const std::string& expected) {
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}, {' ', "blanks"}}) {
+    if (line.find(separator) == std::string_view::npos) continue;
+    throw input_error(place, fmt::format("columns separated by {}", name), expected + ", separated by commas");
+  }
+}
+
 /// For each field of the header, the index of its column.
 std::vector<std::size_t> column_order(const std::vector<std::string_view>& header,
                                       const std::vector<std::string>& columns, const std::string& place) {
   const std::string expected = fmt::format("the columns {}", fmt::join(columns, ","));
+  if (header.size() == 1) refuse_other_separator(header.front(), place, expected);
   std::vector<std::size_t> order;
   for (const std::string_view name : header) {
     const auto column = std::find(columns.begin(), columns.end(), name);

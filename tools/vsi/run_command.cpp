@@ -217,6 +217,16 @@ void check_output(const SceneParameters& scene, const std::filesystem::path& sce
   require_replaceable(output, {results_filetype});
 }
 
+/// The results of a run that came to its end are worth a word before they are gone.
+void say_what_is_replaced(const RunOptions& options) {
+  if (options.quiet || !std::filesystem::exists(options.output)) return;
+  try {
+    if (!read_run_summary(options.output).complete) return;
+    fmt::print(stderr, "vsi run: note: {} holds the results of a whole run, which this one replaces\n", options.output);
+  } catch (const InputError&) {  // nothing that could be read is lost
+  }
+}
+
 }  // namespace
 
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
@@ -232,6 +242,7 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     }
     from = recorder.take_up(before);
   }
+  if (!options.resume) say_what_is_replaced(options);
   try {
     return recorder.finish(run_scene(scene, recorder.observer(), from));
   } catch (const ComputationError& failure) {
