@@ -224,6 +224,15 @@ TEST(ReportPage, SaysWhenARunIsNotComplete) {
   EXPECT_NE(report_page(run).find("not complete.</b> the step at t = 0.3 s"), std::string::npos);
 }
 
+// Of a run that was ended from outside nobody has written the times.
+TEST(ReportPage, TimesThatNobodyWroteAreNotShown) {
+  RunResults run = small_run();
+  run.summary.seconds_total = 2.0;
+  EXPECT_NE(report_page(run).find("Contact time"), std::string::npos);
+  run.summary.seconds_total = run.summary.seconds_lookup = run.summary.seconds_contact = 0.0;
+  EXPECT_EQ(report_page(run).find("Contact time"), std::string::npos);
+}
+
 TEST(ReportPage, RunWithoutRecordsBridgeOrOutlinesIsStillAPage) {
   RunResults run;
   run.header.scene_name = "empty";
