@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "plan_memory.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "result_header.hpp"
 #include "scene_loads.hpp"
 #include "scene_structure.hpp"
@@ -76,17 +73,6 @@ void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan
 }
 
 }  // namespace
-
-long step_count(const IntegrationParameters& integration, double duration) {
-  constexpr double most = 1e9;
-  const double steps = duration / integration.time_step;
-  if (!(steps >= 0.5 && steps <= most)) {
-    throw input_error("scene: integration.time_step",
-                      fmt::format("{:.3g} steps of {} s in {:.3g} s", steps, integration.time_step, duration),
-                      fmt::format("1 to {:.0e} steps", most));
-  }
-  return std::lround(steps);
-}
 
 RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
   if (setup) setup("building the model");
