@@ -48,4 +48,25 @@ GroundPoint GroundMotion::at(double x, double time) const noexcept {
   return point;
 }
 
+std::vector<double> GroundMotion::places() const {
+  std::vector<double> x;
+  if (slowness_ != 0.0) return x;
+  for (const Station& station : stations_) x.push_back(station.x);
+  return x;
+}
+
+Eigen::VectorXd GroundMotion::shares(double x) const {
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(stations_.size()));
+  std::size_t after = 0;
+  while (after < stations_.size() && stations_[after].x <= x) ++after;
+  if (after == 0 || after == stations_.size()) {
+    share[after == 0 ? 0 : share.size() - 1] = 1.0;
+    return share;
+  }
+  const double part = (x - stations_[after - 1].x) / (stations_[after].x - stations_[after - 1].x);
+  share[static_cast<Eigen::Index>(after)] = part;
+  share[static_cast<Eigen::Index>(after) - 1] = 1.0 - part;
+  return share;
+}
+
 }  // namespace railtab

@@ -113,6 +113,10 @@ std::vector<Rule> without_structure(const SceneDraft& draft) {
        report || !own_rails,
        "track.kind = \"imported\" and no structure.report",
        "positions to report, or track.kind = \"flexible\""},
+      {{"support."},
+       !rigid && import && !scene.structure.files.nodes.empty(),
+       "no structure.nodes",
+       "an imported structure with its nodes"},
   };
 }
 

@@ -66,6 +66,23 @@ std::vector<KeyBinding> damping_keys() {
   };
 }
 
+std::vector<KeyBinding> held_node_keys() {
+  return {
+      {"support.set", "", "set of nodes that the ground holds and moves alike",
+       TextKey{[](SceneDraft& d) -> std::string& { return d.support.nodes.set; }, nullptr}},
+      {"support.from", "", "or one corner of a box, in the model's axes and unit",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.support.nodes.from; }}},
+      {"support.to", "", "and the other",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.support.nodes.to; }}},
+      {"support.tolerance", "", "by which the box is widened on all sides, in the model's unit",
+       NumberKey{[](SceneDraft& d) -> double& { return d.support.nodes.tolerance; }, not_negative}},
+      {"support.holds", "", "motions that are held, in railtab's axes: x, y, z, roll, pitch, yaw",
+       TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.support.holds; }}},
+      {"support.x", "m", "place along the track whose ground motion it has (the mean of its nodes where absent)",
+       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.support.x; }, any_number}},
+  };
+}
+
 }  // namespace
 
 const std::vector<KeyBinding>& import_keys() {
@@ -81,7 +98,8 @@ const std::vector<KeyBinding>& import_keys() {
                                                        "set of the nodes of the left rail"),
           selection_keys<&ImportParameters::rail_right>({"structure.rail_right.set", "structure.rail_right.from",
                                                          "structure.rail_right.to", "structure.rail_right.tolerance"},
-                                                        "set of the nodes of the right rail")}) {
+                                                        "set of the nodes of the right rail"),
+          held_node_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

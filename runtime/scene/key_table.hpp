@@ -25,6 +25,7 @@ struct SceneDraft {
   SpectrumParameters spectrum;  ///< the rest of it
   std::string deviation_shape = "none", deviation_direction = "vertical";
   SpanDeviationParameters deviation;
+  FeSupport support;              ///< the [[support]] being read
   LoadParameters load;            ///< the [[load]] being read
   GroundMotionParameters ground;  ///< the [[ground_motion]] being read
 };

@@ -102,14 +102,14 @@ void check_ground_motion(const SceneParameters& scene, const std::string& place)
     require(std::abs(ground.wave_speed) >= 10.0 || ground.wave_speed == 0.0, "ground_motion.wave_speed",
             ground.wave_speed, "0, or 10 m/s and more forward or backward");
   }
-  if (!scene.ground_motion.empty() && scene.track_kind == TrackKind::flexible &&
-      scene.reduction.kind != Reduction::none) {
-    throw input_error(place, "ground motion with structure.reduction",
-                      "structure.reduction = \"none\": modes with supports at rest do not follow supports that move");
-  }
-  if (!scene.ground_motion.empty() && !scene.structure.files.stiffness.empty()) {
-    throw input_error(place, "ground motion under an imported structure",
-                      "a built-in track: imported matrices do not say how their supports hold them");
+  const bool alike =
+      scene.ground_motion.size() <= 1 && (scene.ground_motion.empty() || scene.ground_motion.front().wave_speed == 0.0);
+  const ImportParameters& structure = scene.structure;
+  if (!alike && scene.track_kind != TrackKind::rigid && !structure.files.nodes.empty() && structure.supports.empty()) {
+    throw input_error(place,
+                      "ground motion that differs along the track under an imported structure without [[support]]",
+                      "one record for all, or matrices written without constraints, which have the supports' rows, and "
+                      "a [[support]] for each");
   }
 }
 

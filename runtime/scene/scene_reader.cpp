@@ -181,7 +181,7 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   if (nearest.empty()) {
     return InputError(
         fmt::format("{}: unknown key '{}'; the sections are train, contact, track, bridge, structure, "
-                    "irregularity, span_deviation, load, ground_motion, integration and output",
+                    "support, irregularity, span_deviation, load, ground_motion, integration and output",
                     place, leaf.path));
   }
   return InputError(fmt::format("{}: unknown key '{}'; did you mean '{}'?", place, leaf.path, nearest));
@@ -193,8 +193,8 @@ bool is_section(std::string_view path) {
                      [&](const KeyBinding& key) { return key.path.starts_with(prefix); });
 }
 
-/// What was just read of a [[bridge]], [[load]] or [[ground_motion]] goes into the scene; its end is the next such
-/// heading or the end of the file.
+/// What was just read of a [[bridge]], [[support]], [[load]] or [[ground_motion]] goes into the scene; its end is the
+/// next such heading or the end of the file.
 void finish_entry(SceneDraft& draft, std::string_view section) {
   if (section == "bridge") {
     if (!draft.span_damping_type.empty()) {
@@ -204,6 +204,8 @@ void finish_entry(SceneDraft& draft, std::string_view section) {
     draft.span = BridgeParameters{};
     draft.span_damping_type.clear();
     draft.span_count = 1;
+  } else if (section == "support") {
+    draft.parameters.structure.supports.push_back(std::exchange(draft.support, {}));
   } else if (section == "load") {
     draft.parameters.loads.push_back(std::exchange(draft.load, {}));
   } else if (section == "ground_motion") {

@@ -8,6 +8,7 @@
 
 #include "bridge.hpp"
 #include "deck_attachment.hpp"
+#include "fe_supports.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -25,6 +26,21 @@ void append(const Sparse& matrix, std::vector<Eigen::Triplet<double>>& entries) 
       entries.emplace_back(static_cast<int>(entry.row()), j, entry.value());
     }
   }
+}
+
+void append_supports(const StructureSupports::Columns& matrix, std::vector<Eigen::Triplet<double>>& entries) {
+  for (int i = 0; i < matrix.outerSize(); ++i) {
+    for (StructureSupports::Columns::InnerIterator entry(matrix, i); entry; ++entry)
+      entries.emplace_back(i, support_dof(static_cast<int>(entry.col())), entry.value());
+  }
+}
+
+/// What the ground does to the structure where it moves.
+StructureSupports settled_supports(const FeStructure& structure, FeDampingMatrix damping) {
+  StructureSupports supports = structure.supports;
+  supports.damping = std::move(damping.of_supports);
+  settle_supports(structure.mass, damping.of_unknowns, structure.stiffness, translations(structure), supports);
+  return supports;
 }
 
 StructureNode reported(std::string name, const FeNode& node) {
@@ -87,7 +103,14 @@ Bridge bridge_of(const FeStructure& structure, const ImportParameters& parameter
   bridge.attach = deck_function(structure, deck);
   append(structure.mass, bridge.matrices.mass);
   append(structure.stiffness, bridge.matrices.stiffness);
-  append(damping_matrix(structure, parameters.damping), bridge.matrices.damping);
+  FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
+  append(damping.of_unknowns, bridge.matrices.damping);
+  const StructureSupports supports = settled_supports(structure, std::move(damping));
+  append_supports(supports.mass, bridge.matrices.mass);
+  append_supports(supports.stiffness, bridge.matrices.stiffness);
+  append_supports(supports.damping, bridge.matrices.damping);
+  bridge.support_x = supports.x;
+  bridge.supports_alike_only = supports.alike_only;
   bridge.dof_x = positions(structure);
   double begin = INFINITY;
   bridge.end = -INFINITY;
@@ -177,25 +200,33 @@ void ImportParameters::validate() const {
   }
 }
 
-Sparse damping_matrix(const FeStructure& structure, const FeDamping& damping) {
-  if (structure.damping.rows() > 0) return structure.damping;
-  const RayleighDamping factors = rayleigh(structure, damping);
-  return factors.mass_factor * structure.mass + factors.stiffness_factor * structure.stiffness;
+FeStructure read_on_supports(const ImportParameters& parameters) {
+  return on_supports(read_fe_structure(parameters.files, parameters.frame), parameters.supports);
+}
+
+FeDampingMatrix damping_matrix(const FeStructure& structure, const FeDamping& damping) {
+  if (structure.damping.rows() > 0) return {structure.damping, structure.supports.damping};
+  const auto [a, b] = rayleigh(structure, damping);
+  FeDampingMatrix matrix{a * structure.mass + b * structure.stiffness, {}};
+  const StructureSupports& s = structure.supports;
+  if (s.columns() > 0) matrix.of_supports = a * s.mass + b * s.stiffness;
+  return matrix;
 }
 
 StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
   parameters.validate();
-  return lay_track(track, bridge_of(read_fe_structure(parameters.files, parameters.frame), parameters),
-                   MotionPlane::spatial);
+  return lay_track(track, bridge_of(read_on_supports(parameters), parameters), MotionPlane::spatial);
 }
 
 StructureModel import_with_rails(const ImportParameters& parameters) {
   parameters.validate();
-  const FeStructure structure = read_fe_structure(parameters.files, parameters.frame);
+  const FeStructure structure = read_on_supports(parameters);
   StructureModel model;
   model.mass = structure.mass;
   model.stiffness = structure.stiffness;
-  model.damping = damping_matrix(structure, parameters.damping);
+  FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
+  model.damping = damping.of_unknowns;
+  model.supports = settled_supports(structure, std::move(damping));
   model.rail[0] = rail_line(structure, parameters.rail_left, "structure.rail_left");
   model.rail[1] = rail_line(structure, parameters.rail_right, "structure.rail_right");
   if (parameters.deck.given()) {

@@ -52,7 +52,7 @@ inline void add_beam(MatrixAssembly& assembly, const std::vector<double>& x, con
 
 /// Splits the entries of one matrix into those between unknowns and those that the supports' translations have on them.
 inline void split_matrix(const std::vector<Eigen::Triplet<double>>& entries, int dofs, int support_columns,
-                         Eigen::SparseMatrix<double>& matrix, Eigen::SparseMatrix<double>& of_supports) {
+                         Eigen::SparseMatrix<double>& matrix, StructureSupports::Columns& of_supports) {
   std::vector<Eigen::Triplet<double>> inner, outer;
   inner.reserve(entries.size());
   for (const Eigen::Triplet<double>& e : entries) {

@@ -98,6 +98,25 @@ Matrix answers(const StructureModel& structure, const std::vector<int>& members,
   return result;
 }
 
+// Loads of the supports' motion by the columns of u = T p, for unknowns that are relative to it.
+template <class Transformation>
+StructureSupports project_supports(const StructureSupports& supports, const Transformation& transposed) {
+  StructureSupports projected;
+  if (supports.carried.size() == 0) return projected;
+  const auto columns = [&](const StructureSupports::Columns& matrix) -> StructureSupports::Columns {
+    const Matrix product = transposed * Sparse(matrix);
+    return product.sparseView();
+  };
+  projected.x = supports.x;
+  projected.alike_only = supports.alike_only;
+  projected.mass = columns(supports.mass);
+  projected.damping = columns(supports.damping);
+  projected.stiffness.resize(transposed.rows(), supports.columns());
+  projected.carried = supports.carried;
+  projected.carried_nodes = supports.carried_nodes;
+  return projected;
+}
+
 // Nodes of interest by the rows of u = T p.
 void take_nodes(const StructureModel& structure, const Eigen::SparseMatrix<double, Eigen::RowMajor>& T,
                 StructureModel& reduced) {
@@ -147,6 +166,7 @@ StructureModel reduce_to_modes(const StructureModel& structure, int modes) {
   reduced.damping = Matrix(0.5 * (damping + damping.transpose())).sparseView();
   reduced.rail = structure.rail;
   reduced.basis = modal.shape;
+  reduced.supports = project_supports(structure.supports, Matrix(modal.shape.transpose()));
   take_nodes(structure, modal.shape.sparseView(), reduced);
   return reduced;
 }
@@ -193,6 +213,18 @@ StructureModel reduce_parts(const StructureModel& structure, int modes) {
     }
   }
   take_nodes(structure, T, reduced);
+  reduced.supports = project_supports(structure.supports, transposed);
+  if (reduced.supports.columns() == 0) return reduced;
+  // rails have other numbers now
+  std::vector<Eigen::Triplet<double>> carried;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    if (place[i] == held) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    for (StructureSupports::Columns::InnerIterator entry(structure.supports.carried, row); entry; ++entry)
+      carried.emplace_back(place[i], static_cast<int>(entry.col()), entry.value());
+  }
+  reduced.supports.carried.resize(unknowns, structure.supports.columns());
+  reduced.supports.carried.setFromTriplets(carried.begin(), carried.end());
   return reduced;
 }
 

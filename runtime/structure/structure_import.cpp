@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "fe_supports.hpp"
+#include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
 #include "text_lines.hpp"
 
@@ -23,7 +25,7 @@ constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "roll", "pitch"
 struct Node {
   double x = 0.0;
   std::string place;  // of its first line
-  bool left = false, right = false;
+  bool left = false, right = false, support = false;
   DofIndices dof{held, held, held, held, held, held};
 };
 
@@ -45,9 +47,10 @@ std::array<std::string_view, 5> cells_of(const std::string& place, std::string_v
 }
 
 void set_rails(Node& node, const std::string& place, std::string_view rail) {
-  if (rail != "left" && rail != "right" && rail != "both" && !rail.empty()) {
-    throw input_error(place, fmt::format("rail '{}'", rail), "left, right, both, or nothing");
+  if (rail != "left" && rail != "right" && rail != "both" && rail != "support" && !rail.empty()) {
+    throw input_error(place, fmt::format("rail '{}'", rail), "left, right, both, support, or nothing");
   }
+  node.support = rail == "support";
   node.left = rail == "left" || rail == "both";
   node.right = rail == "right" || rail == "both";
 }
@@ -84,8 +87,8 @@ void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place
   Node& node = at->second;
   Node other;
   set_rails(other, place, rail);
-  if (node.x != x || node.left != other.left || node.right != other.right) {
-    throw input_error(place, fmt::format("node {} at another place or on another rail", name),
+  if (node.x != x || node.left != other.left || node.right != other.right || node.support != other.support) {
+    throw input_error(place, fmt::format("node {} at another place or on another rail or support", name),
                       fmt::format("as in {}", node.place));
   }
   int& dof = node.dof[static_cast<std::size_t>(known - motions.begin())];
@@ -139,6 +142,44 @@ Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
   return symmetric_mean(file, read_matrix_market(file), rows);
 }
 
+// What becomes of each row: unknown, moved by the ground (y and z of a support), or held.
+std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& support_x) {
+  constexpr std::size_t lateral = 1, vertical = 2;
+  std::vector<int> column_of_row(table.sign.size(), RowSplit::unknown);
+  for (const auto& [name, node] : table.nodes) {
+    if (!node.support) continue;
+    const int first = static_cast<int>(2 * support_x.size());
+    support_x.push_back(node.x);
+    for (std::size_t k = 0; k < node.dof.size(); ++k) {
+      if (node.dof[k] == held) continue;
+      const bool moves = k == lateral || k == vertical;
+      column_of_row[static_cast<std::size_t>(node.dof[k])] =
+          moves ? first + static_cast<int>(k - lateral) : RowSplit::resting;
+    }
+  }
+  return column_of_row;
+}
+
+// What the table does not name may be anything: how a translation moves it is what the supports carry it by.
+void settle_named_supports(const std::filesystem::path& file, StructureModel& model) {
+  StructureSupports& s = model.supports;
+  const Sparse carried = carried_by_supports(model.stiffness, s.stiffness);
+  Eigen::MatrixXd translation = Eigen::MatrixXd::Zero(model.dofs(), 2);
+  for (Eigen::Index j = 0; j < carried.cols(); ++j) translation.col(j % 2) += carried.col(j);
+  for (const RailLine& rail : model.rail) {
+    for (std::size_t n = 0; n < rail.x.size(); ++n) {
+      constexpr double tolerance = 1e-6;
+      const double z = translation(rail.dof[n][2], 1);
+      if (std::abs(z - 1.0) <= tolerance) continue;
+      throw input_error(
+          file.string(),
+          fmt::format("supports that carry the rail at x = {} m by {:.6g} of their own motion along z", rail.x[n], z),
+          "all supports, whose translation strains nothing");
+    }
+  }
+  settle_supports(model.mass, model.damping, model.stiffness, translation, s);
+}
+
 }  // namespace
 
 StructureModel import_structure(const StructureFiles& files) {
@@ -146,17 +187,28 @@ StructureModel import_structure(const StructureFiles& files) {
   model.stiffness = read_symmetric(files.stiffness, 0);
   model.mass = read_symmetric(files.mass, model.stiffness.rows());
   model.damping = read_symmetric(files.damping, model.stiffness.rows());
-  const DofTable table = read_dofs(files.dofs, static_cast<int>(model.stiffness.rows()));
+  DofTable table = read_dofs(files.dofs, static_cast<int>(model.stiffness.rows()));
   const Eigen::VectorXd sign = Eigen::VectorXd::Map(table.sign.data(), static_cast<Eigen::Index>(table.sign.size()));
   for (Sparse* matrix : {&model.mass, &model.damping, &model.stiffness}) {
     *matrix = sign.asDiagonal() * *matrix * sign.asDiagonal();
     matrix->makeCompressed();
   }
+  const RowSplit rows(columns_of_rows(table, model.supports.x));
+  if (model.supports.columns() > 0) {
+    StructureSupports& s = model.supports;
+    s.stiffness = rows.split(model.stiffness, s.columns());
+    s.mass = rows.split(model.mass, s.columns());
+    s.damping = rows.split(model.damping, s.columns());
+    for (auto& [name, node] : table.nodes) {
+      for (int& dof : node.dof) dof = dof == held ? held : rows[dof];
+    }
+  }
   model.rail[0] = rail_line(table, &Node::left, files.dofs, "left");
   model.rail[1] = rail_line(table, &Node::right, files.dofs, "right");
   for (const auto& [name, node] : table.nodes) {
-    if (!node.left && !node.right) model.nodes.push_back({name, node.x, node.dof});
+    if (!node.left && !node.right && !node.support) model.nodes.push_back({name, node.x, node.dof});
   }
+  if (model.supports.columns() > 0) settle_named_supports(files.dofs, model);
   return model;
 }
 

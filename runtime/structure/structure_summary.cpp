@@ -72,7 +72,7 @@ StructureSummary summarise(const FeStructure& structure, const FeDamping& dampin
     if (!v.isZero() && is_free(structure.stiffness, v)) summary.free.emplace_back(names[k]);
   }
   if (!summary.free.empty() || modes == 0) return summary;
-  add_modes(structure.mass, damping_matrix(structure, damping), structure.stiffness, modes, summary);
+  add_modes(structure.mass, damping_matrix(structure, damping).of_unknowns, structure.stiffness, modes, summary);
   return summary;
 }
 

@@ -74,6 +74,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
       const std::size_t number = now.contact.size();
       const int k = wheelset_unknowns * w, r = rail_unknown(2 * w + side);
       now.wheel_displacement.segment<3>(r) = rail.displacement;
+      now.wheel_velocity.segment<3>(r) = rail.velocity;
       const auto add = [&](const WheelContactModel& contact, const std::vector<ContactMemory>& before,
                            std::vector<ContactMemory>& memory, Eigen::VectorXd& mean) {
         const WheelForce force = wheel_force(contact, wheel_side, motion, rail, patches);

@@ -1,5 +1,7 @@
 #include "railtab/runtime/vsi/external_load.hpp"
 
+#include "railtab/runtime/vsi/support_motion.hpp"
+
 namespace railtab {
 
 namespace {
@@ -32,24 +34,6 @@ void add_inertia(const VsiModel& model, double acceleration, Eigen::VectorXd& lo
   }
 }
 
-struct SupportMotion {
-  Eigen::VectorXd displacement, velocity, acceleration;  // y, z of every support
-};
-
-SupportMotion support_motion(const GroundMotion& ground, const std::vector<double>& x, double time) {
-  const auto rows = static_cast<Eigen::Index>(2 * x.size());
-  SupportMotion motion{Eigen::VectorXd(rows), Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
-  GroundPoint point;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i == 0 || !ground.uniform()) point = ground.at(x[i], time);
-    const auto row = static_cast<Eigen::Index>(2 * i);
-    motion.displacement.segment<2>(row) = point.displacement;
-    motion.velocity.segment<2>(row) = point.velocity;
-    motion.acceleration.segment<2>(row) = point.acceleration;
-  }
-  return motion;
-}
-
 }  // namespace
 
 void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::VectorXd& load) {
@@ -79,13 +63,17 @@ void vehicle_step_load(const VsiModel& model, const HhtScheme& scheme, int vehic
   }
 }
 
-void add_ground_load(const VsiModel& model, const HhtScheme& scheme, double time, Eigen::VectorXd& load) {
+void add_ground_load(const VsiModel& model, const HhtScheme& scheme, double time, const DofRange& range,
+                     Eigen::VectorXd& load) {
   if (!model.ground_motion) return;
   const StructureSupports& supports = model.structure->supports;
   const auto add_force = [&](const SupportMotion& s, double weight) {
-    load.noalias() -= supports.stiffness * (weight * s.displacement);
-    load.noalias() -= supports.damping * (weight * s.velocity);
-    load.noalias() -= supports.mass * (weight * s.acceleration);
+    const auto add = [&](const StructureSupports::Columns& matrix, const Eigen::VectorXd& motion) {
+      range.of(load) -= matrix.middleRows(range.begin, range.count) * (weight * motion);
+    };
+    add(supports.stiffness, s.displacement);
+    add(supports.damping, s.velocity);
+    add(supports.mass, s.acceleration);
   };
   add_force(support_motion(*model.ground_motion, supports.x, time + scheme.time_step), scheme.load_weight());
   if (scheme.alpha != 0.0) add_force(support_motion(*model.ground_motion, supports.x, time), -scheme.alpha);

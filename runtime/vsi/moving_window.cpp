@@ -1,8 +1,10 @@
 #include "railtab/runtime/vsi/moving_window.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
@@ -46,10 +48,17 @@ Eigen::Index WindowModel::numbers() const noexcept {
 WindowModel make_window(const StructureModel& structure, const ReductionParameters& parameters) {
   WindowModel window{parameters.ahead, parameters.behind, {}};
   for (const auto& [from, to] : structure.spans) {
-    SpanModes span{from, to, dofs_between(structure.dof_x, from, to), {}, {}, {}};
+    SpanModes span{from, to, dofs_between(structure.dof_x, from, to), {}, {}, {}, {}, {}};
     ModalBasis basis =
         lowest_modes(block(structure.stiffness, span.dofs), block(structure.mass, span.dofs), span_modes, 1e-6);
     span.damping = (basis.shape.transpose() * (block(structure.damping, span.dofs) * basis.shape)).diagonal();
+    if (structure.supports.carried.size() > 0) {
+      const auto loads = [&](const StructureSupports::Columns& columns) -> Eigen::MatrixXd {
+        return basis.shape.transpose() * Sparse(columns.middleRows(span.dofs.begin, span.dofs.count));
+      };
+      span.support_mass = loads(structure.supports.mass);
+      span.support_damping = loads(structure.supports.damping);
+    }
     span.shape = std::move(basis.shape);
     span.omega2 = std::move(basis.omega2);
     window.spans.push_back(std::move(span));
@@ -84,56 +93,81 @@ DofRange MovingWindow::move(VsiState& state) {
   const Ends before = ends(step - 1);
   const DofRange range = dofs_between(model_.structure->dof_x, now.from, now.to);
   from_ = now.from;
+  to_ = now.to;
   if (placed_ && now == before) return range;
+  LinearMotion& structure = state.structure;
+  const std::array motions{&structure.displacement, &structure.velocity, &structure.acceleration};
   Eigen::Index first = 0;
   for (const SpanModes& span : model_.window->spans) {
     const Eigen::Index modes = span.omega2.size();
     if (before.from < span.to && span.to <= now.from) {
       const Sparse mass = block(model_.structure->mass, span.dofs);
-      int derivative = 0;
-      for (const Eigen::VectorXd* motion :
-           {&state.structure.displacement, &state.structure.velocity, &state.structure.acceleration}) {
-        const Eigen::VectorXd momentum = mass * span.dofs.of(*motion);
-        of_span(state.left_behind, first, modes, derivative++) = span.shape.transpose() * momentum;
+      for (int derivative = 0; derivative < 3; ++derivative) {
+        const Eigen::VectorXd momentum = mass * span.dofs.of(*motions[static_cast<std::size_t>(derivative)]);
+        of_span(state.left_behind, first, modes, derivative) = span.shape.transpose() * momentum;
       }
     }
     first += 3 * modes;
   }
-  to_rest(state.structure, 0, range.begin);
-  to_rest(state.structure, range.end(), state.structure.displacement.size() - range.end());
+  to_rest(structure, 0, range.begin);
+  to_rest(structure, range.end(), structure.displacement.size() - range.end());
+  first = 0;
+  for (const SpanModes& span : model_.window->spans) {
+    const Eigen::Index modes = span.omega2.size();
+    if (model_.ground_motion && before.to <= span.from && span.to <= now.to) {
+      for (int derivative = 0; derivative < 3; ++derivative) {
+        span.dofs.of(*motions[static_cast<std::size_t>(derivative)]) =
+            span.shape * of_span(state.left_behind, first, modes, derivative);
+      }
+    }
+    first += 3 * modes;
+  }
   placed_ = true;
   return range;
 }
 
-void MovingWindow::vibrate(VsiState& state) const {
+// Eq. 12 mode by mode.
+void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd& load,
+                             VsiState& state) const {
   const double dt = scheme_.time_step;
+  const Eigen::Index modes = span.omega2.size();
+  auto q = of_span(state.left_behind, first, modes, 0);
+  auto v = of_span(state.left_behind, first, modes, 1);
+  auto a = of_span(state.left_behind, first, modes, 2);
+  const Eigen::ArrayXd predicted = q.array() + dt * v.array() + dt * dt * (0.5 - scheme_.beta()) * a.array();
+  const Eigen::ArrayXd velocity = v.array() + dt * (1.0 - scheme_.gamma()) * a.array();
+  const Eigen::ArrayXd increment =
+      (load.array() - span.damping.array() * velocity - span.omega2.array() * predicted) /
+      (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array());
+  q.array() = predicted + increment;
+  v.array() = velocity + scheme_.velocity_rate() * increment;
+  a.array() = scheme_.acceleration_rate() * increment;
+  for (const StructureNode& node : model_.structure->nodes) {
+    if (node.x < span.from || node.x > span.to) continue;
+    for (int dof : node.dof) {
+      if (dof == held || dof < span.dofs.begin || dof >= span.dofs.end()) continue;
+      const auto row = span.shape.row(dof - span.dofs.begin);
+      state.structure.displacement[dof] = row * q;
+      state.structure.velocity[dof] = row * v;
+      state.structure.acceleration[dof] = row * a;
+    }
+  }
+}
+
+void MovingWindow::vibrate(VsiState& state) const {
+  SupportMotion supports;
+  if (model_.ground_motion) supports = support_motion(*model_.ground_motion, model_.structure->supports.x, state.time);
   Eigen::Index first = 0;
   for (const SpanModes& span : model_.window->spans) {
-    if (span.to > from_) break;
     const Eigen::Index modes = span.omega2.size();
-    auto q = of_span(state.left_behind, first, modes, 0);
-    auto v = of_span(state.left_behind, first, modes, 1);
-    auto a = of_span(state.left_behind, first, modes, 2);
-    first += 3 * modes;
-    // Eq. 12 mode by mode, without load.
-    const Eigen::ArrayXd predicted = q.array() + dt * v.array() + dt * dt * (0.5 - scheme_.beta()) * a.array();
-    const Eigen::ArrayXd velocity = v.array() + dt * (1.0 - scheme_.gamma()) * a.array();
-    const Eigen::ArrayXd increment =
-        -(span.damping.array() * velocity + span.omega2.array() * predicted) /
-        (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array());
-    q.array() = predicted + increment;
-    v.array() = velocity + scheme_.velocity_rate() * increment;
-    a.array() = scheme_.acceleration_rate() * increment;
-    for (const StructureNode& node : model_.structure->nodes) {
-      if (node.x < span.from || node.x > span.to) continue;
-      for (int dof : node.dof) {
-        if (dof == held || dof < span.dofs.begin || dof >= span.dofs.end()) continue;
-        const auto row = span.shape.row(dof - span.dofs.begin);
-        state.structure.displacement[dof] = row * q;
-        state.structure.velocity[dof] = row * v;
-        state.structure.acceleration[dof] = row * a;
-      }
+    const bool ahead = model_.ground_motion && span.from >= to_;
+    if (span.to <= from_ || ahead) {
+      Eigen::VectorXd load = Eigen::VectorXd::Zero(modes);
+      if (model_.ground_motion)
+        load -= span.support_mass * supports.acceleration + span.support_damping * supports.velocity;
+      step_span(span, first, load, state);
     }
+    first += 3 * modes;
   }
 }
 

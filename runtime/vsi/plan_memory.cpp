@@ -6,7 +6,8 @@ namespace railtab {
 
 namespace {
 
-double bytes_of(const Eigen::SparseMatrix<double>& matrix) {
+template <class Matrix>
+double bytes_of(const Matrix& matrix) {
   return static_cast<double>(matrix.nonZeros()) * (sizeof(double) + sizeof(int)) +
          static_cast<double>(matrix.outerSize()) * sizeof(int);
 }
@@ -20,10 +21,9 @@ double step_memory(const VsiModel& model, double time_step, double alpha) {
   double bytes = vehicle_matrices * n * n * sizeof(double);
   if (!model.structure) return bytes;
   const StructureModel& s = *model.structure;
-  for (const auto* matrix :
-       {&s.mass, &s.damping, &s.stiffness, &s.supports.mass, &s.supports.damping, &s.supports.stiffness}) {
-    bytes += bytes_of(*matrix);
-  }
+  for (const auto* matrix : {&s.mass, &s.damping, &s.stiffness}) bytes += bytes_of(*matrix);
+  for (const auto* columns : {&s.supports.mass, &s.supports.damping, &s.supports.stiffness, &s.supports.carried})
+    bytes += bytes_of(*columns);
   const StructureResponse response(s, HhtScheme{.alpha = alpha, .time_step = time_step});
   bytes += (1.0 + low_factor) * static_cast<double>(response.factor().bytes());
   return bytes + static_cast<double>(response.load_bytes());

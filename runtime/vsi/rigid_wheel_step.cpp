@@ -4,6 +4,7 @@
 
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/step.hpp"
+#include "railtab/runtime/vsi/support_motion.hpp"
 #include "stopwatch.hpp"
 #include "structure_step.hpp"
 
@@ -130,6 +131,23 @@ Eigen::VectorXd free_vehicles(const VsiModel& model, const StepOperators& op, co
   return force;
 }
 
+// The line that supports carry the rails along, as the wheels of every wheelset follow it.
+void add_carried(const VsiModel& model, double time, Lines& lines) {
+  const StructureSupports& supports = model.structure->supports;
+  if (!model.ground_motion || supports.carried.size() == 0) return;
+  const SupportMotion motion = support_motion(*model.ground_motion, supports.x, time);
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const auto line = [&](const Eigen::VectorXd& translations) -> Vector3d {
+      CarriedHead mean = CarriedHead::Zero();
+      for (int side = 0; side < 2; ++side)
+        mean += 0.5 * carried_head(lines.contacts[index(2 * w + side)], supports, translations);
+      return {mean[1], -mean[4], mean[5]};
+    };
+    lines.known[index(w)] +=
+        followed(line(motion.displacement), line(motion.velocity), line(motion.acceleration)[0], lines.run);
+  }
+}
+
 // What the wheels would follow without contact forces at t + dt: the forward half of the structure's back-substitution.
 Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState& state, double time,
                  StepWorkspace& ws) {
@@ -155,6 +173,7 @@ Lines free_lines(const VsiModel& model, const StepOperators& op, const VsiState&
         followed(mean_line(contact, p.displacement), mean_line(contact, p.velocity), 0.0, lines.run);
     lines.free[index(w)] = mean_line(contact, ws.structure_free);
   }
+  add_carried(model, time, lines);
   return lines;
 }
 

@@ -76,6 +76,21 @@ double wave_origin(const VsiModel& model, double wave_speed, double duration) {
   return wave_speed > 0.0 ? low : high;
 }
 
+// An imported structure may not say what its supports do to it.
+void check_supports(const VsiModel& model) {
+  const StructureSupports& supports = model.structure->supports;
+  if (supports.columns() == 0) {
+    throw input_error("scene: ground_motion", "an imported structure whose supports have no rows",
+                      "a table of dofs with the supports' rows (rail = support), or structure.nodes");
+  }
+  if (supports.alike_only && !model.ground_motion->uniform()) {
+    throw input_error("scene: ground_motion",
+                      "motion that differs along the track, and an imported structure that stands on more than its "
+                      "[[support]]s: a translation of all of them strains it or is damped",
+                      "one record for all, or the rows of all supports in the matrices and a [[support]] for each");
+  }
+}
+
 void add_ground_motion(const SceneParameters& scene, VsiModel& model) {
   if (scene.ground_motion.empty()) return;
   const GroundMotionParameters& first = scene.ground_motion.front();
@@ -89,6 +104,7 @@ void add_ground_motion(const SceneParameters& scene, VsiModel& model) {
   } else {
     model.ground_motion.emplace(ground_record(first));
   }
+  if (model.structure) check_supports(model);
 }
 
 }  // namespace
@@ -128,9 +144,11 @@ std::vector<std::string> describe_loads(const SceneParameters& scene, const VsiM
                                 load.coach == 0 ? "every coach" : fmt::format("coach {}", load.coach)));
   }
   if (model.ground_motion) {
-    const std::size_t supports = model.structure ? model.structure->supports.x.size() : 0;
-    parts.push_back(
-        fmt::format("ground motion, {} record(s), under {} supports", scene.ground_motion.size(), supports));
+    const StructureSupports none;
+    const StructureSupports& supports = model.structure ? model.structure->supports : none;
+    const std::string under = supports.carried.size() > 0 ? "all supports, displacements relative to what they carry"
+                                                          : fmt::format("{} supports", supports.x.size());
+    parts.push_back(fmt::format("ground motion, {} record(s), under {}", scene.ground_motion.size(), under));
   }
   return parts;
 }

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "railtab/runtime/profile/profile_file.hpp"
+#include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "scene_loads.hpp"
@@ -96,6 +98,10 @@ Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
 // The structure as the steps will have it.
 void reduce(const ReductionParameters& reduction, VsiModel& model) {
   if (!model.structure) return;
+  if (model.ground_motion && reduction.kind != Reduction::none) {
+    model.structure->supports = gathered(model.structure->supports, *model.ground_motion);
+    model.structure = relative_to_supports(std::move(*model.structure));
+  }
   switch (reduction.kind) {
     case Reduction::modal: {
       auto unreduced = std::make_shared<const StructureModel>(std::move(*model.structure));

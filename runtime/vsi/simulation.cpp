@@ -11,6 +11,7 @@
 #include "contact_energy_record.hpp"
 #include "derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
+#include "railtab/runtime/vsi/support_motion.hpp"
 #include "static_wheel_load.hpp"
 #include "stopwatch.hpp"
 
@@ -191,6 +192,24 @@ void fill_combined_nodes(const Eigen::SparseMatrix<double, Eigen::RowMajor>& row
   }
 }
 
+// What supports carry the nodes by, where the structure's displacements are relative to them.
+void add_carried(const VsiModel& model, StepRecord& record) {
+  const StructureSupports& supports = model.structure->supports;
+  if (!model.ground_motion || supports.carried_nodes.size() == 0) return;
+  const SupportMotion motion = support_motion(*model.ground_motion, supports.x, record.time);
+  const Eigen::VectorXd displacement = supports.carried_nodes * motion.displacement;
+  const Eigen::VectorXd velocity = supports.carried_nodes * motion.velocity;
+  const Eigen::VectorXd acceleration = supports.carried_nodes * motion.acceleration;
+  for (std::size_t n = 0; n < record.nodes.size(); ++n) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto row = static_cast<Eigen::Index>(6 * n + k);
+      record.nodes[n].displacement[k] += displacement[row];
+      record.nodes[n].velocity[k] += velocity[row];
+      record.nodes[n].acceleration[k] += acceleration[row];
+    }
+  }
+}
+
 void fill_patches(const ContactSolution& contact, std::size_t index, WheelRecord& wheel) {
   wheel = {};
   const ContactPatch* first = nullptr;
@@ -239,9 +258,13 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   }
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
-  if (model.structure->node_rows.rows() > 0) return fill_combined_nodes(model.structure->node_rows, state, record);
-  for (std::size_t n = 0; n < record.nodes.size(); ++n)
-    fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
+  if (model.structure->node_rows.rows() > 0) {
+    fill_combined_nodes(model.structure->node_rows, state, record);
+  } else {
+    for (std::size_t n = 0; n < record.nodes.size(); ++n)
+      fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
+  }
+  add_carried(model, record);
 }
 
 RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration, int record_every,

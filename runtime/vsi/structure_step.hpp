@@ -12,7 +12,7 @@ inline void begin_structure(const VsiModel& model, const StepOperators& op, cons
   const DofRange& active = op.structure->active();
   predict(op.scheme, state.structure, active, ws.structure_prediction);
   op.structure->step_load(op.scheme, state.structure, ws.structure_prediction, ws.structure_increment);
-  add_ground_load(model, op.scheme, state.time, ws.structure_increment);
+  add_ground_load(model, op.scheme, state.time, active, ws.structure_increment);
   ws.rail_dofs.clear();
   for (const RailContact& contact : contacts) append_dofs(contact, ws.rail_dofs);
   active.of(ws.structure_load).setZero();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -126,12 +127,25 @@ void add_ground(const VsiModel& model, double x, double time, RailHeadMotion& he
   head.slope += ground.slope[1];
 }
 
+// A rail whose structure moves relative to its supports is carried along by them.
+void add_carried(const RailContact& contact, const StructureSupports& supports, const SupportMotion& motion,
+                 RailHeadMotion& head) {
+  const CarriedHead carried = carried_head(contact, supports, motion.displacement);
+  head.displacement += carried.head<3>();
+  head.velocity += carried_head(contact, supports, motion.velocity).head<3>();
+  head.yaw += carried[3];
+  head.slope -= carried[4];
+}
+
 }  // namespace
 
 void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
                     const Eigen::VectorXd& structure_displacement,
                     std::vector<std::array<RailHeadMotion, 2>>& deviation) {
   deviation.resize(index(model.wheelsets()));
+  const bool relative = model.ground_motion && model.structure && model.structure->supports.carried.size() > 0;
+  SupportMotion motion;
+  if (relative) motion = support_motion(*model.ground_motion, model.structure->supports.x, time);
   for (int w = 0; w < model.wheelsets(); ++w) {
     for (int side = 0; side < 2; ++side) {
       const double x = model.wheelset_x(w, time);
@@ -150,6 +164,7 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
       const Eigen::Vector2d slopes = rail_slopes(contact, structure_displacement);
       head.yaw += slopes[0];
       head.slope -= slopes[1];
+      if (relative) add_carried(contact, model.structure->supports, motion, head);
     }
   }
 }

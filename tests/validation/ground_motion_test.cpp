@@ -139,7 +139,7 @@ double supported_mass_error(double time_step) {
   for (int step = 0; relative.size() < expected.size(); ++step) {
     predict(hht, motion, p);
     response.step_load(hht, motion, p, load);
-    add_ground_load(model, hht, step * time_step, load);
+    add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
     update(hht, p, response.solve(load), motion);
     const double ground = model.ground_motion->at(3.0, (step + 1) * time_step).displacement[1];
     if ((step + 1) % every == 0) relative.push_back(motion.displacement[0] - ground);
@@ -187,7 +187,7 @@ double two_routes(double time_step) {
     const double end = (step + 1) * time_step;
     predict(hht, absolute, p);
     response.step_load(hht, absolute, p, load);
-    add_ground_load(model, hht, step * time_step, load);
+    add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
     update(hht, p, response.solve(load), absolute);
     const GroundPoint now = model.ground_motion->at(0.0, end);
     predict(hht, relative, p);

@@ -14,7 +14,7 @@ namespace {
 
 StructureSummary summary_of(const SceneParameters& scene, int modes) {
   if (!scene.structure.files.nodes.empty()) {
-    const FeStructure structure = read_fe_structure(scene.structure.files, scene.structure.frame);
+    const FeStructure structure = read_on_supports(scene.structure);
     return summarise(structure, scene.structure.damping, modes);
   }
   if (!scene.spans.empty()) return summarise(scene.spans, modes);

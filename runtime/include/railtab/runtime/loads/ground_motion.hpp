@@ -32,6 +32,9 @@ class GroundMotion {
   explicit GroundMotion(std::vector<Station> stations);
 
   [[nodiscard]] GroundPoint at(double x, double time) const noexcept;
+  /// Places that the motion is given at, two components each: anywhere else it is shares(x) of theirs. A wave has none.
+  [[nodiscard]] std::vector<double> places() const;
+  [[nodiscard]] Eigen::VectorXd shares(double x) const;
   [[nodiscard]] bool uniform() const noexcept { return stations_.size() == 1 && slowness_ == 0.0; }
 
  private:

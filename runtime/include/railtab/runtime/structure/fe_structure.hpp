@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "railtab/runtime/structure/fe_files.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
 
 namespace railtab {
 
@@ -41,6 +42,13 @@ struct NodeSelection {
   [[nodiscard]] bool given() const noexcept { return !set.empty() || from || to; }
 };
 
+/// Nodes that stand on the ground and move with it alike, and whose rows the matrices have.
+struct FeSupport {
+  NodeSelection nodes;
+  std::vector<std::string> holds{"x", "y", "z"};  ///< motions in railtab's axes; the ground moves y and z
+  std::optional<double> x;  ///< place along the track whose ground it stands on [m]; empty: the mean of its nodes
+};
+
 /// A node in railtab's axes [m], and its rows: none for a motion that is held (or that the model does not have), one,
 /// or several where the program has expanded a beam or shell into solids that share the number of the node; the node's
 /// motion is then the mean of theirs.
@@ -57,6 +65,7 @@ inline constexpr int no_node = 0;
 struct FeStructure {
   Eigen::SparseMatrix<double> mass, stiffness;
   Eigen::SparseMatrix<double> damping;  ///< 0 × 0: none
+  StructureSupports supports;           ///< as the matrices know them; without damping matrix without C_s
   std::vector<int> motion;              ///< of each row: 0..5 for x, y, z, roll, pitch, yaw
   std::vector<int> node_of_row;         ///< no_node for an inner mode of an element, which rests in rigid motions
   std::map<int, FeNode> nodes;          ///< all nodes of the mesh that have a row or a position

@@ -29,6 +29,7 @@ struct ImportParameters {
   FeDamping damping;
   NodeSelection deck;                   ///< nodes that carry railtab's own track
   NodeSelection rail_left, rail_right;  ///< or nodes of beams that are rails in the model, with z and pitch
+  std::vector<FeSupport> supports;      ///< none: the model is constrained, and its supports have no rows
   std::vector<double> report;  ///< positions along the track at which the deck is reported [m]; empty: its middle
 
   /// @throws InputError naming the keys: damping in no or more than one way, a file missing
@@ -45,7 +46,15 @@ struct ImportParameters {
 /// key
 [[nodiscard]] StructureModel import_with_rails(const ImportParameters& parameters);
 
-/// The damping matrix of an imported structure. @throws InputError, ComputationError
-[[nodiscard]] Eigen::SparseMatrix<double> damping_matrix(const FeStructure& structure, const FeDamping& damping);
+/// The model on its supports. @throws InputError with file and line, row, or key
+[[nodiscard]] FeStructure read_on_supports(const ImportParameters& parameters);
+
+/// Damping of an imported structure, of its unknowns and from the rows that are supports'.
+struct FeDampingMatrix {
+  Eigen::SparseMatrix<double> of_unknowns;
+  StructureSupports::Columns of_supports;
+};
+/// @throws InputError, ComputationError
+[[nodiscard]] FeDampingMatrix damping_matrix(const FeStructure& structure, const FeDamping& damping);
 
 }  // namespace railtab

@@ -33,7 +33,8 @@ struct ModalBasis {
 [[nodiscard]] ModalBasis lowest_modes(const Eigen::SparseMatrix<double>& stiffness,
                                       const Eigen::SparseMatrix<double>& mass, int modes, double tolerance = 1e-8);
 
-/// The structure in its lowest modes: unknowns are modal coordinates, M = I, K = Λ, C = Φᵀ C Φ.
+/// The structure in its lowest modes: unknowns are modal coordinates, M = I, K = Λ, C = Φᵀ C Φ. In this and the next
+/// supports stay where displacements are relative to them (relative_to_supports()), and stand still else.
 [[nodiscard]] StructureModel reduce_to_modes(const StructureModel& structure, int modes);
 
 /// Craig–Bampton [CraigBampton1968]: rails stay, and every part that hangs together without the rails (a span with its

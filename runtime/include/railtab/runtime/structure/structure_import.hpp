@@ -14,7 +14,8 @@ struct StructureFiles {
 
 /// Structure from imported matrices. The table says which rows are dofs of rail nodes and of nodes of interest, and in
 /// which sense of railtab's axes they count; rows that it does not name are internal. Rail nodes are at the rail-head
-/// tops. Matrices must be symmetric (1e-9 of the largest diagonal entry); the mean of both halves is taken.
+/// tops. Nodes that it calls supports are held by the ground. Matrices must be symmetric (1e-9 of the largest diagonal
+/// entry); the mean of both halves is taken.
 /// @throws InputError with file and line, or file with row and column
 [[nodiscard]] StructureModel import_structure(const StructureFiles& files);
 

@@ -44,8 +44,14 @@ struct StructureNode {
 ///   M u'' + C u' + K u = F − (M_s s'' + C_s s' + K_s s),
 /// so that K u + K_s s = 0 where all moves alike. Empty: supports are not known, and the ground stands still.
 struct StructureSupports {
-  std::vector<double> x;                                 ///< of each support [m]
-  Eigen::SparseMatrix<double> mass, damping, stiffness;  ///< dofs × 2 per support
+  using Columns = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  std::vector<double> x{};                 ///< of each support [m]
+  Columns mass{}, damping{}, stiffness{};  ///< dofs × 2 per support
+  bool alike_only = false;                 ///< some supports are known only for ground that moves alike under all
+  /// Rows by the rails' dofs × 2 per support. Not empty: the unknowns are relative to what the supports carry along,
+  /// and the rails' motion is theirs and carried·s (relative_to_supports()).
+  Columns carried{};
+  Columns carried_nodes{};  ///< the same for the nodes of interest, 6 rows each
   [[nodiscard]] int columns() const noexcept { return static_cast<int>(2 * x.size()); }
 };
 

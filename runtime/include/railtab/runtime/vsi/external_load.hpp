@@ -18,8 +18,10 @@ void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::Vector
 void vehicle_step_load(const VsiModel& model, const HhtScheme& scheme, int vehicle, double time,
                        const LinearMotion& motion, Eigen::VectorXd& load);
 
-/// Add what the supports' motion applies to the structure in a step from `time`: with f = −(M_s s'' + C_s s' + K_s s),
-/// the load (1+α)f(t+Δt) − αf(t) (docs/theory/loads.md). Nothing without ground motion.
-void add_ground_load(const VsiModel& model, const HhtScheme& scheme, double time, Eigen::VectorXd& load);
+/// Add what the supports' motion applies to the structure's unknowns in `range` in a step from `time`: with
+/// f = −(M_s s'' + C_s s' + K_s s), the load (1+α)f(t+Δt) − αf(t) (docs/theory/loads.md). Nothing without ground
+/// motion.
+void add_ground_load(const VsiModel& model, const HhtScheme& scheme, double time, const DofRange& range,
+                     Eigen::VectorXd& load);
 
 }  // namespace railtab

@@ -11,12 +11,15 @@ namespace railtab {
 struct VsiModel;
 struct VsiState;
 
-/// A span with the track on it, rails cut at its ends, in its lowest modes: what it does once the train has left it.
+/// A span with the track on it, rails cut at its ends, in its lowest modes: what it does once the train has left it,
+/// and on ground that moves before the train has come.
 struct SpanModes {
   double from = 0.0, to = 0.0;      ///< [m]
   DofRange dofs;                    ///< of the structure
   Eigen::MatrixXd shape;            ///< Φ, those dofs × modes, ΦᵀMΦ = I
   Eigen::VectorXd omega2, damping;  ///< diagonals of ΦᵀKΦ and ΦᵀCΦ
+  /// Φᵀ M_s and Φᵀ C_s of supports that displacements are relative to, modes × 2 per support.
+  Eigen::MatrixXd support_mass, support_damping;
 };
 
 /// A structure that takes part in the steps only where the train is.
@@ -36,9 +39,10 @@ class MovingWindow {
   MovingWindow(const VsiModel& model, double time_step);
 
   /// The unknowns that take part in the step from state.time. What is outside is put to rest; spans that fall behind
-  /// vibrate on in their own modes.
+  /// vibrate on in their own modes, and those that come in bring the vibration that the ground has given them.
   DofRange move(VsiState& state);
-  /// One time step of the spans behind; their nodes of interest are written into the state.
+  /// One time step of the spans behind, and where the ground moves of those ahead; their nodes of interest are written
+  /// into the state.
   void vibrate(VsiState& state) const;
 
  private:
@@ -47,11 +51,12 @@ class MovingWindow {
     bool operator==(const Ends&) const = default;
   };
   [[nodiscard]] Ends ends(long step) const;
+  void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd& load, VsiState& state) const;
 
   const VsiModel& model_;
   HhtScheme scheme_;
   bool placed_ = false;
-  double from_ = 0.0;
+  double from_ = 0.0, to_ = 0.0;
 };
 
 }  // namespace railtab

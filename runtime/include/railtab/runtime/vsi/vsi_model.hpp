@@ -106,7 +106,7 @@ void unpack(std::span<const double> numbers, VsiState& state);
 [[nodiscard]] std::vector<RailContact> place_wheels(const VsiModel& model, double time);
 
 /// Irregularity under every wheel, with the slopes that the structure's displacement adds; where the rails are rigid,
-/// with the motion of the ground.
+/// with the motion of the ground, and where displacements are relative to supports, with what these carry along.
 void rail_deviation(const VsiModel& model, const std::vector<RailContact>& contacts, double time,
                     const Eigen::VectorXd& structure_displacement,
                     std::vector<std::array<RailHeadMotion, 2>>& deviation);

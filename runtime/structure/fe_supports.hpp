@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "railtab/runtime/structure/fe_structure.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
+
+namespace railtab {
+
+/// What becomes of rows of M, C and K: unknowns, motions that rest, or columns of supports (numbers from 0).
+class RowSplit {
+ public:
+  static constexpr int unknown = -1, resting = -2;
+  explicit RowSplit(std::vector<int> column_of_row);
+
+  /// Takes the rows and columns of what is no unknown out of a symmetric matrix; returns what the supports'
+  /// translations have on the unknowns, `columns` wide.
+  StructureSupports::Columns split(Eigen::SparseMatrix<double>& matrix, int columns) const;
+  /// New number of a row; held where it is no unknown.
+  [[nodiscard]] int operator[](int row) const { return number_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
+
+ private:
+  std::vector<int> column_, number_;
+  int unknowns_ = 0;
+};
+
+/// Takes the motions out of a structure that supports hold; FeStructure::supports has what they do to the rest.
+/// @throws InputError naming the [[support]]: no such node, nothing to hold, a node in two of them
+[[nodiscard]] FeStructure on_supports(FeStructure structure, const std::vector<FeSupport>& supports);
+
+/// Unit translation of all unknowns along y (first column) and z.
+[[nodiscard]] Eigen::MatrixXd translations(const FeStructure& structure);
+
+/// Completes supports that have K_s, M_s and C_s as the matrices know them:
+/// - damping in proportion to the mass, which would brake a structure that moves with its ground, acts on the motion
+///   relative to what the supports carry along: C_s −= a (M_s + M ι), a fitted to what of C resists a translation;
+/// - what resists a translation of structure and supports stands on supports whose rows are missing. They become one
+///   more, K_s = −(K r + ΣK_s 1) and C_s likewise, known only for ground that moves alike. Their M_s is left out.
+/// @param translation r, unknowns × 2
+void settle_supports(const Eigen::SparseMatrix<double>& mass, const Eigen::SparseMatrix<double>& damping,
+                     const Eigen::SparseMatrix<double>& stiffness, const Eigen::MatrixXd& translation,
+                     StructureSupports& supports);
+
+}  // namespace railtab
