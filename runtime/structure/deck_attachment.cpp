@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "matrix_assembly.hpp"
 #include "railtab/runtime/structure/interval_search.hpp"
 #include "railtab/tables/input_error.hpp"
 
@@ -50,11 +51,16 @@ void settle_expanded(const FeStructure& structure, std::vector<DeckNode>& nodes)
   }
 }
 
-/// Adds `value` times motion `k` of a node to row `to`.
+/// Adds `value` times motion `k` of a node to row `to`; what is held moves with its support, if there is one.
 void add_motion(DeckAttachment& deck, int to, const FeNode& node, std::size_t k, double value) {
-  if (value == 0.0 || node.rows[k].empty()) return;
-  const double share = value / static_cast<double>(node.rows[k].size());
-  for (int row : node.rows[k]) {
+  if (value == 0.0) return;
+  constexpr std::size_t lateral = 1, vertical = 2;
+  std::vector<int> rows = node.rows[k];
+  if (rows.empty() && (k == lateral || k == vertical) && node.support[k - lateral] != held) {
+    rows.push_back(support_dof(node.support[k - lateral]));
+  }
+  const double share = value / static_cast<double>(rows.size());
+  for (int row : rows) {
     auto at = std::find(deck.dof.begin(), deck.dof.end(), row);
     const auto column = at - deck.dof.begin();
     if (at == deck.dof.end()) {

@@ -37,23 +37,26 @@ std::array<bool, 6> held_motions(const FeSupport& support, const std::string& pl
 }
 
 /// Says of every row that a support holds what becomes of it; returns the support's place along the track [m].
-double hold(const FeStructure& structure, const FeSupport& support, std::size_t number, const std::string& place,
+double hold(FeStructure& structure, const FeSupport& support, std::size_t number, const std::string& place,
             std::vector<int>& column_of_row) {
   const std::array<bool, 6> holds = held_motions(support, place);
   const std::vector<int> nodes = selected_nodes(structure, support.nodes, place);
   double x = 0.0;
   bool any = false;
   for (int name : nodes) {
-    const FeNode& node = structure.nodes.at(name);
+    FeNode& node = structure.nodes.at(name);
     x += node.position[0] / static_cast<double>(nodes.size());
     for (std::size_t k = 0; k < 6; ++k) {
       if (!holds[k]) continue;
+      const bool moves = k == lateral || k == vertical;
+      const int to = moves ? static_cast<int>(2 * number + k - lateral) : RowSplit::resting;
+      if (moves) node.support[k - lateral] = to;
       for (int row : node.rows[k]) {
         int& column = column_of_row[static_cast<std::size_t>(row)];
         if (column != RowSplit::unknown) {
           throw input_error(place, fmt::format("{} of node {} again", motions[k], name), "each in one [[support]]");
         }
-        column = k == lateral || k == vertical ? static_cast<int>(2 * number + k - lateral) : RowSplit::resting;
+        column = to;
         any = true;
       }
     }
@@ -174,6 +177,29 @@ Eigen::MatrixXd translations(const FeStructure& structure) {
     if (motion == lateral || motion == vertical) r(i, static_cast<Eigen::Index>(motion - lateral)) = 1.0;
   }
   return r;
+}
+
+void stand_on_ground(const std::vector<int>& nodes, FeStructure& structure, StructureSupports& supports) {
+  const bool any = std::any_of(nodes.begin(), nodes.end(), [&](int name) {
+    const FeNode& node = structure.nodes.at(name);
+    return (node.rows[lateral].empty() && node.support[0] == held) ||
+           (node.rows[vertical].empty() && node.support[1] == held);
+  });
+  if (any && !supports.alike_only) {
+    supports.alike_only = true;
+    for (Columns* matrix : {&supports.stiffness, &supports.damping, &supports.mass})
+      append_support(Eigen::MatrixXd::Zero(structure.dofs(), 2), *matrix);
+    supports.x.push_back(supports.x.empty() ? 0.0 : supports.x.front());
+  }
+  if (!supports.alike_only) return;
+  const int missing = supports.columns() - 2;
+  for (int name : nodes) {
+    std::array<int, 2>& support = structure.nodes.at(name).support;
+    for (int component = 0; component < 2; ++component) {
+      int& column = support[static_cast<std::size_t>(component)];
+      if (column == held) column = missing + component;
+    }
+  }
 }
 
 void settle_supports(const Sparse& mass, const Sparse& damping, const Sparse& stiffness,

@@ -42,4 +42,8 @@ void settle_supports(const Eigen::SparseMatrix<double>& mass, const Eigen::Spars
                      const Eigen::SparseMatrix<double>& stiffness, const Eigen::MatrixXd& translation,
                      StructureSupports& supports);
 
+/// Lets nodes that carry the track move with the ground where they have no row of y or z: with the [[support]] that
+/// holds them, else with the missing supports.
+void stand_on_ground(const std::vector<int>& nodes, FeStructure& structure, StructureSupports& supports);
+
 }  // namespace railtab

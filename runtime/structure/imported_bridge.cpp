@@ -97,15 +97,16 @@ void check_place(const FeStructure& structure, const std::vector<int>& deck, con
   }
 }
 
-Bridge bridge_of(const FeStructure& structure, const ImportParameters& parameters) {
+Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
   Bridge bridge;
-  bridge.attach = deck_function(structure, deck);
   append(structure.mass, bridge.matrices.mass);
   append(structure.stiffness, bridge.matrices.stiffness);
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   append(damping.of_unknowns, bridge.matrices.damping);
-  const StructureSupports supports = settled_supports(structure, std::move(damping));
+  StructureSupports supports = settled_supports(structure, std::move(damping));
+  stand_on_ground(deck, structure, supports);
+  bridge.attach = deck_function(structure, deck);
   append_supports(supports.mass, bridge.matrices.mass);
   append_supports(supports.stiffness, bridge.matrices.stiffness);
   append_supports(supports.damping, bridge.matrices.damping);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/vsi/structure_factor.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -109,21 +110,59 @@ DofRange MovingWindow::move(VsiState& state) {
     }
     first += 3 * modes;
   }
-  to_rest(structure, 0, range.begin);
-  to_rest(structure, range.end(), structure.displacement.size() - range.end());
-  first = 0;
+  const DofRange old = dofs_between(model_.structure->dof_x, before.from, before.to);
+  const auto hold_outside = [&](const DofRange& inside) {  // where nodes of interest may have been written to
+    to_rest(structure, 0, inside.begin);
+    to_rest(structure, inside.end(), structure.displacement.size() - inside.end());
+  };
+  LinearMotion left;
+  if (model_.ground_motion) {
+    hold_outside(old);
+    left = structure;
+  }
+  hold_outside(range);
+  if (model_.ground_motion && now != before) join(old, before.to, left, range, state);
+  placed_ = true;
+  return range;
+}
+
+// Spans that come in while the ground shakes them meet with rails that each side had held to rest at the cut; joined as
+// they are, the rails would pull both with what the cut has held. And a span's few modes leave out that its track gives
+// way to its own inertia. Both would ring: what comes in moves to where nothing is left to pull, K Δw = −J, with J the
+// forces by which the parts now act upon each other less those by which they did, and what is out of balance in the new
+// ones. Ends of spans at one place belong to both ranges: what both have of them adds up, one of the two being next to
+// nothing.
+void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
+                        VsiState& state) const {
+  const StructureModel& s = *model_.structure;
+  LinearMotion& motion = state.structure;
+  const auto forces = [&](const Eigen::VectorXd& w, const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    return s.stiffness * w + s.damping * v;
+  };
+  const auto beyond = [&](const DofRange& part, Eigen::VectorXd f) {
+    part.of(f).setZero();
+    return f;
+  };
+  const Eigen::VectorXd lost = forces(left.displacement - motion.displacement, left.velocity - motion.velocity);
+  Eigen::VectorXd pull = beyond(stayed, lost) - lost + beyond(stayed, forces(motion.displacement, motion.velocity));
+  Eigen::Index first = 0;
   for (const SpanModes& span : model_.window->spans) {
     const Eigen::Index modes = span.omega2.size();
-    if (model_.ground_motion && before.to <= span.from && span.to <= now.to) {
-      for (int derivative = 0; derivative < 3; ++derivative) {
-        span.dofs.of(*motions[static_cast<std::size_t>(derivative)]) =
-            span.shape * of_span(state.left_behind, first, modes, derivative);
-      }
+    if (was_to <= span.from && span.to <= to_) {
+      LinearMotion own(s.dofs());
+      span.dofs.of(own.displacement) = span.shape * of_span(state.left_behind, first, modes, 0);
+      span.dofs.of(own.velocity) = span.shape * of_span(state.left_behind, first, modes, 1);
+      span.dofs.of(own.acceleration) = span.shape * of_span(state.left_behind, first, modes, 2);
+      pull += forces(own.displacement, own.velocity) + s.mass * own.acceleration;
+      motion.displacement += own.displacement;
+      motion.velocity += own.velocity;
+      motion.acceleration += own.acceleration;
     }
     first += 3 * modes;
   }
-  placed_ = true;
-  return range;
+  const SupportMotion supports = support_motion(*model_.ground_motion, s.supports.x, state.time);
+  pull += beyond(stayed, s.supports.mass * supports.acceleration + s.supports.damping * supports.velocity);
+  motion.displacement -= StructureFactor(s.stiffness, range).solve(pull);
 }
 
 // Eq. 12 mode by mode.

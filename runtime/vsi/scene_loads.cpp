@@ -83,6 +83,12 @@ void check_supports(const VsiModel& model) {
     throw input_error("scene: ground_motion", "an imported structure whose supports have no rows",
                       "a table of dofs with the supports' rows (rail = support), or structure.nodes");
   }
+  const std::vector<DofIndices>& rail = model.structure->rail[0].dof;
+  const bool beside = std::any_of(rail.begin(), rail.end(), [](const DofIndices& dof) { return dof[1] == held; });
+  if (beside && model.normal_contact == NormalContact::hertz) {
+    throw input_error("scene: ground_motion", "rails that have no lateral motion",
+                      "rails with it, or contact.normal = \"rigid\"");
+  }
   if (supports.alike_only && !model.ground_motion->uniform()) {
     throw input_error("scene: ground_motion",
                       "motion that differs along the track, and an imported structure that stands on more than its "

@@ -42,16 +42,26 @@ BridgeParameters span() {
 }
 
 // The span as a program with axes x forward, y up, z right and units mm, N, t would have it: rows in an order of its
-// own, held motions left out, matrices in Matrix Market or Harwell-Boeing.
+// own, held motions left out or those of the supports kept, matrices in Matrix Market or Harwell-Boeing.
+enum class SupportRows { left_out, kept };
+
 class WrittenSpan {
  public:
-  explicit WrittenSpan(FeFormat format) {
+  explicit WrittenSpan(FeFormat format, SupportRows support_rows = SupportRows::left_out) {
     std::filesystem::create_directories(folder);
     const Bridge bridge = beam_bridge({span()}, MotionPlane::spatial);
-    const int n = static_cast<int>(bridge.dof_x.size());
-    StructureModel model;
-    model.supports.x = bridge.support_x;
-    build_matrices(bridge.matrices, n, model);
+    const int unknowns = static_cast<int>(bridge.dof_x.size());
+    const bool kept = support_rows == SupportRows::kept;
+    const int n = unknowns + (kept ? 4 : 0);
+    const auto dense = [&](const std::vector<Eigen::Triplet<double>>& entries) {
+      Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+      for (const auto& e : entries) {
+        if (!kept && (e.row() < 0 || e.col() < 0)) continue;
+        const auto place = [&](int dof) { return dof < 0 ? unknowns + support_column(dof) : dof; };
+        matrix(place(e.row()), place(e.col())) += e.value();
+      }
+      return matrix;
+    };
     // what the rows of the built-in span are: nodes in turn, x y z roll held at the first, y z roll at the last
     std::vector<FeRow> rows;
     for (int node = 0; node <= 6; ++node) {
@@ -60,6 +70,7 @@ class WrittenSpan {
         rows.push_back({node, k});
       }
     }
+    if (kept) rows.insert(rows.end(), {{0, 1}, {0, 2}, {6, 1}, {6, 2}});
     EXPECT_EQ(static_cast<int>(rows.size()), n);
     std::vector<int> order(rows.size());
     std::iota(order.begin(), order.end(), 0);
@@ -67,7 +78,14 @@ class WrittenSpan {
     // railtab's x, y, z are the program's x, z, -y: railtab's motion k is the program's `axis[k]`, with a sign
     const std::array<int, 3> axis{0, 2, 1};
     const std::array<double, 3> sign{1, 1, -1};
-    Eigen::MatrixXd K = Eigen::MatrixXd(model.stiffness), M = Eigen::MatrixXd(model.mass), C = model.damping;
+    const Eigen::MatrixXd K = dense(bridge.matrices.stiffness), M = dense(bridge.matrices.mass);
+    Eigen::MatrixXd C = dense(bridge.matrices.damping);
+    if (kept) {  // as programs have Rayleigh's: the part in proportion to the mass acts against a point at rest
+      const BeamSection section{34.5e9, 8.8889, 10.947, 86.216, 0, 33.9e3, 0};
+      const RayleighDamping rayleigh = rayleigh_damping(0.02, simply_supported_frequency(section, 24.0, 1),
+                                                        simply_supported_frequency(section, 24.0, 2));
+      C = rayleigh.mass_factor * M + rayleigh.stiffness_factor * K;
+    }
     Eigen::MatrixXd T = Eigen::MatrixXd::Zero(n, n);  // q_railtab = T q_program
     std::string dofs = format == FeFormat::ansys ? " Matrix Eqn   Node   DOF\n" : "row,node,motion\n";
     for (int i = 0; i < n; ++i) {
@@ -95,6 +113,13 @@ class WrittenSpan {
     parameters.frame = {"mm-N-t", "x z -y", {{0.0, 2000.0, 300.0}}};
     parameters.deck.from = {0, 0, 0};
     parameters.deck.to = {24000, 0, 0};
+    if (!kept) return;
+    for (const double x : {0.0, 24000.0}) {
+      FeSupport support;
+      support.nodes.from = support.nodes.to = {x, 0, 0};
+      support.holds = {"y", "z"};
+      parameters.supports.push_back(support);
+    }
   }
   ImportParameters parameters;
 
@@ -193,6 +218,77 @@ TEST_P(ImportedSpan, HasTheMassAndFrequenciesOfTheBuiltInOne) {
   }
   const double first = simply_supported_frequency({34.5e9, 8.8889, 10.947, 86.216, 0, 33.9e3, 0}, 24.0, 1);
   EXPECT_NEAR(built.frequencies[0], first / (2 * std::numbers::pi), 1e-4 * first);
+}
+
+// The rails' answer to motion of the supports, one by one where their rows are there and of all alike where they are
+// not: stiffness, damping and mass of the supports, signs and units enter.
+Eigen::MatrixXd answer_to_supports(const StructureModel& model, double with_mass) {
+  const Eigen::SparseMatrix<double> dynamic = model.stiffness + 30.0 * model.damping + 900.0 * model.mass;
+  const StructureSupports& s = model.supports;
+  const Eigen::SparseMatrix<double> load = s.stiffness + 30.0 * s.damping + with_mass * 900.0 * s.mass;
+  const Eigen::MatrixXd u = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(dynamic).solve(-Eigen::MatrixXd(load));
+  const RailLine& rail = model.rail[1];
+  Eigen::MatrixXd result(2 * rail.x.size(), u.cols());
+  for (std::size_t n = 0; n < rail.x.size(); ++n) {
+    for (int k = 0; k < 2; ++k)
+      result.row(static_cast<Eigen::Index>(2 * n) + k) = u.row(rail.dof[n][static_cast<std::size_t>(k + 1)]);
+  }
+  return result;
+}
+
+TEST_P(ImportedSpan, OnMovingSupportsIsTheBuiltInOne) {
+  const StructureModel built = build_track_bridge(short_track(), {span()});
+  const StructureModel imported =
+      build_track_on_import(short_track(), WrittenSpan(GetParam(), SupportRows::kept).parameters);
+  EXPECT_FALSE(imported.supports.alike_only);
+  ASSERT_EQ(imported.supports.x.size(), built.supports.x.size());
+  for (std::size_t i = 0; i < built.supports.x.size(); ++i)
+    EXPECT_NEAR(imported.supports.x[i], built.supports.x[i], 1e-9);
+  const Eigen::MatrixXd a = answer_to_supports(imported, 1.0), b = answer_to_supports(built, 1.0);
+  EXPECT_GT(b.leftCols<4>().colwise().norm().minCoeff(), 1e-3) << "the bridge's own supports";
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    // a translation that symmetry keeps apart has only rounding
+    EXPECT_LT((a.col(k) - b.col(k)).norm(), 1e-8 * b.norm() / std::sqrt(b.cols())) << k;
+  }
+}
+
+TEST_P(ImportedSpan, WithoutItsSupportsRowsMovesAlike) {
+  const StructureModel built = build_track_bridge(short_track(), {span()});
+  const StructureModel imported = build_track_on_import(short_track(), WrittenSpan(GetParam()).parameters);
+  EXPECT_TRUE(imported.supports.alike_only);
+  // The mass between held and free motions of the last elements is not known.
+  const Eigen::MatrixXd a = answer_to_supports(imported, 0.0), b = answer_to_supports(built, 0.0);
+  for (int component = 0; component < 2; ++component) {
+    Eigen::VectorXd of_imported = Eigen::VectorXd::Zero(a.rows()), of_built = of_imported;
+    for (Eigen::Index k = component; k < a.cols(); k += 2) of_imported += a.col(k);
+    for (Eigen::Index k = component; k < b.cols(); k += 2) of_built += b.col(k);
+    EXPECT_GT(of_built.norm(), 1.0);
+    EXPECT_LT((of_imported - of_built).norm(), 1e-8 * of_built.norm()) << component;
+  }
+}
+
+TEST(ImportedBridge, RefusesSupportsThatDoNotFit) {
+  const ImportParameters good = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
+  const auto message = [&](auto&& change) -> std::string {
+    ImportParameters parameters = good;
+    change(parameters);
+    try {
+      static_cast<void>(read_on_supports(parameters));
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message([](auto&) {}), "accepted");
+  EXPECT_NE(
+      message([](auto& p) { p.supports[1] = p.supports[0]; }).find("[[support]] 2 of 2: found y of node 101 again"),
+      std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.supports[0].holds = {"x"}; }).find("none of whose held motions has a row"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.supports[0].holds = {"up"}; }).find("support.holds with \"up\""),
+            std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.supports[0].nodes.set = "PIER"; }).find("[[support]] 1 of 2.set"),
+            std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, ImportedSpan, ::testing::Values(FeFormat::matrix_market, FeFormat::ansys),

@@ -55,6 +55,8 @@ struct FeSupport {
 struct FeNode {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::array<std::vector<int>, 6> rows;
+  /// Columns of supports that move y and z where there is no row; held: at rest.
+  std::array<int, 2> support{held, held};
   [[nodiscard]] bool expanded() const noexcept;
 };
 

@@ -51,6 +51,8 @@ class MovingWindow {
     bool operator==(const Ends&) const = default;
   };
   [[nodiscard]] Ends ends(long step) const;
+  void join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
+            VsiState& state) const;
   void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd& load, VsiState& state) const;
 
   const VsiModel& model_;
