@@ -163,7 +163,13 @@ std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& sup
 // What the table does not name may be anything: how a translation moves it is what the supports carry it by.
 void settle_named_supports(const std::filesystem::path& file, StructureModel& model) {
   StructureSupports& s = model.supports;
-  const Sparse carried = carried_by_supports(model.stiffness, s.stiffness);
+  Sparse carried;
+  try {
+    carried = carried_by_supports(model.stiffness, s.stiffness);
+  } catch (const ComputationError&) {
+    throw input_error(file.string(), "supports that do not hold the structure",
+                      "a stiffness that is positive definite without their rows");
+  }
   Eigen::MatrixXd translation = Eigen::MatrixXd::Zero(model.dofs(), 2);
   for (Eigen::Index j = 0; j < carried.cols(); ++j) translation.col(j % 2) += carried.col(j);
   for (const RailLine& rail : model.rail) {

@@ -173,6 +173,8 @@ TEST(MovingSupports, SupportsThatDoNotCarryTheRailsAreRefused) {
   } catch (const InputError& wrong) {
     EXPECT_NE(std::string(wrong.what()).find("carry the rail at x = 0 m by 0.66"), std::string::npos) << wrong.what();
   }
+  const auto free = write("k", "%%MatrixMarket matrix coordinate real symmetric\n3 3 2\n1 1 3e6\n3 3 4e6\n");
+  EXPECT_THROW(static_cast<void>(import_structure({folder / "m", folder / "c", free, folder / "dofs"})), InputError);
 }
 
 // Four spans with a coach, shaken from the start on.
