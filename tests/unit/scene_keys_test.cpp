@@ -69,6 +69,12 @@ std::string scene_with(const std::string& key, double value, bool integer) {
     rest = "train.count = 100\n";
     bridge += key == "load.Fy" ? "[[load]]\n" : "[[load]]\nFy = 1.0\n";
     bridge += (key == "load.start" ? "gust_duration = 1.0\n" : "") + line(5);
+  } else if (key.starts_with("support.")) {
+    rest = "track.kind = \"imported\"\n";
+    for (const char* file : {"mass", "stiffness", "damping", "dofs", "nodes"})
+      rest += fmt::format("structure.{} = \"pair.h5\"\n", file);
+    rest += "structure.rail_left.set = \"LEFT\"\nstructure.rail_right.set = \"RIGHT\"\n";
+    contact += "[[support]]\nset = \"PIER\"\n" + line(8);
   } else if (key.starts_with("ground_motion."))
     bridge += (key == "ground_motion.x" ? "[[ground_motion]]\nfile = \"pair.h5\"\n" : "") +
               std::string("[[ground_motion]]\nfile = \"pair.h5\"\n") + line(14);

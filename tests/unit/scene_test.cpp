@@ -178,6 +178,29 @@ TEST_F(Scene, RulesOverSeveralKeysNameALine) {
             "scene.toml:4: track.rail.head_height: fo");
 }
 
+TEST_F(Scene, SupportsOfAnImportedStructure) {
+  std::string scene = std::string(online) + "[track]\nkind = \"imported\"\n[structure]\n";
+  for (const char* file : {"mass", "stiffness", "damping", "dofs", "nodes"})
+    scene += fmt::format("{} = \"pair.h5\"\n", file);
+  scene += "rail_left.set = \"LEFT\"\nrail_right.set = \"RIGHT\"\n";
+  const std::string supports =
+      "[[support]]\nset = \"PIER\"\nx = 32.0\n[[support]]\nfrom = [0, 0, 0]\nto = [0, 2, 0]\nholds = [\"z\"]\n";
+  const std::string wave = "[[ground_motion]]\nfile = \"pair.h5\"\nwave_speed = 300.0\n";
+  ASSERT_EQ(message(scene + supports + wave), "no error");
+  const std::vector<FeSupport> read = read_scene(folder_ / "scene.toml").structure.supports;
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].nodes.set, "PIER");
+  EXPECT_EQ(read[0].x, 32.0);
+  EXPECT_EQ(read[0].holds, (std::vector<std::string>{"x", "y", "z"}));
+  EXPECT_FALSE(read[1].x);
+  EXPECT_EQ(read[1].holds, (std::vector<std::string>{"z"}));
+  EXPECT_NE(message(scene + wave).find("under an imported structure without [[support]]"), std::string::npos);
+  EXPECT_NE(
+      message(std::string(online) + "[[support]]\nset = \"PIER\"\n").find("support.set: found no structure.nodes"),
+      std::string::npos);
+  EXPECT_EQ(message(scene + "[[ground_motion]]\nfile = \"pair.h5\"\n"), "no error");
+}
+
 /// The guide's key list is written from the reader's own table; a key, range or default that changes must change there.
 TEST(SceneGuide, ListsEveryKeyAsTheReaderKnowsIt) {
   std::ifstream stream(RAILTAB_SOURCE_DIR "/docs/guide/scene.md");
