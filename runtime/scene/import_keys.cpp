@@ -79,7 +79,7 @@ std::vector<KeyBinding> held_node_keys() {
       {"support.holds", "", "motions that are held, in railtab's axes: x, y, z, roll, pitch, yaw",
        TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.support.holds; }}},
       {"support.x", "m", "place along the track whose ground motion it has (the mean of its nodes where absent)",
-       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.support.x; }, any_number}},
+       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.support.x; }, {-1e6, 1e6}}},
   };
 }
 
