@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "../measured.hpp"
 #include "hunting_model.hpp"
+#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab::hunting {
 namespace {
@@ -165,6 +167,23 @@ TEST(Impact, ARunResumedFromAnImpactIsTheUninterruptedOne) {
   std::printf("%zu checkpoints, %d of them while contacts keep their energy\n", checkpoints.size(), in_impact);
   EXPECT_GT(in_impact, 5);
   EXPECT_LT(in_impact, static_cast<int>(checkpoints.size()) - 2);
+}
+
+// Rolling over rough track without impacts, from before t = 0 on as runs do: no step takes the other rule.
+TEST(Impact, WithoutOneTheRuleIsThatOfTheEnd) {
+  SceneParameters scene;
+  scene.contact.mode = ContactMode::online;
+  scene.track.length_before = 30.0;
+  scene.track.length_after = 20.0;
+  scene.spectrum = SpectrumParameters{};
+  scene.integration.time_step = 1e-3;
+  scene.integration.duration = 0.03;
+  const VsiModel model = build_model(scene);
+  VsiState state(model);
+  state.time = -0.03;
+  ASSERT_TRUE(steady_start(model, state).converged);
+  ASSERT_TRUE(simulate(model, scene.integration, 0.03, 1, state, {}, -30).complete);
+  EXPECT_EQ(state.impact_until, std::numeric_limits<double>::lowest());
 }
 
 // The account of a run against the energies of the flights.

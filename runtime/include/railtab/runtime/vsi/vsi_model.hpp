@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -91,7 +92,8 @@ struct VsiState {
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].
   Eigen::VectorXd far_field;
-  double impact_until = 0.0;  ///< contacts keep their energy until then, where that is left to the run [s]
+  /// Contacts keep their energy until then, where that is left to the run [s]; runs begin before 0.
+  double impact_until = std::numeric_limits<double>::lowest();
 
   explicit VsiState(const VsiModel& model);
 };
