@@ -43,6 +43,7 @@ TEST(ReducedRun, SpansBehindTheWindowVibrateOn) {
   scene.contact.normal = NormalContact::rigid;
   scene.track.length_after = 120.0;
   scene.reduction.behind = 10.0;
+  scene.integration.duration = 3.0;
   const ReductionError e = check_reduction(scene, 3.0);
   EXPECT_LT(e.deck_max, 0.02);
   EXPECT_GT(e.deck_max, 0.0);
