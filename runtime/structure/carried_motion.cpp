@@ -41,8 +41,8 @@ Columns node_rows(const std::vector<StructureNode>& nodes, const Columns& carrie
 
 }  // namespace
 
-// Some columns at a time. A support under one sleeper carries a few metres of track: what is zero but for
-/// rounding is not kept.
+// Some columns at a time. A support under one sleeper carries a few metres of track: what is zero but for rounding is
+// not kept.
 Sparse carried_by_supports(const Sparse& stiffness, const Columns& of_supports) {
   const Eigen::SimplicialLDLT<Sparse> factor(stiffness);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) {

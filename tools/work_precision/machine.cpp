@@ -25,12 +25,17 @@ std::string machine_kind() {
 
 std::string source_commit() {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> git(
-      popen("git -C '" RAILTAB_SOURCE_DIR "' describe --always --dirty --abbrev=10 2>/dev/null", "r"), pclose);
+      popen("cd '" RAILTAB_SOURCE_DIR "' && git rev-parse --short=10 HEAD 2>/dev/null && "
+            "(git diff --quiet HEAD -- . ':!docs' ':!tests/benchmark/baseline.csv' || echo -dirty)",
+            "r"),
+      pclose);
+  std::string commit;
   std::array<char, 64> text{};
-  if (!git || !std::fgets(text.data(), text.size(), git.get())) return "unknown";
-  std::string commit = text.data();
-  while (!commit.empty() && commit.back() == '\n') commit.pop_back();
-  return commit;
+  while (git && std::fgets(text.data(), text.size(), git.get())) {
+    commit += text.data();
+    if (commit.ends_with('\n')) commit.pop_back();
+  }
+  return commit.empty() ? "unknown" : commit;
 }
 
 }  // namespace railtab::work_precision
