@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "railtab/tables/input_error.hpp"
+#include "stopwatch.hpp"
 
 namespace railtab {
 
@@ -25,12 +26,21 @@ struct Difference {
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
+// The model of a scene, and what building it takes [s].
+VsiModel timed_model(const SceneParameters& scene, double& seconds) {
+  const Stopwatch watch(seconds);
+  return build_model(scene);
+}
+
 }  // namespace
 
 ComparedHistory compared_history(const SceneParameters& scene, double duration) {
   SceneParameters stretch = scene;
   stretch.integration.duration = duration;
-  return compared_history(scene, build_model(stretch), duration);
+  double built = 0.0;
+  ComparedHistory history = compared_history(scene, timed_model(stretch, built), duration);
+  history.summary.seconds_setup += built;
+  return history;
 }
 
 ComparedHistory compared_history(const SceneParameters& scene, const VsiModel& model, double duration) {
@@ -103,14 +113,16 @@ ReductionError check_reduction(const SceneParameters& scene, double duration) {
   none.reduction.kind = Reduction::none;
   ComparedHistory whole;
   {
-    const VsiModel model = build_model(none);  // gone before the reduced one comes
+    double built = 0.0;
+    const VsiModel model = timed_model(none, built);  // gone before the reduced one comes
     if (const double all = run_duration(scene, model); duration > all) {
       throw input_error("time to compare", fmt::format("{} s", duration),
                         fmt::format("at most {:.6g} s, the scene's duration", all));
     }
     whole = compared_history(none, model, duration);
+    whole.summary.seconds_setup += built;
   }
-  ReductionError error = compare(compared_history(scene, build_model(scene), duration), whole);
+  ReductionError error = compare(compared_history(scene, duration), whole);
   error.duration = duration;
   return error;
 }
