@@ -38,12 +38,16 @@ std::vector<Rule> second_ways(const SceneDraft& draft) {
   };
 }
 
-/// Keys of wheels, rails and deviations that the scene does not have.
+/// Keys of vehicles, wheels, rails and deviations that the scene does not have.
 std::vector<Rule> without_contact_or_deviation(const SceneDraft& draft) {
   const bool contact = draft.parameters.contact.normal == NormalContact::hertz;
   const bool random = !draft.spectrum_name.empty();
   constexpr std::string_view follow = "contact.normal = \"rigid\"";
   return {
+      {{"vehicle."},
+       draft.parameters.train.vehicle == imported_vehicle,
+       "a published train.vehicle",
+       "train.vehicle = \"imported\", or no [vehicle]"},
       {{"contact."}, contact, follow, "no other key of contact: such wheels follow the rails", {"contact.normal"}},
       {{"train.initial_"}, contact, follow, "contact.normal = \"hertz\": a vertical scene has no lateral motion"},
       {{"integration.contact_force"},

@@ -67,7 +67,8 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                  [&](const NormalContactKey&) { set("choice", "hertz, rigid", "hertz"); },
                  [&](const ReductionKey&) { set("choice", "none, modal, craig-bampton, window", "none"); },
                  [&](const TextListKey& k) {
-                   set("list of texts", "any", fmt::format("[\"{}\"]", fmt::join(k.member(standard), "\", \"")));
+                   const std::vector<std::string>& list = k.member(standard);
+                   set("list of texts", "any", list.empty() ? "" : fmt::format("[\"{}\"]", fmt::join(list, "\", \"")));
                  },
                  [&](const SwitchKey& k) { set("choice", "true, false", k.member(standard) ? "true" : "false"); },
                  [&](const PointKey& k) {
@@ -99,6 +100,9 @@ std::string Range::text() const {
 const std::vector<KeyBinding>& all_keys() {
   static const std::vector<KeyBinding> keys = [] {
     std::vector<KeyBinding> all = run_keys();
+    const auto contact =
+        std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "contact.mode"; });
+    all.insert(contact, vehicle_keys().begin(), vehicle_keys().end());
     // the guide goes from the train down to the bridge, then to the numerics
     const auto numerics =
         std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "irregularity.file"; });

@@ -114,6 +114,8 @@ struct KeyBinding {
 
 /// Keys of [train], [contact], [irregularity], [integration], [output] and the top of the scene.
 [[nodiscard]] const std::vector<KeyBinding>& run_keys();
+/// Keys of [vehicle].
+[[nodiscard]] const std::vector<KeyBinding>& vehicle_keys();
 /// Keys of [structure].
 [[nodiscard]] const std::vector<KeyBinding>& import_keys();
 /// Keys of [track], [[bridge]] and [structure].

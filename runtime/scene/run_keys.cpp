@@ -6,12 +6,18 @@ namespace {
 
 std::vector<std::string> creep_law_names() { return {"linear", "polach", "fastsim", "table"}; }
 
+std::vector<std::string> train_vehicle_names() {
+  std::vector<std::string> names = vehicle_names();
+  names.emplace_back(imported_vehicle);
+  return names;
+}
+
 std::vector<KeyBinding> train_keys() {
   return {
       {"name", "", "name of the scene in results and reports (file name where absent)",
        TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.name; }, nullptr}},
-      {"train.vehicle", "", "published vehicle",
-       TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.train.vehicle; }, vehicle_names}},
+      {"train.vehicle", "", "published vehicle, or that of [vehicle], which needs no mention",
+       TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.train.vehicle; }, train_vehicle_names}},
       {"train.count", "1", "number of coaches",
        IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.train.count; }, 1, 100}},
       {"train.speed", "m/s", "constant running speed; not together with speed_kmh",

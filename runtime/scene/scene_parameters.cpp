@@ -148,6 +148,7 @@ void SceneParameters::validate() const {
                       "\"flexible\", or no bridge");
   }
   check_structure(*this, place);
+  if (train.vehicle == imported_vehicle) vehicle.validate(train.count);
   if (train.count < 1) throw input_error(place, fmt::format("train.count = {}", train.count), ">= 1");
   require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");
   integration.validate();

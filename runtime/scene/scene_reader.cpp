@@ -180,7 +180,7 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   const std::string nearest = nearest_key(leaf.path);
   if (nearest.empty()) {
     return InputError(
-        fmt::format("{}: unknown key '{}'; the sections are train, contact, track, bridge, structure, "
+        fmt::format("{}: unknown key '{}'; the sections are train, vehicle, contact, track, bridge, structure, "
                     "support, irregularity, span_deviation, load, ground_motion, integration and output",
                     place, leaf.path));
   }
@@ -259,6 +259,10 @@ void settle_deviation(SceneDraft& draft) {
 
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+  const auto named = [&](std::string_view key) {
+    return std::any_of(leaves.begin(), leaves.end(), [&](const Leaf& leaf) { return leaf.path.starts_with(key); });
+  };
+  if (named("vehicle.") && !named("train.vehicle")) draft.parameters.train.vehicle = imported_vehicle;
   refuse_idle_keys(draft, file, leaves);
   if (draft.speed_kmh) draft.parameters.train.speed = *draft.speed_kmh / 3.6;
   settle_deviation(draft);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "fe_frame.hpp"
 #include "text_lines.hpp"
 
 namespace railtab {
@@ -18,43 +18,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double symmetry_tolerance = 1e-9;  // of the largest diagonal entry: what writing with ten digits leaves
 constexpr std::array<std::string_view, 6> motion_names{"x", "y", "z", "roll", "pitch", "yaw"};
-
-struct UnitSystem {
-  std::string_view name;
-  double length, force;  // in m and N; the unit of mass follows with the second
-};
-constexpr std::array<UnitSystem, 3> unit_systems{{{"m-N-kg", 1.0, 1.0}, {"mm-N-t", 1e-3, 1.0}, {"m-kN-t", 1.0, 1e3}}};
-
-double length_unit(const FeFrame& frame, double& force) {
-  for (const UnitSystem& system : unit_systems) {
-    if (system.name != frame.units) continue;
-    force = system.force;
-    return system.length;
-  }
-  throw input_error("structure.units", frame.units, fmt::format("one of {}", fmt::join(fe_unit_systems(), ", ")));
-}
-
-/// Rows: railtab's x, y, z in the model's axes.
-Eigen::Matrix3d rotation(const FeFrame& frame) {
-  const auto refuse = [&](std::string_view found) {
-    return input_error("structure.axes", fmt::format("\"{}\"{}", frame.axes, found),
-                       "the model's directions forward, right and down, right-handed, like \"x -y -z\"");
-  };
-  std::array<std::string_view, 3> words;
-  if (split(frame.axes, words) != 3) throw refuse("");
-  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
-  for (int i = 0; i < 3; ++i) {
-    std::string_view word = words[static_cast<std::size_t>(i)];
-    const double sign = word.starts_with('-') ? -1.0 : 1.0;
-    if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
-    if (word.size() != 1 || word[0] < 'x' || word[0] > 'z') throw refuse("");
-    P(i, word[0] - 'x') = sign;
-  }
-  const double determinant = P.determinant();
-  if (determinant == 0.0) throw refuse(", an axis twice");
-  if (determinant < 0.0) throw refuse(", left-handed");
-  return P;
-}
 
 Sparse read_matrix(const FeFiles& files, const std::filesystem::path& file, int rows) {
   switch (files.format) {
@@ -101,12 +64,6 @@ void check_diagonals(const FeFiles& files, const FeStructure& structure) {
 
 }  // namespace
 
-std::vector<std::string> fe_unit_systems() {
-  std::vector<std::string> names;
-  for (const UnitSystem& system : unit_systems) names.emplace_back(system.name);
-  return names;
-}
-
 bool FeNode::expanded() const noexcept {
   return std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.size() > 1; });
 }
@@ -133,9 +90,7 @@ Sparse symmetric_mean(const std::filesystem::path& file, const Sparse& matrix, E
 }
 
 FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
-  double force = 1.0;
-  const double length = length_unit(frame, force);
-  const Eigen::Matrix3d P = rotation(frame);
+  const FrameConversion conversion(frame, "structure");
   const std::vector<FeRow> rows = read_rows(files);
   const int n = static_cast<int>(rows.size());
   FeStructure s;
@@ -145,14 +100,11 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
   s.mass = read_matrix(files, files.mass, n);
   if (!files.damping.empty()) s.damping = read_matrix(files, files.damping, n);
 
-  const Eigen::Vector3d origin = Eigen::Vector3d::Map(frame.origin.value().data());
-  for (const auto& [node, position] : s.mesh.nodes) s.nodes[node].position = length * (P * (position - origin));
+  for (const auto& [node, position] : s.mesh.nodes) s.nodes[node].position = conversion.position(position);
   const int last_node = s.mesh.nodes.rbegin()->first;
-  // q_model per q_railtab, and half of the factor that turns the model's unit of energy into joules
   Eigen::VectorXd to_model(n);
   for (int r = 0; r < n; ++r) {
     const FeRow& row = rows[static_cast<std::size_t>(r)];
-    const bool turns = row.motion >= 3;
     const auto node = s.nodes.find(row.node);
     // CalculiX numbers the inner modes of its incompatible elements (C3D8I, B31, S4) after the mesh's own nodes
     const bool inner = node == s.nodes.end() && files.format == FeFormat::calculix && row.node > last_node;
@@ -160,10 +112,9 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
       throw input_error(files.dofs.string(), fmt::format("node {} in row {}", row.node, r + 1),
                         fmt::format("a node of {}", files.nodes.string()));
     }
-    int axis = 0;
-    const double sign = P.col(row.motion % 3).cwiseAbs().maxCoeff(&axis) * P.col(row.motion % 3).sum();
-    to_model[r] = sign * std::sqrt(force * length) / (turns ? 1.0 : length);
-    s.motion.push_back(axis + (turns ? 3 : 0));
+    const FrameConversion::Row converted = conversion.row(row.motion);
+    to_model[r] = converted.to_model;
+    s.motion.push_back(converted.motion);
     s.node_of_row.push_back(inner ? no_node : row.node);
     if (!inner) node->second.rows[static_cast<std::size_t>(s.motion.back())].push_back(r);
   }

@@ -9,11 +9,12 @@
 #include "railtab/runtime/vehicle/parameter_range.hpp"
 #include "railtab/runtime/vehicle/spring_damper.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "vehicle_terms.hpp"
 
 namespace railtab {
 namespace {
 
-constexpr int z_dof = 2, roll_dof = 3, yaw_dof = 5;
+constexpr int x_dof = 0, y_dof = 1, z_dof = 2, roll_dof = 3, pitch_dof = 4, yaw_dof = 5;
 
 void check_bodies(const std::string& name, const std::vector<RigidBody>& bodies) {
   for (const RigidBody& body : bodies) {
@@ -76,13 +77,24 @@ void add_pair(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b,
   }
 }
 
-void add_inertia(VehicleModel& vehicle) {
-  for (size_t b = 0; b < vehicle.bodies.size(); ++b) {
+void add_inertia(VehicleModel& vehicle, const std::vector<RigidBody>& bodies) {
+  for (size_t b = 0; b < bodies.size(); ++b) {
     for (int i = 0; i < 6; ++i) {
       const int row = vehicle.dof[b][i];
-      if (row != held) vehicle.mass(row, row) = i < 3 ? vehicle.bodies[b].mass : vehicle.bodies[b].inertia[i - 3];
+      if (row != held) vehicle.mass(row, row) = i < 3 ? bodies[b].mass : bodies[b].inertia[i - 3];
     }
+    const int x = vehicle.dof[b][x_dof];
+    if (x != held) vehicle.acceleration_load[x] -= bodies[b].mass;
   }
+}
+
+Eigen::VectorXd weight_of(const VehicleModel& vehicle, const std::vector<RigidBody>& bodies, double gravity) {
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(vehicle.dofs());
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const int z = vehicle.dof[b][z_dof];
+    if (z != held) weight[z] = bodies[b].mass * gravity;
+  }
+  return weight;
 }
 
 void add_suspension(VehicleModel& vehicle, const std::vector<Suspension>& suspension) {
@@ -96,30 +108,25 @@ void add_suspension(VehicleModel& vehicle, const std::vector<Suspension>& suspen
   }
 }
 
+}  // namespace
+
 /// Forward rolling at Ω > 0 turns a wheelset by ω_y = -Ω: with z down, the bottom at r = (0, 0, R) then moves by
 /// ω × r = (-ΩR, 0, 0) against the vehicle. The axle direction is e_y + θ × e_y = (-yaw, 1, roll), hence the angular
 /// momentum -J_y·Ω·(-yaw, 1, roll), and its rate enters the left-hand side of the moment balance:
 /// about x: +J_y·Ω·d(yaw)/dt, about z: -J_y·Ω·d(roll)/dt.
-void add_gyroscopic(VehicleModel& vehicle) {
-  for (const int w : vehicle.wheelsets) {
-    const int roll = vehicle.dof[w][roll_dof], yaw = vehicle.dof[w][yaw_dof];
-    if (roll == held || yaw == held) continue;
-    const double Jy = vehicle.bodies[w].inertia.y();
-    vehicle.gyroscopic(roll, yaw) += Jy;
-    vehicle.gyroscopic(yaw, roll) -= Jy;
-  }
+void add_rolling(VehicleModel& vehicle, int wheelset, double Jy) {
+  const DofIndices& dof = vehicle.dof[wheelset];
+  if (dof[pitch_dof] != held) vehicle.acceleration_load[dof[pitch_dof]] += Jy / vehicle.nominal_radius;
+  const int roll = dof[roll_dof], yaw = dof[yaw_dof];
+  if (roll == held || yaw == held) return;
+  vehicle.gyroscopic(roll, yaw) += Jy;
+  vehicle.gyroscopic(yaw, roll) -= Jy;
 }
 
-/// Supports the wheelsets in z and roll and takes their reactions. The motions that stay free of stiffness (lateral,
-/// yaw, wheel rotation) carry no weight, so the minimum-norm solution of the singular system is an equilibrium; a
-/// residual means that something is not carried.
-Eigen::VectorXd static_load(const VehicleModel& vehicle, double gravity) {
-  const int n = static_cast<int>(vehicle.mass.rows());
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(n);
-  for (size_t b = 0; b < vehicle.bodies.size(); ++b) {
-    const int z = vehicle.dof[b][z_dof];
-    if (z != held) weight[z] = vehicle.bodies[b].mass * gravity;
-  }
+/// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
+/// of the singular system is an equilibrium; a residual means that something is not carried.
+Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::VectorXd& weight) {
+  const int n = vehicle.dofs();
   std::vector<bool> is_supported(n, false);
   for (const int w : vehicle.wheelsets) {
     for (const int i : {z_dof, roll_dof}) {
@@ -143,9 +150,7 @@ Eigen::VectorXd static_load(const VehicleModel& vehicle, double gravity) {
   return reaction;
 }
 
-}  // namespace
-
-VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
+VehicleModel assemble_vehicle(std::string name, const std::vector<RigidBody>& bodies,
                               const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
                               const std::vector<DofIndices>& held_dofs, double nominal_radius, double length,
                               double gravity) {
@@ -157,7 +162,7 @@ VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
 
   VehicleModel vehicle;
   vehicle.name = std::move(name);
-  vehicle.bodies = std::move(bodies);
+  for (const RigidBody& body : bodies) vehicle.bodies.push_back({body.name, body.position});
   vehicle.wheelsets = std::move(wheelsets);
   vehicle.nominal_radius = nominal_radius;
   vehicle.length = length;
@@ -165,10 +170,15 @@ VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
   for (Eigen::MatrixXd* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness, &vehicle.gyroscopic}) {
     matrix->setZero(n, n);
   }
-  add_inertia(vehicle);
+  vehicle.acceleration_load.setZero(n);
+  vehicle.lateral_shift.setZero(n);
+  for (const DofIndices& dof : vehicle.dof) {
+    if (dof[y_dof] != held) vehicle.lateral_shift[dof[y_dof]] = 1.0;
+  }
+  add_inertia(vehicle, bodies);
   add_suspension(vehicle, suspension);
-  add_gyroscopic(vehicle);
-  vehicle.static_load = static_load(vehicle, gravity);
+  for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, bodies[w].inertia.y());
+  vehicle.static_load = wheelset_reactions(vehicle, weight_of(vehicle, bodies, gravity));
   return vehicle;
 }
 

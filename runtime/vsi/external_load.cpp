@@ -8,8 +8,6 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-constexpr int longitudinal = 0, pitch = 4;
-
 void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, double time, Eigen::VectorXd& load) {
   const double x = model.vehicle_x[index(vehicle)] + model.vehicle.bodies[index(acting.body)].position[0];
   const bool over_time = acting.history.argument() == LoadArgument::time;
@@ -17,20 +15,6 @@ void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, d
   const DofIndices& dof = model.vehicle.dof[index(acting.body)];
   for (int k = 0; k < 6; ++k) {
     if (dof[index(k)] != held) load[dof[index(k)]] += value[k];
-  }
-}
-
-// The car body, whose x is held, is what pulls the rest.
-void add_inertia(const VsiModel& model, double acceleration, Eigen::VectorXd& load) {
-  const VehicleModel& vehicle = model.vehicle;
-  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
-    const int x = vehicle.dof[b][longitudinal];
-    if (x != held) load[x] -= vehicle.bodies[b].mass * acceleration;
-  }
-  for (int wheelset : vehicle.wheelsets) {
-    const int rotation = vehicle.dof[index(wheelset)][pitch];
-    if (rotation == held) continue;
-    load[rotation] += vehicle.bodies[index(wheelset)].inertia[1] / vehicle.nominal_radius * acceleration;
   }
 }
 
@@ -43,7 +27,8 @@ void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::Vector
       add_body_load(model, acting, vehicle, time, load);
     }
   }
-  if (model.speed_profile) add_inertia(model, model.acceleration(time), load);
+  // the car body, whose x is held, is what pulls the rest
+  if (model.speed_profile) load += model.acceleration(time) * model.vehicle.acceleration_load;
 }
 
 void vehicle_step_load(const VsiModel& model, const HhtScheme& scheme, int vehicle, double time,

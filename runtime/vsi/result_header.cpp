@@ -17,7 +17,7 @@ ResultHeader model_header(const VsiModel& model) {
     }
   }
   for (std::size_t v = 0; v < model.vehicle_x.size(); ++v) {
-    for (const RigidBody& body : model.vehicle.bodies)
+    for (const VehicleBody& body : model.vehicle.bodies)
       header.body_names.push_back(fmt::format("coach-{}/{}", v + 1, body.name));
   }
   if (model.structure) {

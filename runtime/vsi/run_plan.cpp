@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "plan_memory.hpp"
+#include "railtab/runtime/vehicle/vehicle_summary.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "result_header.hpp"
 #include "scene_loads.hpp"
@@ -23,6 +25,20 @@ std::string reduction_text(const ReductionParameters& reduction) {
                        reduction.static_correction ? " with static correction" : "");
   }
   return fmt::format("{}, {} modes of each part", name, reduction.modes);
+}
+
+void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  plan.built.push_back(
+      fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  if (scene.train.vehicle != imported_vehicle) return;
+  constexpr int modes = 6;
+  VehicleSummary vehicle = summarise(model.vehicle, modes);
+  for (double& load : vehicle.wheel_load) load *= 1e-3;
+  plan.built.push_back(fmt::format("vehicle of {}: {:.6g} kg, wheels of the wheelsets carry {:.4g} kN at rest",
+                                   scene.vehicle.stiffness.filename().string(), vehicle.mass,
+                                   fmt::join(vehicle.wheel_load, ", ")));
+  plan.built.push_back(fmt::format("its lowest natural frequencies on standing wheelsets: {:.4g} Hz",
+                                   fmt::join(vehicle.frequencies, ", ")));
 }
 
 void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
@@ -86,8 +102,7 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   plan.steps = step_count(scene.integration, plan.duration);
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
   plan.warnings = scene_warnings(scene, model);
-  plan.built.push_back(
-      fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  describe_vehicle(scene, model, plan);
   describe_contact(scene, model, plan);
   describe_structure(scene, model, plan);
   describe_track(scene, model, plan);

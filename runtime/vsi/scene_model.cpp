@@ -129,7 +129,9 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
-  model.vehicle = build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene));
+  model.vehicle = scene.train.vehicle == imported_vehicle
+                      ? import_vehicle(scene.vehicle, vehicle_plane(scene))
+                      : build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene));
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;

@@ -371,9 +371,7 @@ bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& s
     }
   }
   for (LinearMotion& motion : state.vehicle) {
-    for (const DofIndices& dof : model.vehicle.dof) {
-      if (dof[1] != held) motion.displacement[dof[1]] += shift;
-    }
+    motion.displacement += shift * model.vehicle.lateral_shift;
     for (int body : model.vehicle.wheelsets) {
       const int turned = model.vehicle.dof[index(body)][5];
       if (turned != held) motion.displacement[turned] += yaw;

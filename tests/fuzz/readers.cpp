@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "../../runtime/vehicle/vehicle_table.hpp"
 #include "../unit/small_geometry_table.hpp"
 #include "csv_table.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
@@ -84,6 +85,7 @@ const std::vector<Reader>& readers() {
       {"ansys_rows", ".mapping", [](const Path& file) { static_cast<void>(read_ansys_rows(file)); }, nullptr},
       {"fe_mesh", ".inp", [](const Path& file) { static_cast<void>(read_fe_mesh(file)); }, nullptr},
       {"structure_dofs", ".csv", read_dof_table, nullptr},
+      {"vehicle_dofs", ".csv", [](const Path& file) { static_cast<void>(read_vehicle_table(file, 12)); }, nullptr},
       {"irregularity", ".csv", [](const Path& file) { static_cast<void>(read_irregularity(file)); }, nullptr},
       {"creep_queries", ".csv",
        [](const Path& file) {

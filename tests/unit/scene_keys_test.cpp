@@ -43,6 +43,12 @@ std::string imported_with(const std::string& key) {
 
 /// What a key of no use by itself stands beside.
 std::string companion(const std::string& key) {
+  if (key.starts_with("vehicle.")) {
+    std::string text = "vehicle.wheelsets = [\"front\", \"rear\"]\nvehicle.car_body = \"box\"\n";
+    for (const char* file : {"mass", "damping", "stiffness", "dofs"})
+      text += fmt::format("vehicle.{} = \"pair.h5\"\n", file);
+    return text;
+  }
   if (key.starts_with("span_deviation.")) return "span_deviation.shape = \"bending\"\n";
   const std::string both_waves = key.ends_with("shortest_wave")  ? "irregularity.longest_wave = 500.0\n"
                                  : key.ends_with("longest_wave") ? "irregularity.shortest_wave = 0.1\n"

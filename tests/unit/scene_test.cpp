@@ -94,7 +94,7 @@ TEST_F(Scene, UnknownKeyNamesItsLineAndTheNearestKey) {
   EXPECT_EQ(message("[track.pad]\nstiffness_in_the_vertical_direction = 1\n").substr(0, 70),
             "scene.toml:2: unknown key 'track.pad.stiffness_in_the_vertical_directi");
   EXPECT_EQ(message("[weather]\n"),
-            "scene.toml:1: unknown key 'weather'; the sections are train, contact, track, "
+            "scene.toml:1: unknown key 'weather'; the sections are train, vehicle, contact, track, "
             "bridge, structure, support, irregularity, span_deviation, load, ground_motion, integration and output");
 }
 

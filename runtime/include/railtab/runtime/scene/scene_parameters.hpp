@@ -16,6 +16,7 @@
 #include "railtab/runtime/track/irregularity_spectrum.hpp"
 #include "railtab/runtime/track/span_deviation.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vsi/hht.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
 
@@ -25,7 +26,7 @@ enum class ContactMode { table, online, paper };
 enum class TrackKind { rigid, flexible, imported };
 
 struct TrainParameters {
-  std::string vehicle = "manchester-coach";  ///< a published vehicle
+  std::string vehicle = "manchester-coach";  ///< a published vehicle, or imported_vehicle
   int count = 1;                             ///< coaches, 1..100
   double speed = 200.0 / 3.6;                ///< [m/s], > 0
   std::filesystem::path speed_file;          ///< speed over time in place of `speed`; empty: constant
@@ -92,6 +93,7 @@ struct SceneParameters {
   std::string text;                          ///< the TOML itself, kept with the results
   std::vector<std::filesystem::path> files;  ///< all that the scene names, in the order of their keys
   TrainParameters train;
+  VehicleImport vehicle;  ///< where train.vehicle is imported_vehicle
   ContactParameters contact;
   TrackKind track_kind = TrackKind::flexible;
   TrackParameters track;

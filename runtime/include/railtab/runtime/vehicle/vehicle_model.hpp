@@ -33,11 +33,18 @@ struct Suspension {
   Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();  ///< about x, y, z [N m/rad]
 };
 
-/// A rigid-body vehicle with linear suspension, running at constant speed (the car body's x is held). Small
-/// displacements from the vehicle's own static equilibrium, so that gravity acts as the static axle loads only.
+/// A body of a vehicle as results and loads know it; position of the point whose motion its dofs are, vehicle frame.
+struct VehicleBody {
+  std::string name;
+  Eigen::Vector3d position;  ///< [m]
+};
+
+/// A vehicle with linear suspension, running at constant speed (the car body's x is held). Small displacements from the
+/// vehicle's own static equilibrium, so that gravity acts as the static axle loads only. Rows of the matrices that no
+/// body has are inner unknowns (flexible bodies, springs in series with dampers).
 struct VehicleModel {
   std::string name;
-  std::vector<RigidBody> bodies;
+  std::vector<VehicleBody> bodies;
   std::vector<DofIndices> dof;               ///< per body
   std::vector<int> wheelsets;                ///< bodies that are wheelsets, front first
   double nominal_radius = 0.46;              ///< [m]
@@ -47,6 +54,10 @@ struct VehicleModel {
   /// [kg m²]; antisymmetric. Damping of the running vehicle: damping + (V/R0)·gyroscopic.
   Eigen::MatrixXd gyroscopic;
   Eigen::VectorXd static_load;  ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
+  /// Load per acceleration of the train, of masses that are described in its frame, −m [kg], and of wheelsets whose
+  /// nominal rotation changes with the speed, J_y/R0 [kg m].
+  Eigen::VectorXd acceleration_load;
+  Eigen::VectorXd lateral_shift;  ///< what the dofs are when the whole vehicle has gone 1 m to the right
 
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
@@ -59,7 +70,7 @@ struct VehicleModel {
 /// @throws InputError where a mass or inertia is not positive, an index is out of range, or the suspension does not
 /// carry
 ///         a body's weight.
-[[nodiscard]] VehicleModel assemble_vehicle(std::string name, std::vector<RigidBody> bodies,
+[[nodiscard]] VehicleModel assemble_vehicle(std::string name, const std::vector<RigidBody>& bodies,
                                             const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
                                             const std::vector<DofIndices>& held_dofs, double nominal_radius,
                                             double length, double gravity = 9.81);

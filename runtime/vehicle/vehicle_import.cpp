@@ -1,0 +1,190 @@
+#include "railtab/runtime/vehicle/vehicle_import.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "../structure/fe_frame.hpp"
+#include "railtab/runtime/structure/fe_files.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "vehicle_checks.hpp"
+#include "vehicle_table.hpp"
+#include "vehicle_terms.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+constexpr std::size_t x_dof = 0, y_dof = 1, z_dof = 2, roll_dof = 3, pitch_dof = 4, yaw_dof = 5;
+
+Matrix read_dense(const std::filesystem::path& file, Eigen::Index rows) {
+  const Eigen::SparseMatrix<double> matrix = read_matrix_market(file);
+  if (matrix.rows() > most_vehicle_rows) {
+    throw input_error(file.string(), fmt::format("{} rows", matrix.rows()),
+                      fmt::format("at most {}: a flexible body by its lowest modes", most_vehicle_rows));
+  }
+  return Matrix(symmetric_mean(file, matrix, rows));
+}
+
+int body_index(const std::vector<TableBody>& bodies, const std::string& name, std::string_view key) {
+  const auto found =
+      std::find_if(bodies.begin(), bodies.end(), [&](const TableBody& body) { return body.name == name; });
+  if (found != bodies.end()) return static_cast<int>(found - bodies.begin());
+  std::vector<std::string_view> names;
+  for (const TableBody& body : bodies) names.push_back(body.name);
+  throw input_error(fmt::format("scene: {}", key), name, fmt::format("one of {}", fmt::join(names, ", ")));
+}
+
+// Turns rows and bodies from the model's axes and units into railtab's.
+void convert(FreeVehicle& vehicle) {
+  const FrameConversion conversion(vehicle.import.frame, "scene: vehicle");
+  Eigen::VectorXd to_model = Eigen::VectorXd::Constant(vehicle.mass.rows(), conversion.inner_to_model());
+  for (TableBody& body : vehicle.bodies) {
+    body.position = conversion.position(body.position);
+    const DofIndices of_model = body.row;
+    for (int k = 0; k < 6; ++k) {
+      const int row = of_model[static_cast<std::size_t>(k)];
+      const FrameConversion::Row converted = conversion.row(k);
+      body.row[static_cast<std::size_t>(converted.motion)] = row;
+      if (row != held) to_model[row] = converted.to_model;
+    }
+  }
+  for (Matrix* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness}) {
+    *matrix = to_model.asDiagonal() * *matrix * to_model.asDiagonal();
+  }
+}
+
+FreeVehicle read_free_vehicle(const VehicleImport& import) {
+  FreeVehicle vehicle(import);
+  vehicle.stiffness = read_dense(import.stiffness, 0);
+  const Eigen::Index rows = vehicle.stiffness.rows();
+  vehicle.mass = read_dense(import.mass, rows);
+  vehicle.damping = read_dense(import.damping, rows);
+  vehicle.bodies = read_vehicle_table(import.dofs, static_cast<int>(rows));
+  for (const std::string& name : import.wheelsets) {
+    vehicle.wheelsets.push_back(body_index(vehicle.bodies, name, "vehicle.wheelsets"));
+  }
+  vehicle.car_body = body_index(vehicle.bodies, import.car_body, "vehicle.car_body");
+  convert(vehicle);
+  check_wheelsets(vehicle);
+  check_mass(vehicle);
+  vehicle.rigid = rigid_motions(vehicle);
+  check_free_motions(vehicle);
+  return vehicle;
+}
+
+// Names of results and loads, by which reports find car bodies.
+std::vector<VehicleBody> named_bodies(const FreeVehicle& vehicle) {
+  std::vector<std::string> given(vehicle.bodies.size());
+  given[static_cast<std::size_t>(vehicle.car_body)] = "car-body";
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+    given[static_cast<std::size_t>(vehicle.wheelsets[w])] = fmt::format("wheelset-{}", w + 1);
+  }
+  std::vector<VehicleBody> bodies;
+  for (std::size_t b = 0; b < given.size(); ++b) {
+    const TableBody& body = vehicle.bodies[b];
+    if (given[b].empty() && std::find(given.begin(), given.end(), body.name) != given.end()) {
+      throw input_error(body.place, fmt::format("a body named {}", body.name),
+                        "another name: so results call what the scene names as car body or wheelset");
+    }
+    bodies.push_back({given[b].empty() ? body.name : given[b], body.position});
+  }
+  return bodies;
+}
+
+// Rows that are no unknowns of a run.
+std::vector<bool> held_rows(const FreeVehicle& vehicle, MotionPlane plane) {
+  std::vector<bool> is_held(static_cast<std::size_t>(vehicle.mass.rows()), false);
+  const auto hold = [&](const TableBody& body, std::size_t motion) {
+    if (body.row[motion] != held) is_held[static_cast<std::size_t>(body.row[motion])] = true;
+  };
+  hold(vehicle.bodies[static_cast<std::size_t>(vehicle.car_body)], x_dof);
+  if (plane == MotionPlane::spatial) return is_held;
+  for (const TableBody& body : vehicle.bodies) {
+    for (const std::size_t motion : {y_dof, roll_dof, yaw_dof}) hold(body, motion);
+  }
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) hold(vehicle.wheelset(w), pitch_dof);
+  return is_held;
+}
+
+// Where the scene names none, nothing follows the vehicle.
+double length_over_couplers(const FreeVehicle& vehicle) {
+  const double reach = vehicle.wheelset(0).position.x() - vehicle.wheelset(vehicle.wheelsets.size() - 1).position.x();
+  const double length = vehicle.import.length.value_or(reach);
+  if (!vehicle.import.length || length > reach) return length;
+  throw input_error("scene: vehicle.length", fmt::format("{} m", length),
+                    fmt::format("more than the distance of the outer wheelsets, {:.6g} m", reach));
+}
+
+void check_wheel_loads(const FreeVehicle& free, const VehicleModel& vehicle) {
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+    const double load = vehicle.static_load[vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[w])][z_dof]];
+    if (load > 0.0) continue;
+    throw input_error(free.wheelset(w).place,
+                      fmt::format("wheelset {} that carries {:.6g} N", free.wheelset(w).name, load),
+                      "a vehicle that stands on all its wheelsets");
+  }
+}
+
+}  // namespace
+
+void VehicleImport::validate(int vehicles) const {
+  if (mass.empty() || damping.empty() || stiffness.empty() || dofs.empty()) {
+    throw input_error("train.vehicle", "\"imported\" without all its files",
+                      "vehicle.mass, vehicle.damping, vehicle.stiffness and vehicle.dofs");
+  }
+  if (wheelsets.empty()) throw input_error("vehicle.wheelsets", "none", "their names in vehicle.dofs, front first");
+  if (car_body.empty()) throw input_error("vehicle.car_body", "none", "its name in vehicle.dofs");
+  for (auto name = wheelsets.begin(); name != wheelsets.end(); ++name) {
+    if (std::find(wheelsets.begin(), name, *name) != name || *name == car_body) {
+      throw input_error("vehicle.wheelsets", fmt::format("{} twice", *name), "each wheelset once, and no car body");
+    }
+  }
+  if (vehicles > 1 && !length) {
+    throw input_error("vehicle.length", fmt::format("none, and {} vehicles", vehicles), "the length over couplers");
+  }
+}
+
+VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, double gravity) {
+  import.validate(1);
+  const FreeVehicle free = read_free_vehicle(import);
+  VehicleModel vehicle;
+  vehicle.name = fmt::format("the vehicle of {}", import.stiffness.string());
+  vehicle.bodies = named_bodies(free);
+  vehicle.wheelsets = free.wheelsets;
+  vehicle.nominal_radius = -free.wheelset(0).position.z();
+  vehicle.length = length_over_couplers(free);
+
+  const std::vector<bool> is_held = held_rows(free, plane);
+  std::vector<int> kept, unknown_of_row;
+  for (const bool h : is_held) {
+    unknown_of_row.push_back(h ? held : static_cast<int>(kept.size()));
+    if (!h) kept.push_back(static_cast<int>(unknown_of_row.size()) - 1);
+  }
+  for (const TableBody& body : free.bodies) {
+    DofIndices& dof = vehicle.dof.emplace_back();
+    for (std::size_t k = 0; k < 6; ++k) {
+      dof[k] = body.row[k] == held ? held : unknown_of_row[static_cast<std::size_t>(body.row[k])];
+    }
+  }
+  vehicle.mass = free.mass(kept, kept);
+  vehicle.damping = free.damping(kept, kept);
+  vehicle.stiffness = free.stiffness(kept, kept);
+  vehicle.gyroscopic.setZero(vehicle.mass.rows(), vehicle.mass.rows());
+  const Matrix inertia = free.mass * free.rigid;
+  vehicle.acceleration_load = -inertia.col(x_dof)(kept);
+  vehicle.lateral_shift = free.rigid.col(y_dof)(kept);
+  for (const int w : vehicle.wheelsets) {
+    const int row = free.bodies[static_cast<std::size_t>(w)].row[pitch_dof];
+    add_rolling(vehicle, w, free.mass(row, row));
+  }
+  vehicle.static_load = wheelset_reactions(vehicle, gravity * inertia.col(z_dof)(kept));
+  check_wheel_loads(free, vehicle);
+  return vehicle;
+}
+
+}  // namespace railtab

@@ -1,0 +1,273 @@
+// What an imported vehicle must be, and what is said where it is not.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <string_view>
+
+#include "../imported_vehicle.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/vehicle/spring_damper.hpp"
+#include "railtab/runtime/vehicle/vehicle_summary.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/tables/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+using testing::free_coach;
+using testing::FreeCoach;
+using testing::Written;
+
+constexpr int y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
+
+class VehicleImportFiles : public testing::ImportedVehicle {
+ protected:
+  [[nodiscard]] static std::string message(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "no error";
+  }
+
+  void expect_refused(const VehicleImport& import, std::initializer_list<std::string_view> words) const {
+    const std::string what = message([&] { static_cast<void>(import_vehicle(import)); });
+    for (const std::string_view word : words) EXPECT_NE(what.find(word), std::string::npos) << word << " in: " << what;
+  }
+  void expect_refused(const FreeCoach& coach, std::initializer_list<std::string_view> words) const {
+    write(coach);
+    expect_refused(files(), words);
+  }
+
+  /// dofs.csv of the coach with every `from` in it replaced.
+  void expect_table_refused(std::string_view from, std::string_view to,
+                            std::initializer_list<std::string_view> words) const {
+    write(free_coach());
+    std::ifstream stream(folder_ / "dofs.csv");
+    std::string table((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = table.find(from, at)) != std::string::npos; at += to.size(), ++found) {
+      table.replace(at, from.size(), to);
+    }
+    EXPECT_GT(found, 0U) << from;
+    write("dofs.csv", table);
+    expect_refused(files(), words);
+  }
+};
+
+/// A spring between two bodies of the coach at the first one's centre.
+void add_spring(const FreeCoach& coach, const std::string& a, const std::string& b, const Eigen::Vector3d& along,
+                const Eigen::Vector3d& about, Eigen::MatrixXd& matrix) {
+  const Eigen::Vector3d at = coach.rows[static_cast<std::size_t>(coach.row(a, z))].position;
+  const Eigen::Vector3d arm = at - coach.rows[static_cast<std::size_t>(coach.row(b, z))].position;
+  const PairMatrix pair = spring_matrix(Eigen::Vector3d::Zero(), arm, along, about);
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < 12; ++j) {
+      matrix(coach.row(i < 6 ? a : b, i % 6), coach.row(j < 6 ? a : b, j % 6)) += pair(i, j);
+    }
+  }
+}
+
+TEST_F(VehicleImportFiles, GiveTheMatricesOfTheBuiltCoach) {
+  const VehicleModel coach = build_coach({});
+  for (const Written how : {Written::as_railtab, Written::turned_in_millimetres}) {
+    write(free_coach(), how);
+    const VehicleModel read = import_vehicle(scene(vehicle_section(how) + "[contact]\nmode = \"online\"\n").vehicle);
+    ASSERT_EQ(read.dofs(), 41);
+    EXPECT_EQ(read.dof, coach.dof);
+    EXPECT_EQ(read.wheelsets, coach.wheelsets);
+    EXPECT_NEAR(read.nominal_radius, coach.nominal_radius, 1e-12);
+    EXPECT_EQ(read.length, coach.length);
+    const auto expect_equal = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+      EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-12 * b.cwiseAbs().maxCoeff());
+    };
+    expect_equal(read.mass, coach.mass);
+    expect_equal(read.damping, coach.damping);
+    expect_equal(read.stiffness, coach.stiffness);
+    expect_equal(read.gyroscopic, coach.gyroscopic);
+    expect_equal(read.acceleration_load, coach.acceleration_load);
+    EXPECT_LT((read.static_load - coach.static_load).cwiseAbs().maxCoeff(), 1e-8 * coach.static_load.maxCoeff());
+    for (std::size_t b = 0; b < coach.bodies.size(); ++b) {
+      EXPECT_EQ(read.bodies[b].name, coach.bodies[b].name);
+      EXPECT_LT((read.bodies[b].position - coach.bodies[b].position).norm(), 1e-12);
+    }
+    const VehicleSummary built = summarise(coach, 6), imported = summarise(read, 6);
+    ASSERT_EQ(imported.frequencies.size(), 6U);
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(imported.frequencies[k], built.frequencies[k], 1e-8);
+  }
+}
+
+TEST_F(VehicleImportFiles, AreSummedUpInThePlan) {
+  write(free_coach());
+  const RunPlan plan = plan_run(scene(
+      vehicle_section() + "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1\n"));
+  std::string built;
+  for (const std::string& part : plan.built) built += part + "\n";
+  EXPECT_NE(built.find("1 x imported, 41 unknowns each"), std::string::npos) << built;
+  // 32 t + 2 x 2.615 t + 4 x 1.813 t on eight wheels; bounce as in docs/theory/vehicle.md
+  EXPECT_NE(built.find("k.mtx: 44482 kg, wheels of the wheelsets carry 54.55, 54.55, 54.55, 54.55 kN"),
+            std::string::npos)
+      << built;
+  const std::vector<double> f = summarise(import_vehicle(files()), 20).frequencies;
+  EXPECT_TRUE(std::any_of(f.begin(), f.end(), [](double hertz) { return std::abs(hertz - 1.07) < 0.005; }));
+  EXPECT_TRUE(std::any_of(f.begin(), f.end(), [](double hertz) { return std::abs(hertz - 7.47) < 0.005; }));
+}
+
+TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
+  FreeCoach tied = free_coach();
+  tied.stiffness(tied.row("WS2", y), tied.row("WS2", y)) += 1e5;
+  expect_refused(tied, {"k.mtx: row", "(y of WS2)", "resists y of the whole vehicle", "ties to the ground"});
+  tied = free_coach();
+  tied.damping(tied.row("CAR", z), tied.row("CAR", z)) += 1e4;
+  expect_refused(tied, {"c.mtx: row", "(z of CAR)", "resists z", "ties to the ground"});
+  // gravity that turns with the car body
+  tied = free_coach();
+  const int roll_row = tied.row("CAR", roll);
+  tied.stiffness(roll_row, roll_row) -= 3e5;
+  expect_refused(tied, {"k.mtx: row", "(roll of CAR)", "resists roll"});
+
+  CoachParameters loose;
+  loose.secondary.kx = loose.secondary.ky = 0.0;
+  expect_refused(free_coach(loose), {"k.mtx: row", "a motion that no spring resists", "six rigid motions"});
+
+  FreeCoach pushing = free_coach();
+  add_spring(pushing, "bogie-1", "CAR", {0.0, -1e7, 0.0}, {0.0, 0.0, 0.0}, pushing.stiffness);
+  expect_refused(pushing, {"k.mtx: row", "springs that push", "semidefinite"});
+  pushing = free_coach();
+  add_spring(pushing, "bogie-1", "CAR", {0.0, -1e6, 0.0}, {0.0, 0.0, 0.0}, pushing.damping);
+  expect_refused(pushing, {"c.mtx: row", "drives a motion", "semidefinite"});
+}
+
+TEST_F(VehicleImportFiles, MustHaveMass) {
+  FreeCoach coach = free_coach();
+  const int row = coach.row("bogie-2", y), other = coach.row("bogie-2", yaw);
+  coach.mass(row, row) = 0.0;
+  expect_refused(coach, {"m.mtx: row", "(y of bogie-2)", "mass 0", "> 0"});
+  coach = free_coach();
+  coach.mass(row, other) = coach.mass(other, row) = 1.1 * std::sqrt(coach.mass(row, row) * coach.mass(other, other));
+  expect_refused(coach, {"m.mtx: row", "of bogie-2", "positive definite"});
+  coach = free_coach();
+  coach.mass(row, row) *= 1.001;
+  expect_refused(coach, {"m.mtx", "44482 kg along x, 44484.6 kg along y", "the same mass"});
+  coach = free_coach();
+  coach.mass(row, other) = 10.0;
+  expect_refused(coach, {"m.mtx: row", "symmetric"});
+}
+
+TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
+  FreeCoach braked = free_coach();
+  add_spring(braked, "WS1", "bogie-1", {0.0, 0.0, 0.0}, {0.0, 1e4, 0.0}, braked.stiffness);
+  expect_refused(braked, {"k.mtx: row", "(pitch of WS1)", "stiffness of 1e+04 N m/rad", "turns freely"});
+  braked = free_coach();
+  add_spring(braked, "WS1", "bogie-1", {0.0, 0.0, 0.0}, {0.0, 50.0, 0.0}, braked.damping);
+  expect_refused(braked, {"c.mtx: row", "(pitch of WS1)", "damping of 50 N m s/rad", "turns freely"});
+  FreeCoach geared = free_coach();
+  const int wheelset = geared.row("WS3", pitch), bogie = geared.row("bogie-2", pitch);
+  geared.mass(wheelset, bogie) = geared.mass(bogie, wheelset) = 20.0;
+  expect_refused(geared, {"m.mtx: row", "(pitch of WS3)", "shared with", "pitch of bogie-2"});
+}
+
+TEST_F(VehicleImportFiles, HaveInnerUnknownsOnSprings) {
+  FreeCoach coach = free_coach();
+  coach.hang_mass(100.0, 0.0);
+  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner unknown", "springs hold"});
+}
+
+TEST_F(VehicleImportFiles, HaveATableThatFits) {
+  expect_table_refused(",WS1,rotz,", ",lost,rotz,", {"dofs.csv:", "wheelset WS1 without yaw", "a row for each"});
+  expect_table_refused("1,CAR,x,", "# ", {"dofs.csv:", "car body CAR without x"});
+  expect_table_refused("42,WS4", "43,WS4", {"dofs.csv:43", "row 43", "1 to 42"});
+  expect_table_refused("42,WS4", "41,WS4", {"dofs.csv:43", "row 41 again"});
+  expect_table_refused("WS2,roty", "WS2,rotx", {"dofs.csv:", "rotx of body WS2 again"});
+  expect_table_refused("WS2,roty", "WS2,pitch", {"dofs.csv:", "motion 'pitch'", "rotz"});
+  expect_table_refused("42,WS4,rotz,", "42,WS4,rotz,nan,", {"dofs.csv:43", "row,body,motion,x,y,z"});
+  expect_table_refused("1,CAR,x,0,", "1,CAR,x,nan,", {"dofs.csv:2", "'nan'", "finite"});
+  expect_table_refused("1,CAR,x,0,", "1,CAR,x,0.1,", {"dofs.csv:3", "CAR at another place", "dofs.csv:2"});
+  expect_table_refused("bogie-1", "coach/bogie", {"dofs.csv:", "coach/bogie", "without /"});
+  expect_table_refused("bogie-1", "wheelset-2", {"dofs.csv:", "a body named wheelset-2", "another name"});
+  expect_table_refused("row,body", "row,node", {"dofs.csv:1", "row,body,motion,x,y,z"});
+  expect_table_refused("bogie-2", "bogie-1", {"dofs.csv:", "bogie-1 at another place"});
+}
+
+TEST_F(VehicleImportFiles, StandWhereTheSceneSays) {
+  write(free_coach());
+  EXPECT_EQ(message([&] { static_cast<void>(import_vehicle(files())); }), "no error");
+  VehicleImport wrong = files();
+  std::swap(wrong.wheelsets[0], wrong.wheelsets[3]);
+  expect_refused(wrong, {"vehicle.wheelsets", "WS2 at x = 8.22 m after WS4 at -10.78 m", "from the front"});
+  wrong = files();
+  wrong.wheelsets[1] = "WS9";
+  expect_refused(wrong, {"vehicle.wheelsets", "WS9", "one of CAR, bogie-1"});
+  wrong = files();
+  wrong.car_body = "BODY";
+  expect_refused(wrong, {"vehicle.car_body", "BODY", "one of CAR"});
+  wrong = files();
+  wrong.frame.origin = std::array{0.0, 0.1, 0.0};
+  expect_refused(wrong, {"dofs.csv:", "WS1 at y = -0.1 m", "track's centre"});
+  wrong = files();
+  wrong.frame.axes = "x -y -z";
+  expect_refused(wrong, {"dofs.csv:", "the axle of WS1 -0.46 m above the rails", "vehicle.axes"});
+  wrong.frame.axes = "x y -z";
+  expect_refused(wrong, {"vehicle.axes", "left-handed"});
+  wrong = files();
+  wrong.frame.units = "ft-lb";
+  expect_refused(wrong, {"vehicle.units", "ft-lb", "mm-N-t"});
+  wrong = files();
+  wrong.length = 20.0;
+  expect_refused(wrong, {"vehicle.length", "20 m", "outer wheelsets, 21.56 m"});
+}
+
+TEST_F(VehicleImportFiles, HaveMatricesOfOneSize) {
+  write(free_coach());
+  write("c.mtx", Eigen::MatrixXd::Identity(41, 41));
+  expect_refused(files(), {"c.mtx", "41 x 41", "42 x 42"});
+  const Eigen::Index n = most_vehicle_rows + 1;
+  write("k.mtx", fmt::format("%%MatrixMarket matrix coordinate real general\n{0} {0} 1\n1 1 1.0\n", n));
+  expect_refused(files(), {"k.mtx", "1001 rows", "at most 1000"});
+  write("k.mtx", "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 inf\n");
+  expect_refused(files(), {"k.mtx:3", "'inf'", "finite"});
+}
+
+TEST_F(VehicleImportFiles, AreNamedByTheScene) {
+  write(free_coach());
+  const std::string online = "[contact]\nmode = \"online\"\n";
+  EXPECT_EQ(scene(online + vehicle_section()).train.vehicle, "imported");
+  EXPECT_EQ(scene(vehicle_section() + online + "[train]\nvehicle = \"imported\"\ncount = 3\n").train.count, 3);
+  const auto refused = [&](const std::string& text, std::string_view words) {
+    const std::string what = message([&] {
+      const SceneParameters read = scene(text);
+      try {
+        static_cast<void>(build_model(read));
+      } catch (const InputError& wrong) {
+        throw with_scene_line(wrong, read, folder_ / "scene.toml");
+      }
+    });
+    EXPECT_NE(what.find(words), std::string::npos) << what;
+  };
+  const auto without = [&](const std::string& line) {
+    std::string text = vehicle_section();
+    text.erase(text.find(line), text.find('\n', text.find(line)) + 1 - text.find(line));
+    return online + text;
+  };
+  const std::string rigid = "[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n";
+  refused("train.vehicle = \"imported\"\n" + online, "scene.toml:1: train.vehicle: found \"imported\" without all");
+  refused("train.vehicle = \"manchester-coach\"\n" + online + vehicle_section(),
+          "scene.toml:5: vehicle.mass: found a published train.vehicle");
+  refused(without("damping"), "vehicle.damping");
+  refused(without("wheelsets"), "vehicle.wheelsets: found none");
+  refused(without("car_body"), "vehicle.car_body: found none");
+  refused(without("length") + "[train]\ncount = 2\n", "vehicle.length: found none, and 2 vehicles");
+  refused(without("car_body") + "car_body = \"WS2\"\n", "vehicle.wheelsets: found WS2 twice");
+  refused(without("wheelsets") + "wheelsets = [\"WS1\", \"WS7\"]\n" + rigid,
+          "scene.toml:11: vehicle.wheelsets: found WS7, expected one of");
+  refused(
+      online + "dimensions.nominal_radius = 0.4575\n" + vehicle_section() + rigid,
+      "scene.toml:3: contact.dimensions.nominal_radius: found 0.4575 m, expected 0.46 m, the wheels of the vehicle of");
+}
+
+}  // namespace
+}  // namespace railtab
