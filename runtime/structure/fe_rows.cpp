@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "railtab/runtime/structure/fe_files.hpp"
@@ -72,6 +73,7 @@ std::vector<FeRow> read_row_table(const std::filesystem::path& file) {
   constexpr std::string_view header = "row,node,motion";
   LineReader reader(file, "a table of rows");
   std::vector<NumberedRow> rows;
+  std::set<std::pair<int, int>> named;
   bool has_header = false;
   while (reader.next()) {
     const std::string_view text = stripped(reader.line());
@@ -84,6 +86,10 @@ std::vector<FeRow> read_row_table(const std::filesystem::path& file) {
     std::array<std::string_view, 3> words;
     if (split(text, words, ",") != 3) throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
     rows.push_back(numbered_row(reader, words, motions));
+    const FeRow& row = rows.back().second;
+    if (!named.emplace(row.node, row.motion).second) {
+      throw reader.error(fmt::format("{} of node {} again", words[2], row.node), "each motion of a node once");
+    }
   }
   return in_order(reader, rows);
 }

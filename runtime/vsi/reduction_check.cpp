@@ -26,6 +26,11 @@ struct Difference {
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
+void add_setup(double seconds, RunSummary& summary) {
+  summary.seconds_setup += seconds;
+  summary.seconds_total += seconds;
+}
+
 // The model of a scene, and what building it takes [s].
 VsiModel timed_model(const SceneParameters& scene, double& seconds) {
   const Stopwatch watch(seconds);
@@ -39,7 +44,7 @@ ComparedHistory compared_history(const SceneParameters& scene, double duration) 
   stretch.integration.duration = duration;
   double built = 0.0;
   ComparedHistory history = compared_history(scene, timed_model(stretch, built), duration);
-  history.summary.seconds_setup += built;
+  add_setup(built, history.summary);
   return history;
 }
 
@@ -120,7 +125,7 @@ ReductionError check_reduction(const SceneParameters& scene, double duration) {
                         fmt::format("at most {:.6g} s, the scene's duration", all));
     }
     whole = compared_history(none, model, duration);
-    whole.summary.seconds_setup += built;
+    add_setup(built, whole.summary);
   }
   ReductionError error = compare(compared_history(scene, duration), whole);
   error.duration = duration;

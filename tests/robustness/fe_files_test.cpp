@@ -152,6 +152,7 @@ TEST_F(FeFilesTest, AnsysRowsComeInTheOrderOfTheEquations) {
   EXPECT_TRUE(message(read_ansys_rows, "1 5\n").starts_with("f:1: found '1 5'"));
   EXPECT_TRUE(message(read_row_table, "row,node\n").starts_with("f:1: found 'row,node'"));
   EXPECT_TRUE(message(read_row_table, "row,node,motion\n1,2,up\n").starts_with("f:2: found 'up'"));
+  EXPECT_TRUE(message(read_row_table, "row,node,motion\n1,2,x\n2,2,x\n").starts_with("f:3: found x of node 2 again"));
 }
 
 TEST_F(FeFilesTest, MeshesOfDecksAndTables) {
