@@ -5,12 +5,6 @@
 
 namespace railtab {
 
-namespace {
-
-constexpr double longest_impact = 10e-3;  // s: a flange's last 6 to 7 ms
-
-}  // namespace
-
 ContactEnergyRecord::ContactEnergyRecord(const EnergyAccount& account, const VsiState& state)
     : time_(state.time),
       touch_(touches(state.contact)),

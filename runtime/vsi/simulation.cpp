@@ -9,6 +9,7 @@
 #include <map>
 
 #include "contact_energy_record.hpp"
+#include "contact_touch.hpp"
 #include "derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
@@ -20,9 +21,6 @@ namespace railtab {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// An impact lasts no longer: 1 to 3 ms of a wheel on its tread, 6 to 7 ms of a flange.
-constexpr double longest_impact = 10e-3;  // s
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -105,10 +103,7 @@ class Integrator {
       report = advance(ContactForceRule::energy, step_operators, state, summary);
     }
     if (report.converged) {
-      if (report.touch_changed) state.impact_until = std::max(state.impact_until, state.time + longest_impact);
-      if (step_operators.scheme.contact_force == ContactForceRule::energy && swings(state)) {
-        state.impact_until = std::max(state.impact_until, state.time + 0.5 * step_operators.scheme.time_step);
-      }
+      if (!rule_) follow_impact(report, step_operators.scheme, state);
       if (account_) account_->step(step_operators.scheme.gamma(), state);
       if (energy_record_) energy_record_->step(*account_, state);
       if (account_ && energy_) energy_(account_->balance());
@@ -117,6 +112,14 @@ class Integrator {
     if (level == parameters_.max_halvings) return false;
     ++summary.halved_steps;
     return step(level + 1, state, summary) && step(level + 1, state, summary);
+  }
+
+  // How long the contacts keep their energy from the end of a step on.
+  void follow_impact(const StepReport& report, const HhtScheme& scheme, VsiState& state) const {
+    if (report.touch_changed) state.impact_until = std::max(state.impact_until, state.time + longest_impact);
+    if (scheme.contact_force == ContactForceRule::energy && swings(state)) {
+      state.impact_until = std::max(state.impact_until, state.time + 0.5 * scheme.time_step);
+    }
   }
 
   // After an impact the contacts' part p of Eq. 12 alternates about the force, and a change of the rule would leave an
