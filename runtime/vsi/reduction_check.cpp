@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "railtab/tables/input_error.hpp"
-#include "stopwatch.hpp"
+#include "timed_model.hpp"
 
 namespace railtab {
 
@@ -26,29 +26,7 @@ struct Difference {
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
-void add_setup(double seconds, RunSummary& summary) {
-  summary.seconds_setup += seconds;
-  summary.seconds_total += seconds;
-}
-
-// The model of a scene, and what building it takes [s].
-VsiModel timed_model(const SceneParameters& scene, double& seconds) {
-  const Stopwatch watch(seconds);
-  return build_model(scene);
-}
-
-}  // namespace
-
-ComparedHistory compared_history(const SceneParameters& scene, double duration) {
-  SceneParameters stretch = scene;
-  stretch.integration.duration = duration;
-  double built = 0.0;
-  ComparedHistory history = compared_history(scene, timed_model(stretch, built), duration);
-  add_setup(built, history.summary);
-  return history;
-}
-
-ComparedHistory compared_history(const SceneParameters& scene, const VsiModel& model, double duration) {
+ComparedHistory history_of(const SceneParameters& scene, const TimedModel& timed, double duration) {
   SceneParameters stretch = scene;
   stretch.integration.duration = duration;
   stretch.output = {};
@@ -69,13 +47,21 @@ ComparedHistory compared_history(const SceneParameters& scene, const VsiModel& m
   };
   std::clock_t begin = std::clock();
   observer.ready = [&] { begin = std::clock(); };
-  history.summary = run_scene(stretch, model, observer);
+  history.summary = timed.counted(run_scene(stretch, timed.model(), observer));
   history.seconds_steps = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   if (!history.summary.complete) {
     throw ComputationError(fmt::format("comparison with reduction \"{}\": {}", reduction_name(scene.reduction.kind),
                                        history.summary.message));
   }
   return history;
+}
+
+}  // namespace
+
+ComparedHistory compared_history(const SceneParameters& scene, double duration) {
+  SceneParameters stretch = scene;
+  stretch.integration.duration = duration;
+  return history_of(scene, TimedModel(stretch), duration);
 }
 
 ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& whole) {
@@ -118,14 +104,12 @@ ReductionError check_reduction(const SceneParameters& scene, double duration) {
   none.reduction.kind = Reduction::none;
   ComparedHistory whole;
   {
-    double built = 0.0;
-    const VsiModel model = timed_model(none, built);  // gone before the reduced one comes
-    if (const double all = run_duration(scene, model); duration > all) {
+    const TimedModel timed(none);  // gone before the reduced one comes
+    if (const double all = run_duration(scene, timed.model()); duration > all) {
       throw input_error("time to compare", fmt::format("{} s", duration),
                         fmt::format("at most {:.6g} s, the scene's duration", all));
     }
-    whole = compared_history(none, model, duration);
-    add_setup(built, whole.summary);
+    whole = history_of(none, timed, duration);
   }
   ReductionError error = compare(compared_history(scene, duration), whole);
   error.duration = duration;

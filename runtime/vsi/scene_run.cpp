@@ -9,6 +9,7 @@
 #include "scene_warnings.hpp"
 #include "start_checks.hpp"
 #include "step_count.hpp"
+#include "timed_model.hpp"
 
 namespace railtab {
 
@@ -79,14 +80,9 @@ void note_repairs(const VsiModel& model, const RunObserver& observer) {
 
 RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
                      const std::optional<RunCheckpoint>& resume) {
-  const auto begin = std::chrono::steady_clock::now();
   if (observer.setup) observer.setup("building the model");
-  const VsiModel model = build_model(scene);
-  const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  RunSummary summary = run_scene(scene, model, observer, resume);
-  summary.seconds_setup += built;
-  summary.seconds_total += built;
-  return summary;
+  const TimedModel timed(scene);
+  return timed.counted(run_scene(scene, timed.model(), observer, resume));
 }
 
 RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const RunObserver& observer,

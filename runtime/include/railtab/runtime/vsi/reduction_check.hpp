@@ -32,8 +32,6 @@ struct ComparedHistory {
   RunSummary summary;
 };
 [[nodiscard]] ComparedHistory compared_history(const SceneParameters& scene, double duration);
-/// With a model of the scene that is there already.
-[[nodiscard]] ComparedHistory compared_history(const SceneParameters& scene, const VsiModel& model, double duration);
 [[nodiscard]] ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& whole);
 
 }  // namespace railtab
