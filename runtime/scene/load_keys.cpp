@@ -72,8 +72,7 @@ std::vector<KeyBinding> ground_keys() {
        NumberKey{of_ground<&GroundMotionParameters::start>, {0.0, 1e5}}},
       {"ground_motion.wave_speed", "m/s",
        "of a single record that travels along the track at 10 m/s or more, backward where negative; 0: it is "
-       "everywhere "
-       "alike",
+       "everywhere alike",
        NumberKey{of_ground<&GroundMotionParameters::wave_speed>, {-1e5, 1e5}}},
   };
 }

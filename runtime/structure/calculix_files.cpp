@@ -3,7 +3,7 @@
 #include <array>
 
 #include "railtab/runtime/structure/fe_files.hpp"
-#include "text_lines.hpp"
+#include "../text/text_lines.hpp"
 
 namespace railtab {
 

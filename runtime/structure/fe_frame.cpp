@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "railtab/tables/input_error.hpp"
-#include "text_lines.hpp"
+#include "../text/text_lines.hpp"
 
 namespace railtab {
 

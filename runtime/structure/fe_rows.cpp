@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "../text/text_lines.hpp"
 #include "railtab/runtime/structure/fe_files.hpp"
-#include "text_lines.hpp"
 
 namespace railtab {
 
@@ -70,21 +70,12 @@ std::vector<FeRow> read_ansys_rows(const std::filesystem::path& file) {
 }
 
 std::vector<FeRow> read_row_table(const std::filesystem::path& file) {
-  constexpr std::string_view header = "row,node,motion";
   LineReader reader(file, "a table of rows");
   std::vector<NumberedRow> rows;
   std::set<std::pair<int, int>> named;
-  bool has_header = false;
-  while (reader.next()) {
-    const std::string_view text = stripped(reader.line());
-    if (text.empty() || text.front() == '#') continue;
-    if (!has_header) {
-      if (text != header) throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
-      has_header = true;
-      continue;
-    }
-    std::array<std::string_view, 3> words;
-    if (split(text, words, ",") != 3) throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
+  TableRows table(reader, "row,node,motion");
+  std::array<std::string_view, 3> words;
+  while (table.next(words)) {
     rows.push_back(numbered_row(reader, words, motions));
     const FeRow& row = rows.back().second;
     if (!named.emplace(row.node, row.motion).second) {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "fe_frame.hpp"
-#include "text_lines.hpp"
+#include "../text/text_lines.hpp"
 
 namespace railtab {
 

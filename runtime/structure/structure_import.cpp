@@ -11,7 +11,7 @@
 #include "fe_supports.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
-#include "text_lines.hpp"
+#include "../text/text_lines.hpp"
 
 namespace railtab {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "../structure/text_lines.hpp"
+#include "../text/text_lines.hpp"
 
 namespace railtab {
 
@@ -36,19 +36,9 @@ std::vector<TableBody> read_vehicle_table(const std::filesystem::path& file, int
   LineReader reader(file, "a table of a vehicle's rows");
   std::vector<TableBody> bodies;
   std::vector<bool> taken(static_cast<std::size_t>(rows), false);
-  bool has_header = false;
-  while (reader.next()) {
-    const std::string_view text = stripped(reader.line());
-    if (text.empty() || text.front() == '#') continue;
-    if (!has_header) {
-      if (text != header) throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
-      has_header = true;
-      continue;
-    }
-    std::array<std::string_view, 6> words;
-    if (split(text, words, ",") != words.size()) {
-      throw reader.error(fmt::format("'{}'", text.substr(0, 80)), header);
-    }
+  TableRows table(reader, header);
+  std::array<std::string_view, 6> words;
+  while (table.next(words)) {
     const int row = reader.number<int>(words[0], "the number of a row");
     if (row < 1 || row > rows) {
       throw reader.error(fmt::format("row {}", row), fmt::format("1 to {}, the matrices' rows", rows));
@@ -68,7 +58,7 @@ std::vector<TableBody> read_vehicle_table(const std::filesystem::path& file, int
     if (of_motion != held) throw reader.error(fmt::format("{} of body {} again", *motion, body.name), "each once");
     of_motion = row - 1;
   }
-  if (!has_header) throw reader.file_error("no line", header);
+  if (!table.has_header()) throw reader.file_error("no line", header);
   return bodies;
 }
 
