@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "folder_fixture.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
@@ -80,17 +81,9 @@ inline FreeCoach free_coach(const CoachParameters& parameters = {}) {
 enum class Written { as_railtab, turned_in_millimetres };
 
 /// A folder with the files of a vehicle.
-class ImportedVehicle : public ::testing::Test {
+class ImportedVehicle : public InFolder {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("vehicle_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  using InFolder::write;
 
   void write(const std::string& name, const Eigen::MatrixXd& matrix) const {
     std::string entries;
@@ -160,8 +153,6 @@ class ImportedVehicle : public ::testing::Test {
     write("scene.toml", text);
     return read_scene(folder_ / "scene.toml");
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace railtab::testing

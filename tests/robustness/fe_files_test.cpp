@@ -9,25 +9,14 @@
 #include <fstream>
 #include <string>
 
+#include "../folder_fixture.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {
 
-class FeFilesTest : public ::testing::Test {
+class FeFilesTest : public testing::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("railtab_fe_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-
   // The message with which a file is refused.
   template <class Read>
   std::string message(const Read& read, const std::string& text) const {
@@ -40,8 +29,6 @@ class FeFilesTest : public ::testing::Test {
     }
     return "accepted";
   }
-
-  std::filesystem::path folder_;
 };
 
 // Lines of a Harwell-Boeing header [DuffGrimesLewis1992]: counts in fields of 14, formats in fields of 16, 16 and 20.

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "../folder_fixture.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 
 namespace {
@@ -22,18 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using railtab::RunResults;
 
-class SweepCommand : public ::testing::Test {
+class SweepCommand : public railtab::testing::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              (std::string("sweep_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-
   [[nodiscard]] pid_t start(const std::vector<std::string>& arguments) const {
     const pid_t process = fork();
     if (process != 0) return process;
@@ -57,8 +48,6 @@ class SweepCommand : public ::testing::Test {
     content << std::ifstream(folder_ / name).rdbuf();
     return content.str();
   }
-
-  fs::path folder_;
 };
 
 bool same_motion(const railtab::MotionRecord& a, const railtab::MotionRecord& b) {

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <string>
 
+#include "../folder_fixture.hpp"
+
 namespace railtab {
 
 struct Outcome {
@@ -17,18 +19,8 @@ struct Outcome {
 };
 
 /// Runs the built vsi in a folder of its own; stdout and stderr together.
-class VsiCommand : public ::testing::Test {
+class VsiCommand : public testing::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("vsi_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-
   [[nodiscard]] Outcome vsi(const std::string& arguments) const {
     const std::string command = "cd '" + folder_.string() + "' && '" VSI_COMMAND "' " + arguments + " 2>&1";
     FILE* pipe = popen(command.c_str(), "r");
@@ -51,8 +43,6 @@ class VsiCommand : public ::testing::Test {
     EXPECT_EQ(outcome.output.find("vsi: ", 1), std::string::npos) << outcome.output;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   }
-
-  std::filesystem::path folder_;
 };
 
 // A scene on rigid track that takes a few milliseconds per simulated second.

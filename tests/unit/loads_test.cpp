@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "../folder_fixture.hpp"
 #include "railtab/runtime/loads/body_load.hpp"
 #include "railtab/runtime/loads/ground_motion.hpp"
 #include "railtab/runtime/loads/speed_profile.hpp"
@@ -20,14 +21,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-class HistoryFile : public ::testing::Test {
+class HistoryFile : public testing::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("history_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::filesystem::path file(const std::string& text) const {
     std::ofstream(folder_ / "h.csv") << text;
     return folder_ / "h.csv";
@@ -42,7 +37,6 @@ class HistoryFile : public ::testing::Test {
     }
     return "no error";
   }
-  std::filesystem::path folder_;
 };
 
 TEST(SpeedProfile, DistanceIsTheIntegralOfTheSpeed) {

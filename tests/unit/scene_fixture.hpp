@@ -6,22 +6,19 @@
 #include <fstream>
 #include <string>
 
+#include "../folder_fixture.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 
 /// A scene in a folder of its own, with a file that may stand for a table.
-class Scene : public ::testing::Test {
+class Scene : public testing::InFolder {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("scene_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "pair.h5") << "stands for a table";
+    InFolder::SetUp();
+    write("pair.h5", "stands for a table");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] SceneParameters read(const std::string& text) const {
     std::ofstream(folder_ / "scene.toml") << text;
@@ -41,8 +38,6 @@ class Scene : public ::testing::Test {
     }
     return "no error";
   }
-
-  std::filesystem::path folder_;
 };
 
 inline constexpr const char* online = "[contact]\nmode = \"online\"\n";
