@@ -97,6 +97,7 @@ struct SummaryEntry {
 inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSummary::steps},
                                            SummaryEntry<long>{"newton_iterations", &RunSummary::newton_iterations},
                                            SummaryEntry<long>{"halved_steps", &RunSummary::halved_steps},
+                                           SummaryEntry<long>{"impact_steps", &RunSummary::impact_steps},
                                            SummaryEntry<long>{"back_substitutions", &RunSummary::back_substitutions},
                                            SummaryEntry<long>{"contact_queries", &RunSummary::contact_queries},
                                            SummaryEntry<long>{"table_queries", &RunSummary::table_queries},

@@ -58,7 +58,7 @@ class Integrator {
     if (!springs || (!rule_ && (model.unreduced || model.contact.geometry->is_paper()))) {
       rule_ = ContactForceRule::endpoint;
     }
-    endpoint_limits_.smooth_only = !rule_;
+    while (!rule_ && std::ldexp(p.time_step, -impact_level_) > p.impact_step * (1.0 + 1e-9)) ++impact_level_;
     static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 
@@ -95,12 +95,23 @@ class Integrator {
   }
 
   bool step(int level, VsiState& state, RunSummary& summary) {
+    const int coarsest = state.time < state.impact_until ? impact_level_ : 0;
+    if (level < coarsest) {
+      if (level == 0) ++summary.impact_steps;
+      return divided(level, coarsest, state, summary);
+    }
     const double end = state.time + std::ldexp(parameters_.time_step, -level);
     StepOperators& step_operators = operators(level, end, summary.seconds_setup);
-    StepReport report = advance(rule_at(state), step_operators, state, summary);
-    // A wheel meets or leaves its rail: what its spring takes up it shall give back.
+    const ContactForceRule rule = rule_at(state);
+    const bool smooth_only = !rule_ && (rule == ContactForceRule::endpoint || level < impact_level_);
+    StepReport report = advance(rule, smooth_only, step_operators, state, summary);
     if (report.touch_changed && !report.converged) {
-      report = advance(ContactForceRule::energy, step_operators, state, summary);
+      // A wheel meets or leaves its rail: what its spring takes up it shall give back, in steps that resolve how.
+      if (level < impact_level_) {
+        state.impact_until = end;
+        return step(level, state, summary);
+      }
+      report = advance(ContactForceRule::energy, false, step_operators, state, summary);
     }
     if (report.converged) {
       if (!rule_) follow_impact(report, step_operators.scheme, state);
@@ -109,16 +120,24 @@ class Integrator {
       if (account_ && energy_) energy_(account_->balance());
       return true;
     }
-    if (level == parameters_.max_halvings) return false;
+    if (level - coarsest >= parameters_.max_halvings) return false;
     ++summary.halved_steps;
-    return step(level + 1, state, summary) && step(level + 1, state, summary);
+    return divided(level, level + 1, state, summary);
   }
 
-  // How long the contacts keep their energy from the end of a step on.
+  // A step of one level as steps of a finer one.
+  bool divided(int level, int finer, VsiState& state, RunSummary& summary) {
+    for (int part = 0; part < 1 << (finer - level); ++part) {
+      if (!step(finer, state, summary)) return false;
+    }
+    return true;
+  }
+
+  // How long from the end of a step on steps are those of an impact, and contacts keep their energy.
   void follow_impact(const StepReport& report, const HhtScheme& scheme, VsiState& state) const {
-    if (report.touch_changed) state.impact_until = std::max(state.impact_until, state.time + longest_impact);
+    if (report.touch_changed) state.impact_until = state.energy_until = state.time + longest_impact;
     if (scheme.contact_force == ContactForceRule::energy && swings(state)) {
-      state.impact_until = std::max(state.impact_until, state.time + 0.5 * scheme.time_step);
+      state.energy_until = std::max(state.energy_until, state.time + 0.5 * scheme.time_step);
     }
   }
 
@@ -136,12 +155,14 @@ class Integrator {
   }
 
   [[nodiscard]] ContactForceRule rule_at(const VsiState& state) const {
-    return rule_.value_or(state.time < state.impact_until ? ContactForceRule::energy : ContactForceRule::endpoint);
+    return rule_.value_or(state.time < state.energy_until ? ContactForceRule::energy : ContactForceRule::endpoint);
   }
 
-  StepReport advance(ContactForceRule rule, StepOperators& step_operators, VsiState& state, RunSummary& summary) {
+  StepReport advance(ContactForceRule rule, bool smooth_only, StepOperators& step_operators, VsiState& state,
+                     RunSummary& summary) {
     step_operators.scheme.contact_force = rule;
-    const StepLimits& limits = rule == ContactForceRule::energy ? energy_limits_ : endpoint_limits_;
+    StepLimits limits = rule == ContactForceRule::energy ? energy_limits_ : endpoint_limits_;
+    limits.smooth_only = smooth_only;
     const StepReport report = railtab::advance(model_, step_operators, limits, state, workspace_);
     summary.newton_iterations += report.newton_iterations;
     summary.back_substitutions += report.back_substitutions;
@@ -159,6 +180,7 @@ class Integrator {
   IntegrationParameters parameters_;
   StepLimits endpoint_limits_, energy_limits_;
   std::optional<ContactForceRule> rule_;  // none: automatic
+  int impact_level_ = 0;                  // halvings of a step in which wheels meet or leave their rails
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
   std::function<void(const EnergyBalance&)> energy_;

@@ -80,6 +80,7 @@ void visit_numbers(State& state, Visitor&& visit) {
   visit_vector(state.contact.rail_x);
   visit_vector(state.far_field);
   visit(&state.impact_until, 1);
+  visit(&state.energy_until, 1);
 }
 
 }  // namespace

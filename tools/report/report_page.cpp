@@ -98,6 +98,7 @@ std::string run_table(const RunResults& results) {
   if (summary.complete && !summary.message.empty()) row("note", summary.message);
   row("recorded steps", std::to_string(results.steps.size()));
   row("steps, halved steps", fmt::format("{}, {}", summary.steps, summary.halved_steps));
+  row("steps divided at impacts", std::to_string(summary.impact_steps));
   row("Newton iterations", std::to_string(summary.newton_iterations));
   row("contact queries", std::to_string(summary.contact_queries));
   row("of these from the table", std::to_string(summary.table_queries));

@@ -132,7 +132,8 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
   json.add("outside_creep_table", summary.outside_creep_table);
   json.add("steps", summary.steps).add("counted_from_step", summary.counted_from);
   json.add("newton_iterations", summary.newton_iterations);
-  json.add("halved_steps", summary.halved_steps).add("back_substitutions", summary.back_substitutions);
+  json.add("halved_steps", summary.halved_steps).add("impact_steps", summary.impact_steps);
+  json.add("back_substitutions", summary.back_substitutions);
   json.add("structure_dofs", summary.structure_dofs).add("vehicle_dofs", summary.vehicle_dofs);
   json.add("seconds", JsonObject()
                           .add("total", summary.seconds_total)

@@ -92,8 +92,10 @@ struct VsiState {
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].
   Eigen::VectorXd far_field;
-  /// Contacts keep their energy until then, where that is left to the run [s]; runs begin before 0.
+  /// Where the force rule is left to the run [s]; runs begin before 0: until when an impact lasts, in steps no longer
+  /// than IntegrationParameters::impact_step, and until when contacts keep their energy, which may be longer.
   double impact_until = std::numeric_limits<double>::lowest();
+  double energy_until = std::numeric_limits<double>::lowest();
 
   explicit VsiState(const VsiModel& model);
 };
