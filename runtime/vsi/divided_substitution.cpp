@@ -7,8 +7,15 @@ void DividedSubstitution::begin(const StructureFactor& factor, const Eigen::Vect
   factor.find_path(few_, path_);
   factor.into(known, known_);
   factor.forward(known_);
-  work_.resize(factor.size());
-  solved_.resize(factor.size());
+  if (work_.size() != factor.room()) {
+    work_.setZero(factor.room());
+    solved_.setZero(factor.room());
+  }
+}
+
+void DividedSubstitution::respond(const StructureFactor& factor, Eigen::VectorXd& solution) {
+  factor.backward(known_, solved_, path_);
+  for (int unknown : few_) solution[unknown] = solved_[factor.position(unknown)];
 }
 
 void DividedSubstitution::respond(const StructureFactor& factor, double weight, const Eigen::VectorXd& extra,
@@ -22,9 +29,8 @@ void DividedSubstitution::respond(const StructureFactor& factor, double weight, 
 }
 
 void DividedSubstitution::finish(const StructureFactor& factor, Eigen::VectorXd& solution) {
-  factor.visit(path_, [&](int first, int columns) { known_.segment(first, columns) = work_.segment(first, columns); });
-  factor.backward(known_);
-  factor.out_of(known_, solution);
+  factor.backward_off(path_, known_, solved_);
+  factor.out_of(solved_, solution);
 }
 
 }  // namespace railtab

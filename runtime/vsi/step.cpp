@@ -135,6 +135,11 @@ void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLi
       report.converged = true;
       return;
     }
+    // Forces that have not changed are answered already.
+    if (pass > 0 && newton.iterations == 0) {
+      report.converged = true;
+      return;
+    }
     const Stopwatch watch(report.seconds_structure);
     report.converged = answer_under_wheels(op, state, contacts, ws) < limits.far_field_tolerance;
   }

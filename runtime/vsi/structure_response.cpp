@@ -45,14 +45,6 @@ std::unique_ptr<Factor> factorise(const Sparse& effective) {
   return factor;
 }
 
-// The three rows of a contact over its element's 12 dofs.
-Eigen::Matrix<double, 3, 12> rows_of(const RailContact& contact) {
-  Eigen::Matrix<double, 3, 12> rows;
-  for (std::size_t k = 0; k < 12; ++k)
-    rows.col(static_cast<Eigen::Index>(k)) << contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k];
-  return rows;
-}
-
 }  // namespace
 
 RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept {
@@ -269,12 +261,9 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   }
 }
 
-template <class Rows, class Columns>
-auto StructureResponse::between(const RailContact& i, const Rows& row, const RailContact& j,
-                                const Columns& column) const noexcept {
-  Eigen::Matrix<double, Rows::RowsAtCompileTime, Columns::RowsAtCompileTime> result;
-  result.setZero();
-  if (!i.on_rail || !j.on_rail) return result;
+template <class Visitor>
+void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept {
+  if (!i.on_rail || !j.on_rail) return;
   const auto row_side = static_cast<std::size_t>(i.side);
   for (int q = 0; q < 2; ++q) {
     const Column& from = column_[static_cast<std::size_t>(j.side)][static_cast<std::size_t>(j.element + q)];
@@ -282,13 +271,12 @@ auto StructureResponse::between(const RailContact& i, const Rows& row, const Rai
     const auto count = static_cast<int>(from.rows[row_side].size());
     for (int p = 0; p < 2; ++p) {
       const int offset = i.element + p - from.first[row_side];
-      if (offset < 0 || offset >= count) continue;
-      const Block& block = from.rows[row_side][static_cast<std::size_t>(offset)];
-      result.noalias() +=
-          row.template middleCols<6>(6 * p) * (block * column.template middleCols<6>(6 * q).transpose());
+      if (offset >= 0 && offset < count) {
+        visitor(from.rows[row_side][static_cast<std::size_t>(offset)], static_cast<std::size_t>(6 * p),
+                static_cast<std::size_t>(6 * q));
+      }
     }
   }
-  return result;
 }
 
 Eigen::Matrix3d StructureResponse::modal(const RailContact& i, const RailContact& j) const noexcept {
@@ -301,16 +289,33 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
     if (std::abs(i.x - j.x) > modal_window_) return Eigen::Matrix3d::Zero();
     return modal(i, j);
   }
-  return between(i, rows_of(i), j, rows_of(j));
+  // Of the rows y, z and roll only these entries are not zero (rail_interpolation): y has the node's y, roll and yaw, z
+  // its z and pitch, roll its roll.
+  constexpr std::size_t y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {
+    const RailInterpolation& c = j.rows;
+    Eigen::Matrix<double, 6, 3> moved;  // the node of i under a unit load on rail head j
+    moved.col(0) = c.y[q + y] * block.col(y) + c.y[q + roll] * block.col(roll) + c.y[q + yaw] * block.col(yaw);
+    moved.col(1) = c.z[q + z] * block.col(z) + c.z[q + pitch] * block.col(pitch);
+    moved.col(2) = c.roll[q + roll] * block.col(roll);
+    const RailInterpolation& r = i.rows;
+    result.row(0) += r.y[p + y] * moved.row(y) + r.y[p + roll] * moved.row(roll) + r.y[p + yaw] * moved.row(yaw);
+    result.row(1) += r.z[p + z] * moved.row(z) + r.z[p + pitch] * moved.row(pitch);
+    result.row(2) += r.roll[p + roll] * moved.row(roll);
+  });
+  return result;
 }
 
 Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, const RailContact& j) const noexcept {
-  using Row = Eigen::Matrix<double, 1, 12>;
-  Eigen::Matrix<double, 3, 12> rows;
-  rows.row(0) = Row::Map(i.rows.z.data());
-  rows.row(1) = -Row::Map(i.rows.pitch.data());
-  rows.row(2) = Row::Map(i.rows.bend.data());
-  return between(i, rows, j, Row(Row::Map(j.rows.z.data())));
+  using Row = Eigen::Matrix<double, 1, 6>;
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {
+    const Eigen::Matrix<double, 6, 1> moved = block * Row::Map(&j.rows.z[q]).transpose();
+    result += Eigen::Vector3d(Row::Map(&i.rows.z[p]) * moved, -Row::Map(&i.rows.pitch[p]) * moved,
+                              Row::Map(&i.rows.bend[p]) * moved);
+  });
+  return result;
 }
 
 Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) {

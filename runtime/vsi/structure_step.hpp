@@ -18,7 +18,7 @@ inline void begin_structure(const VsiModel& model, const StepOperators& op, cons
   active.of(ws.structure_load).setZero();
   ws.structure_free.resize(model.structure->dofs());
   ws.structure_solution.begin(op.structure->factor(), ws.structure_increment, ws.rail_dofs);
-  ws.structure_solution.respond(op.structure->factor(), 0.0, ws.structure_load, ws.structure_free);
+  ws.structure_solution.respond(op.structure->factor(), ws.structure_free);
 }
 
 }  // namespace railtab

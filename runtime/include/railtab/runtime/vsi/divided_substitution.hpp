@@ -11,7 +11,7 @@ namespace railtab {
 ///
 ///     L z = known load            whole forward half, once
 ///     L w = load on few unknowns  on their path only, as often as it changes
-///     Lᵀ x = D⁻¹ (z + w)          on the path as often, whole once
+///     Lᵀ x = D⁻¹ (z + w)          on the path as often, off it once
 ///
 /// What lies on the path costs little, so that any number of answers to the changing load and the whole solution come
 /// at the price of little more than one back-substitution. Caller-owned buffers; nothing is allocated after the first
@@ -20,7 +20,9 @@ class DividedSubstitution {
  public:
   /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
   void begin(const StructureFactor& factor, const Eigen::VectorXd& known, std::span<const int> few);
-  /// The solution at the few unknowns under known + weight·extra. Reads and writes only their entries.
+  /// The solution at the few unknowns under the known load. Writes only their entries.
+  void respond(const StructureFactor& factor, Eigen::VectorXd& solution);
+  /// Under known + weight·extra. Reads and writes only their entries.
   void respond(const StructureFactor& factor, double weight, const Eigen::VectorXd& extra, Eigen::VectorXd& solution);
   /// The whole solution under the loads of the last respond(), which must have been called.
   void finish(const StructureFactor& factor, Eigen::VectorXd& solution);

@@ -27,6 +27,8 @@ class StructureFactor {
   StructureFactor(const Eigen::SparseMatrix<double>& matrix, const DofRange& range);
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
+  /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
+  [[nodiscard]] Eigen::Index room() const noexcept { return size() + 1; }
   /// What one half of a back-substitution reads [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -61,6 +63,8 @@ class StructureFactor {
   void forward(Vector& y, const Path& path) const;
   /// The entries of L⁻ᵀ D⁻¹ y on the path; those of x elsewhere stay as they are.
   void backward(const Vector& y, Vector& x, const Path& path) const;
+  /// The entries of L⁻ᵀ D⁻¹ y off the path, for an x that has those on it.
+  void backward_off(const Path& path, const Vector& y, Vector& x) const;
   /// Full solution in the natural order, of all unknowns of the structure; 0 where they are held.
   [[nodiscard]] Vector solve(const Vector& load) const;
 
@@ -68,16 +72,17 @@ class StructureFactor {
   struct Block {
     int first, columns;  // first column and number of columns
     int below, rows;     // rows below the triangle: number, and place of the first in rows_
-    std::size_t value;   // place of the first column in values_, columns × (columns + below), see there
+    std::size_t value;   // place of the first column in values_, see there
     int parent;          // block of the first row below; -1: a root
   };
+  void store(const Eigen::MatrixXd& dense, const Block& block);
   void forward(double* y, const Block& block, double* scratch) const;
   void backward(double* x, const Block& block, double* scratch) const;
+  void backward(const Vector& y, Vector& x, const Block& block, double* scratch) const;
 
   std::vector<Block> blocks_;
   std::vector<int> rows_;
-  /// Of every block with triangle T and rows B below it: T⁻¹ and B T⁻¹, column-major, a column's length rounded up to a
-  /// multiple of four.
+  /// Of every block with triangle T and rows B below it: T⁻¹ and B T⁻¹, in the order in which they are read.
   std::vector<double> values_;
   std::vector<int> block_of_;  // of a column
   std::vector<int> position_;  // of an unknown in the factor's order

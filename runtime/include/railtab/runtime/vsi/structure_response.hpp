@@ -82,10 +82,10 @@ class StructureResponse {
     std::array<int, 2> first{};              // first node of the window on each rail
     std::array<std::vector<Block>, 2> rows;  // displacement of the window's nodes from unit loads on this node
   };
-  /// rows · (tabulated compliance between the elements of i and j) · columnsᵀ.
-  template <class Rows, class Columns>
-  [[nodiscard]] auto between(const RailContact& i, const Rows& row, const RailContact& j,
-                             const Columns& column) const noexcept;
+  /// Calls visitor(block, first row, first column) for the tabulated compliances between the nodes of the elements of i
+  /// and j; row and column within the 12 unknowns of either element.
+  template <class Visitor>
+  void visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept;
   /// The factor with the fewest entries serves the steps' back-substitutions; the one with the lowest elimination tree,
   /// three times as large, gives single entries of the inverse (SelectedSolve).
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
