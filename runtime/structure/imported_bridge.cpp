@@ -9,6 +9,7 @@
 #include "bridge.hpp"
 #include "deck_attachment.hpp"
 #include "fe_supports.hpp"
+#include "free_motion.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -216,12 +217,15 @@ FeDampingMatrix damping_matrix(const FeStructure& structure, const FeDamping& da
 
 StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
   parameters.validate();
-  return lay_track(track, bridge_of(read_on_supports(parameters), parameters), MotionPlane::spatial);
+  FeStructure structure = read_on_supports(parameters);
+  require_held(structure);
+  return lay_track(track, bridge_of(std::move(structure), parameters), MotionPlane::spatial);
 }
 
 StructureModel import_with_rails(const ImportParameters& parameters) {
   parameters.validate();
   const FeStructure structure = read_on_supports(parameters);
+  require_held(structure);
   StructureModel model;
   model.mass = structure.mass;
   model.stiffness = structure.stiffness;

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "../text/text_lines.hpp"
 #include "fe_supports.hpp"
+#include "free_motion.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
-#include "../text/text_lines.hpp"
 
 namespace railtab {
 
@@ -160,16 +162,27 @@ std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& sup
   return column_of_row;
 }
 
+// Where the nodes stand is not known but along the track: the node that moves most is what can be said.
+void require_held(const StructureFiles& files, const DofTable& table, const Sparse& stiffness) {
+  const std::optional<Eigen::VectorXd> v = motion_without_stiffness(stiffness);
+  if (!v) return;
+  std::string most = "rows that the table of dofs does not name";
+  double largest = 1e-6;
+  for (const auto& [name, node] : table.nodes) {
+    for (std::size_t k = 0; k < node.dof.size(); ++k) {
+      if (node.dof[k] == held || std::abs((*v)[node.dof[k]]) <= largest) continue;
+      largest = std::abs((*v)[node.dof[k]]);
+      most = fmt::format("node {} along {}", name, motions[k]);
+    }
+  }
+  throw input_error(files.stiffness.string(), fmt::format("a motion that nothing holds, the most of it at {}", most),
+                    "a stiffness whose supports hold every motion");
+}
+
 // What the table does not name may be anything: how a translation moves it is what the supports carry it by.
 void settle_named_supports(const std::filesystem::path& file, StructureModel& model) {
   StructureSupports& s = model.supports;
-  Sparse carried;
-  try {
-    carried = carried_by_supports(model.stiffness, s.stiffness);
-  } catch (const ComputationError&) {
-    throw input_error(file.string(), "supports that do not hold the structure",
-                      "a stiffness that is positive definite without their rows");
-  }
+  const Sparse carried = carried_by_supports(model.stiffness, s.stiffness);
   Eigen::MatrixXd translation = Eigen::MatrixXd::Zero(model.dofs(), 2);
   for (Eigen::Index j = 0; j < carried.cols(); ++j) translation.col(j % 2) += carried.col(j);
   for (const RailLine& rail : model.rail) {
@@ -214,6 +227,7 @@ StructureModel import_structure(const StructureFiles& files) {
   for (const auto& [name, node] : table.nodes) {
     if (!node.left && !node.right && !node.support) model.nodes.push_back({name, node.x, node.dof});
   }
+  require_held(files, table, model.stiffness);
   if (model.supports.columns() > 0) settle_named_supports(files.dofs, model);
   return model;
 }

@@ -102,6 +102,21 @@ TEST_F(StructureImport, GivesTheStructureThatWasWritten) {
   }
 }
 
+// A beam whose second end nothing carries: the node that moves is named.
+TEST_F(StructureImport, AMotionThatNothingHoldsIsNamed) {
+  Eigen::Matrix4d K;  // of a beam of length 1 with EI = 1
+  K << 12, -6, -12, -6, -6, 4, 6, 2, -12, 6, 12, 6, -6, 2, 6, 4;
+  K(0, 0) += 1.0;
+  const auto k = write("k", Eigen::MatrixXd(K), true), m = write("m", Eigen::MatrixXd::Identity(4, 4), true);
+  const auto dofs =
+      write("dofs", "row,node,x[m],motion,rail\n1,a,0,z,both\n2,a,0,pitch,both\n3,b,1,z,both\n4,b,1,pitch,both\n");
+  expect_refused(
+      [&] {
+        static_cast<void>(import_structure({m, m, k, dofs}));
+      },
+      {"k: found a motion that nothing holds, the most of it at node ", "supports hold every motion"});
+}
+
 TEST_F(StructureImport, RefusesWrongMatricesWithFileAndLine) {
   const std::string banner = "%%MatrixMarket matrix coordinate real general\n";
   const auto refused = [&](const std::string& text, std::initializer_list<std::string> words) {

@@ -267,6 +267,38 @@ TEST_P(ImportedSpan, WithoutItsSupportsRowsMovesAlike) {
   }
 }
 
+// What supports leave free is named, with the axis it turns about, before anything is factorised.
+TEST(ImportedBridge, FreeMotionsAreNamed) {
+  const auto refusal = [](const ImportParameters& parameters) -> std::string {
+    try {
+      static_cast<void>(build_track_on_import(TrackParameters{}, parameters));
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "no error";
+  };
+  ImportParameters parameters = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
+  parameters.damping.ratio = 0.01;
+  parameters.files.damping.clear();
+  EXPECT_EQ(refusal(parameters), "no error");
+  parameters.supports[1].holds = {"z"};
+  EXPECT_NE(refusal(parameters)
+                .find("k: found a structure that turns about z (yaw) through x = 0 m, y = -0.3 m "
+                      "without resistance, expected supports against that (y of a support at another x)"),
+            std::string::npos)
+      << refusal(parameters);
+  parameters.supports[0].holds = {"z"};
+  EXPECT_NE(refusal(parameters).find("a structure that moves along y; turns about z (yaw) through x = 12 m"),
+            std::string::npos)
+      << refusal(parameters);
+  const StructureSummary summary = summarise(read_on_supports(parameters), parameters.damping, 3);
+  EXPECT_EQ(summary.free.size(), 2U);
+  EXPECT_TRUE(summary.frequencies.empty());
+  parameters.supports.pop_back();
+  EXPECT_NE(refusal(parameters).find("turns about y (pitch) through x = 0 m, z = 2 m"), std::string::npos)
+      << refusal(parameters);
+}
+
 TEST(ImportedBridge, RefusesSupportsThatDoNotFit) {
   const ImportParameters good = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
   const auto message = [&](auto&& change) -> std::string {

@@ -28,8 +28,7 @@ void print(const SceneParameters& scene, const StructureSummary& s) {
   fmt::print("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
              1e-3 * s.mass[2]);
   if (!s.free.empty()) {
-    fmt::print("  nothing holds it against {}: supports are missing, or the track is to hold it\n",
-               fmt::join(s.free, ", "));
+    fmt::print("  without resistance it {}: supports are missing\n", fmt::join(s.free, "; "));
   }
   for (std::size_t k = 0; k < s.frequencies.size(); ++k) {
     fmt::print("  {:3}. {:10.4f} Hz, damping {:.3f} %\n", k + 1, s.frequencies[k], 100.0 * s.damping_ratios[k]);
