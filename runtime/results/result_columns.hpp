@@ -112,6 +112,8 @@ inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total"
                                             SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},
                                             SummaryEntry<double>{"seconds_output", &RunSummary::seconds_output}};
 
+inline constexpr const char* counted_from = "counted_from_step";  // absent in older files: 0
+
 struct ContactEnergyEntry {
   const char* name;
   double ContactEnergy::*value;

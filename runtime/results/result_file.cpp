@@ -64,6 +64,10 @@ RunSummary read_summary(const ArrayFileReader& in) {
   for (const auto& entry : columns::summary_seconds) {
     summary.*entry.value = in.number(columns::summary_group, entry.name);
   }
+  const std::vector<std::string> names = in.attribute_names(columns::summary_group);
+  if (std::find(names.begin(), names.end(), columns::counted_from) != names.end()) {  // else counted from the first
+    summary.counted_from = static_cast<long>(in.number(columns::summary_group, columns::counted_from));
+  }
   const auto impacts = static_cast<long>(in.number(columns::summary_group, columns::contact_energy_impacts));
   if (impacts >= 0) {
     ContactEnergy& energy = summary.contact_energy.emplace();
@@ -127,6 +131,7 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   for (const auto& entry : columns::summary_seconds) {
     out.attribute(columns::summary_group, entry.name, summary.*entry.value);
   }
+  out.attribute(columns::summary_group, columns::counted_from, static_cast<std::int64_t>(summary.counted_from));
   const ContactEnergy energy = summary.contact_energy.value_or(ContactEnergy{.impacts = -1});
   out.attribute(columns::summary_group, columns::contact_energy_impacts, static_cast<std::int64_t>(energy.impacts));
   for (const auto& entry : columns::summary_contact_energy) {

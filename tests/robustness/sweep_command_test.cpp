@@ -195,9 +195,30 @@ TEST_F(SweepCommand, MissingAndDamagedResultsAreMadeAgain) {
   fs::remove(folder_ / "out/v030.000.row");
   fs::resize_file(folder_ / "out/v030.000.h5", fs::file_size(folder_ / "out/v030.000.h5") / 2);
   ASSERT_EQ(vsi(sweep), 0) << text("log");
-  EXPECT_NE(text("log").find("set aside as v030.000.h5.damaged, the run is made again"), std::string::npos);
+  EXPECT_NE(text("log").find("v030.000.h5 is set aside as v030.000.h5.damaged"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder_ / "out/v030.000.h5.damaged"));
   EXPECT_EQ(numbers_of(text("out/v030.000.row")), numbers_of(row));
+  const std::string row_with_times = text("out/v030.000.row");
+
+  // changed bytes beside a good row
+  std::string bytes = text("out/v030.000.h5");
+  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 2000; ++i) bytes[i] = static_cast<char>(~bytes[i]);
+  write("out/v030.000.h5", bytes);
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
+  EXPECT_EQ(text("out/v030.000.h5.damaged-2"), bytes);
+  EXPECT_EQ(text("out/v030.000.row.damaged"), row_with_times);
+  EXPECT_EQ(numbers_of(text("out/v030.000.row")), numbers_of(row));
+
+  // results of another run, with and without a row beside them
+  ASSERT_EQ(vsi({"run", "smooth.toml", "-o", "other.h5", "--quiet"}), 0) << text("log");
+  for (const char* aside : {"out/v030.000.h5.other", "out/v030.000.h5.other-2"}) {
+    write("out/v030.000.h5", text("other.h5"));
+    ASSERT_EQ(vsi(sweep), 0) << text("log");
+    EXPECT_EQ(text(aside), text("other.h5")) << text("log");
+    EXPECT_EQ(numbers_of(text("out/v030.000.row")), numbers_of(row));
+    fs::remove(folder_ / "out/v030.000.row");
+  }
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
 
   const std::string whole = text("out/v030.000.row");
   for (const char* wrong : {"nan", "many", "1e", "0.5.0"}) {

@@ -288,6 +288,10 @@ TEST_F(VsiCommand, ResultsThatARunReplacesAreNamed) {
   EXPECT_EQ(vsi("run scene.toml -o r.h5").output.find(note), std::string::npos);
   EXPECT_NE(vsi("run scene.toml -o r.h5").output.find(note), std::string::npos);
   EXPECT_EQ(vsi("run scene.toml -o r.h5 --resume").output.find(note), std::string::npos);
+  write("wrong.toml", rigid_scene + "duration = 0.005\n[output]\nbodies = [\"nothing\"]\n");
+  const Outcome wrong = vsi("run wrong.toml -o r.h5");  // nothing is replaced
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(wrong.output.find("note:"), std::string::npos) << wrong.output;
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   long count = 0;
   for (long* value : {&summary.steps, &summary.newton_iterations, &summary.halved_steps, &summary.impact_steps, &summary.back_substitutions,
                       &summary.contact_queries, &summary.table_queries, &summary.outside_creep_table,
-                      &summary.structure_dofs, &summary.vehicle_dofs}) {
+                      &summary.structure_dofs, &summary.vehicle_dofs, &summary.counted_from}) {
     *value = ++count;
   }
   for (double* value :
@@ -173,11 +173,11 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   EXPECT_EQ(s.contact_mode, "table");
   EXPECT_EQ((std::vector<long>{s.steps, s.newton_iterations, s.halved_steps, s.impact_steps, s.back_substitutions,
                                s.contact_queries, s.table_queries, s.outside_creep_table, s.structure_dofs,
-                               s.vehicle_dofs}),
-            (std::vector<long>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+                               s.vehicle_dofs, s.counted_from}),
+            (std::vector<long>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
   EXPECT_EQ((std::vector<double>{s.seconds_total, s.seconds_setup, s.seconds_lookup, s.seconds_contact,
                                  s.seconds_structure, s.seconds_vehicle, s.seconds_output}),
-            (std::vector<double>{11 / 3.0, 12 / 3.0, 13 / 3.0, 14 / 3.0, 15 / 3.0, 16 / 3.0, 17 / 3.0}));
+            (std::vector<double>{12 / 3.0, 13 / 3.0, 14 / 3.0, 15 / 3.0, 16 / 3.0, 17 / 3.0, 18 / 3.0}));
   ASSERT_TRUE(s.contact_energy.has_value());
   const ContactEnergy& e = *s.contact_energy;
   EXPECT_EQ(e.impacts, 5);

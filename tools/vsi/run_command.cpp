@@ -110,6 +110,16 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
   return 1;
 }
 
+/// The results of a run that came to its end are worth a word before they are gone.
+void say_what_is_replaced(const RunOptions& options) {
+  if (options.quiet || !std::filesystem::exists(options.output)) return;
+  try {
+    if (!read_run_summary(options.output).complete) return;
+    fmt::print(stderr, "vsi run: note: {} holds the results of a whole run, which this one replaces\n", options.output);
+  } catch (const InputError&) {  // nothing that could be read is lost
+  }
+}
+
 /// Results, headline and progress of a run, from its first record or from a checkpoint of its results file.
 class RunRecorder {
  public:
@@ -147,6 +157,7 @@ class RunRecorder {
     observer.stop = [] { return Interrupt::asked(); };
     observer.start = [this](const ResultHeader& header) {
       if (writer_) return;  // taken up
+      say_what_is_replaced(options_);
       writer_.emplace(options_.output, header);
       collector_.emplace(header);
     };
@@ -188,7 +199,16 @@ class RunRecorder {
   std::optional<double> resumed_at_;
 };
 
-/// Results in the way of a resumed run must be its own. @throws InputError
+/// Results must not overwrite what the run reads.
+void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const std::string& output) {
+  require_writable_place(output, "-o");
+  require_no_input(output, {scene_file});
+  for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
+  require_replaceable(output, {results_filetype});
+}
+
+}  // namespace
+
 void check_same_run(const RunResults& before, const SceneParameters& scene, const std::string& file) {
   if (before.header.scene_text != scene.text) {
     throw input_error(file, "results of another scene", "results of this scene to resume, or another -o");
@@ -209,26 +229,6 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
   }
 }
 
-/// Results must not overwrite what the run reads.
-void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const std::string& output) {
-  require_writable_place(output, "-o");
-  require_no_input(output, {scene_file});
-  for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
-  require_replaceable(output, {results_filetype});
-}
-
-/// The results of a run that came to its end are worth a word before they are gone.
-void say_what_is_replaced(const RunOptions& options) {
-  if (options.quiet || !std::filesystem::exists(options.output)) return;
-  try {
-    if (!read_run_summary(options.output).complete) return;
-    fmt::print(stderr, "vsi run: note: {} holds the results of a whole run, which this one replaces\n", options.output);
-  } catch (const InputError&) {  // nothing that could be read is lost
-  }
-}
-
-}  // namespace
-
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
   RunRecorder recorder(options);
   std::optional<RunCheckpoint> from;
@@ -242,7 +242,6 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     }
     from = recorder.take_up(before);
   }
-  if (!options.resume) say_what_is_replaced(options);
   try {
     return recorder.finish(run_scene(scene, recorder.observer(), from));
   } catch (const ComputationError& failure) {

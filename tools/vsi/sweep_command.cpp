@@ -31,6 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr int done = 0, failed = 1, interrupted = 130;
+constexpr int kept = 3;  // of a process whose run was finished before
 
 struct Shard {
   std::size_t index = 1, count = 1;
@@ -56,6 +57,15 @@ std::string whole_text(const fs::path& file) {
   return text.str();
 }
 
+bool is_readable(const fs::path& results) {
+  try {
+    static_cast<void>(read_results(results));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 /// The runs of a sweep in processes of their own: one that dies takes no other with it, and every one can be resumed.
 class Sweep {
  public:
@@ -70,7 +80,7 @@ class Sweep {
     while (next < runs.size() || !going_.empty()) {
       while (asked_ == 0 && next < runs.size() && going_.size() < processes) {
         const SweepRun& run = runs[next++];
-        if (!finished(run)) going_.emplace(begin(run), &run);
+        going_.emplace(begin(run), &run);
       }
       if (going_.empty()) break;
       code = std::max(code, wait());
@@ -94,17 +104,41 @@ class Sweep {
     return process;
   }
 
-  /// Results that cannot be read, cut off by a full disk or a kill, would stand in the way of their run for good.
-  void set_damaged_results_aside(const SweepRun& run) const {
+  /// Another name beside the old one, which nothing is lost by.
+  void set_aside(const SweepRun& run, const char* suffix, const std::string& why) const {
+    const fs::path old = file(run, suffix);
+    fs::path aside = old.string() + "." + why;
+    for (int k = 2; fs::exists(aside); ++k) aside = fmt::format("{}.{}-{}", old.string(), why, k);
+    fs::rename(old, aside);
+    fmt::print(stderr, "vsi sweep: {}: {} is set aside as {}\n", run.name, old.filename().string(),
+               aside.filename().string());
+  }
+
+  /// Whether results there are the run's own, which it can keep or go on from. @throws InputError why they are not
+  void check_results(const SweepRun& run, const SceneParameters& scene) const {
     const fs::path results = file(run, ".h5");
-    if (!fs::exists(results)) return;
-    try {
-      static_cast<void>(read_results(results));
-    } catch (const InputError& damaged) {
-      fs::rename(results, file(run, ".h5.damaged"));
-      fmt::print(stderr, "vsi sweep: {}: {}; set aside as {}.h5.damaged, the run is made again\n", run.name,
-                 damaged.what(), run.name);
+    const RunResults before = read_results(results);
+    if (!finished(run)) return check_same_run(before, scene, results.string());
+    if (before.header.scene_text != scene.text) {
+      throw input_error(results.string(), "results of another scene", "those of this run");
     }
+  }
+
+  /// Results that cannot be read, cut off by a full disk or a kill, or that are another run's would stand in the way of
+  /// their run for good; and a row is only believed beside its results.
+  void set_others_aside(const SweepRun& run, const SceneParameters& scene) const {
+    std::string why = "alone";
+    if (fs::exists(file(run, ".h5"))) {
+      try {
+        check_results(run, scene);
+        return;
+      } catch (const InputError& wrong) {
+        fmt::print(stderr, "vsi sweep: {}: {}; the run is made again\n", run.name, wrong.what());
+      }
+      why = is_readable(file(run, ".h5")) ? "other" : "damaged";
+      set_aside(run, ".h5", why);
+    }
+    if (fs::exists(file(run, ".row"))) set_aside(run, ".row", why);
   }
 
   [[nodiscard]] int in_own_process(const SweepRun& run) const {
@@ -112,7 +146,8 @@ class Sweep {
     try {
       signal(SIGINT, SIG_DFL);
       prctl(PR_SET_PDEATHSIG, SIGKILL);  // a sweep that is killed leaves no run behind that would hold its file
-      set_damaged_results_aside(run);
+      set_others_aside(run, scene);
+      if (finished(run)) return kept;
       std::string row;
       RunOptions options{file(run, ".h5").string(), false, true, true};
       options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
@@ -138,6 +173,7 @@ class Sweep {
     if (ended == going_.end()) return done;
     const SweepRun& run = *ended->second;
     going_.erase(ended);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kept) return done;
     const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
     if (!quiet_) fmt::print("{}: {}\n", run.name, complete ? "done" : finished(run) ? "ended early" : "not finished");
     std::fflush(stdout);

@@ -78,7 +78,7 @@ struct RunSummary {
   std::string message;       ///< empty, or why the run ended early
   long steps = 0, newton_iterations = 0, halved_steps = 0;
   long impact_steps = 0;        ///< steps divided because a wheel met or left its rail
-  long counted_from = 0;        ///< step at which a resumed run's counts and times begin; not in result files
+  long counted_from = 0;        ///< step at which a resumed run's counts and times begin
   long back_substitutions = 0;  ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
   long outside_creep_table = 0;                 ///< creep forces that the creep table left to Polach, wholly or in part
