@@ -48,6 +48,12 @@ GroundPoint GroundMotion::at(double x, double time) const noexcept {
   return point;
 }
 
+GroundVector GroundMotion::peak() const noexcept {
+  GroundVector largest = GroundVector::Zero();
+  for (const Station& station : stations_) largest = largest.cwiseMax(station.record.peak());
+  return largest;
+}
+
 std::vector<double> GroundMotion::places() const {
   std::vector<double> x;
   if (slowness_ != 0.0) return x;

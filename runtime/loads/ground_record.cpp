@@ -53,6 +53,13 @@ std::vector<GroundVector> clamped_curvatures(const std::vector<double>& t, const
 GroundRecord::GroundRecord(std::vector<double> time, std::vector<GroundVector> acceleration)
     : time_(std::move(time)), acceleration_(std::move(acceleration)) {
   integrate();
+  given_peak_ = peak();
+}
+
+GroundVector GroundRecord::peak() const noexcept {
+  GroundVector largest = GroundVector::Zero();
+  for (const GroundVector& a : acceleration_) largest = largest.cwiseMax(a.cwiseAbs());
+  return largest;
 }
 
 void GroundRecord::integrate() {
@@ -108,6 +115,7 @@ void GroundRecord::scale(double factor) noexcept {
     for (GroundVector& value : *column) value *= factor;
   }
   drift_correction_ *= std::abs(factor);
+  given_peak_ *= std::abs(factor);
 }
 
 GroundRecord read_ground_record(const std::filesystem::path& file) {

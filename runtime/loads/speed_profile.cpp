@@ -20,6 +20,26 @@ std::size_t line_at(const std::vector<double>& points, double value) {
   return static_cast<std::size_t>(after - points.begin()) - 1;
 }
 
+/// @param place name of a point for messages
+template <class Place>
+void check_points(const std::vector<double>& time, const std::vector<double>& speed, const Place& place) {
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (!(speed[i] >= slowest && speed[i] <= fastest)) {
+      throw input_error(place(i), fmt::format("{} m/s", speed[i]), fmt::format("{} to {} m/s", slowest, fastest));
+    }
+    if (i == 0) continue;
+    if (!(time[i] > time[i - 1]) || !std::isfinite(time[i])) {
+      throw input_error(place(i), fmt::format("t = {} s", time[i]),
+                        fmt::format("more than {} s of the point before", time[i - 1]));
+    }
+    const double rate = (speed[i] - speed[i - 1]) / (time[i] - time[i - 1]);
+    if (!(std::abs(rate) <= hardest)) {
+      throw input_error(place(i), fmt::format("{:.4g} m/s2 since the one before", rate),
+                        fmt::format("at most {} m/s2", hardest));
+    }
+  }
+}
+
 }  // namespace
 
 SpeedProfile::SpeedProfile(std::vector<double> time, std::vector<double> speed)
@@ -28,22 +48,9 @@ SpeedProfile::SpeedProfile(std::vector<double> time, std::vector<double> speed)
     throw input_error("speed profile", fmt::format("{} times and {} speeds", time_.size(), speed_.size()),
                       "as many of both, at least 2");
   }
+  check_points(time_, speed_, [](std::size_t i) { return fmt::format("speed profile, point {}", i + 1); });
   travel_.assign(time_.size(), 0.0);
-  for (std::size_t i = 0; i < time_.size(); ++i) {
-    if (!(speed_[i] >= slowest && speed_[i] <= fastest)) {
-      throw input_error(fmt::format("speed profile, point {}", i + 1), fmt::format("{} m/s", speed_[i]),
-                        fmt::format("{} to {} m/s", slowest, fastest));
-    }
-    if (i == 0) continue;
-    if (!(time_[i] > time_[i - 1]) || !std::isfinite(time_[i])) {
-      throw input_error(fmt::format("speed profile, point {}", i + 1), fmt::format("t = {} s", time_[i]),
-                        fmt::format("more than {} s of the point before", time_[i - 1]));
-    }
-    const double rate = (speed_[i] - speed_[i - 1]) / (time_[i] - time_[i - 1]);
-    if (!(std::abs(rate) <= hardest)) {
-      throw input_error(fmt::format("speed profile, point {}", i + 1),
-                        fmt::format("{:.4g} m/s2 since the one before", rate), fmt::format("at most {} m/s2", hardest));
-    }
+  for (std::size_t i = 1; i < time_.size(); ++i) {
     travel_[i] = travel_[i - 1] + 0.5 * (speed_[i - 1] + speed_[i]) * (time_[i] - time_[i - 1]);
   }
   origin_ = travel(0.0);
@@ -90,11 +97,8 @@ SpeedProfile read_speed_profile(const std::filesystem::path& file) {
   static_cast<void>(factor_to_si(columns[0], {{"s", 1.0}}));
   const double factor = factor_to_si(columns[1], {{"m/s", 1.0}, {"km/h", 1.0 / 3.6}});
   for (double& v : columns[1].values) v *= factor;
-  try {
-    return {std::move(columns[0].values), std::move(columns[1].values)};
-  } catch (const InputError& wrong) {
-    throw InputError(fmt::format("{}: {}", file.string(), wrong.what()));
-  }
+  check_points(columns[0].values, columns[1].values, [&](std::size_t i) { return columns[1].place(i + 1); });
+  return {std::move(columns[0].values), std::move(columns[1].values)};
 }
 
 }  // namespace railtab

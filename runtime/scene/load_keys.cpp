@@ -15,7 +15,7 @@ auto& of_load(SceneDraft& draft) {
   return draft.load.*member;
 }
 template <std::size_t component>
-double& load_component(SceneDraft& draft) {
+std::optional<double>& load_component(SceneDraft& draft) {
   return draft.load.load[component];
 }
 template <auto member>
@@ -47,12 +47,12 @@ std::vector<KeyBinding> body_load_keys() {
       {"load.coach", "1", "counted from the front; 0: every one", IntegerKey{of_load<&LoadParameters::coach>, 0, 100}},
       {"load.file", "", "history over time or position; not together with the six components",
        FileKey{of_load<&LoadParameters::file>}},
-      {"load.Fx", "N", "force forward at the centre of gravity", NumberKey{load_component<0>, {-1e8, 1e8}}},
-      {"load.Fy", "N", "force to the right", NumberKey{load_component<1>, {-1e8, 1e8}}},
-      {"load.Fz", "N", "force down", NumberKey{load_component<2>, {-1e8, 1e8}}},
-      {"load.Mx", "N m", "moment about x", NumberKey{load_component<3>, {-1e9, 1e9}}},
-      {"load.My", "N m", "moment about y", NumberKey{load_component<4>, {-1e9, 1e9}}},
-      {"load.Mz", "N m", "moment about z", NumberKey{load_component<5>, {-1e9, 1e9}}},
+      {"load.Fx", "N", "force forward at the centre of gravity", OptionalNumberKey{load_component<0>, {-1e8, 1e8}}},
+      {"load.Fy", "N", "force to the right", OptionalNumberKey{load_component<1>, {-1e8, 1e8}}},
+      {"load.Fz", "N", "force down", OptionalNumberKey{load_component<2>, {-1e8, 1e8}}},
+      {"load.Mx", "N m", "moment about x", OptionalNumberKey{load_component<3>, {-1e9, 1e9}}},
+      {"load.My", "N m", "moment about y", OptionalNumberKey{load_component<4>, {-1e9, 1e9}}},
+      {"load.Mz", "N m", "moment about z", OptionalNumberKey{load_component<5>, {-1e9, 1e9}}},
       {"load.start", "s", "begin of the gust, or added to the times (positions, in m) of the file",
        NumberKey{of_load<&LoadParameters::start>, {-1e6, 1e6}}},
       {"load.gust_duration", "s", "of a one-minus-cosine gust with the components as its peak; 0: they are constant",

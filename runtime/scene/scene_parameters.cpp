@@ -16,7 +16,7 @@ void require(bool ok, std::string_view key, double found, std::string_view expec
 }
 
 /// Rails come from the imported structure, or the track is laid over its deck.
-void check_structure(const SceneParameters& scene, const std::string& place) {
+void check_structure(const SceneParameters& scene) {
   const ImportParameters& structure = scene.structure;
   const FeFiles& files = structure.files;
   if (scene.track_kind == TrackKind::imported && files.nodes.empty()) {
@@ -37,12 +37,12 @@ void check_structure(const SceneParameters& scene, const std::string& place) {
   }
   const bool described = structure.deck.given() || !files.mass.empty() || !files.nodes.empty();
   if (scene.track_kind == TrackKind::flexible && files.stiffness.empty() && described) {
-    throw input_error(place, "a [structure] without structure.stiffness", "its matrices, or a [[bridge]] alone");
+    throw input_error("structure", "no structure.stiffness", "its matrices, or a [[bridge]] alone");
   }
   if (scene.track_kind != TrackKind::flexible || files.stiffness.empty()) return;
-  if (!scene.spans.empty()) throw input_error(place, "a [[bridge]] and a [structure]", "one of them under the track");
+  if (!scene.spans.empty()) throw input_error("structure.stiffness", "a [[bridge]] too", "one of them under the track");
   if (!structure.deck.given()) {
-    throw input_error(place, "a [structure] without structure.deck",
+    throw input_error("structure.stiffness", "no structure.deck",
                       "the deck's nodes, which the track is laid upon, or track.kind = \"imported\"");
   }
   structure.validate();
@@ -71,7 +71,8 @@ void check_loads(const SceneParameters& scene) {
   int number = 0;
   for (const LoadParameters& load : scene.loads) {
     const std::string which = fmt::format("[[load]] {} of {}", ++number, scene.loads.size());
-    const bool components = std::any_of(load.load.begin(), load.load.end(), [](double f) { return f != 0.0; });
+    const bool components =
+        std::any_of(load.load.begin(), load.load.end(), [](const auto& f) { return f.has_value(); });
     if (load.file.empty() != components) {
       throw input_error(which, components ? "file and components" : "neither file nor component",
                         "load.file, or components Fx to Mz");
@@ -90,9 +91,16 @@ void check_loads(const SceneParameters& scene) {
   }
 }
 
-void check_ground_motion(const SceneParameters& scene, const std::string& place) {
+void check_ground_motion(const SceneParameters& scene) {
+  int number = 0;
   for (const GroundMotionParameters& ground : scene.ground_motion) {
-    if (ground.file.empty()) throw input_error(place, "a [[ground_motion]] without a file", "ground_motion.file");
+    const std::string place = fmt::format("[[ground_motion]] {} of {}", ++number, scene.ground_motion.size());
+    if (ground.file.empty()) throw input_error(place, "no file", "ground_motion.file");
+    const double before = number > 1 ? scene.ground_motion[static_cast<std::size_t>(number) - 2].x : -INFINITY;
+    if (!(ground.x > before)) {
+      throw input_error(place, fmt::format("a station at x = {} m after one at {} m", ground.x, before),
+                        "stations in the order of ground_motion.x, each at a place of its own");
+    }
     if (ground.wave_speed != 0.0 && scene.ground_motion.size() > 1) {
       throw input_error(place, "ground_motion.wave_speed with several records", "a single record that travels");
     }
@@ -107,7 +115,7 @@ void check_ground_motion(const SceneParameters& scene, const std::string& place)
       scene.ground_motion.size() <= 1 && (scene.ground_motion.empty() || scene.ground_motion.front().wave_speed == 0.0);
   const ImportParameters& structure = scene.structure;
   if (!alike && scene.track_kind != TrackKind::rigid && !structure.files.nodes.empty() && structure.supports.empty()) {
-    throw input_error(place,
+    throw input_error(fmt::format("[[ground_motion]] 1 of {}", scene.ground_motion.size()),
                       "ground motion that differs along the track under an imported structure without [[support]]",
                       "one record for all, or matrices written without constraints, which have the supports' rows, and "
                       "a [[support]] for each");
@@ -120,7 +128,8 @@ void check_vertical(const SceneParameters& scene) {
   int number = 0;
   for (const LoadParameters& load : scene.loads) {
     ++number;
-    if (load.load[1] == 0.0 && load.load[3] == 0.0 && load.load[5] == 0.0) continue;
+    const auto acts = [&](std::size_t component) { return load.load[component].value_or(0.0) != 0.0; };
+    if (!acts(1) && !acts(3) && !acts(5)) continue;
     throw input_error(fmt::format("[[load]] {} of {}", number, scene.loads.size()),
                       "a load along y or about x or z with contact.normal = \"rigid\"",
                       "contact.normal = \"hertz\": a vertical scene has no lateral motion");
@@ -134,9 +143,8 @@ void check_vertical(const SceneParameters& scene) {
 }  // namespace
 
 void SceneParameters::validate() const {
-  const std::string place = name.empty() ? "scene" : name;
   if (contact.normal == NormalContact::hertz && contact.mode == ContactMode::table && contact.table.empty()) {
-    throw input_error(place, "contact.mode = \"table\" without contact.table",
+    throw input_error("contact.mode", "\"table\" without contact.table",
                       "a geometry table (tablegen geometry makes one), or contact.mode = \"online\"");
   }
   if (!contact.creep_table.empty() && contact.creep_law != "table") {
@@ -148,9 +156,9 @@ void SceneParameters::validate() const {
                       fmt::format("\"{}\" and a [[bridge]]", track_kind == TrackKind::rigid ? "rigid" : "imported"),
                       "\"flexible\", or no bridge");
   }
-  check_structure(*this, place);
+  check_structure(*this);
   if (train.vehicle == imported_vehicle) vehicle.validate(train.count);
-  if (train.count < 1) throw input_error(place, fmt::format("train.count = {}", train.count), ">= 1");
+  if (train.count < 1) throw input_error("train.count", fmt::format("{}", train.count), ">= 1");
   require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");
   integration.validate();
   reduction.validate();
@@ -170,7 +178,7 @@ void SceneParameters::validate() const {
   }
   if (span_deviation) span_deviation->validate();
   check_loads(*this);
-  check_ground_motion(*this, place);
+  check_ground_motion(*this);
   check_vertical(*this);
   if (track_kind == TrackKind::flexible) {
     track.validate();

@@ -125,7 +125,9 @@ struct Assign {
     std::vector<double> values;
     for (const toml::node& entry : *list) {
       const std::optional<double> value = entry.value<double>();
-      if (!entry.is_number() || !value || !std::isfinite(*value)) throw error(expected);
+      if (!entry.is_number() || !value || !std::isfinite(*value)) {
+        throw leaf_error(file, leaf, found_text(entry) + " in the list", expected);
+      }
       values.push_back(*value);
     }
     return values;
@@ -234,8 +236,10 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
   if (heading) finish_entry(draft, heading->path);
 }
 
-/// ":12" of what a message begins with: a key, where the scene names it once, or "[[load]] 2 of 3".
+/// ":12" of what a message begins with: a key, where the scene names it once, the keys' heading, where it has some
+/// ("structure.deck" of structure.deck.from), or "[[load]] 2 of 3".
 std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
+  const std::string below = fmt::format("{}.", message.substr(0, message.find(':')));
   std::string line;
   for (const Leaf& leaf : leaves) {
     const bool heading = is_list_section(leaf.path);
@@ -244,7 +248,10 @@ std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
     if (!line.empty()) return {};
     line = fmt::format(":{}", leaf.line);
   }
-  return line;
+  if (!line.empty()) return line;
+  const auto first =
+      std::find_if(leaves.begin(), leaves.end(), [&](const Leaf& leaf) { return leaf.path.starts_with(below); });
+  return first == leaves.end() || first->entry >= 0 ? "" : fmt::format(":{}", first->line);
 }
 
 /// [span_deviation] has choices and numbers.
@@ -313,11 +320,11 @@ SceneParameters read_scene(const std::filesystem::path& file) {
 InputError with_scene_line(const InputError& wrong, const SceneParameters& scene, const std::filesystem::path& file) {
   constexpr std::string_view prefix = "scene: ";
   std::string_view message = wrong.what();
-  if (!message.starts_with(prefix)) return wrong;
-  message.remove_prefix(prefix.size());
+  const bool of_scene = message.starts_with(prefix);
+  if (of_scene) message.remove_prefix(prefix.size());
   const toml::table root = toml::parse(scene.text, file.string());
-  return InputError(
-      fmt::format("{}{}: {}", file.string(), scene::line_of(message, scene::leaves_of(root, file)), message));
+  const std::string line = scene::line_of(message, scene::leaves_of(root, file));
+  return of_scene || !line.empty() ? InputError(fmt::format("{}{}: {}", file.string(), line, message)) : wrong;
 }
 
 }  // namespace railtab

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "railtab/runtime/structure/fe_files.hpp"
 #include "../text/text_lines.hpp"
+#include "railtab/runtime/structure/fe_files.hpp"
 
 namespace railtab {
 
@@ -31,6 +31,7 @@ Eigen::SparseMatrix<double> read_calculix_matrix(const std::filesystem::path& fi
     triplets.emplace_back(i - 1, j - 1, value);
     if (i != j) triplets.emplace_back(j - 1, i - 1, value);
   }
+  if (triplets.empty()) throw reader.file_error("no entry", "a matrix stored by CalculiX (.sti, .mas)");
   Eigen::SparseMatrix<double> matrix(rows, rows);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   return matrix;
@@ -49,6 +50,7 @@ std::vector<FeRow> read_calculix_rows(const std::filesystem::path& file) {
       throw reader.error(fmt::format("'{}'", text.substr(0, 40)), "node.direction, direction 1 to 6");
     }
     --row.motion;
+    row.line = reader.line_number();
     rows.push_back(row);
   }
   if (rows.empty()) throw reader.file_error("no line", "node.direction, one line for each row of the matrices");

@@ -21,6 +21,7 @@ NumberedRow numbered_row(const LineReader& reader, const std::array<std::string_
                          const std::array<std::string_view, 6>& names) {
   const int number = reader.number<int>(words[0], "the number of a row");
   FeRow row;
+  row.line = reader.line_number();
   row.node = reader.number<int>(words[1], "the number of a node");
   const std::string label = upper_case(words[2]);
   const auto* const known = std::find(names.begin(), names.end(), label);
@@ -38,9 +39,10 @@ std::vector<FeRow> in_order(const LineReader& reader, std::vector<NumberedRow>& 
   for (const auto& [number, row] : rows) {
     const int expected = static_cast<int>(result.size()) + 1;
     if (number != expected) {
-      throw reader.file_error(
-          fmt::format("row {} {}", number < expected ? number : expected, number < expected ? "twice" : "missing"),
-          "each row of the matrices once");
+      const bool twice = number < expected;
+      throw input_error(reader.place(twice ? row.line : 0),
+                        fmt::format("row {} {}", twice ? number : expected, twice ? "again" : "missing"),
+                        "each row of the matrices once");
     }
     result.push_back(row);
   }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "fe_frame.hpp"
 #include "../text/text_lines.hpp"
+#include "fe_frame.hpp"
 
 namespace railtab {
 
@@ -89,6 +89,14 @@ Sparse symmetric_mean(const std::filesystem::path& file, const Sparse& matrix, E
   return 0.5 * (matrix + transposed);
 }
 
+void require_other_numbers(std::string_view key, const std::filesystem::path& file, const Sparse& matrix,
+                           const std::filesystem::path& stiffness_file, const Sparse& stiffness) {
+  if ((matrix - stiffness).norm() > 0.0) return;
+  throw input_error(fmt::format("scene: {}", key),
+                    fmt::format("{} with the numbers of {}", file.string(), stiffness_file.string()),
+                    "another matrix than the stiffness");
+}
+
 FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
   const FrameConversion conversion(frame, "structure");
   const std::vector<FeRow> rows = read_rows(files);
@@ -109,7 +117,8 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
     // CalculiX numbers the inner modes of its incompatible elements (C3D8I, B31, S4) after the mesh's own nodes
     const bool inner = node == s.nodes.end() && files.format == FeFormat::calculix && row.node > last_node;
     if (node == s.nodes.end() && !inner) {
-      throw input_error(files.dofs.string(), fmt::format("node {} in row {}", row.node, r + 1),
+      throw input_error(row.line > 0 ? fmt::format("{}:{}", files.dofs.string(), row.line) : files.dofs.string(),
+                        fmt::format("node {} in row {}", row.node, r + 1),
                         fmt::format("a node of {}", files.nodes.string()));
     }
     const FrameConversion::Row converted = conversion.row(row.motion);
@@ -124,6 +133,10 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
     matrix->makeCompressed();
   }
   check_diagonals(files, s);
+  require_other_numbers("structure.mass", files.mass, s.mass, files.stiffness, s.stiffness);
+  if (s.damping.rows() > 0) {
+    require_other_numbers("structure.damping", files.damping, s.damping, files.stiffness, s.stiffness);
+  }
   return s;
 }
 
@@ -134,14 +147,14 @@ std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelectio
     if (found == structure.mesh.sets.end()) {
       std::vector<std::string> names;
       for (const auto& [name, members] : structure.mesh.sets) names.push_back(name);
-      throw input_error(
-          key + ".set", selection.set,
-          names.empty() ? "no set: the file of nodes has none" : fmt::format("{}", fmt::join(names, ", ")));
+      throw input_error(key, fmt::format("no set \"{}\" of nodes", selection.set),
+                        names.empty() ? "a box, from and to: the file of nodes has no sets"
+                                      : fmt::format("one of {}", fmt::join(names, ", ")));
     }
     nodes.insert(found->second.begin(), found->second.end());
   } else {
     if (!selection.from || !selection.to) {
-      throw input_error(key, "neither a set nor two corners of a box", key + ".set, or " + key + ".from and .to");
+      throw input_error(key, "neither a set nor two corners of a box", "set, or from and to");
     }
     for (const auto& [number, position] : structure.mesh.nodes) {
       bool inside = true;
@@ -160,7 +173,14 @@ std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelectio
       return std::all_of(rows.begin(), rows.end(), [](const auto& r) { return r.empty(); });
     });
   }
-  if (nodes.empty()) throw input_error(key, "no node with a free motion", "nodes that carry the track");
+  if (nodes.empty()) {
+    throw input_error(key,
+                      selection.set.empty()
+                          ? fmt::format("no node with a row of the matrices between {} and {}",
+                                        fmt::join(*selection.from, ", "), fmt::join(*selection.to, ", "))
+                          : fmt::format("no node in the set \"{}\"", selection.set),
+                      "at least one node (a box is in the model's axes and unit, see its tolerance)");
+  }
   return {nodes.begin(), nodes.end()};
 }
 

@@ -25,13 +25,18 @@ std::string place_of(std::size_t support, std::size_t count) {
 
 std::array<bool, 6> held_motions(const FeSupport& support, const std::string& place) {
   std::array<bool, 6> holds{};
+  if (support.holds.empty()) {
+    throw input_error(place, "support.holds without a motion", fmt::format("some of {}", fmt::join(motions, ", ")));
+  }
   for (const std::string& name : support.holds) {
     const auto* const known = std::find(motions.begin(), motions.end(), name);
     if (known == motions.end()) {
       throw input_error(place, fmt::format("support.holds with \"{}\"", name),
                         fmt::format("some of {}", fmt::join(motions, ", ")));
     }
-    holds[static_cast<std::size_t>(known - motions.begin())] = true;
+    bool& taken = holds[static_cast<std::size_t>(known - motions.begin())];
+    if (taken) throw input_error(place, fmt::format("support.holds with \"{}\" twice", name), "each motion once");
+    taken = true;
   }
   return holds;
 }
@@ -62,7 +67,7 @@ double hold(FeStructure& structure, const FeSupport& support, std::size_t number
     }
   }
   if (!any) {
-    throw input_error(place, "nodes none of whose held motions has a row",
+    throw input_error(place, fmt::format("nodes none of which has a row of {}", fmt::join(support.holds, ", ")),
                       "matrices that were written without these constraints, or no [[support]] for them");
   }
   return support.x.value_or(x);

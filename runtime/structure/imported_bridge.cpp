@@ -81,12 +81,15 @@ std::vector<double> positions(const FeStructure& structure) {
   return x;
 }
 
+/// A place whose distance from zero is what turning axes and units leaves [m].
+double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
+
 /// Wrong units, axes or origins show where the deck stands.
 void check_place(const FeStructure& structure, const std::vector<int>& deck, const Bridge& bridge, double begin) {
   constexpr double shortest = 0.5, longest = 1e5, highest = -0.5, lowest = 60.0;  // [m]
   if (!(bridge.end - begin >= shortest && bridge.end - begin <= longest)) {
     throw input_error(
-        "structure.deck", fmt::format("a deck from x = {:.4g} m to {:.4g} m", begin, bridge.end),
+        "structure.deck", fmt::format("a deck from x = {:.4g} m to {:.4g} m", without_rounding(begin), bridge.end),
         fmt::format("{} m to {:.0f} km of it: see structure.units and structure.axes", shortest, 1e-3 * longest));
   }
   for (int number : deck) {
@@ -105,6 +108,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   append(structure.stiffness, bridge.matrices.stiffness);
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   append(damping.of_unknowns, bridge.matrices.damping);
+  bridge.doubts = doubts_about(mass_per_length(structure), damping.first_frequency);
   StructureSupports supports = settled_supports(structure, std::move(damping));
   stand_on_ground(deck, structure, supports);
   bridge.attach = deck_function(structure, deck);
@@ -126,7 +130,8 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   bridge.spans.push_back({std::min(begin, *low) - rounding, std::max(bridge.end, *high) + rounding});
   for (double x : parameters.report) {
     if (x < begin || x > bridge.end) {
-      throw input_error("structure.report", fmt::format("{} m", x), fmt::format("{} to {} m", begin, bridge.end));
+      throw input_error("structure.report", fmt::format("{} m", x),
+                        fmt::format("{:.6g} to {:.6g} m, the deck", without_rounding(begin), bridge.end));
     }
     bridge.nodes.push_back(reported(fmt::format("deck-{}", x), nearest(structure, deck, x)));
   }
@@ -151,7 +156,8 @@ RailLine rail_line(const FeStructure& structure, const NodeSelection& selection,
                         "railtab lay the track)");
     }
     if (!line.x.empty() && !(node->position[0] > line.x.back())) {
-      throw input_error(place, fmt::format("a second node of the rail at x = {} m", node->position[0]), "one");
+      throw input_error(
+          place, fmt::format("a second node of the rail at x = {:.6g} m", without_rounding(node->position[0])), "one");
     }
     line.x.push_back(node->position[0]);
     line.dof.push_back(reported("", *node).dof);
@@ -159,7 +165,8 @@ RailLine rail_line(const FeStructure& structure, const NodeSelection& selection,
   return line;
 }
 
-RayleighDamping rayleigh(const FeStructure& structure, const FeDamping& damping) {
+/// @param first_frequency set where the natural frequencies are sought [Hz]
+RayleighDamping rayleigh(const FeStructure& structure, const FeDamping& damping, double& first_frequency) {
   if (damping.mass_factor || damping.stiffness_factor) {
     return {damping.mass_factor.value_or(0.0), damping.stiffness_factor.value_or(0.0)};
   }
@@ -171,6 +178,7 @@ RayleighDamping rayleigh(const FeStructure& structure, const FeDamping& damping)
   if (damping.frequencies[0] == 0.0) {
     const Eigen::VectorXd squares = lowest_modes(structure.stiffness, structure.mass, 3).omega2;
     omega = {std::sqrt(squares[0]), std::sqrt(squares[squares.size() - 1])};
+    first_frequency = omega[0] / (2.0 * std::numbers::pi);
   }
   return rayleigh_damping(ratio, omega[0], omega[1]);
 }
@@ -193,9 +201,18 @@ void ImportParameters::validate() const {
   }
   if ((damping.frequencies[0] > 0.0) != (damping.frequencies[1] > 0.0) ||
       (damping.frequencies[0] > 0.0 && !(damping.frequencies[1] > damping.frequencies[0]))) {
-    throw input_error("structure.damping_frequency",
-                      fmt::format("{} and {} Hz", damping.frequencies[0], damping.frequencies[1]),
-                      "two rising frequencies, or neither");
+    throw input_error(
+        "structure.damping_frequency_low",
+        fmt::format("{} Hz with damping_frequency_high = {} Hz", damping.frequencies[0], damping.frequencies[1]),
+        "two rising frequencies, or neither");
+  }
+  const bool by_ratio = damping.ratio || !damping.type.empty();
+  if (damping.frequencies[0] > 0.0 && !by_ratio) {
+    throw input_error("structure.damping_frequency_low", "no ratio that would hold at it",
+                      "damping_ratio or damping_type, or no damping_frequency_low and _high");
+  }
+  if (damping.span > 0.0 && damping.type.empty()) {
+    throw input_error("structure.damping_span", "no damping_type", "one, or no damping_span");
   }
   if (!damping.type.empty()) {
     static_cast<void>(damping_lower_bound("structure.damping_type", damping.type, damping.span));
@@ -208,11 +225,41 @@ FeStructure read_on_supports(const ImportParameters& parameters) {
 
 FeDampingMatrix damping_matrix(const FeStructure& structure, const FeDamping& damping) {
   if (structure.damping.rows() > 0) return {structure.damping, structure.supports.damping};
-  const auto [a, b] = rayleigh(structure, damping);
-  FeDampingMatrix matrix{a * structure.mass + b * structure.stiffness, {}};
+  FeDampingMatrix matrix;
+  const auto [a, b] = rayleigh(structure, damping, matrix.first_frequency);
+  matrix.of_unknowns = a * structure.mass + b * structure.stiffness;
   const StructureSupports& s = structure.supports;
   if (s.columns() > 0) matrix.of_supports = a * s.mass + b * s.stiffness;
   return matrix;
+}
+
+double mass_per_length(const FeStructure& structure) {
+  double low = INFINITY, high = -INFINITY;
+  for (const auto& [number, node] : structure.nodes) {
+    low = std::min(low, node.position[0]);
+    high = std::max(high, node.position[0]);
+  }
+  const Eigen::VectorXd heave = translations(structure).col(1);
+  return high > low ? heave.dot(structure.mass * heave) / (high - low) : 0.0;
+}
+
+std::vector<std::string> doubts_about(double mass_per_length, double first_frequency) {
+  constexpr double lightest = 100.0, heaviest = 1e6;  // [kg/m]: rails alone have 120
+  constexpr double slowest = 0.01, fastest = 1e3;     // [Hz]: the longest suspension bridges swing at 0.04
+  std::vector<std::string> doubts;
+  if (mass_per_length > 0.0 && !(mass_per_length >= lightest && mass_per_length <= heaviest)) {
+    doubts.push_back(
+        fmt::format("[structure] has {:.4g} kg per metre of its length, a bridge {:g} to {:g}: see "
+                    "structure.units, and structure.mass",
+                    mass_per_length, lightest, heaviest));
+  }
+  if (first_frequency > 0.0 && !(first_frequency >= slowest && first_frequency <= fastest)) {
+    doubts.push_back(
+        fmt::format("[structure] has its first natural frequency at {:.4g} Hz, a bridge at {:g} to {:g} Hz: "
+                    "see structure.units, structure.mass and structure.stiffness",
+                    first_frequency, slowest, fastest));
+  }
+  return doubts;
 }
 
 StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
@@ -231,6 +278,7 @@ StructureModel import_with_rails(const ImportParameters& parameters) {
   model.stiffness = structure.stiffness;
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   model.damping = damping.of_unknowns;
+  model.doubts = doubts_about(mass_per_length(structure), damping.first_frequency);
   model.supports = settled_supports(structure, std::move(damping));
   model.rail[0] = rail_line(structure, parameters.rail_left, "structure.rail_left");
   model.rail[1] = rail_line(structure, parameters.rail_right, "structure.rail_right");

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "railtab/runtime/structure/fe_files.hpp"
 #include "../text/text_lines.hpp"
+#include "railtab/runtime/structure/fe_files.hpp"
 
 namespace railtab {
 
@@ -19,7 +19,7 @@ bool next(LineReader& reader) {
 
 // Whether only one half is stored.
 bool read_banner(LineReader& reader) {
-  reader.next();
+  if (!reader.next()) throw reader.file_error("an empty file", "a Matrix Market file");
   const std::string text = upper_case(reader.line());
   std::array<std::string_view, 5> words;
   const bool known = split(text, words) == 5 && words[0] == "%%MATRIXMARKET" && words[1] == "MATRIX" &&

@@ -59,7 +59,11 @@ bool LineReader::next() {
   return false;
 }
 
-std::string LineReader::place() const { return fmt::format("{}:{}", file_.string(), count_); }
+std::string LineReader::place() const { return place(count_); }
+
+std::string LineReader::place(long line) const {
+  return line > 0 ? fmt::format("{}:{}", file_.string(), line) : file_.string();
+}
 
 InputError LineReader::error(std::string_view found, std::string_view expected) const {
   return input_error(place(), found, expected);

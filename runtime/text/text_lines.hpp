@@ -43,7 +43,9 @@ class LineReader {
   bool next();
   [[nodiscard]] std::string_view line() const noexcept { return line_; }
   [[nodiscard]] std::uintmax_t file_bytes() const noexcept { return bytes_; }
-  [[nodiscard]] std::string place() const;  ///< "file:line"
+  [[nodiscard]] std::string place() const;  ///< "file:line", the file alone before its first line
+  [[nodiscard]] std::string place(long line) const;
+  [[nodiscard]] long line_number() const noexcept { return count_; }
   /// An error at this line: "file:line: found …, expected …".
   [[nodiscard]] InputError error(std::string_view found, std::string_view expected) const;
   /// An error of the file as a whole.

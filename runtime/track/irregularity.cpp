@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -66,6 +67,14 @@ Irregularity::Irregularity(std::vector<double> x, std::vector<double> y_left, st
       knots_[i].curvature[c] = curvature[i];
     }
   }
+}
+
+double Irregularity::largest() const noexcept {
+  double largest = 0.0;
+  for (const Knot& knot : knots_) {
+    for (const double value : knot.value) largest = std::max(largest, std::abs(value));
+  }
+  return largest;
 }
 
 RailDeviation Irregularity::at(RailSide side, double x) const noexcept {

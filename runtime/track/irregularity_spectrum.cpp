@@ -85,10 +85,11 @@ void SpectrumParameters::validate() const {
   }
   require_between("irregularity.seed", seed, 0, 1e9, "-");
   require_between("irregularity.shortest_wave", shortest, 0.1, 500.0, "m");
-  require_between("irregularity.longest_wave", longest, shortest, 500.0, "m");
-  if (longest == shortest) {
-    throw input_error("irregularity.longest_wave", fmt::format("{} m", longest),
-                      "more than irregularity.shortest_wave");
+  require_between("irregularity.longest_wave", longest, 0.1, 500.0, "m");
+  if (!(longest > shortest)) {
+    throw input_error("irregularity.longest_wave",
+                      fmt::format("{} m with irregularity.shortest_wave = {} m", longest, shortest),
+                      "more than the shortest");
   }
   require_positive("irregularity: half the distance of the rail heads", half_base, "m");
 }

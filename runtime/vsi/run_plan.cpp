@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "plan_memory.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "result_header.hpp"
 #include "scene_loads.hpp"
+#include "scene_model.hpp"
 #include "scene_structure.hpp"
 #include "scene_warnings.hpp"
 #include "step_count.hpp"
@@ -92,9 +95,11 @@ void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan
 
 RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
   if (setup) setup("building the model");
-  const VsiModel model = build_model(scene);
+  const bool modal = scene.reduction.kind == Reduction::modal && scene.track_kind != TrackKind::rigid;
+  const VsiModel model = modal ? build_unreduced_model(scene) : build_model(scene);  // modes are counted, not sought
   RunPlan plan;
   plan.structure_dofs = model.structure ? model.structure->dofs() : 0;
+  if (modal) plan.structure_dofs = std::min(plan.structure_dofs, static_cast<long>(scene.reduction.modes));
   plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
   plan.wheels = 2 * model.wheelsets();
   plan.time_step = scene.integration.time_step;
@@ -108,7 +113,8 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   describe_track(scene, model, plan);
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
   if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
-  plan.memory = step_memory(model, scene.integration.time_step, scene.integration.alpha);
+  plan.memory = modal ? modal_step_memory(model, scene.reduction, scene.integration)
+                      : step_memory(model, scene.integration.time_step, scene.integration.alpha);
   return plan;
 }
 

@@ -23,7 +23,9 @@ int body_index(const VsiModel& model, const std::string& name, const std::string
 
 LoadHistory load_history(const LoadParameters& load) {
   if (!load.file.empty()) return read_load_history(load.file, load.start);
-  const ForceAndMoment components = ForceAndMoment::Map(load.load.data());
+  ForceAndMoment components;
+  for (std::size_t k = 0; k < load.load.size(); ++k)
+    components[static_cast<Eigen::Index>(k)] = load.load[k].value_or(0.0);
   if (load.gust_duration > 0.0) return gust_history(components, load.start, load.gust_duration);
   return {LoadArgument::time, {0.0}, {components}};
 }
@@ -76,21 +78,25 @@ double wave_origin(const VsiModel& model, double wave_speed, double duration) {
   return wave_speed > 0.0 ? low : high;
 }
 
+std::string first_record(const SceneParameters& scene) {
+  return fmt::format("scene: [[ground_motion]] 1 of {}", scene.ground_motion.size());
+}
+
 // An imported structure may not say what its supports do to it.
-void check_supports(const VsiModel& model) {
+void check_supports(const SceneParameters& scene, const VsiModel& model) {
   const StructureSupports& supports = model.structure->supports;
   if (supports.columns() == 0) {
-    throw input_error("scene: ground_motion", "an imported structure whose supports have no rows",
+    throw input_error(first_record(scene), "an imported structure whose supports have no rows",
                       "a table of dofs with the supports' rows (rail = support), or structure.nodes");
   }
   const std::vector<DofIndices>& rail = model.structure->rail[0].dof;
   const bool beside = std::any_of(rail.begin(), rail.end(), [](const DofIndices& dof) { return dof[1] == held; });
   if (beside && model.normal_contact == NormalContact::hertz) {
-    throw input_error("scene: ground_motion", "rails that have no lateral motion",
+    throw input_error(first_record(scene), "rails that have no lateral motion",
                       "rails with it, or contact.normal = \"rigid\"");
   }
   if (supports.alike_only && !model.ground_motion->uniform()) {
-    throw input_error("scene: ground_motion",
+    throw input_error(first_record(scene),
                       "motion that differs along the track, and an imported structure that stands on more than its "
                       "[[support]]s: a translation of all of them strains it or is damped",
                       "one record for all, or the rows of all supports in the matrices and a [[support]] for each");
@@ -110,7 +116,12 @@ void add_ground_motion(const SceneParameters& scene, VsiModel& model) {
   } else {
     model.ground_motion.emplace(ground_record(first));
   }
-  if (model.structure) check_supports(model);
+  if (model.structure) check_supports(scene, model);
+  const GroundVector peak = model.ground_motion->peak();
+  if (lateral_ground_is_left_out(scene) && peak[0] > 0.0 && peak[1] == 0.0) {
+    throw input_error(first_record(scene), "lateral motion alone with contact.normal = \"rigid\"",
+                      "a column z, or contact.normal = \"hertz\": a vertical scene has no lateral motion");
+  }
 }
 
 }  // namespace
@@ -124,6 +135,11 @@ MotionPlane structure_plane(const SceneParameters& scene) noexcept {
                                  [](const BridgeParameters& span) { return span.track_offset != 0.0; });
   const bool imported = !scene.structure.files.stiffness.empty();  // has all its motions
   return aside || imported ? MotionPlane::spatial : vehicle_plane(scene);
+}
+
+bool lateral_ground_is_left_out(const SceneParameters& scene) noexcept {
+  return vehicle_plane(scene) == MotionPlane::vertical &&
+         (scene.track_kind == TrackKind::rigid || structure_plane(scene) == MotionPlane::vertical);
 }
 
 void add_loads(const SceneParameters& scene, VsiModel& model) {

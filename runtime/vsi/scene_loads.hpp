@@ -13,6 +13,9 @@ namespace railtab {
 [[nodiscard]] MotionPlane vehicle_plane(const SceneParameters& scene) noexcept;
 [[nodiscard]] MotionPlane structure_plane(const SceneParameters& scene) noexcept;
 
+/// Whether nothing in the scene can follow a lateral motion of the ground.
+[[nodiscard]] bool lateral_ground_is_left_out(const SceneParameters& scene) noexcept;
+
 /// Speed over time, loads on bodies, ground motion and turning spans of a scene, read into the model, whose vehicle,
 /// positions and structure are there already. @throws InputError
 void add_loads(const SceneParameters& scene, VsiModel& model);

@@ -9,6 +9,7 @@
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
 #include "scene_loads.hpp"
+#include "scene_model.hpp"
 #include "scene_structure.hpp"
 
 namespace railtab {
@@ -126,7 +127,7 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 
 }  // namespace
 
-VsiModel build_model(const SceneParameters& scene) {
+VsiModel build_unreduced_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
   model.vehicle = scene.train.vehicle == imported_vehicle
@@ -136,11 +137,19 @@ VsiModel build_model(const SceneParameters& scene) {
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
-  if (scene.track_kind != TrackKind::rigid) model.structure = build_structure(scene);
+  if (scene.track_kind != TrackKind::rigid) {
+    model.structure = build_structure(scene);
+    model.structure_doubts = model.structure->doubts;
+  }
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   add_loads(scene, model);
   if (scene.spectrum) model.irregularity = random_track(scene, model);
   check_on_track(scene, model);
+  return model;
+}
+
+VsiModel build_model(const SceneParameters& scene) {
+  VsiModel model = build_unreduced_model(scene);
   reduce(scene.reduction, model);
   return model;
 }

@@ -1,6 +1,11 @@
 #include "scene_structure.hpp"
 
+#include <filesystem>
+#include <string>
+#include <utility>
+
 #include "railtab/runtime/structure/structure_import.hpp"
+#include "railtab/tables/input_error.hpp"
 #include "scene_loads.hpp"
 
 namespace railtab {
@@ -11,6 +16,11 @@ bool track_on_import(const SceneParameters& scene) noexcept {
 
 StructureModel build_structure(const SceneParameters& scene) {
   const FeFiles& files = scene.structure.files;
+  for (const auto& [file, key] : {std::pair{&files.mass, "mass"}, {&files.damping, "damping"}}) {
+    std::error_code none;
+    if (file->empty() || !std::filesystem::equivalent(*file, files.stiffness, none)) continue;
+    throw input_error(std::string("scene: structure.") + key, "the file of structure.stiffness", "a file of its own");
+  }
   if (scene.track_kind == TrackKind::imported) {
     if (!files.nodes.empty()) return import_with_rails(scene.structure);
     return import_structure({files.mass, files.damping, files.stiffness, files.dofs});

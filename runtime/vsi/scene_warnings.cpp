@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "scene_loads.hpp"
 
 namespace railtab {
 
@@ -40,6 +42,8 @@ std::optional<std::string> of_load(const SceneParameters& scene, const VsiModel&
                                    double duration) {
   const LoadParameters& load = scene.loads[index];
   const BodyLoad& acting = model.loads[index];
+  const std::string place = fmt::format("[[load]] {} of {}", index + 1, scene.loads.size());
+  if (!acting.history.acting().any()) return place + " is zero throughout: it does not act";
   if (load.file.empty() && load.gust_duration == 0.0) return std::nullopt;  // constant
   const bool over_time = acting.history.argument() == LoadArgument::time;
   const Interval run = over_time ? Interval{0.0, duration} : body_way(model, acting, duration);
@@ -49,18 +53,80 @@ std::optional<std::string> of_load(const SceneParameters& scene, const VsiModel&
                                  : history.high < run.low ? "its last value acts throughout"
                                                           : "its first value acts throughout";
   const std::string_view name = over_time ? "t" : "x", unit = over_time ? "s" : "m";
-  return fmt::format("[[load]] {} of {} is given for {}, the run is at {}: {}", index + 1, scene.loads.size(),
-                     text(history, name, unit), text(run, name, unit), value);
+  return fmt::format("{} is given for {}, the run is at {}: {}", place, text(history, name, unit),
+                     text(run, name, unit), value);
 }
 
-std::optional<std::string> of_ground(const SceneParameters& scene, std::size_t index, double duration) {
+/// The stretch of x that a station's record has a share in.
+Interval reach_of_station(const std::vector<GroundMotionParameters>& stations, std::size_t index) {
+  return {index == 0 ? -INFINITY : stations[index - 1].x,
+          index + 1 == stations.size() ? INFINITY : stations[index + 1].x};
+}
+
+/// Where the ground moves something: wheels, and supports of the structure.
+Interval ground_way(const VsiModel& model, Interval way) {
+  if (!model.structure) return way;
+  for (const double x : model.structure->supports.x) way = {std::min(way.low, x), std::max(way.high, x)};
+  return way;
+}
+
+std::optional<std::string> of_drift_correction(const GroundRecord& record, const std::string& place) {
+  constexpr double noticeable = 0.1;  // of the peak: real records need a few per cent
+  std::string parts;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const double given = record.given_peak()[k], added = record.drift_correction()[k];
+    if (added <= noticeable * given) continue;
+    parts += fmt::format("{}{}: up to {:.3g} m/s² added to a peak of {:.3g} m/s², which is {:.3g} m/s² then ({:.0f} %)",
+                         parts.empty() ? "" : "; ", k == 0 ? "y" : "z", added, given, record.peak()[k],
+                         100.0 * record.peak()[k] / given);
+  }
+  if (parts.empty()) return std::nullopt;
+  return fmt::format(
+      "{}: the straight line that lets the ground end at rest where it began changes the record ({}): is "
+      "it whole, and an acceleration?",
+      place, parts);
+}
+
+/// What a record does, and what of it reaches nothing.
+void of_ground(const SceneParameters& scene, const VsiModel& model, std::size_t index, const Interval& way,
+               double duration, std::vector<std::string>& warnings) {
   const GroundMotionParameters& ground = scene.ground_motion[index];
   const std::string place = fmt::format("[[ground_motion]] {} of {}", index + 1, scene.ground_motion.size());
-  if (ground.factor == 0.0) return place + " is taken times 0: the ground stays at rest";
-  const double begin = read_ground_record(ground.file).begin() + ground.start;
-  if (begin < duration) return std::nullopt;
-  return fmt::format("{} begins at t = {:.6g} s, the run ends at {:.6g} s: the ground stays at rest", place, begin,
-                     duration);
+  const GroundRecord record = read_ground_record(ground.file);
+  const GroundVector peak = record.peak();
+  constexpr double rounding = 1e-12;  // of the correction of a constant
+  if (ground.factor == 0.0) {
+    warnings.push_back(place + " is taken times 0: the ground stays at rest");
+  } else if (record.given_peak().isZero(0.0)) {
+    warnings.push_back(place + " is zero throughout: the ground stays at rest");
+  } else if (auto corrected = of_drift_correction(record, place)) {
+    warnings.push_back(std::move(*corrected));
+  }
+  if (vehicle_plane(scene) == MotionPlane::vertical && peak[0] > rounding * record.given_peak()[0]) {
+    warnings.push_back(place + (lateral_ground_is_left_out(scene)
+                                    ? " moves the ground along y too: nothing in a vertical scene follows it"
+                                    : " moves the ground along y: the structure follows it, the train, whose wheels "
+                                      "follow the rails vertically, does not"));
+  }
+  const double begin = record.begin() + ground.start;
+  if (begin >= duration) {
+    warnings.push_back(fmt::format("{} begins at t = {:.6g} s, the run ends at {:.6g} s: the ground stays at rest",
+                                   place, begin, duration));
+  }
+  const Interval moved = ground_way(model, way);
+  if (scene.ground_motion.size() > 1 && !reach_of_station(scene.ground_motion, index).meets(moved)) {
+    warnings.push_back(fmt::format("{}, at x = {:.6g} m, moves nothing: wheels and supports are at {}", place, ground.x,
+                                   text(moved, "x", "m")));
+  }
+}
+
+std::optional<std::string> of_speed(const SceneParameters& scene, const VsiModel& model, double duration) {
+  const Interval profile{model.speed_profile->begin(), model.speed_profile->end()}, run{0.0, duration};
+  // beyond its points the speed is constant: one that only touches the run changes nothing
+  if (profile.low < run.high && run.low < profile.high) return std::nullopt;
+  return fmt::format("train.speed_file {} is given for {}, the run is at {}: its {} speed holds throughout",
+                     scene.train.speed_file.filename().string(), text(profile, "t", "s"), text(run, "t", "s"),
+                     profile.low >= run.high ? "first" : "last");
 }
 
 std::optional<std::string> of_deviation(const SpanDeviationParameters& deviation, const Interval& way) {
@@ -74,6 +140,10 @@ std::optional<std::string> of_deviation(const SpanDeviationParameters& deviation
 
 std::optional<std::string> of_irregularity(const SceneParameters& scene, const VsiModel& model, const Interval& way) {
   const Interval measured{model.irregularity.begin(), model.irregularity.end()};
+  if (model.irregularity.largest() == 0.0) {
+    return fmt::format("irregularity.file {} is zero throughout: the track is perfect",
+                       scene.irregularity->filename().string());
+  }
   if (measured.meets(way)) return std::nullopt;
   return fmt::format("irregularity.file {} is measured at {}, the wheels run at {}: their track is perfect",
                      scene.irregularity->filename().string(), text(measured, "x", "m"), text(way, "x", "m"));
@@ -84,12 +154,19 @@ std::optional<std::string> of_irregularity(const SceneParameters& scene, const V
 std::vector<std::string> scene_warnings(const SceneParameters& scene, const VsiModel& model) {
   const double duration = run_duration(scene, model);
   const Interval way = wheel_way(model, duration);
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = model.structure_doubts;
   const auto add = [&](std::optional<std::string> warning) {
     if (warning) warnings.push_back(std::move(*warning));
   };
+  if (scene.contact.normal == NormalContact::hertz && scene.contact.mode == ContactMode::paper &&
+      scene.integration.contact_force == ContactForceRule::energy) {
+    warnings.emplace_back(
+        "integration.contact_force = \"energy\" with contact.mode = \"paper\": its contact points jump, no force keeps "
+        "the springs' energy over a jump, and a step may have no solution; \"automatic\" takes \"endpoint\"");
+  }
   for (std::size_t i = 0; i < scene.loads.size(); ++i) add(of_load(scene, model, i, duration));
-  for (std::size_t i = 0; i < scene.ground_motion.size(); ++i) add(of_ground(scene, i, duration));
+  for (std::size_t i = 0; i < scene.ground_motion.size(); ++i) of_ground(scene, model, i, way, duration, warnings);
+  if (model.speed_profile) add(of_speed(scene, model, duration));
   if (scene.span_deviation) add(of_deviation(*scene.span_deviation, way));
   if (scene.irregularity) add(of_irregularity(scene, model, way));
   return warnings;

@@ -28,15 +28,36 @@ VsiModel without_loads(const VsiModel& model, double time, bool keep_acceleratio
   return bare;
 }
 
+/// How far the rails under the train are out of place, where that alone holds it from rest.
+std::optional<std::string> no_rest_for_deviations(const VsiModel& model, double share, double time) {
+  if (model.irregularity.empty() && !model.span_deviation) return std::nullopt;
+  if (share == 0.0) {
+    VsiModel smooth = model;
+    smooth.irregularity = {};
+    smooth.span_deviation.reset();
+    if (!has_rest(smooth, time)) return std::nullopt;
+  }
+  double y = 0.0, z = 0.0;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    for (const RailSide side : {RailSide::left, RailSide::right}) {
+      const RailDeviation d = model.rail_line(side, model.wheelset_x(w, time));
+      y = std::max(y, std::abs(d.y));
+      z = std::max(z, std::abs(d.z));
+    }
+  }
+  const std::string until =
+      share > 0.0 ? fmt::format("up to {:.0f} % of", 100.0 * share) : "on the smooth track, but hardly with any of";
+  return fmt::format(
+      "no state of rest where the train stands: there is one {} the deviations of the rails under it ({:.3g} m along "
+      "y, "
+      "{:.3g} m along z), beyond that a wheelset leaves its rails; begin elsewhere (train.start) or with less of them",
+      until, y, z);
+}
+
 }  // namespace
 
 std::string no_rest_message(const VsiModel& model, const EquilibriumReport& rest, double time) {
-  if (rest.deviation_share > 0.0) {
-    return fmt::format(
-        "no state of rest where the train stands: there is one up to {:.0f} % of the irregularity under it, beyond "
-        "that a wheelset leaves its rails; begin elsewhere (train.start) or with less irregularity",
-        100.0 * rest.deviation_share);
-  }
+  if (auto deviations = no_rest_for_deviations(model, rest.deviation_share, time)) return *deviations;
   const std::string what =
       fmt::format("no state of rest, also on the smooth track, after {} iterations", rest.iterations);
   const double acceleration = model.acceleration(time);

@@ -12,7 +12,7 @@ namespace {
 TEST_F(VsiCommand, WhatActsNowhereInTheRunIsSaid) {
   write("rough.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n50,1,1,1,1\n100,0,0,0,0\n");
   write("wind.csv", "x[m],Fy[kN]\n0,1\n50,2\n");
-  write("quake.csv", "t[s],y[m/s2]\n0,0\n1,0.5\n2,0\n");
+  write("quake.csv", "t[s],y[m]\n0,0\n1,0.05\n2,0\n");
   const std::string far = rigid_scene +
                           "duration = 0.01\n[train]\nstart = 5000.0\n[irregularity]\nfile = \"rough.csv\"\n"
                           "[span_deviation]\nshape = \"bending\"\nstart = 100.0\n"
@@ -49,6 +49,60 @@ TEST_F(VsiCommand, WhatActsNowhereInTheRunIsSaid) {
       << vsi("run near.toml --plan").output;
 }
 
+// What is said of a scene on flexible track with these lines more.
+class SceneWarnings : public VsiCommand {
+ protected:
+  [[nodiscard]] std::string plan(const std::string& more, const std::string& contact = "mode = \"online\"") const {
+    write("scene.toml", "[contact]\n" + contact + "\n[track]\nlength_before = 40\nlength_after = 20\n" + more +
+                            "[integration]\nduration = 0.1\n");
+    return vsi("run scene.toml --plan").output;
+  }
+  static void expect(const std::string& output, const std::string& text) {
+    EXPECT_NE(output.find(text), std::string::npos) << output;
+  }
+};
+
+TEST_F(SceneWarnings, OfRecordsThatMoveNothing) {
+  const auto ground = [](const std::string& file, const std::string& more = "") {
+    return "[[ground_motion]]\nfile = \"" + file + "\"\n" + more;
+  };
+  write("constant.csv", "t[s],y[m/s2]\n0,1\n1,1\n2,1\n");
+  expect(plan(ground("constant.csv")),
+         "y: up to 1 m/s² added to a peak of 1 m/s², which is 0 m/s² then (0 %)): is it whole, and an acceleration?");
+  write("zero.csv", "t[s],z[m]\n0,0\n1,0\n");
+  expect(plan(ground("zero.csv")), "[[ground_motion]] 1 of 1 is zero throughout: the ground stays at rest");
+  write("both.csv", "t[s],y[m],z[m]\n0,0,0\n1,0.01,0.01\n2,0,0\n");
+  const std::string stations =
+      plan(ground("both.csv", "x = -500.0\n") + ground("both.csv", "x = -400.0\n") + ground("both.csv", "x = 900.0\n"));
+  expect(stations, "[[ground_motion]] 1 of 3, at x = -500 m, moves nothing: wheels and supports are at x = -40.2 to");
+  EXPECT_EQ(stations.find("2 of 3"), std::string::npos) << stations;
+  EXPECT_EQ(plan(ground("both.csv")).find("warning"), std::string::npos);
+  const std::string rigid = "normal = \"rigid\"";
+  expect(plan(ground("both.csv"), rigid), "moves the ground along y too: nothing in a vertical scene follows it");
+  write("lateral.csv", "t[s],y[m]\n0,0\n1,0.01\n2,0\n");
+  expect(plan(ground("lateral.csv"), rigid),
+         "scene.toml:6: [[ground_motion]] 1 of 1: found lateral motion alone with contact.normal = \"rigid\"");
+  expect(plan(ground("both.csv") + ground("both.csv")),
+         "scene.toml:8: [[ground_motion]] 2 of 2: found a station at x = 0 m after one at 0 m");
+}
+
+TEST_F(SceneWarnings, OfLoadsAndSpeedsThatChangeNothing) {
+  expect(plan("[[load]]\nFy = 0.0\n"), "warning: [[load]] 1 of 1 is zero throughout: it does not act");
+  expect(plan("[[load]]\nbody = \"car-body\"\n"), "[[load]] 1 of 1: found neither file nor component");
+  write("late.csv", "t[s],V[m/s]\n10,30\n12,40\n");
+  expect(plan("[train]\nspeed_file = \"late.csv\"\n"),
+         "the run is at t = 0 to 0.1 s: its first speed holds throughout");
+  write("flat.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-90,0,0,0,0\n90,0,0,0,0\n");
+  expect(plan("[irregularity]\nfile = \"flat.csv\"\n"), "flat.csv is zero throughout: the track is perfect");
+}
+
+// A plan counts modes: seeking 2000 of them takes a minute.
+TEST_F(SceneWarnings, APlanDoesNotSeekModes) {
+  const std::string output = plan("[[bridge]]\ncount = 3\n[structure]\nreduction = \"modal\"\nmodes = 2000\n");
+  expect(output, "2000 unknowns of the structure");
+  expect(output, "modal, 2000 modes with static correction");
+}
+
 TEST_F(VsiCommand, ATrainPlacedOnItsFlangesIsSaidToBeginWithAnImpact) {
   const auto output_of = [&](const std::string& shift) {
     write("aside.toml", rigid_scene + "duration = 0.002\n[train]\ninitial_lateral_shift = " + shift + "\n");
@@ -79,6 +133,8 @@ TEST_F(VsiCommand, NoStateOfRestSaysWhy) {
   expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: the train cannot bear -8 m/s²");
   expect(output_of("[[load]]\nFy = 3e6\n"), "there is one without the loads that act at t = 0 s");
   expect(output_of("", "dimensions.flange_back = 1.50\n"), "flange backs 1.5 m apart");
+  write("aside.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n-90,0,0,0,0\n0,0.4,0,0.4,0\n90,0,0,0,0\n");
+  expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "the deviations of the rails under it (0.");
 }
 
 TEST_F(VsiCommand, APlanRefusesWhatTheRunRefuses) {

@@ -315,12 +315,15 @@ TEST(ImportedBridge, RefusesSupportsThatDoNotFit) {
   EXPECT_NE(
       message([](auto& p) { p.supports[1] = p.supports[0]; }).find("[[support]] 2 of 2: found y of node 101 again"),
       std::string::npos);
-  EXPECT_NE(message([](auto& p) { p.supports[0].holds = {"x"}; }).find("none of whose held motions has a row"),
+  EXPECT_NE(message([](auto& p) { p.supports[0].holds = {"x"}; }).find("none of which has a row of x"),
             std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.supports[0].holds = {"y", "y"}; }).find("with \"y\" twice"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.supports[0].holds.clear(); }).find("holds without a motion"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.supports[0].holds = {"up"}; }).find("support.holds with \"up\""),
             std::string::npos);
-  EXPECT_NE(message([](auto& p) { p.supports[0].nodes.set = "PIER"; }).find("[[support]] 1 of 2.set"),
-            std::string::npos);
+  EXPECT_NE(
+      message([](auto& p) { p.supports[0].nodes.set = "PIER"; }).find("[[support]] 1 of 2: found no set \"PIER\""),
+      std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, ImportedSpan, ::testing::Values(FeFormat::matrix_market, FeFormat::ansys),
@@ -347,12 +350,32 @@ TEST(ImportedBridge, RefusesWhatDoesNotFit) {
   EXPECT_NE(changed([](auto& p) { p.frame.axes = "x up"; }).find("structure.axes"), std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.frame.units = "m-N-kg"; }).find("structure.units"), std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.frame.axes = "x -z y"; }).find("above the rail-head tops"), std::string::npos);
-  EXPECT_NE(changed([](auto& p) { p.deck.set = "DECK"; }).find("structure.deck.set"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.deck.set = "DECK"; }).find("structure.deck: found no set \"DECK\""),
+            std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.deck.from = p.deck.to = {0, 5e3, 0}; }).find("structure.deck"), std::string::npos);
+  EXPECT_NE(changed([](auto& p) {
+              p.damping.frequencies = {1.0, 2.0};
+            }).find("no ratio that would hold"),
+            std::string::npos);
+  EXPECT_NE(changed([](auto& p) { p.files.mass = p.files.stiffness; }).find("structure.mass: found "),
+            std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.damping.ratio = 0.01; }).find("damping in 2 ways"), std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.files.damping.clear(); }).find("damping in 0 ways"), std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.report = {99.0}; }).find("structure.report"), std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.files.mass = p.files.dofs; }).find("dofs:1"), std::string::npos);
+}
+
+TEST(ImportedBridge, MassesAndFrequenciesOfNoBridgeAreDoubted) {
+  ImportParameters parameters = WrittenSpan(FeFormat::matrix_market).parameters;
+  parameters.files.damping.clear();
+  parameters.damping.ratio = 0.01;
+  EXPECT_TRUE(build_track_on_import(short_track(), parameters).doubts.empty());
+  // 33.9 t/m less about half an element at each support
+  EXPECT_NEAR(mass_per_length(read_on_supports(parameters)), 33.9e3 * 5.0 / 6.0, 33.9e3 * 0.1);
+  EXPECT_EQ(doubts_about(33.9, 5.0).size(), 1U);
+  EXPECT_EQ(doubts_about(33.9e6, 5e-3).size(), 2U);
+  EXPECT_EQ(doubts_about(33.9e3, 5e3).size(), 1U);
+  EXPECT_TRUE(doubts_about(33.9e3, 0.0).empty());
 }
 
 TEST(ImportedBridge, DampingByRatioTypeAndCoefficients) {

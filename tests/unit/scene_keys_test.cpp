@@ -81,10 +81,13 @@ std::string scene_with(const std::string& key, double value, bool integer) {
       rest += fmt::format("structure.{} = \"pair.h5\"\n", file);
     rest += "structure.rail_left.set = \"LEFT\"\nstructure.rail_right.set = \"RIGHT\"\n";
     contact += "[[support]]\nset = \"PIER\"\n" + line(8);
-  } else if (key.starts_with("ground_motion."))
-    bridge += (key == "ground_motion.x" ? "[[ground_motion]]\nfile = \"pair.h5\"\n" : "") +
-              std::string("[[ground_motion]]\nfile = \"pair.h5\"\n") + line(14);
-  else
+  } else if (key.starts_with("ground_motion.")) {
+    const std::string record = "[[ground_motion]]\nfile = \"pair.h5\"\n";
+    const bool last = value >= 0.0;  // a place is for one of several, in the order of x
+    if (key == "ground_motion.x" && last) bridge += record;
+    bridge += record + line(14);
+    if (key == "ground_motion.x" && !last) bridge += record;
+  } else
     rest = companion(key) + line(0);
   if (rest.find("\"imported\"") != std::string::npos) bridge.clear();
   return rest + "[contact]\n" + contact + bridge;

@@ -164,7 +164,7 @@ TEST_F(Scene, MissingFilesAreNamed) {
 }
 
 TEST_F(Scene, PartsThatDoNotFitTogetherAreRefused) {
-  EXPECT_TRUE(message("[train]\n").starts_with("scene.toml: scene: found contact.mode = \"table\" without"));
+  EXPECT_TRUE(message("[train]\n").starts_with("scene.toml: contact.mode: found \"table\" without"));
   EXPECT_TRUE(message(std::string(online) + "[track]\nkind = \"rigid\"\n[[bridge]]\n")
                   .starts_with("scene.toml:4: track.kind: found \"rigid\" and a [[bridge]]"));
 }
@@ -194,6 +194,9 @@ TEST_F(Scene, SupportsOfAnImportedStructure) {
   EXPECT_EQ(read[0].x, 32.0);
   EXPECT_EQ(read[0].holds, (std::vector<std::string>{"x", "y", "z"}));
   EXPECT_FALSE(read[1].x);
+  EXPECT_NE(message(scene + "[irregularity]\nspectrum = \"german-low\"\nshortest_wave = 50\nlongest_wave = 10\n")
+                .find("irregularity.longest_wave: found 10 m with irregularity.shortest_wave = 50 m"),
+            std::string::npos);
   EXPECT_EQ(read[1].holds, (std::vector<std::string>{"z"}));
   EXPECT_NE(message(scene + wave).find("under an imported structure without [[support]]"), std::string::npos);
   EXPECT_NE(

@@ -55,6 +55,10 @@ void print_text(const SceneParameters& scene, const ReductionError& e) {
                "deck acceleration", still_deck);
     fmt::print("  {:<28}{:>9.3g} % of the largest Q\n", "peaks", 100.0 * e.peak_force);
   }
+  if (const double left = scene.integration.tolerance; e.force_static < left) {
+    fmt::print("  {:<28} differ by less than Newton leaves of them (integration.tolerance, {:g} of the static load)\n",
+               "the forces", left);
+  }
   fmt::print("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
              e.reduced.active_dofs, step_ms(e.whole), e.whole.active_dofs);
 }
@@ -63,7 +67,11 @@ void print_text(const SceneParameters& scene, const ReductionError& e) {
 
 int print_reduction_error(const SceneParameters& scene, double seconds, bool json) {
   if (scene.reduction.kind == Reduction::none) {
-    throw input_error("--check-reduction", "a scene without structure.reduction", "one with a reduction to check");
+    throw input_error("--check-reduction", "a scene whose structure.reduction is \"none\"", "a reduction to check");
+  }
+  if (seconds < scene.integration.time_step) {
+    throw input_error("--check-reduction", fmt::format("{} s", seconds),
+                      fmt::format("at least a step, {} s", scene.integration.time_step));
   }
   const ReductionError e = check_reduction(scene, seconds);
   if (json) {

@@ -4,6 +4,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "json_object.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 #include "railtab/tables/input_error.hpp"
@@ -19,6 +20,12 @@ StructureSummary summary_of(const SceneParameters& scene, int modes) {
   }
   if (!scene.spans.empty()) return summarise(scene.spans, modes);
   throw input_error(scene.name, "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
+}
+
+std::vector<std::string> doubts(const SceneParameters& scene, const StructureSummary& s) {
+  const double length = s.high[0] - s.low[0];
+  if (scene.structure.files.nodes.empty() || !(length > 0.0)) return {};
+  return doubts_about(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
 }
 
 void print(const SceneParameters& scene, const StructureSummary& s) {
@@ -53,8 +60,16 @@ int structure_command(const Arguments& arguments) {
   if (!values) return 0;
   const int modes = values->contains("modes") ? (*values)["modes"].as<int>() : 10;
   if (modes < 0 || modes > 500) throw input_error("--modes", fmt::format("{}", modes), "0 to 500");
-  const SceneParameters scene = read_scene((*values)["scene"].as<std::string>());
-  const StructureSummary summary = summary_of(scene, modes);
+  const std::filesystem::path file = (*values)["scene"].as<std::string>();
+  const SceneParameters scene = read_scene(file);
+  const StructureSummary summary = [&] {
+    try {
+      return summary_of(scene, modes);
+    } catch (const InputError& wrong) {
+      throw with_scene_line(wrong, scene, file);
+    }
+  }();
+  for (const std::string& doubt : doubts(scene, summary)) fmt::print(stderr, "vsi structure: warning: {}\n", doubt);
   if (values->contains("json")) {
     print_json(scene, summary);
   } else {

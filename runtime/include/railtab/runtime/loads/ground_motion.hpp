@@ -35,6 +35,8 @@ class GroundMotion {
   /// Places that the motion is given at, two components each: anywhere else it is shares(x) of theirs. A wave has none.
   [[nodiscard]] std::vector<double> places() const;
   [[nodiscard]] Eigen::VectorXd shares(double x) const;
+  /// Largest accelerations of all records, y and z [m/s²].
+  [[nodiscard]] GroundVector peak() const noexcept;
   [[nodiscard]] bool uniform() const noexcept { return stations_.size() == 1 && slowness_ == 0.0; }
 
  private:

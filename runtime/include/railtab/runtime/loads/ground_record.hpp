@@ -32,6 +32,10 @@ class GroundRecord {
   [[nodiscard]] GroundState at(double time) const noexcept;
   /// Largest acceleration that was added against drift, per component; zero for displacements [m/s²].
   [[nodiscard]] const GroundVector& drift_correction() const noexcept { return drift_correction_; }
+  /// Largest acceleration per component, as it was given (before the correction) and as it acts [m/s²]. Of
+  /// displacements both are the spline's.
+  [[nodiscard]] const GroundVector& given_peak() const noexcept { return given_peak_; }
+  [[nodiscard]] GroundVector peak() const noexcept;
   [[nodiscard]] double begin() const noexcept { return time_.front(); }
   [[nodiscard]] double end() const noexcept { return time_.back(); }
   /// Move the record in time [s] and scale it.
@@ -44,7 +48,7 @@ class GroundRecord {
 
   std::vector<double> time_;
   std::vector<GroundVector> acceleration_, velocity_, displacement_;  // at the points
-  GroundVector drift_correction_ = GroundVector::Zero();
+  GroundVector drift_correction_ = GroundVector::Zero(), given_peak_ = GroundVector::Zero();
 };
 
 /// Read a ground record: first column t[s], then y and z, one of them or both, as accelerations in [m/s2] or [g] or as

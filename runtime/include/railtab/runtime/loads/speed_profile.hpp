@@ -14,6 +14,8 @@ class SpeedProfile {
   /// @throws InputError naming the point
   SpeedProfile(std::vector<double> time, std::vector<double> speed);
 
+  [[nodiscard]] double begin() const noexcept { return time_.front(); }  ///< first and last point [s]
+  [[nodiscard]] double end() const noexcept { return time_.back(); }
   [[nodiscard]] double speed(double time) const noexcept;         ///< V [m/s]
   [[nodiscard]] double acceleration(double time) const noexcept;  ///< dV/dt, at a jump that after it [m/s²]
   [[nodiscard]] double distance(double time) const noexcept;      ///< run since t = 0, negative before [m]

@@ -75,9 +75,10 @@ struct LoadParameters {
   std::string body = "car-body";  ///< name of a body of the vehicle
   int coach = 0;                  ///< counted from the front; 0: every one
   std::filesystem::path file;     ///< load history; empty: `load`
-  std::array<double, 6> load{};   ///< Fx, Fy, Fz [N], Mx, My, Mz [N m]
-  double start = 0.0;             ///< added to the file's times or positions [s] or [m]; of the gust [s]
-  double gust_duration = 0.0;     ///< of a one-minus-cosine gust [s]; 0: the load is constant
+  /// Fx, Fy, Fz [N], Mx, My, Mz [N m]; those that are not named are zero.
+  std::array<std::optional<double>, 6> load{};
+  double start = 0.0;          ///< added to the file's times or positions [s] or [m]; of the gust [s]
+  double gust_duration = 0.0;  ///< of a one-minus-cosine gust [s]; 0: the load is constant
 };
 
 /// Ground motion by one record; several are stations along the track.

@@ -13,6 +13,7 @@ namespace railtab {
 struct FeRow {
   int node = 0;
   int motion = 0;
+  long line = 0;  ///< of the file it was read from
 };
 
 /// Nodes of a mesh in the model's unit of length and axes, and named sets of them (names in capitals).

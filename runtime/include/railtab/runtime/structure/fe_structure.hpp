@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/structure/fe_files.hpp"
@@ -85,6 +86,12 @@ struct FeStructure {
 /// Numbers of the selected nodes, ascending. @throws InputError naming `key` where there is no such set or no node
 [[nodiscard]] std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection,
                                               const std::string& key);
+
+/// One file named for two matrices, or copied over another. @throws InputError naming `key` where the numbers are the
+/// stiffness's
+void require_other_numbers(std::string_view key, const std::filesystem::path& file,
+                           const Eigen::SparseMatrix<double>& matrix, const std::filesystem::path& stiffness_file,
+                           const Eigen::SparseMatrix<double>& stiffness);
 
 /// (A + Aᵀ)/2. @throws InputError with file, row and column where the two differ by more than 1e-9 of the largest
 /// diagonal entry, or with the size where the matrix is not rows × rows (rows = 0: any square).

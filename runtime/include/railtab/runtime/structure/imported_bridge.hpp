@@ -53,8 +53,16 @@ struct ImportParameters {
 struct FeDampingMatrix {
   Eigen::SparseMatrix<double> of_unknowns;
   StructureSupports::Columns of_supports;
+  double first_frequency = 0.0;  ///< of the structure [Hz], where the damping needed it, else 0
 };
 /// @throws InputError, ComputationError
 [[nodiscard]] FeDampingMatrix damping_matrix(const FeStructure& structure, const FeDamping& damping);
+
+/// Mass that moves along z over the length of the mesh [kg/m].
+[[nodiscard]] double mass_per_length(const FeStructure& structure);
+
+/// Sentences on a mass per length [kg/m] and a first frequency [Hz] (0: not known) that no railway bridge has: units,
+/// densities or supports may be wrong.
+[[nodiscard]] std::vector<std::string> doubts_about(double mass_per_length, double first_frequency);
 
 }  // namespace railtab

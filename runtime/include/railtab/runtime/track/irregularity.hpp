@@ -31,6 +31,8 @@ class Irregularity {
   /// First and last measured position [m]. @pre not empty
   [[nodiscard]] double begin() const noexcept { return x_.front(); }
   [[nodiscard]] double end() const noexcept { return x_.back(); }
+  /// Largest deviation at the measured positions [m]; 0 without any.
+  [[nodiscard]] double largest() const noexcept;
 
  private:
   /// Values and second derivatives of y_left, z_left, y_right, z_right at one point.
