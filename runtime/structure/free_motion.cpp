@@ -198,15 +198,18 @@ std::optional<Eigen::VectorXd> motion_without_stiffness(const Sparse& stiffness)
     if (factor.info() == Eigen::Success && (factor.vectorD().array() > rounding * permuted.array()).all()) return {};
   }
   constexpr double shift = 1e-9;  // makes it definite, and leaves the free motions the softest by far
-  Sparse shifted = stiffness;
-  shifted.diagonal() += shift * diagonal.cwiseAbs();
+  const double largest = std::max(1.0, diagonal.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd weight = (diagonal.array() != 0.0).select(diagonal.cwiseAbs(), largest);
+  Sparse shifted(stiffness.rows(), stiffness.cols());
+  shifted.setIdentity();
+  shifted = stiffness + Sparse(shift * weight.asDiagonal() * shifted);
   const Eigen::SimplicialLDLT<Sparse> factor(shifted);
   std::mt19937_64 generator(1);
   Eigen::VectorXd v(diagonal.size());
   for (double& value : v) value = std::uniform_real_distribution<double>(-1.0, 1.0)(generator);
   constexpr int iterations = 4;
   for (int i = 0; i < iterations; ++i) {
-    v = factor.solve(diagonal.cwiseProduct(v));
+    v = factor.solve(weight.cwiseProduct(v));
     v /= v.cwiseAbs().maxCoeff();
   }
   return v;

@@ -135,7 +135,7 @@ TEST_F(FeFilesTest, AnsysRowsComeInTheOrderOfTheEquations) {
   EXPECT_EQ(rows[2].node, 11);
   EXPECT_TRUE(message(read_ansys_rows, "head\n1 5 UX\n2 5 TEMP\n").starts_with("f:3: found 'TEMP'"));
   EXPECT_TRUE(message(read_ansys_rows, "1 5 UX\n3 5 UY\n").starts_with("f: found row 2 missing"));
-  EXPECT_TRUE(message(read_ansys_rows, "1 5 UX\n1 5 UY\n").starts_with("f: found row 1 twice"));
+  EXPECT_TRUE(message(read_ansys_rows, "1 5 UX\n1 5 UY\n").starts_with("f:2: found row 1 again"));
   EXPECT_TRUE(message(read_ansys_rows, "1 5\n").starts_with("f:1: found '1 5'"));
   EXPECT_TRUE(message(read_row_table, "row,node\n").starts_with("f:1: found 'row,node'"));
   EXPECT_TRUE(message(read_row_table, "row,node,motion\n1,2,up\n").starts_with("f:2: found 'up'"));
