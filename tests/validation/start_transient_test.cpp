@@ -72,6 +72,28 @@ double static_load(const std::vector<StepRecord>& steps) {
   return sum / static_cast<double>(steps.front().wheels.size());
 }
 
+// Creep forces of a slow train are stiff in its velocities: what Newton leaves of them would fade in tenths of a
+// second.
+TEST(StartTransient, FirstForcesOfASlowTrainDoNotDependOnTheTolerance) {
+  SceneParameters scene = coach_on(TrackKind::flexible);
+  scene.train.speed = 40.0 / 3.6;
+  scene.track.length_before = 90.0;
+  scene.track.length_after = 6.0;
+  scene.integration.time_step = 1e-3;
+  scene.integration.duration = 1e-3;
+  scene.integration.tolerance = 1e-9;
+  const StepRecord exact = run(scene).front();
+  scene.integration.tolerance = IntegrationParameters{}.tolerance;
+  const StepRecord first = run(scene).front();
+  double largest = 0.0;
+  for (std::size_t w = 0; w < first.wheels.size(); ++w) {
+    largest = std::max(
+        {largest, std::abs(first.wheels[w].Y - exact.wheels[w].Y), std::abs(first.wheels[w].Q - exact.wheels[w].Q)});
+  }
+  std::printf("first forces at 40 km/h, tolerance %g against 1e-9: %.2g N\n", scene.integration.tolerance, largest);
+  EXPECT_LT(largest, 1.0);  // N; 100 N where the run-in has the scene's tolerance
+}
+
 TEST(StartTransient, RigidTrack) {
   SceneParameters scene = coach_on(TrackKind::rigid);
   const std::vector<StepRecord> steps = run(scene);
