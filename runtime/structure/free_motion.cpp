@@ -97,7 +97,7 @@ RigidPart rigid_part(const FeStructure& structure, const std::vector<int>& parts
 /// Nothing resists a motion whose energy is rounding of what its parts have: vᵀKv against |v|ᵀ|K||v|. One held motion
 /// of one node in a mesh of a million leaves more than that.
 bool is_free(const Sparse& stiffness, const Eigen::VectorXd& v) {
-  constexpr double rounding = 1e-11;
+  constexpr double rounding = 1e-12;
   const double energy = v.dot(stiffness * v);
   const double parts = v.cwiseAbs().dot(stiffness.cwiseAbs() * v.cwiseAbs());
   return energy < rounding * parts;
@@ -186,20 +186,22 @@ std::vector<FreeMotion> free_motions(const FeStructure& structure) {
     const Matrix free = free_combinations(structure.stiffness, rigid.motions);
     for (FreeMotion& motion : in_words(free, rigid, of_part)) found.push_back(std::move(motion));
   }
+  if (!found.empty() || !expanded) return found;
+  if (const auto v = motion_without_stiffness(structure.stiffness)) {
+    Eigen::Index row = 0;
+    v->cwiseAbs().maxCoeff(&row);
+    const auto r = static_cast<std::size_t>(row);
+    const char* const name = names[static_cast<std::size_t>(structure.motion[r])];
+    found.push_back({fmt::format("moves or turns (most at node {} along {})", structure.node_of_row[r], name),
+                     fmt::format("a constraint of {} there, or of a rotation", name)});
+  }
   return found;
 }
 
 std::optional<Eigen::VectorXd> motion_without_stiffness(const Sparse& stiffness) {
-  constexpr double rounding = 1e-13;
-  const Eigen::VectorXd diagonal = stiffness.diagonal();
-  {
-    const Eigen::SimplicialLDLT<Sparse> factor(stiffness);
-    const Eigen::VectorXd permuted = factor.permutationP() * diagonal;
-    if (factor.info() == Eigen::Success && (factor.vectorD().array() > rounding * permuted.array()).all()) return {};
-  }
-  constexpr double shift = 1e-9;  // makes it definite, and leaves the free motions the softest by far
-  const double largest = std::max(1.0, diagonal.cwiseAbs().maxCoeff());
-  const Eigen::VectorXd weight = (diagonal.array() != 0.0).select(diagonal.cwiseAbs(), largest);
+  constexpr double shift = 1e-13;  // beside rounding, and far below the softest deformation
+  const Eigen::VectorXd diagonal = stiffness.diagonal().cwiseAbs();
+  const Eigen::VectorXd weight = (diagonal.array() > 0.0).select(diagonal, std::max(1.0, diagonal.maxCoeff()));
   Sparse shifted(stiffness.rows(), stiffness.cols());
   shifted.setIdentity();
   shifted = stiffness + Sparse(shift * weight.asDiagonal() * shifted);
@@ -209,9 +211,12 @@ std::optional<Eigen::VectorXd> motion_without_stiffness(const Sparse& stiffness)
   for (double& value : v) value = std::uniform_real_distribution<double>(-1.0, 1.0)(generator);
   constexpr int iterations = 4;
   for (int i = 0; i < iterations; ++i) {
-    v = factor.solve(weight.cwiseProduct(v));
+    const Eigen::VectorXd load = weight.cwiseProduct(v);
+    v = factor.solve(load);
     v /= v.cwiseAbs().maxCoeff();
   }
+  constexpr double rounding = 1e-12;
+  if (v.dot(stiffness * v) > rounding * v.dot(weight.cwiseProduct(v))) return std::nullopt;
   return v;
 }
 
@@ -221,18 +226,6 @@ void require_held(const FeStructure& structure) {
   for (const FreeMotion& motion : free_motions(structure)) {
     motions.push_back(motion.text);
     holds.insert(motion.held_by);
-  }
-  const bool expanded = std::any_of(structure.nodes.begin(), structure.nodes.end(),
-                                    [](const auto& node) { return node.second.expanded(); });
-  if (motions.empty() && expanded) {
-    if (const auto v = motion_without_stiffness(structure.stiffness)) {
-      Eigen::Index row = 0;
-      v->cwiseAbs().maxCoeff(&row);
-      const auto r = static_cast<std::size_t>(row);
-      motions.push_back(fmt::format("moves most at node {} along {}", structure.node_of_row[r],
-                                    names[static_cast<std::size_t>(structure.motion[r])]));
-      holds.insert("supports against that motion");
-    }
   }
   if (motions.empty()) return;
   throw input_error(structure.source, fmt::format("a structure that {} without resistance", fmt::join(motions, "; ")),

@@ -15,12 +15,12 @@ struct FreeMotion {
   std::string held_by;  ///< what would hold it: "x of a support"
 };
 
-/// All that are left. Rotations are looked at where no node is expanded: the rows of such a node stand around it, it is
-/// not known where.
+/// All that are left. Where nodes are expanded, whose rows stand around them, it is not known where, rotations have no
+/// name: the node that moves most.
 [[nodiscard]] std::vector<FreeMotion> free_motions(const FeStructure& structure);
 
-/// Where K is singular or indefinite but for rounding, the motion that strains least [largest 1]. Rigid or not, known
-/// positions or not, at the price of a factorisation.
+/// The motion that strains least [largest 1], where that is none but for rounding. Rigid or not, known positions or
+/// not, at the price of a factorisation.
 [[nodiscard]] std::optional<Eigen::VectorXd> motion_without_stiffness(const Eigen::SparseMatrix<double>& stiffness);
 
 /// @throws InputError naming the motions that nothing holds and what would hold them

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "json_object.hpp"
@@ -28,10 +30,13 @@ std::vector<std::string> doubts(const SceneParameters& scene, const StructureSum
   return doubts_about(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
 }
 
+/// No "-0.000" for what turning axes leaves of zero [m].
+double shown(double x) { return std::abs(x) < 5e-4 ? 0.0 : x; }
+
 void print(const SceneParameters& scene, const StructureSummary& s) {
   fmt::print("{}: {} unknowns, {} nodes\n", scene.name, s.dofs, s.nodes);
   fmt::print("  from x = {:.3f}, y = {:.3f}, z = {:.3f} m to {:.3f}, {:.3f}, {:.3f} m below the rail-head tops\n",
-             s.low[0], s.low[1], s.low[2], s.high[0], s.high[1], s.high[2]);
+             shown(s.low[0]), shown(s.low[1]), shown(s.low[2]), shown(s.high[0]), shown(s.high[1]), shown(s.high[2]));
   fmt::print("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
              1e-3 * s.mass[2]);
   if (!s.free.empty()) {

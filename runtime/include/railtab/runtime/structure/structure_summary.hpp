@@ -18,8 +18,8 @@ struct StructureSummary {
   std::vector<double> damping_ratios;  ///< at each of them, φᵀCφ/(2ω)
 };
 
-/// An imported structure without railtab's track. Rotations are looked at where no node is expanded: the rows of such
-/// a node stand around it, it is not known where. @pre modes >= 0
+/// An imported structure without railtab's track. Where a node is expanded, whose rows stand around it, it is not known
+/// where, a free rotation has no name but the node that moves most. @pre modes >= 0
 [[nodiscard]] StructureSummary summarise(const FeStructure& structure, const FeDamping& damping, int modes);
 
 /// Built-in spans without their track; the mass is that of their whole length. @pre modes >= 0
