@@ -8,8 +8,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "railtab/tables/input_error.hpp"
 #include "../text/text_lines.hpp"
+#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

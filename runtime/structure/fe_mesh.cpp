@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "railtab/runtime/structure/fe_files.hpp"
 #include "../text/text_lines.hpp"
+#include "railtab/runtime/structure/fe_files.hpp"
 
 namespace railtab {
 

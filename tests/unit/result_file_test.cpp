@@ -123,9 +123,10 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   summary.complete = true;
   summary.message = "none";
   long count = 0;
-  for (long* value : {&summary.steps, &summary.newton_iterations, &summary.halved_steps, &summary.impact_steps, &summary.back_substitutions,
-                      &summary.contact_queries, &summary.table_queries, &summary.outside_creep_table,
-                      &summary.structure_dofs, &summary.vehicle_dofs, &summary.counted_from}) {
+  for (long* value :
+       {&summary.steps, &summary.newton_iterations, &summary.halved_steps, &summary.impact_steps,
+        &summary.back_substitutions, &summary.contact_queries, &summary.table_queries, &summary.outside_creep_table,
+        &summary.structure_dofs, &summary.vehicle_dofs, &summary.counted_from}) {
     *value = ++count;
   }
   for (double* value :

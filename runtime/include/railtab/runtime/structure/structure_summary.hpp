@@ -11,10 +11,10 @@ namespace railtab {
 /// What to compare with the program that a structure comes from, or with a drawing.
 struct StructureSummary {
   long dofs = 0, nodes = 0;
-  Eigen::Vector3d low, high;           ///< corners around all nodes, railtab's axes [m]
-  Eigen::Vector3d mass;                ///< that moves with x, y, z alike: without what is held [kg]
-  std::vector<std::string> free;       ///< rigid motions that nothing resists: "moves along x", "turns about x (roll) …"
-  std::vector<double> frequencies;     ///< lowest natural frequencies [Hz]; none where a rigid motion is free
+  Eigen::Vector3d low, high;        ///< corners around all nodes, railtab's axes [m]
+  Eigen::Vector3d mass;             ///< that moves with x, y, z alike: without what is held [kg]
+  std::vector<std::string> free;    ///< rigid motions that nothing resists: "moves along x", "turns about x (roll) …"
+  std::vector<double> frequencies;  ///< lowest natural frequencies [Hz]; none where a rigid motion is free
   std::vector<double> damping_ratios;  ///< at each of them, φᵀCφ/(2ω)
 };
 
