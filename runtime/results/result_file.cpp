@@ -53,22 +53,24 @@ ResultHeader read_header(const ArrayFileReader& in) {
   return header;
 }
 
+constexpr std::int64_t most_count = 1'000'000'000'000'000;  // of anything in a run
+
 RunSummary read_summary(const ArrayFileReader& in) {
   RunSummary summary;
   summary.message = in.text(columns::summary_group, "message");
   summary.contact_mode = in.text(columns::summary_group, "contact_mode");
   summary.complete = in.number(columns::summary_group, "complete") != 0.0;
   for (const auto& entry : columns::summary_counts) {
-    summary.*entry.value = static_cast<long>(in.number(columns::summary_group, entry.name));
+    summary.*entry.value = in.whole_number(columns::summary_group, entry.name, 0, most_count);
   }
   for (const auto& entry : columns::summary_seconds) {
     summary.*entry.value = in.number(columns::summary_group, entry.name);
   }
   const std::vector<std::string> names = in.attribute_names(columns::summary_group);
   if (std::find(names.begin(), names.end(), columns::counted_from) != names.end()) {  // else counted from the first
-    summary.counted_from = static_cast<long>(in.number(columns::summary_group, columns::counted_from));
+    summary.counted_from = in.whole_number(columns::summary_group, columns::counted_from, 0, most_count);
   }
-  const auto impacts = static_cast<long>(in.number(columns::summary_group, columns::contact_energy_impacts));
+  const long impacts = in.whole_number(columns::summary_group, columns::contact_energy_impacts, -1, most_count);
   if (impacts >= 0) {
     ContactEnergy& energy = summary.contact_energy.emplace();
     energy.impacts = impacts;
@@ -283,6 +285,13 @@ void ResultWriter::finish(const RunSummary& summary) {
 
 namespace {
 
+/// Counts are stored as numbers like all others.
+int small_count(double value, std::string_view path) {
+  constexpr double most = 1e9;
+  if (!(value >= 0.0 && value <= most)) throw input_error(path, fmt::format("{}", value), "a count");
+  return static_cast<int>(value);
+}
+
 void read_wheels(const ArrayFileReader& in, long wheels, std::vector<StepRecord>& steps) {
   const std::vector<long> shape{static_cast<long>(steps.size()), wheels};
   const std::size_t count = static_cast<std::size_t>(wheels);
@@ -293,7 +302,7 @@ void read_wheels(const ArrayFileReader& in, long wheels, std::vector<StepRecord>
   }
   const std::vector<double> patches = in.read(columns::patches.path, shape);
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    steps[i / count].wheels[i % count].patches = static_cast<int>(patches[i]);
+    steps[i / count].wheels[i % count].patches = small_count(patches[i], columns::patches.path);
   }
 }
 
@@ -327,7 +336,9 @@ RunResults read_results(const std::filesystem::path& file) {
     for (std::size_t i = 0; i < values.size(); ++i) steps[i].*column.value = values[i];
   }
   const std::vector<double> iterations = in.read(columns::newton_iterations.path, scalar_shape);
-  for (std::size_t i = 0; i < iterations.size(); ++i) steps[i].newton_iterations = static_cast<int>(iterations[i]);
+  for (std::size_t i = 0; i < iterations.size(); ++i) {
+    steps[i].newton_iterations = small_count(iterations[i], columns::newton_iterations.path);
+  }
   if (!results.header.wheel_x.empty()) read_wheels(in, static_cast<long>(results.header.wheel_x.size()), steps);
   for (const columns::MotionGroup& group : columns::motion_groups) {
     const std::vector<std::string>& names = results.header.*group.names;

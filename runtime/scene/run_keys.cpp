@@ -88,7 +88,7 @@ std::vector<KeyBinding> integration_keys() {
       {"irregularity.longest_wave", "m", "longest wavelength of the random track",
        NumberKey{[](SceneDraft& d) -> double& { return d.spectrum.longest; }, {0.1, 500.0}}},
       {"integration.time_step", "s", "time step",
-       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.time_step; }, {0.0, 0.1, true}}},
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.time_step; }, {1e-9, 0.1}}},
       {"integration.duration", "s", "simulated time; 0: until the last wheelset has left the last span",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.duration; }, {0.0, 1e5}}},
       {"integration.alpha", "1", "HHT α; 0 is Newmark's trapezoidal rule",

@@ -56,7 +56,7 @@ std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
 }
 
 void IntegrationParameters::validate() const {
-  require(time_step > 0.0 && time_step <= 0.1, "integration.time_step", time_step, "> 0, <= 0.1 s");
+  require(time_step >= 1e-9 && time_step <= 0.1, "integration.time_step", time_step, "1e-9 to 0.1 s");
   require(duration >= 0.0, "integration.duration", duration, ">= 0 s");
   require(alpha >= -1.0 / 3.0 && alpha <= 0.0, "integration.alpha", alpha, "-1/3 to 0");
   require(impact_step > 0.0 && impact_step <= 0.1, "integration.impact_step", impact_step, "> 0, <= 0.1 s");

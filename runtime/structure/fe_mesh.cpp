@@ -106,26 +106,38 @@ class DeckReader {
       const int first = reader.number<int>(words[0], "the first node");
       const int last = count > 1 ? reader.number<int>(words[1], "the last node") : first;
       const int step = count > 2 ? reader.number<int>(words[2], "a step") : 1;
-      constexpr int most = 10'000'000;
-      if (step < 1 || last < first || (last - first) / step >= most)
+      if (first < 1 || step < 1 || last < first) {
         throw reader.error(fmt::format("'{}'", line.substr(0, 80)), "first, last, step");
-      for (int n = first; n <= last; n += step) set_->push_back(n);
+      }
+      const int members = (last - first) / step + 1;
+      require_room(reader, static_cast<std::size_t>(members));
+      for (int n = 0; n < members; ++n) set_->push_back(first + n * step);
       return;
     }
     for (std::size_t k = 0; k < count; ++k) {
       int number = 0;
       if (parse(words[k], number)) {
+        require_room(reader, 1);
         set_->push_back(number);
         continue;
       }
       const auto other = mesh_.sets.find(upper_case(words[k]));
       if (other == mesh_.sets.end()) throw reader.error(fmt::format("'{}'", words[k]), "a node, or a set known by now");
       const std::vector<int> copy = other->second;
+      require_room(reader, copy.size());
       set_->insert(set_->end(), copy.begin(), copy.end());
     }
   }
 
+  /// Sets may name each other, and so grow from line to line without an end.
+  void require_room(const LineReader& reader, std::size_t more) {
+    constexpr std::size_t most = 50'000'000;
+    members_ += more;
+    if (members_ > most) throw reader.error("sets of more nodes", fmt::format("at most {} in all", most));
+  }
+
   FeMesh& mesh_;
+  std::size_t members_ = 0;  // of all sets
   Block block_ = Block::other;
   std::vector<int>* set_ = nullptr;
   bool generate_ = false;

@@ -154,9 +154,11 @@ Eigen::SparseMatrix<double> read_harwell_boeing(const std::filesystem::path& fil
   bool above = false, below = false;
   for (int j = 0; j < header.rows; ++j) {
     for (long p = begin[static_cast<std::size_t>(j)]; p < begin[static_cast<std::size_t>(j) + 1]; ++p) {
-      const long i = indices.integer() - 1;
-      if (i < 0 || i >= header.rows)
-        throw reader.error(fmt::format("row {}", i + 1), fmt::format("1 to {}", header.rows));
+      const long row = indices.integer();
+      if (row < 1 || row > header.rows) {
+        throw reader.error(fmt::format("row {}", row), fmt::format("1 to {}", header.rows));
+      }
+      const long i = row - 1;
       above = above || i < j;
       below = below || i > j;
       if (header.symmetric && above && below) {

@@ -100,6 +100,13 @@ Irregularity random_irregularity(const SpectrumParameters& parameters, double fr
   const int bands = std::max(1, static_cast<int>(std::ceil((high - low) / band)));
   const double width = (high - low) / bands;
   const double spacing = parameters.shortest / points_per_wave;
+  constexpr double most = 5e7;  // points: 13 GB while they are made
+  if (!(std::abs(to - from) / spacing <= most)) {
+    throw input_error(
+        "scene: irregularity.spectrum",
+        fmt::format("{:.3g} m of track with waves from {} m", to - from, parameters.shortest),
+        fmt::format("at most {:.3g} m of it (a shorter run, or a longer irregularity.shortest_wave)", most * spacing));
+  }
   // Points at whole multiples of the spacing: what stands between them does not depend on the ends either.
   const auto first = static_cast<long>(std::floor(from / spacing)) - 2,
              last = static_cast<long>(std::ceil(to / spacing)) + 2;

@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "geometry_request.hpp"
+#include "geometry_options.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "command_line.hpp"
+#include "geometry_options.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 
@@ -15,9 +16,6 @@ struct GeometryRequest {
   GeometrySweepOptions options;
   ContactSearch search;
 };
-
-/// The options of `tablegen geometry`, all taking a text; "wheel", "rail" and "output" have no default.
-[[nodiscard]] boost::program_options::options_description geometry_options();
 
 /// @throws InputError
 [[nodiscard]] GeometryRequest geometry_request(const CommandLine& line);

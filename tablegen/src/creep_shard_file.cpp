@@ -70,7 +70,10 @@ void write_header(ArrayFileWriter& file, const CreepShardHeader& header, std::st
 CreepShardHeader read_header(const ArrayFileReader& file, const std::filesystem::path& name) {
   CreepShardHeader header;
   CreepJob& job = header.job;
-  const auto whole = [&](const std::string& key) { return static_cast<int>(file.number("options", key)); };
+  constexpr int most = 1'000'000;
+  const auto whole = [&](const std::string& key) {
+    return static_cast<int>(file.whole_number("options", key, 0, most));
+  };
   job.layout.layout = creep_table_layout(file.text("options", "layout"));
   for (std::size_t i = 0; i < job.layout.nodes.size(); ++i) job.layout.nodes[i] = whole(fmt::format("nodes_{}", i + 1));
   job.layout.poisson = file.number("options", "poisson");
@@ -81,7 +84,8 @@ CreepShardHeader read_header(const ArrayFileReader& file, const std::filesystem:
     throw input_error(name.string() + ": options", fmt::format("shard {}/{}", job.shard->index, job.shard->count),
                       "shard I/N with 1 <= I <= N <= 100000");
   }
-  header.cases = static_cast<std::int64_t>(file.number("options", "cases"));
+  constexpr std::int64_t most_cases = 1'000'000'000'000;
+  header.cases = file.whole_number("options", "cases", 0, most_cases);
   header.case_list = file.text("options", "case_list");
   header.program_version = file.text("provenance", "program_version");
   return header;
@@ -161,9 +165,9 @@ CreepShard read_creep_shard(const std::filesystem::path& file, std::string_view 
   if (rows > shard.header.cases) {
     throw input_error(file.string(), fmt::format("{} cases", rows), fmt::format("at most {}", shard.header.cases));
   }
-  shard.solved.resize(static_cast<std::size_t>(rows));
   for (const Column& column : columns()) {
     const std::vector<double> values = in.read(column.path, {rows});
+    shard.solved.resize(values.size());  // only now is it sure that the file has so many
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i])) {
         throw input_error(fmt::format("{}: {}[{}]", file.string(), column.path, i), fmt::format("{}", values[i]),

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <system_error>
@@ -185,6 +186,10 @@ void ArrayFileReader::Impl::read_records() {
   if (found.size() != 2 || found[0] < 0 || found[1] != -1 - found[0]) {
     throw input_error(at, fmt::format("{}", fmt::join(found, ", ")), "a number N, not negative, and -1 - N");
   }
+  if (static_cast<std::uint64_t>(found[0]) > bytes() / sizeof(double)) {  // of one growing dataset at least
+    throw input_error(at, fmt::format("{} records", found[0]),
+                      fmt::format("what a file of {} bytes can hold", bytes()));
+  }
   records = static_cast<std::size_t>(found[0]);
   if (records > 0) read_blocks();
 }
@@ -317,6 +322,16 @@ double ArrayFileReader::number(std::string_view path, std::string_view name) con
   const Section section;
   const hdf5::Object object = hdf5::open_object(impl_->handle.get(), impl_->file, path);
   return hdf5::number_attribute(object.get(), place(impl_->file, path, name), name);
+}
+
+std::int64_t ArrayFileReader::whole_number(std::string_view path, std::string_view name, std::int64_t low,
+                                           std::int64_t high) const {
+  const double value = number(path, name);
+  if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high) && value == std::floor(value))) {
+    throw input_error(place(impl_->file, path, name), fmt::format("{}", value),
+                      fmt::format("a whole number, {} to {}", low, high));
+  }
+  return static_cast<std::int64_t>(value);
 }
 
 std::string ArrayFileReader::text(std::string_view path, std::string_view name) const {

@@ -119,7 +119,13 @@ CreepTable::CreepTable(CreepTableData data) : data_(std::move(data)) {
   if (!std::all_of(data_.values.begin(), data_.values.end(), [](double v) { return std::isfinite(v); })) {
     throw input_error("creep table: values", "one that is not finite", "finite numbers");
   }
-  if (!smooth) return;
+  if (!smooth) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (data_.nodes[i].size() >= 2) continue;
+      throw input_error(fmt::format("creep table: axis {}", paper_axes[i]), "a single node", "at least 2");
+    }
+    return;
+  }
   require_smooth_layout(data_);
   spline_ = std::make_unique<const CreepSpline>(data_);
   axes_.clear();

@@ -29,7 +29,7 @@ namespace {
 
 void check_axis(const TableAxis& axis, std::string_view name) {
   if (!(std::isfinite(axis.low) && std::isfinite(axis.high) && axis.low <= axis.high && axis.cells >= 1 &&
-        (!axis.fixed() || axis.cells == 1))) {
+        axis.cells <= most_axis_cells && (!axis.fixed() || axis.cells == 1))) {
     throw input_error(fmt::format("axis {}", name), fmt::format("{}..{} in {} cells", axis.low, axis.high, axis.cells),
                       "low..high in cells");
   }

@@ -136,7 +136,8 @@ class Reading {
     for (const DimensionColumn& column : dimension_columns) {
       table.*column.value = numbers(fmt::format("dimensions/{}", column.name), {}).front();
     }
-    table.shard = {count_of("cells", "shard_index"), count_of("cells", "shard_count")};
+    table.shard = {count_of("cells", "shard_index", TableShard::most),
+                   count_of("cells", "shard_count", TableShard::most)};
     table.node = counts("cells/node");
     table.leaf_branch = counts("cells/leaf_branches");
     table.trusted_lowering = floats("cells/trusted_lowering", {static_cast<long>(table.leaf_branch.size())});
@@ -183,17 +184,13 @@ class Reading {
     return result;
   }
 
-  [[nodiscard]] int count_of(const std::string& path, const std::string& attribute) const {
-    const double value = file_.number(path, attribute);
-    if (!(value >= 1 && value <= 1e9 && value == std::floor(value))) {
-      throw input_error(place(path + "." + attribute), fmt::format("{}", value), "a whole number, at least 1");
-    }
-    return static_cast<int>(value);
+  [[nodiscard]] int count_of(const std::string& path, const std::string& attribute, int most) const {
+    return static_cast<int>(file_.whole_number(path, attribute, 1, most));
   }
 
   [[nodiscard]] TableAxis axis(const std::string& path) const {
     const std::vector<double> ends = numbers(path, {2});
-    return {ends[0], ends[1], count_of(path, "cells")};
+    return {ends[0], ends[1], count_of(path, "cells", most_axis_cells)};
   }
 
   [[nodiscard]] ProfileKnots profile(const std::string& group, ProfileKind kind) const {

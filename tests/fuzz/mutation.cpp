@@ -45,7 +45,19 @@ void replace_number(std::string& bytes, Random& random) {
 }
 
 void change(std::string& bytes, const std::string& other, Random& random) {
-  enum Kind : std::size_t { flip, cut, repeat, splice, drop_line, repeat_line, swap_lines, number, end_here, kinds };
+  enum Kind : std::size_t {
+    flip,
+    cut,
+    repeat,
+    splice,
+    drop_line,
+    repeat_line,
+    other_line,
+    swap_lines,
+    number,
+    end_here,
+    kinds
+  };
   if (bytes.empty()) {
     bytes = other;
     return;
@@ -78,6 +90,12 @@ void change(std::string& bytes, const std::string& other, Random& random) {
     case repeat_line: {
       const Piece line = any_line(bytes, random);
       bytes.insert(line.begin, bytes.substr(line.begin, line.length));
+      return;
+    }
+    case other_line: {
+      if (other.empty()) return;
+      const Piece line = any_line(other, random);
+      bytes.insert(any_line(bytes, random).begin, other, line.begin, line.length);
       return;
     }
     case swap_lines: {

@@ -57,7 +57,8 @@ TEST_P(FuzzedReader, AcceptsOrRefuses) {
   int refused = 0;
   for (int i = 0; i < runs(); ++i) {
     const auto any = [&] { return seeds[std::uniform_int_distribution<std::size_t>(0, seeds.size() - 1)(random)]; };
-    const std::string bytes = mutated(any(), any(), random);
+    const std::string other = reader.vocabulary && i % 2 == 0 ? reader.vocabulary() : any();
+    const std::string bytes = mutated(any(), other, random);
     try {
       refused += accepts(reader, bytes) ? 0 : 1;
     } catch (const std::exception& error) {

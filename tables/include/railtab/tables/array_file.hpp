@@ -111,6 +111,9 @@ class ArrayFileReader {
   [[nodiscard]] std::vector<std::int64_t> read_integers(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> read_strings(std::string_view path) const;
   [[nodiscard]] double number(std::string_view path, std::string_view name) const;
+  /// An attribute that is a whole number, low to high.
+  [[nodiscard]] std::int64_t whole_number(std::string_view path, std::string_view name, std::int64_t low,
+                                          std::int64_t high) const;
   [[nodiscard]] std::string text(std::string_view path, std::string_view name) const;
   /// In the order of their creation.
   [[nodiscard]] std::vector<std::string> attribute_names(std::string_view path) const;

@@ -15,6 +15,8 @@
 
 namespace railtab {
 
+inline constexpr int most_axis_cells = 1'000'000;  ///< of one axis: the cells of three can be counted
+
 /// An axis of a table's root grid: `cells` of equal width between low and high; one cell and low = high where the
 /// quantity is held fixed.
 struct TableAxis {

@@ -1,0 +1,84 @@
+#include "railtab/runtime/structure/fe_files.hpp"
+#include "railtab/runtime/structure/fe_structure.hpp"
+#include "railtab/runtime/structure/imported_bridge.hpp"
+#include "railtab/runtime/structure/structure_import.hpp"
+#include "railtab/runtime/structure/structure_summary.hpp"
+#include "railtab/runtime/vehicle/vehicle_import.hpp"
+#include "railtab/runtime/vehicle/vehicle_summary.hpp"
+#include "railtab/tables/input_error.hpp"
+#include "reading.hpp"
+
+namespace railtab::fuzz {
+
+namespace {
+
+void take_symmetric(const Path& file, const Eigen::SparseMatrix<double>& matrix) {
+  constexpr Eigen::Index large = 10000;  // a line is enough to ask for a matrix of many rows without entries
+  if (matrix.rows() <= large) static_cast<void>(symmetric_mean(file, matrix, 0));
+}
+
+Path beside(const Path& file, const char* name) { return file.parent_path() / name; }
+
+/// Of a bridge of which one file is `file`.
+ImportParameters bridge_files(const Path& file) {
+  ImportParameters p;
+  p.files = {FeFormat::matrix_market,         beside(file, "bridge_mass.mtx"), beside(file, "bridge_stiffness.mtx"), {},
+             beside(file, "bridge_dofs.csv"), beside(file, "bridge_nodes.inp")};
+  p.damping.ratio = 0.01;
+  p.deck.set = "DECK";
+  FeSupport ends;
+  ends.nodes.set = "ENDS";
+  p.supports.push_back(ends);
+  return p;
+}
+
+void take_bridge(const ImportParameters& parameters) {
+  TrackParameters track;
+  track.length_before = track.length_after = 3.0;
+  try {
+    static_cast<void>(summarise(read_on_supports(parameters), parameters.damping, 2));
+    static_cast<void>(build_track_on_import(track, parameters));
+  } catch (const ComputationError&) {  // of frequencies that are not found
+  }
+}
+
+void take_vehicle(const Path& stiffness, const Path& dofs) {
+  VehicleImport p;
+  p.mass = beside(dofs, "vehicle_mass.mtx");
+  p.damping = beside(dofs, "vehicle_damping.mtx");
+  p.stiffness = stiffness;
+  p.dofs = dofs;
+  p.frame.axes = "x y z";
+  p.wheelsets = {"ws1", "ws2"};
+  p.car_body = "body";
+  static_cast<void>(summarise(import_vehicle(p), 3));
+}
+
+}  // namespace
+
+void read_matrix_market_file(const Path& file) { take_symmetric(file, read_matrix_market(file)); }
+void read_calculix_file(const Path& file) { take_symmetric(file, read_calculix_matrix(file, 3)); }
+void read_harwell_boeing_file(const Path& file) { take_symmetric(file, read_harwell_boeing(file)); }
+
+void read_structure_table(const Path& file) {
+  static_cast<void>(import_structure(
+      {beside(file, "rails_mass.mtx"), beside(file, "rails_damping.mtx"), beside(file, "rails_stiffness.mtx"), file}));
+}
+
+void read_row_file(const Path& file) {
+  ImportParameters bridge = bridge_files(file);
+  bridge.files.dofs = file;
+  take_bridge(bridge);
+}
+
+void read_node_file(const Path& file) {
+  ImportParameters bridge = bridge_files(file);
+  bridge.files.nodes = file;
+  static_cast<void>(read_fe_mesh(file));
+  take_bridge(bridge);
+}
+
+void read_vehicle_file(const Path& file) { take_vehicle(beside(file, "vehicle_stiffness.mtx"), file); }
+void read_vehicle_stiffness(const Path& file) { take_vehicle(file, beside(file, "vehicle_dofs.csv")); }
+
+}  // namespace railtab::fuzz
