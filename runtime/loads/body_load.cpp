@@ -62,6 +62,7 @@ LoadHistory read_load_history(const std::filesystem::path& file, double start) {
     throw input_error(columns[0].place(0), fmt::format("column '{}'", columns[0].name), "t[s] or x[m] first");
   }
   static_cast<void>(factor_to_si(columns[0], {{over_time ? "s" : "m", 1.0}}));
+  require_argument(columns[0]);
   std::vector<double> points = columns[0].values;
   for (double& p : points) p += start;
   std::vector<ForceAndMoment> loads(points.size(), ForceAndMoment::Zero());

@@ -125,6 +125,7 @@ GroundRecord read_ground_record(const std::filesystem::path& file) {
     throw input_error(columns[0].place(0), fmt::format("column '{}'", columns[0].name), "t[s] first");
   }
   static_cast<void>(factor_to_si(columns[0], {{"s", 1.0}}));
+  require_argument(columns[0]);
   std::vector<GroundVector> values(columns[0].values.size(), GroundVector::Zero());
   std::optional<bool> accelerations;
   std::array<bool, 2> taken{};

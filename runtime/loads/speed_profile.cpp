@@ -95,6 +95,7 @@ SpeedProfile read_speed_profile(const std::filesystem::path& file) {
                       "two: t[s], V[m/s] or V[km/h]");
   }
   static_cast<void>(factor_to_si(columns[0], {{"s", 1.0}}));
+  require_argument(columns[0]);
   const double factor = factor_to_si(columns[1], {{"m/s", 1.0}, {"km/h", 1.0 / 3.6}});
   for (double& v : columns[1].values) v *= factor;
   check_points(columns[0].values, columns[1].values, [&](std::size_t i) { return columns[1].place(i + 1); });

@@ -12,6 +12,7 @@
 #include "profile_axes.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 #include "simpack_profile.hpp"
 #include "two_column_profile.hpp"
 
@@ -88,7 +89,7 @@ ProfileKnots load_profile(const std::string& name_or_file, ProfileKind kind, dou
   const bool known = std::any_of(names.begin(), names.end(),
                                  [&](const std::string& n) { return lower_case(n) == lower_case(name_or_file); });
   if (known) return standard_profile(kind, name_or_file, rail_inclination);
-  if (std::filesystem::exists(name_or_file)) return read_profile_file(name_or_file, kind, noise);
+  if (is_file(name_or_file)) return read_profile_file(name_or_file, kind, noise);
   throw input_error(kind == ProfileKind::wheel ? "wheel profile" : "rail profile",
                     fmt::format("\"{}\", neither a built-in name nor a file", name_or_file),
                     fmt::format("one of {}, or a profile file", fmt::join(names, ", ")));

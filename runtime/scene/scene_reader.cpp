@@ -12,6 +12,7 @@
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/tables/text_file.hpp"
 #include "toml_leaves.hpp"
 
 namespace railtab::scene {
@@ -37,7 +38,7 @@ struct Assign {
   void operator()(const TextKey& key) const { key.member(draft) = key.names ? one_of(key.names()) : text("a text"); }
   void operator()(const FileKey& key) const {
     const std::filesystem::path named = file.parent_path() / text("a file name");
-    if (!std::filesystem::is_regular_file(named)) {
+    if (!is_file(named)) {
       throw leaf_error(file, leaf, "no file " + named.string(), "an existing file, relative to the scene");
     }
     draft.parameters.files.push_back(named);
@@ -164,7 +165,7 @@ struct Assign {
         fmt::format("a built-in profile ({}) or an existing profile file", joined(standard_profile_names(kind)));
     const std::string name = text(expected);
     const std::filesystem::path named = file.parent_path() / name;
-    if (std::filesystem::is_regular_file(named)) {
+    if (is_file(named)) {
       draft.parameters.files.push_back(named);
       return named.string();
     }
@@ -288,8 +289,9 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
 }
 
 std::string whole_file(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) {
-    const bool folder = std::filesystem::is_directory(file);
+  if (!is_file(file)) {
+    std::error_code refused;
+    const bool folder = std::filesystem::is_directory(file, refused);
     throw input_error(file.string(), folder ? "a folder" : "no such file", "a TOML scene");
   }
   std::ifstream stream(file, std::ios::binary);

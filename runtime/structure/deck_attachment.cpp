@@ -59,6 +59,7 @@ void add_motion(DeckAttachment& deck, int to, const FeNode& node, std::size_t k,
   if (rows.empty() && (k == lateral || k == vertical) && node.support[k - lateral] != held) {
     rows.push_back(support_dof(node.support[k - lateral]));
   }
+  if (rows.empty()) return;  // at rest
   const double share = value / static_cast<double>(rows.size());
   for (int row : rows) {
     auto at = std::find(deck.dof.begin(), deck.dof.end(), row);

@@ -122,4 +122,14 @@ void require_magnitude(const FileColumn& column, double factor, double limit) {
   }
 }
 
+void require_argument(const FileColumn& column) {
+  constexpr double furthest = 1e9, nearest = 1e-9;
+  require_magnitude(column, 1.0, furthest);
+  for (std::size_t i = 1; i < column.values.size(); ++i) {
+    if (column.values[i] - column.values[i - 1] >= nearest) continue;
+    throw input_error(column.place(i + 1), fmt::format("{}", column.values[i]),
+                      fmt::format("at least {:g} more than {} of the row before", nearest, column.values[i - 1]));
+  }
+}
+
 }  // namespace railtab

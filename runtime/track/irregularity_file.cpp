@@ -26,6 +26,7 @@ Irregularity read_irregularity(const std::filesystem::path& file) {
     constexpr double largest = 0.5;  // [m]: no wheel follows more
     if (c > 0) require_magnitude(columns[c], factor, largest);
     for (double& value : columns[c].values) value *= factor;
+    if (c == 0) require_argument(columns[c]);
   }
   return Irregularity(std::move(columns[0].values), std::move(columns[1].values), std::move(columns[2].values),
                       std::move(columns[3].values), std::move(columns[4].values));

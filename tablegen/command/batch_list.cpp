@@ -10,6 +10,7 @@
 
 #include "geometry_options.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab {
 
@@ -80,7 +81,7 @@ BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file
     if (setting == settings.end() || name == "output") continue;
     std::string text = setting->second.text;
     const bool profile = name == "wheel" || name == "rail";
-    if (profile && std::filesystem::is_regular_file(folder / text)) text = (folder / text).string();
+    if (profile && is_file(folder / text)) text = (folder / text).string();
     pair.arguments.push_back(fmt::format("--{}={}", name, text));
   }
   pair.arguments.push_back("--output=" + pair.output.string());
@@ -88,7 +89,7 @@ BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file
 }
 
 toml::table parsed(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) throw input_error(file.string(), "no file", "a list of pairs in TOML");
+  if (!is_file(file)) throw input_error(file.string(), "no file", "a list of pairs in TOML");
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& wrong) {

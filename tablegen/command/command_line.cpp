@@ -141,7 +141,8 @@ TableProvenance provenance(const std::string& command, const std::vector<std::st
 
 void require_output(const std::string& output, std::initializer_list<std::string_view> filetypes) {
   const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
-  if (!std::filesystem::is_directory(folder)) {
+  std::error_code refused;
+  if (!std::filesystem::is_directory(folder, refused)) {
     throw input_error("--output " + output, "no folder " + folder.string(), "a file in an existing folder");
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {

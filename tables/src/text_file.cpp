@@ -11,6 +11,11 @@
 
 namespace railtab {
 
+bool is_file(const std::filesystem::path& file) noexcept {
+  std::error_code refused;
+  return std::filesystem::is_regular_file(file, refused);
+}
+
 std::filesystem::path output_file(const std::filesystem::path& named) {
   std::error_code failed;
   std::filesystem::path file = named;

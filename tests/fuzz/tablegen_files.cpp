@@ -1,3 +1,5 @@
+#include <boost/program_options/errors.hpp>
+
 #include "batch_list.hpp"
 #include "creep_shard_file.hpp"
 #include "railtab/tables/input_error.hpp"

@@ -78,6 +78,9 @@ TEST_F(FeFilesTest, HarwellBoeingRefusals) {
                   .starts_with("f:5: found column 3 at place 2, expected 3 to 3"));
   EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    9\n")
                   .starts_with("f:6: found row 9, expected 1 to 2"));
+  const std::string least = "(1I20)          (1I20)          (1E20.12)";
+  EXPECT_TRUE(refused(header("RSA", 1, 1, least) + "1\n2\n-9223372036854775808\n")
+                  .starts_with("f:7: found row -9223372036854775808, expected 1 to 1"));
   EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    2    1\n")
                   .starts_with("f:6: found entries on both sides"));
   EXPECT_TRUE(
@@ -164,7 +167,14 @@ TEST_F(FeFilesTest, MeshesOfDecksAndTables) {
   EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, a\n").starts_with("f:2: found 'a'"));
   EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, 0\n*NSET, NSET=S\n9\n").starts_with("f: found node 9 in the set S"));
   EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, 0\n*NSET, NSET=S, GENERATE\n1, 2000000000, 1\n")
-                  .starts_with("f:4: found '1, 2000000000, 1'"));
+                  .starts_with("f:4: found sets of more nodes, expected at most"));
+  EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, 0\n*NSET, NSET=S, GENERATE\n-2147483648, 2147483647, 1\n")
+                  .starts_with("f:4: found '-2147483648"));
+  EXPECT_TRUE(message(read_fe_mesh, "*NODE\n1, 0\n*NSET, NSET=S, GENERATE\n2147483646, 2147483647, 1\n")
+                  .starts_with("f: found node 2147483646 in the set S"));
+  std::string doubled = "*NODE\n1, 0\n*NSET, NSET=S\n1\n";
+  for (int i = 0; i < 40; ++i) doubled += "S\n";
+  EXPECT_NE(message(read_fe_mesh, doubled).find("found sets of more nodes"), std::string::npos);
   EXPECT_TRUE(message(read_fe_mesh, "*INCLUDE, INPUT=f\n").find("include each other") != std::string::npos);
   EXPECT_TRUE(message(read_fe_mesh, "# nothing\n").starts_with("f: found no node"));
 }

@@ -243,6 +243,7 @@ TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   refused({"sweep", "scene.toml", "--speed", "30", "--speed-kmh", "100", "-o", "out"});
   refused({"sweep", "scene.toml", "--speed", "30", "--shard", "3/2", "-o", "out"});
   refused({"sweep", "smooth.toml", "--speed", "30", "--seeds", "2", "-o", "out"});
+  refused({"sweep", "scene.toml", "--speed", "30", "--seeds", "2147483647", "-o", "out"});
   refused({"sweep", "smooth.toml", "--speed", "30", "-o", "none/out"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_FALSE(fs::exists(folder_ / "none"));

@@ -293,6 +293,10 @@ TEST(CreepTable, RefusesWhatIsNotATable) {
   refused([](CreepTableData& d) {
     for (double& ratio : d.nodes[0]) ratio = ratio_at(1.1 * squeezed_ratio(ratio, d.ratio_stretch), d.ratio_stretch);
   });
+  CreepTableData single = small_table(CreepTableLayout::paper);
+  single.values.resize(single.values.size() / single.nodes[2].size());
+  single.nodes[2].resize(1);
+  EXPECT_THROW(CreepTable{single}, InputError) << "a cell has two ends";
   EXPECT_THROW(static_cast<void>(assemble_creep_table(small_layout(), std::vector<CreepForce>(5))), InputError);
 }
 

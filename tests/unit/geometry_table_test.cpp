@@ -145,6 +145,9 @@ TEST(GeometryTable, RefusesWhatIsNoTable) {
   EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.high = d.lateral.low; }));
   EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.cells = 0; }));
   EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.cells = 7; }));
+  EXPECT_TRUE(refused([](GeometryTableData& d) {
+    d.lateral.cells = d.yaw_squared.cells = d.roll.cells = 2'000'000'000;
+  })) << "more than can be counted";
   EXPECT_TRUE(refused([](GeometryTableData& d) { d.yaw_squared.low = -1e-5; }));
   EXPECT_TRUE(refused([](GeometryTableData& d) { d.shard = {1, 2}; }));
   EXPECT_TRUE(refused([](GeometryTableData& d) { d.node[0] = CellNode::halved(0, 0); })) << "a loop";

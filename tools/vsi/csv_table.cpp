@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::vsi {
 namespace {
@@ -72,7 +73,7 @@ double number(std::string_view field, const std::string& place, const std::strin
 }  // namespace
 
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns) {
-  if (!std::filesystem::is_regular_file(file)) throw input_error(file.string(), "no such file", "a CSV file");
+  if (!is_file(file)) throw input_error(file.string(), "no such file", "a CSV file");
   std::ifstream stream(file);
   CsvTable table;
   std::vector<std::size_t> order;

@@ -56,6 +56,10 @@ std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector
   if (!scene.train.speed_file.empty()) {
     throw input_error("--speed", "a scene with train.speed_file", "a scene with a constant speed");
   }
+  if (static_cast<double>(seeds) * static_cast<double>(speeds.size()) > most_runs) {
+    throw input_error("--seeds", fmt::format("{} at {} speeds", seeds, speeds.size()),
+                      fmt::format("at most {} runs", most_runs));
+  }
   std::vector<SweepRun> runs;
   for (double speed : speeds) {
     if (!(speed > 0.0 && speed <= 200.0)) {

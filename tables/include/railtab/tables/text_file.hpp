@@ -6,6 +6,9 @@
 
 namespace railtab {
 
+/// Whether there is a regular file of that name. False too where the system takes no such name or refuses the way to it.
+[[nodiscard]] bool is_file(const std::filesystem::path& file) noexcept;
+
 /// The file that an output named `file` becomes: where `file` is a symbolic link, what it points to, there or not.
 /// @throws InputError where there is something other than a regular file: a folder, a device, a pipe, links in a circle
 [[nodiscard]] std::filesystem::path output_file(const std::filesystem::path& file);

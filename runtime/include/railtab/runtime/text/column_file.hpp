@@ -35,4 +35,8 @@ struct UnitFactor {
 /// @param limit on the amount of the column's values times `factor`, in SI units @throws InputError naming the line
 void require_magnitude(const FileColumn& column, double factor, double limit);
 
+/// Refuses times and places, in SI units already, beyond ±10⁹ and neighbours nearer than 10⁻⁹: differences between them
+/// must be numbers to divide by. @throws InputError naming the line
+void require_argument(const FileColumn& column);
+
 }  // namespace railtab
