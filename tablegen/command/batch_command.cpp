@@ -13,6 +13,7 @@
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab {
 
@@ -97,7 +98,7 @@ std::vector<Job> read_jobs(const CommandLine& line) {
     Job job{std::move(pair), State::waiting, ""};
     try {
       const GeometryRequest request = request_of(job.pair);
-      if (!line.given("overwrite") && std::filesystem::exists(job.pair.output)) {
+      if (!line.given("overwrite") && is_file(job.pair.output)) {
         const std::string found = other_options(job.pair, request);
         if (!found.empty()) {
           const std::string wanted = geometry_options_text(job.pair.arguments);

@@ -148,7 +148,10 @@ void require_output(const std::string& output, std::initializer_list<std::string
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw input_error("--output " + output, "no right to write in " + folder.string(), "a folder that can be written");
   }
-  if (std::filesystem::is_directory(output)) throw input_error("--output " + output, "a folder", "a file");
+  if (std::filesystem::is_directory(output, refused)) throw input_error("--output " + output, "a folder", "a file");
+  if (refused && refused != std::errc::no_such_file_or_directory) {
+    throw input_error("--output " + output, refused.message(), "a name that a file can have");
+  }
   require_replaceable(output, filetypes);
 }
 

@@ -3,11 +3,13 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <map>
 
 #include "commands.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace {
 
@@ -56,6 +58,9 @@ int exit_code(const std::vector<std::string>& arguments) {
   } catch (const railtab::InputError& e) {
     fmt::print(stderr, "tablegen: {}\n", e.what());
     return 2;
+  } catch (const std::filesystem::filesystem_error& e) {
+    fmt::print(stderr, "tablegen: {}: {}\n", e.path1().string(), e.code().message());
+    return railtab::is_wrong_name(e.code()) ? 2 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "tablegen: {}\n", e.what());
     return 1;

@@ -182,7 +182,7 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
       const double shift = patch.penetration * std::sin(patch.angle);  // y* - y = -d n_y
       const double z = s.pose.z + lowering_ - patch.penetration * std::cos(patch.angle);
       std::vector<BranchDatum> way{datum(s, s.pose.y + shift, z, std::tan(patch.angle), patch.s_wheel, patch.s_rail)};
-      const int steps = std::clamp(static_cast<int>(std::ceil(std::abs(shift) / half)), 1, 4);
+      const int steps = static_cast<int>(std::clamp(std::ceil(std::abs(shift) / half), 1.0, 4.0));
       TouchPoint touch = touch_of_pair(search.pair(), {s.pose.y + shift, 0, s.pose.roll, s.pose.yaw}, trig,
                                        patch.s_wheel, patch.s_rail);
       bool followed = true;

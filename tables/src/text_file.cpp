@@ -16,6 +16,12 @@ bool is_file(const std::filesystem::path& file) noexcept {
   return std::filesystem::is_regular_file(file, refused);
 }
 
+bool is_wrong_name(const std::error_code& refused) noexcept {
+  return refused == std::errc::filename_too_long || refused == std::errc::too_many_symbolic_link_levels ||
+         refused == std::errc::permission_denied || refused == std::errc::not_a_directory ||
+         refused == std::errc::no_such_file_or_directory;
+}
+
 std::filesystem::path output_file(const std::filesystem::path& named) {
   std::error_code failed;
   std::filesystem::path file = named;

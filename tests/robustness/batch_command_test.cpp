@@ -97,6 +97,8 @@ TEST_F(BatchCommand, WrongLists) {
   expect_refused("[[pair]\n", {"lists/list.toml:1"});
   expect_refused(defaults + pair_a + "yow = 1\n", {"lists/list.toml:8: yow", "unknown key", "yaw"});
   expect_refused("[defaults]\noutput = \"a.h5\"\n" + pair_a, {"lists/list.toml:2: output", "unknown key"});
+  expect_refused(defaults + "[[pair]]\nwheel = \"" + std::string(300, 'w') + "\"\noutput = \"a.h5\"\n",
+                 {"neither a built-in name nor a file"});
   expect_refused("[pears]\nrail = 1\n", {"lists/list.toml:1: pears", "[[pair]]"});
   expect_refused(pair_a, {"lists/list.toml:1", "no rail"});
   expect_refused(defaults + "[[pair]]\nwheel = \"S1002\"\n", {"lists/list.toml:5", "no output"});

@@ -230,11 +230,11 @@ struct Noisy {
 // The S1002 at points `spacing` apart with Gaussian noise normal to it.
 Noisy noisy_s1002(const ProfileCurve& exact, double spacing, double noise) {
   std::mt19937_64 random(5);
-  std::normal_distribution<double> normal(0.0, noise);
+  std::normal_distribution<double> normal;  // of deviation 1: 0 is none that the library takes
   Noisy points;
   for (double s = exact.s_begin(); s <= exact.s_end(); s += spacing) {
     const CurvePoint p = exact.at(s);
-    const double n = normal(random);
+    const double n = noise * normal(random);
     points.y.push_back(p.y - n * p.dz);
     points.z.push_back(p.z + n * p.dy);
   }

@@ -63,6 +63,10 @@ TEST_F(HistoryFile, SpeedIsReadInItsUnit) {
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1,0\n", read), "h.csv:3: column V: found 0 m/s, expected 0.1 to 200 m/s");
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n0,20\n", read),
             "h.csv:3: column t: found 0, expected more than 0 of the row before");
+  EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1e-300,20\n", read),
+            "h.csv:3: column t: found 1e-300, expected at least 1e-09 more than 0 of the row before");
+  EXPECT_EQ(message("t[s],V[m/s]\n-1e308,10\n0,20\n", read),
+            "h.csv:2: column t: found -1e+308 s, expected -1e+09 to 1e+09 s");
   EXPECT_EQ(message("t[s],V[mph]\n0,10\n1,20\n", read),
             "h.csv:1: column V: found unit [mph], expected V[m/s], V[km/h]");
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1,ten\n", read), "h.csv:3: column V: found 'ten', expected a finite number");

@@ -157,6 +157,11 @@ TEST_F(Scene, MissingFilesAreNamed) {
             "scene.toml:2: contact.table: found no file none.h5, expected an existing file, relative to the scene");
   EXPECT_EQ(message(std::string(online) + "[irregularity]\nfile = \"bumps.csv\"\n").substr(0, 58),
             "scene.toml:4: irregularity.file: found no file bumps.csv, ");
+  const std::string too_long(300, 'f');
+  EXPECT_TRUE(message(std::string(online) + "[irregularity]\nfile = \"" + too_long + "\"\n")
+                  .starts_with("scene.toml:4: irregularity.file: found no file fff"));
+  EXPECT_TRUE(message(std::string(online) + "wheel = \"" + too_long + "\"\n")
+                  .starts_with("scene.toml:3: contact.wheel: found the text \"fff"));
   EXPECT_TRUE(message(std::string(online) + "wheel = \"S1003\"\n")
                   .starts_with("scene.toml:3: contact.wheel: found the "
                                "text \"S1003\", expected a built-in"));

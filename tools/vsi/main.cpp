@@ -3,11 +3,13 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string_view>
 
 #include "commands.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::vsi {
 namespace {
@@ -50,6 +52,9 @@ int exit_code(const Arguments& arguments) {
   } catch (const InputError& wrong) {
     fmt::print(stderr, "vsi: {}\n", wrong.what());
     return wrong_input;
+  } catch (const std::filesystem::filesystem_error& refused) {
+    fmt::print(stderr, "vsi: {}: {}\n", refused.path1().string(), refused.code().message());
+    return is_wrong_name(refused.code()) ? wrong_input : failed;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "vsi: not enough memory\n");
     return failed;
