@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -8,12 +9,13 @@
 
 namespace railtab::testing {
 
-/// A test with an empty folder of its own, gone when it ends.
+/// A test with an empty folder of its own, also beside the same test of another checkout, gone when it ends.
 class InFolder : public ::testing::Test {
  protected:
   void SetUp() override {
     const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string(test.test_suite_name()) + "_" + test.name());
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string(test.test_suite_name()) + "_" + test.name() + "_" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

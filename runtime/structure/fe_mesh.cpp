@@ -131,7 +131,7 @@ class DeckReader {
 
   /// Sets may name each other, and so grow from line to line without an end.
   void require_room(const LineReader& reader, std::size_t more) {
-    constexpr std::size_t most = 50'000'000;
+    constexpr std::size_t most = 20'000'000;
     members_ += more;
     if (members_ > most) throw reader.error("sets of more nodes", fmt::format("at most {} in all", most));
   }
