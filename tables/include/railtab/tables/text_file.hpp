@@ -7,10 +7,12 @@
 
 namespace railtab {
 
-/// Whether there is a regular file of that name. False too where the system takes no such name or refuses the way to it.
+/// Whether there is a regular file of that name. False too where the system takes no such name or refuses the way to
+/// it.
 [[nodiscard]] bool is_file(const std::filesystem::path& file) noexcept;
 
-/// Whether the system refused a name, not an operation: too long, links in a circle, no right to the folder, none there.
+/// Whether the system refused a name, not an operation: too long, links in a circle, no right to the folder, none
+/// there.
 [[nodiscard]] bool is_wrong_name(const std::error_code& refused) noexcept;
 
 /// The file that an output named `file` becomes: where `file` is a symbolic link, what it points to, there or not.
