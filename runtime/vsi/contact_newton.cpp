@@ -26,6 +26,7 @@ enum class Pairs { searched, held };
 
 ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
                              NewtonWorkspace& ws) {
+  if (model.without_table) return model.geometry->patches_without_table(pose);
   if (ws.found.empty()) return model.geometry->patches(pose);
   if (pairs == Pairs::held) return moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
   ws.found[wheel] = model.geometry->patches(pose);

@@ -104,14 +104,19 @@ class Integrator {
     StepOperators& step_operators = operators(level, end, summary.seconds_setup);
     const ContactForceRule rule = rule_at(state);
     const bool smooth_only = !rule_ && (rule == ContactForceRule::endpoint || level < impact_level_);
-    StepReport report = advance(rule, smooth_only, step_operators, state, summary);
-    if (report.touch_changed && !report.converged) {
+    StepReport report;
+    // Where a table misses a patch, its forces jump, and there may be no solution on either side: then without it.
+    for (const bool without_table : {false, true}) {
+      if (without_table && (report.converged || !has_table())) break;
+      report =
+          advance(rule, {.smooth_only = smooth_only, .without_table = without_table}, step_operators, state, summary);
+      if (!report.touch_changed || report.converged) continue;
       // A wheel meets or leaves its rail: what its spring takes up it shall give back, in steps that resolve how.
       if (level < impact_level_) {
         state.impact_until = end;
         return step(level, state, summary);
       }
-      report = advance(ContactForceRule::energy, false, step_operators, state, summary);
+      report = advance(ContactForceRule::energy, {.without_table = without_table}, step_operators, state, summary);
     }
     if (report.converged) {
       if (!rule_) follow_impact(report, step_operators.scheme, state);
@@ -158,11 +163,19 @@ class Integrator {
     return rule_.value_or(state.time < state.energy_until ? ContactForceRule::energy : ContactForceRule::endpoint);
   }
 
-  StepReport advance(ContactForceRule rule, bool smooth_only, StepOperators& step_operators, VsiState& state,
+  [[nodiscard]] bool has_table() const {
+    return model_.normal_contact == NormalContact::hertz && model_.contact.geometry->is_table();
+  }
+
+  struct Attempt {
+    bool smooth_only = false, without_table = false;  // as those of StepLimits
+  };
+  StepReport advance(ContactForceRule rule, const Attempt& attempt, StepOperators& step_operators, VsiState& state,
                      RunSummary& summary) {
     step_operators.scheme.contact_force = rule;
     StepLimits limits = rule == ContactForceRule::energy ? energy_limits_ : endpoint_limits_;
-    limits.smooth_only = smooth_only;
+    limits.smooth_only = attempt.smooth_only;
+    limits.without_table = attempt.without_table;
     const StepReport report = railtab::advance(model_, step_operators, limits, state, workspace_);
     summary.newton_iterations += report.newton_iterations;
     summary.back_substitutions += report.back_substitutions;

@@ -256,6 +256,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   const double time = state.time + hht.time_step;
   ws.far_field = state.far_field;
   ws.contact.speed = model.speed(time);
+  ws.contact.without_table = limits.without_table;
 
   // Right-hand side of Eq. 13 without the contact forces at t + dt.
   std::vector<RailContact> contacts;

@@ -20,6 +20,13 @@ class ContactGeometry {
     return std::visit([&](const auto& source) { return source.patches(pose); }, source_);
   }
 
+  [[nodiscard]] bool is_table() const noexcept { return std::holds_alternative<TableContact>(source_); }
+  /// patches() by the online search where a table is the source.
+  [[nodiscard]] ContactPatches patches_without_table(const WheelsetPose& pose) const noexcept {
+    const auto* const table = std::get_if<TableContact>(&source_);
+    return table ? table->search().patches(pose) : patches(pose);
+  }
+
   [[nodiscard]] const WheelRailPair& pair() const noexcept {
     return std::visit(
         [](const auto& source) -> const WheelRailPair& {

@@ -37,6 +37,7 @@ struct StepLimits {
   double far_field_tolerance = 1e-9;  ///< largest rail displacement the contact solution may miss [m, rad]
   int max_passes = 6;                 ///< contact solutions per step
   bool smooth_only = false;           ///< leave a step undone in which a wheel meets or leaves its rail
+  bool without_table = false;         ///< contact geometry by the online search
 };
 
 struct StepReport {
