@@ -28,6 +28,7 @@ ImportParameters bridge_files(const Path& file) {
   p.deck.set = "DECK";
   FeSupport ends;
   ends.nodes.set = "ENDS";
+  ends.holds = {"x", "y", "z", "roll"};  // a line of nodes turns about itself else
   p.supports.push_back(ends);
   return p;
 }
