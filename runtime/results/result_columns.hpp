@@ -93,11 +93,13 @@ template <typename Value>
 struct SummaryEntry {
   const char* name;
   Value RunSummary::*value;
+  bool in_all_files = true;  ///< else 0 where an older file lacks it
 };
 inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSummary::steps},
+                                           SummaryEntry<long>{"counted_from_step", &RunSummary::counted_from, false},
                                            SummaryEntry<long>{"newton_iterations", &RunSummary::newton_iterations},
                                            SummaryEntry<long>{"halved_steps", &RunSummary::halved_steps},
-                                           SummaryEntry<long>{"impact_steps", &RunSummary::impact_steps},
+                                           SummaryEntry<long>{"impact_steps", &RunSummary::impact_steps, false},
                                            SummaryEntry<long>{"back_substitutions", &RunSummary::back_substitutions},
                                            SummaryEntry<long>{"contact_queries", &RunSummary::contact_queries},
                                            SummaryEntry<long>{"table_queries", &RunSummary::table_queries},
@@ -111,8 +113,6 @@ inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total"
                                             SummaryEntry<double>{"seconds_structure", &RunSummary::seconds_structure},
                                             SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},
                                             SummaryEntry<double>{"seconds_output", &RunSummary::seconds_output}};
-
-inline constexpr const char* counted_from = "counted_from_step";  // absent in older files: 0
 
 struct ContactEnergyEntry {
   const char* name;

@@ -60,15 +60,13 @@ RunSummary read_summary(const ArrayFileReader& in) {
   summary.message = in.text(columns::summary_group, "message");
   summary.contact_mode = in.text(columns::summary_group, "contact_mode");
   summary.complete = in.number(columns::summary_group, "complete") != 0.0;
+  const std::vector<std::string> names = in.attribute_names(columns::summary_group);
   for (const auto& entry : columns::summary_counts) {
+    if (!entry.in_all_files && std::find(names.begin(), names.end(), entry.name) == names.end()) continue;
     summary.*entry.value = in.whole_number(columns::summary_group, entry.name, 0, most_count);
   }
   for (const auto& entry : columns::summary_seconds) {
     summary.*entry.value = in.number(columns::summary_group, entry.name);
-  }
-  const std::vector<std::string> names = in.attribute_names(columns::summary_group);
-  if (std::find(names.begin(), names.end(), columns::counted_from) != names.end()) {  // else counted from the first
-    summary.counted_from = in.whole_number(columns::summary_group, columns::counted_from, 0, most_count);
   }
   const long impacts = in.whole_number(columns::summary_group, columns::contact_energy_impacts, -1, most_count);
   if (impacts >= 0) {
@@ -133,7 +131,6 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   for (const auto& entry : columns::summary_seconds) {
     out.attribute(columns::summary_group, entry.name, summary.*entry.value);
   }
-  out.attribute(columns::summary_group, columns::counted_from, static_cast<std::int64_t>(summary.counted_from));
   const ContactEnergy energy = summary.contact_energy.value_or(ContactEnergy{.impacts = -1});
   out.attribute(columns::summary_group, columns::contact_energy_impacts, static_cast<std::int64_t>(energy.impacts));
   for (const auto& entry : columns::summary_contact_energy) {
