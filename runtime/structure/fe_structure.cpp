@@ -9,6 +9,7 @@
 
 #include "../text/text_lines.hpp"
 #include "fe_frame.hpp"
+#include "railtab/runtime/vehicle/motion_names.hpp"
 
 namespace railtab {
 
@@ -17,7 +18,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double symmetry_tolerance = 1e-9;  // of the largest diagonal entry: what writing with ten digits leaves
-constexpr std::array<std::string_view, 6> motion_names{"x", "y", "z", "roll", "pitch", "yaw"};
 
 Sparse read_matrix(const FeFiles& files, const std::filesystem::path& file, int rows) {
   switch (files.format) {

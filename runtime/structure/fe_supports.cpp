@@ -7,6 +7,7 @@
 #include <array>
 
 #include "railtab/runtime/structure/carried_motion.hpp"
+#include "railtab/runtime/vehicle/motion_names.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -16,7 +17,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Columns = StructureSupports::Columns;
 
-constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "roll", "pitch", "yaw"};
 constexpr std::size_t lateral = 1, vertical = 2;  // what the ground moves; else it holds at rest
 
 std::string place_of(std::size_t support, std::size_t count) {
@@ -26,15 +26,16 @@ std::string place_of(std::size_t support, std::size_t count) {
 std::array<bool, 6> held_motions(const FeSupport& support, const std::string& place) {
   std::array<bool, 6> holds{};
   if (support.holds.empty()) {
-    throw input_error(place, "support.holds without a motion", fmt::format("some of {}", fmt::join(motions, ", ")));
+    throw input_error(place, "support.holds without a motion",
+                      fmt::format("some of {}", fmt::join(motion_names, ", ")));
   }
   for (const std::string& name : support.holds) {
-    const auto* const known = std::find(motions.begin(), motions.end(), name);
-    if (known == motions.end()) {
+    const auto* const known = std::find(motion_names.begin(), motion_names.end(), name);
+    if (known == motion_names.end()) {
       throw input_error(place, fmt::format("support.holds with \"{}\"", name),
-                        fmt::format("some of {}", fmt::join(motions, ", ")));
+                        fmt::format("some of {}", fmt::join(motion_names, ", ")));
     }
-    bool& taken = holds[static_cast<std::size_t>(known - motions.begin())];
+    bool& taken = holds[static_cast<std::size_t>(known - motion_names.begin())];
     if (taken) throw input_error(place, fmt::format("support.holds with \"{}\" twice", name), "each motion once");
     taken = true;
   }
@@ -59,7 +60,8 @@ double hold(FeStructure& structure, const FeSupport& support, std::size_t number
       for (int row : node.rows[k]) {
         int& column = column_of_row[static_cast<std::size_t>(row)];
         if (column != RowSplit::unknown) {
-          throw input_error(place, fmt::format("{} of node {} again", motions[k], name), "each in one [[support]]");
+          throw input_error(place, fmt::format("{} of node {} again", motion_names[k], name),
+                            "each in one [[support]]");
         }
         column = to;
         any = true;

@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 
+#include "railtab/runtime/vehicle/motion_names.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -20,8 +21,6 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 using Matrix = Eigen::MatrixXd;
-
-constexpr std::array<const char*, 6> names{"x", "y", "z", "roll", "pitch", "yaw"};
 
 /// Rows that stiffness or a common node joins, numbered from 0.
 std::vector<int> parts_of(const FeStructure& structure) {
@@ -132,7 +131,8 @@ std::string axis_text(Eigen::Index k, const Eigen::Vector3d& point) {
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (i == k) continue;
     const double place = std::abs(point[i]) < 5e-4 ? 0.0 : point[i];  // [m]
-    text += fmt::format("{} {} = {:.4g} m", text.empty() ? " through" : ",", names[static_cast<std::size_t>(i)], place);
+    text += fmt::format("{} {} = {:.4g} m", text.empty() ? " through" : ",", motion_names[static_cast<std::size_t>(i)],
+                        place);
   }
   return text;
 }
@@ -146,7 +146,7 @@ std::vector<FreeMotion> in_words(const Matrix& free, const RigidPart& rigid, con
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(free.rows(), k);
     if ((free * combine.solve(unit) - unit).norm() > tolerance) continue;
-    const std::string name = names[static_cast<std::size_t>(k)];
+    const std::string name(motion_names[static_cast<std::size_t>(k)]);
     result.push_back({fmt::format("moves along {}{}", name, of_part), name + " of a support"});
   }
   constexpr std::array<const char*, 3> held_by{"roll of a support, or its z at nodes beside each other",
@@ -159,7 +159,7 @@ std::vector<FreeMotion> in_words(const Matrix& free, const RigidPart& rigid, con
     if ((turning * share - wanted).norm() > tolerance) continue;
     const Eigen::Vector3d shift = rigid.length * (free.topRows(3) * share);
     const auto i = static_cast<std::size_t>(k);
-    result.push_back({fmt::format("turns about {} ({}){}{}", names[i], names[i + 3],
+    result.push_back({fmt::format("turns about {} ({}){}{}", motion_names[i], motion_names[i + 3],
                                   axis_text(k, rigid.centre + axis.cross(shift)), of_part),
                       held_by[i]});
   }
@@ -191,7 +191,7 @@ std::vector<FreeMotion> free_motions(const FeStructure& structure) {
     Eigen::Index row = 0;
     v->cwiseAbs().maxCoeff(&row);
     const auto r = static_cast<std::size_t>(row);
-    const char* const name = names[static_cast<std::size_t>(structure.motion[r])];
+    const std::string_view name = motion_names[static_cast<std::size_t>(structure.motion[r])];
     found.push_back({fmt::format("moves or turns (most at node {} along {})", structure.node_of_row[r], name),
                      fmt::format("a constraint of {} there, or of a rotation", name)});
   }

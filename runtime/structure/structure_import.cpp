@@ -14,6 +14,7 @@
 #include "free_motion.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
+#include "railtab/runtime/vehicle/motion_names.hpp"
 
 namespace railtab {
 
@@ -22,7 +23,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr std::string_view header = "row,node,x[m],motion,rail";
-constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "roll", "pitch", "yaw"};
 
 struct Node {
   double x = 0.0;
@@ -70,8 +70,8 @@ void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place
   if (!parse(x_cell, x) || !std::isfinite(x)) throw input_error(place, fmt::format("x '{}'", x_cell), "a number in m");
   const bool turned = motion_cell.starts_with('-');
   const std::string_view motion = motion_cell.substr(turned ? 1 : 0);
-  const auto* const known = std::find(motions.begin(), motions.end(), motion);
-  if (known == motions.end()) {
+  const auto* const known = std::find(motion_names.begin(), motion_names.end(), motion);
+  if (known == motion_names.end()) {
     throw input_error(place, fmt::format("motion '{}'", motion_cell),
                       "x, y, z, roll, pitch or yaw, with a minus where the model counts the other way");
   }
@@ -93,7 +93,7 @@ void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place
     throw input_error(place, fmt::format("node {} at another place or on another rail or support", name),
                       fmt::format("as in {}", node.place));
   }
-  int& dof = node.dof[static_cast<std::size_t>(known - motions.begin())];
+  int& dof = node.dof[static_cast<std::size_t>(known - motion_names.begin())];
   if (dof != held) throw input_error(place, fmt::format("motion {} of node {} again", motion, name), "each once");
   dof = row - 1;
 }
@@ -172,7 +172,7 @@ void require_held(const StructureFiles& files, const DofTable& table, const Spar
     for (std::size_t k = 0; k < node.dof.size(); ++k) {
       if (node.dof[k] == held || std::abs((*v)[node.dof[k]]) <= largest) continue;
       largest = std::abs((*v)[node.dof[k]]);
-      most = fmt::format("node {} along {}", name, motions[k]);
+      most = fmt::format("node {} along {}", name, motion_names[k]);
     }
   }
   throw input_error(files.stiffness.string(), fmt::format("a motion that nothing holds, the most of it at {}", most),

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "railtab/tables/text_file.hpp"
+
 namespace railtab {
 
 namespace {
@@ -41,9 +43,9 @@ std::size_t split(std::string_view text, std::span<std::string_view> words, std:
 }
 
 LineReader::LineReader(const std::filesystem::path& file, std::string_view kind) : file_(file) {
-  std::error_code none;
-  if (std::filesystem::is_regular_file(file, none)) {
+  if (is_file(file)) {
     stream_.open(file);
+    std::error_code none;
     bytes_ = std::filesystem::file_size(file, none);
   }
   if (!stream_.is_open() || !stream_) throw input_error(file.string(), "no readable file", kind);

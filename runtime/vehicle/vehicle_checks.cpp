@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/vehicle/motion_names.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -21,7 +22,6 @@ using Vector = Eigen::VectorXd;
 using Eigen::Index;
 
 constexpr int roll = 3, pitch = 4;
-constexpr std::array<std::string_view, 6> motion_names{"x", "y", "z", "roll", "pitch", "yaw"};
 constexpr double softest = 0.01;  // Hz: what resists less is free
 
 constexpr double square(double x) { return x * x; }
