@@ -6,37 +6,126 @@
 
 namespace railtab {
 
+namespace {
+
+/// Points side by side: of many, the processor works on all while one would have it wait for divisions and roots.
+using Lanes = Eigen::Array<double, 8, 1>;
+using LanePieces = std::array<std::size_t, 8>;
+
+// The rail's foot point is found by Newton. A last step is not evaluated where its part in the penetration, counted to
+// second order, leaves rounding: up to `small_on_piece` on one cubic of the profile, of which the third order is below
+// 1e-11 m, and up to `small` across a joint, where curvature may jump.
+constexpr int foot_iterations = 8;
+constexpr double small = 1e-8, small_on_piece = 1e-5;
+
+/// What a rail point r has to do with a point of the silhouette that is (ey, ez) away. Real: double or Lanes.
+template <class Real>
+struct Foot {
+  Real tangent2, along, change;
+
+  Foot(const auto& r, const Real& ey, const Real& ez)
+      : tangent2(r.dy * r.dy + r.dz * r.dz), along(r.dy * ey + r.dz * ez), change(tangent2 - r.ddy * ey - r.ddz * ez) {}
+
+  /// Towards the foot point, along the rail profile [m].
+  [[nodiscard]] Real step() const { return along / change; }
+  /// Of the silhouette's point below the foot point, to second order of the step that leads there.
+  [[nodiscard]] Real depth(const auto& r, const Real& ey, const Real& ez) const {
+    using std::sqrt;
+    const Real length = sqrt(tangent2);
+    const Real bend = (r.dy * r.ddz - r.dz * r.ddy) / (tangent2 * length);
+    return (r.dy * ez - r.dz * ey) / length - 0.5 * bend * along * along / change;
+  }
+};
+
+struct CurveLanes {
+  Lanes y, z, dy, dz, ddy, ddz;
+};
+
+CurveLanes on_pieces(const ProfileCurve& curve, const LanePieces& piece, const Lanes& s) {
+  CurveLanes lanes;
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const CurvePoint p = curve.on_piece(piece[i], s[k]);
+    lanes.y[k] = p.y;
+    lanes.z[k] = p.z;
+    lanes.dy[k] = p.dy;
+    lanes.dz[k] = p.dz;
+    lanes.ddy[k] = p.ddy;
+    lanes.ddz[k] = p.ddz;
+  }
+  return lanes;
+}
+
+LanePieces pieces_of(const ProfileCurve& curve, const Lanes& s) {
+  LanePieces piece;
+  for (std::size_t i = 0; i < piece.size(); ++i) piece[i] = curve.piece_of(s[static_cast<Eigen::Index>(i)]);
+  return piece;
+}
+
+}  // namespace
+
+struct Overlap::PointLanes {
+  Lanes penetration, y, z;
+};
+
 OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
   const SilhouettePoint w = placed(
       silhouette_point(pair_.wheel().at(s_wheel), pair_.tape_circle_offset(), pair_.nominal_radius(), trigonometry_),
       centre_, trigonometry_);
-  // The rail's foot point by Newton. A last step is not evaluated where its part in the penetration, counted to second
-  // order, leaves rounding: up to `small_on_piece` on one cubic of the profile, of which the third order is below
-  // 1e-11 m, and up to `small` across a joint, where curvature may jump.
-  constexpr int iterations = 8;
-  constexpr double small = 1e-8, small_on_piece = 1e-5;
   const ProfileCurve& rail = pair_.rail();
   for (int i = 0;; ++i) {
     const std::size_t piece = rail.piece_of(s_rail);
     const CurvePoint r = rail.on_piece(piece, s_rail);
     const double ey = w.y - r.y;
     const double ez = w.z - r.z;
-    const double tangent2 = r.dy * r.dy + r.dz * r.dz;
-    const double along = r.dy * ey + r.dz * ez;
-    const double change = tangent2 - r.ddy * ey - r.ddz * ez;
-    const double step = along / change;
+    const Foot<double> foot(r, ey, ez);
+    const double step = foot.step();
     s_rail += step;
     const double size = std::abs(step);
-    if (!(size < small || (size < small_on_piece && rail.piece_contains(piece, s_rail))) && i < iterations) continue;
-    const double length = std::sqrt(tangent2);
+    if (!(size < small || (size < small_on_piece && rail.piece_contains(piece, s_rail))) && i < foot_iterations)
+      continue;
     // Into the rail, turned to the foot point.
-    const double turn = step * (r.dy * r.ddz - r.dz * r.ddy) / tangent2;
+    const double length = std::sqrt(foot.tangent2);
+    const double turn = step * (r.dy * r.ddz - r.dz * r.ddy) / foot.tangent2;
     const double ny = (-r.dz - turn * r.dy) / length;
     const double nz = (r.dy - turn * r.dz) / length;
-    const double depth = (-r.dz * ey + r.dy * ez) / length;
-    const double bend = (r.dy * r.ddz - r.dz * r.ddy) / (tangent2 * length);
-    const double offset = along / length;
-    return {s_wheel, s_rail, depth - 0.5 * bend * offset * offset * tangent2 / change, ny * w.dy + nz * w.dz, w.y, w.z};
+    return {s_wheel, s_rail, foot.depth(r, ey, ez), ny * w.dy + nz * w.dz, w.y, w.z};
+  }
+}
+
+Overlap::PointLanes Overlap::at(const Eigen::Array<double, 8, 1>& s_wheel,
+                                Eigen::Array<double, 8, 1> s_rail) const noexcept {
+  // silhouette_point() and placed(), without the tangent.
+  const CurveLanes wheel = on_pieces(pair_.wheel(), pieces_of(pair_.wheel(), s_wheel), s_wheel);
+  const PoseTrigonometry& t = trigonometry_;
+  const double t2 = t.tan_yaw * t.tan_yaw;
+  const Lanes radius = pair_.nominal_radius() + wheel.z;
+  const Lanes m = wheel.dz / wheel.dy;
+  const Lanes w2 = 1.0 - t2 * m * m;
+  const Lanes across = t.cos_yaw * (pair_.tape_circle_offset() + wheel.y - t2 * radius * m);
+  const Lanes below = radius * w2.max(0.0).sqrt();
+  PointLanes point;
+  point.y = centre_.y + t.cos_roll * across - t.sin_roll * below;
+  point.z = centre_.z + t.sin_roll * across + t.cos_roll * below;
+  const ProfileCurve& rail = pair_.rail();
+  for (int i = 0;; ++i) {
+    const LanePieces piece = pieces_of(rail, s_rail);
+    const CurveLanes r = on_pieces(rail, piece, s_rail);
+    const Lanes ey = point.y - r.y;
+    const Lanes ez = point.z - r.z;
+    const Foot<Lanes> foot(r, ey, ez);
+    const Lanes step = foot.step();
+    s_rail += step;
+    const Lanes size = step.abs();
+    bool found = (size < small_on_piece).all();
+    for (std::size_t k = 0; k < piece.size() && found; ++k) {
+      const auto lane = static_cast<Eigen::Index>(k);
+      found = size[lane] < small || rail.piece_contains(piece[k], s_rail[lane]);
+    }
+    if (!found && i < foot_iterations) continue;
+    const auto exists = wheel.dy > 0.0 && w2 > 0.0;
+    point.penetration = exists.select(foot.depth(r, ey, ez), -pair_.nominal_radius());
+    return point;
   }
 }
 
@@ -47,7 +136,7 @@ OverlapPoint Overlap::saddle(const ContactPatch& left, const ContactPatch& right
   middle.s_rail = 0.5 * (left.s_rail + right.s_rail);
   // Penetration falls from the left patch to the saddle and rises to the right one: bisection on its slope. Once near,
   // Newton on the common normal is exact, or the error of bisection is of second order.
-  constexpr int coarse = 7, fine = 16;
+  constexpr int coarse = 3, fine = 20;
   for (int i = 0; i < coarse + fine; ++i) {
     middle = at(0.5 * (low + high), middle.s_rail);
     (middle.slope < 0.0 ? low : high) = middle.s_wheel;
@@ -62,55 +151,91 @@ OverlapPoint Overlap::saddle(const ContactPatch& left, const ContactPatch& right
   return middle;
 }
 
-double Overlap::reach(const ContactPatch& patch, int direction, double level, double limit) const noexcept {
-  const double d = patch.penetration;
-  const double fall = std::sqrt(d - level);
-  // For constant curvatures d - penetration is B s², so that its root is a straight line over s: Newton on that.
-  const double B = std::max(0.5 * (patch.curv_wheel + patch.curv_rail), 0.05);
-  double near = 0.0;  // distances along the wheel profile that hold the level between them
-  double far = std::max(0.0, direction * (limit - patch.s_wheel));
-  double s = std::min(fall / std::sqrt(B), far);
-  constexpr int iterations = 24;
-  // Of the distance. Newton's last step leaves its square, and the area above the level counts the square of that.
-  constexpr double newton_tolerance = 1e-3, bisection_tolerance = 1e-6;
-  for (int i = 0; i < iterations; ++i) {
-    const OverlapPoint point = at(patch.s_wheel + direction * s, patch.s_rail + direction * s);
-    const double root = std::sqrt(std::max(d - point.penetration, 0.0));
-    (point.penetration > level ? near : far) = s;
-    double next = s - (root - fall) * 2.0 * root / (-direction * point.slope);
-    const bool newton = next > near && next < far;
-    if (!newton) {
-      if (near >= far) break;
-      next = 0.5 * (near + far);
-    }
-    const double step = std::abs(next - s);
-    s = next;
-    if (step < (newton ? newton_tolerance : bisection_tolerance) * s) break;
+namespace {
+
+/// Newton for the distance at which penetration has fallen to a level, one point of the overlap at a time.
+class LevelSearch {
+ public:
+  LevelSearch(const ContactPatch& patch, int direction, double level, double limit)
+      : patch_(patch),
+        direction_(direction),
+        level_(level),
+        fall_(std::sqrt(patch.penetration - level)),
+        far_(std::max(0.0, direction * (limit - patch.s_wheel))) {
+    const double B = std::max(0.5 * (patch.curv_wheel + patch.curv_rail), 0.05);
+    s_ = std::min(fall_ / std::sqrt(B), far_);
   }
-  return s;
+
+  [[nodiscard]] bool found() const { return found_ || iterations_ >= most_iterations; }
+  [[nodiscard]] double s_wheel() const { return patch_.s_wheel + direction_ * s_; }
+  [[nodiscard]] double s_rail() const { return patch_.s_rail + direction_ * s_; }
+
+  /// @param point of the overlap at s_wheel()
+  void advance(const OverlapPoint& point) {
+    ++iterations_;
+    // For constant curvatures d - penetration is B s², so that its root is a straight line over s: Newton on that.
+    const double root = std::sqrt(std::max(patch_.penetration - point.penetration, 0.0));
+    (point.penetration > level_ ? near_ : far_) = s_;
+    double next = s_ - (root - fall_) * 2.0 * root / (-direction_ * point.slope);
+    const bool newton = next > near_ && next < far_;
+    if (!newton) {
+      found_ = near_ >= far_;
+      if (found_) return;
+      next = 0.5 * (near_ + far_);
+    }
+    const double step = std::abs(next - s_);
+    s_ = next;
+    found_ = step < (newton ? newton_tolerance : bisection_tolerance) * s_;
+  }
+
+ private:
+  static constexpr int most_iterations = 24;
+  // Of the distance. Newton's last step leaves its square, and the area above the level counts the square of that.
+  static constexpr double newton_tolerance = 1e-3, bisection_tolerance = 1e-6;
+
+  const ContactPatch& patch_;
+  int direction_;
+  double level_, fall_;
+  double s_, near_ = 0.0, far_;  // distances along the wheel profile; near and far hold the level between them
+  bool found_ = false;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+OverlapEnds Overlap::ends(double level, const OverlapFlank& low, const OverlapFlank& high) const noexcept {
+  LevelSearch left(*low.patch, -1, level, low.limit), right(*high.patch, 1, level, high.limit);
+  // One point of either side per turn: neither waits for the other's divisions and roots.
+  bool search_left = low.searched, search_right = high.searched;
+  while (search_left || search_right) {
+    OverlapPoint l, r;
+    if (search_left) l = at(left.s_wheel(), left.s_rail());
+    if (search_right) r = at(right.s_wheel(), right.s_rail());
+    if (search_left) left.advance(l);
+    if (search_right) right.advance(r);
+    search_left = search_left && !left.found();
+    search_right = search_right && !right.found();
+  }
+  return {low.searched ? left.s_wheel() : low.limit, high.searched ? right.s_wheel() : high.limit};
 }
 
 OverlapArea Overlap::area(const ContactPatch& patch, double level, double s_low, double s_high) const noexcept {
   // Gauss and Legendre: exact for the parabola of constant curvatures; six points for what departs from it.
-  constexpr std::array<double, 3> node{0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
-  constexpr std::array<double, 3> weight{0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+  static const Lanes node{{-0.9324695142031521, -0.6612093864662645, -0.2386191860831969, 0.2386191860831969,
+                           0.6612093864662645, 0.9324695142031521, 0.0, 0.0}};
+  static const Lanes weight{{0.1713244923791704, 0.3607615730481386, 0.4679139345726910, 0.4679139345726910,
+                             0.3607615730481386, 0.1713244923791704, 0.0, 0.0}};
+  constexpr Eigen::Index first = 0, last = 5;
   const double middle = 0.5 * (s_low + s_high);
   const double half = 0.5 * (s_high - s_low);
   if (!(half > 0.0)) return {};
-  std::array<OverlapPoint, 2> outer{};
-  OverlapArea sum;
-  for (std::size_t i = 0; i < node.size(); ++i) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      const double s = middle + (side == 0 ? -1.0 : 1.0) * half * node[i];
-      outer[side] = at(s, patch.s_rail + (s - patch.s_wheel));
-      const double part = weight[i] * std::max(outer[side].penetration - level, 0.0);
-      sum.area += part;
-      sum.moment += part * (s - patch.s_wheel);
-    }
-  }
+  const Lanes from_patch = middle - patch.s_wheel + half * node;
+  const PointLanes point = at(patch.s_wheel + from_patch, patch.s_rail + from_patch);
+  const Lanes part = weight * (point.penetration - level).max(0.0);
   // The silhouette's own speed along the wheel profile has steps where the curvature has.
-  const double chord = std::hypot(outer[1].y - outer[0].y, outer[1].z - outer[0].z) / (2.0 * half * node.back());
-  return {half * chord * sum.area, half * chord * sum.moment};
+  const double chord =
+      std::hypot(point.y[last] - point.y[first], point.z[last] - point.z[first]) / (half * (node[last] - node[first]));
+  return {half * chord * part.sum(), half * chord * (part * from_patch).sum()};
 }
 
 ContactPatch Overlap::pair_at(const ContactPatch& patch, double s_wheel) const noexcept {

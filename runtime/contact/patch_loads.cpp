@@ -56,44 +56,41 @@ struct Neighbourhood {
   const ContactPatch* patch = nullptr;
 };
 
-/// End of the counted overlap on one side, on the wheel profile [m].
+/// Where the counted overlap ends on one side.
 struct Side {
-  double end;            ///< without what a vanishing neighbour adds
-  double far_end = 0.0;  ///< across that neighbour
-  double merged = 0.0;   ///< how much of it counts, see Junction
+  OverlapFlank flank;
+  double saddle = 0.0;  ///< with merged > 0: the end without what the vanishing neighbour adds [m]
+  double merged = 0.0;  ///< how much of that counts, see Junction
 };
 
-Side counted_side(const Overlap& overlap, const ProfileCurve& wheel, const ContactPatch& patch, int direction,
-                  const Neighbourhood& side) {
-  const double level = level_of(patch);
+Side counted_side(const ProfileCurve& wheel, const ContactPatch& patch, int direction, const Neighbourhood& side) {
   const double edge = direction > 0 ? wheel.s_end() : wheel.s_begin();
-  if (!side.junction || !side.junction->loaded) {
-    return {patch.s_wheel + direction * overlap.reach(patch, direction, level, edge)};
-  }
+  if (!side.junction || !side.junction->loaded) return {{&patch, edge}};
   const OverlapPoint& saddle = side.junction->saddle;
-  if (saddle.penetration <= level) {
-    return {patch.s_wheel + direction * overlap.reach(patch, direction, level, saddle.s_wheel)};
-  }
+  if (saddle.penetration <= level_of(patch)) return {{&patch, saddle.s_wheel}};
   const ContactPatch& other = *side.patch;
   const double merged = patch.penetration >= other.penetration ? side.junction->merged : 0.0;
-  if (merged <= 0.0) return {saddle.s_wheel};
-  return {saddle.s_wheel, other.s_wheel + direction * overlap.reach(other, direction, level, edge), merged};
+  if (merged <= 0.0) return {{&patch, saddle.s_wheel, false}};
+  return {{&other, edge}, saddle.s_wheel, merged};
 }
 
 /// The deepest part of a patch's overlap.
 OverlapArea counted_area(const Overlap& overlap, const ProfileCurve& wheel, const ContactPatch& patch,
                          const Neighbourhood& left, const Neighbourhood& right) {
-  const Side low = counted_side(overlap, wheel, patch, -1, left);
-  const Side high = counted_side(overlap, wheel, patch, 1, right);
+  const Side low = counted_side(wheel, patch, -1, left);
+  const Side high = counted_side(wheel, patch, 1, right);
+  const OverlapEnds ends = overlap.ends(level_of(patch), low.flank, high.flank);
+  const double low_end = low.merged > 0.0 ? low.saddle : ends.low;
+  const double high_end = high.merged > 0.0 ? high.saddle : ends.high;
   const auto between = [&](double from, double to) { return overlap.area(patch, level_of(patch), from, to); };
-  const OverlapArea inner = between(low.end, high.end);
+  const OverlapArea inner = between(low_end, high_end);
   OverlapArea sum = inner;
   const auto add = [&](double merged, const OverlapArea& with_neighbour) {
     sum.area += merged * (with_neighbour.area - inner.area);
     sum.moment += merged * (with_neighbour.moment - inner.moment);
   };
-  if (low.merged > 0.0) add(low.merged, between(low.far_end, high.end));
-  if (high.merged > 0.0) add(high.merged, between(low.end, high.far_end));
+  if (low.merged > 0.0) add(low.merged, between(ends.low, high_end));
+  if (high.merged > 0.0) add(high.merged, between(low_end, ends.high));
   return sum;
 }
 

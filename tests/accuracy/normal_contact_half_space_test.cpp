@@ -134,8 +134,9 @@ class HalfSpace {
 double half_space_force(HalfSpace& half_space, const WheelRailPair& pair, const WheelsetPose& pose,
                         const ContactPatch& patch, const ElasticMaterial& material) {
   const Overlap overlap(pair, pose);
-  const double low = overlap.reach(patch, -1, 0.0, pair.wheel().s_begin());
-  const double high = overlap.reach(patch, 1, 0.0, pair.wheel().s_end());
+  const OverlapEnds ends = overlap.ends(0.0, {&patch, pair.wheel().s_begin()}, {&patch, pair.wheel().s_end()});
+  const double low = patch.s_wheel - ends.low;
+  const double high = ends.high - patch.s_wheel;
   const double A = 0.5 * patch.curv_rolling;
   const double hx = 2.04 * std::sqrt(patch.penetration / A) / HalfSpace::nx;
   const double hy = 1.02 * (low + high) / HalfSpace::ny;

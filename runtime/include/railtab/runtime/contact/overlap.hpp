@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "railtab/runtime/contact/contact_pair.hpp"
 
 namespace railtab {
@@ -19,6 +21,18 @@ struct OverlapArea {
   double moment = 0.0;  ///< the same, times the distance from the patch along the wheel profile [m³]
 };
 
+/// One side of an overlap on which a level of penetration is looked for.
+struct OverlapFlank {
+  const ContactPatch* patch;  ///< from here outward penetration falls
+  double limit;               ///< arc length on the wheel profile at which the search ends, on that side [m]
+  bool searched = true;       ///< otherwise the overlap ends at the limit, whatever it has there
+};
+
+/// Arc lengths on the wheel profile [m].
+struct OverlapEnds {
+  double low, high;
+};
+
 /// The overlap of one (right) wheel with its rail at a pose, seen along the wheel profile. Refers to its pair.
 /// Allocation-free, thread-safe.
 class Overlap {
@@ -33,11 +47,9 @@ class Overlap {
   /// between them is least. Not positive penetration: the patches are apart.
   [[nodiscard]] OverlapPoint saddle(const ContactPatch& left, const ContactPatch& right) const noexcept;
 
-  /// Where penetration has fallen to `level` [m] on one side of a patch: distance along the wheel profile [m].
-  /// @param direction -1: towards smaller y, 1: larger y
-  /// @param limit arc length on the wheel profile at which the search ends, on that side [m]; penetration falls from
-  ///   the pair to there. Where the level is not reached, the distance to the limit is returned.
-  [[nodiscard]] double reach(const ContactPatch& patch, int direction, double level, double limit) const noexcept;
+  /// Where penetration has fallen to `level` [m] on either side: arc lengths on the wheel profile [m]. Where it is
+  /// above the level as far as the limit, that is the limit.
+  [[nodiscard]] OverlapEnds ends(double level, const OverlapFlank& low, const OverlapFlank& high) const noexcept;
 
   /// Area where penetration exceeds `level` [m] over s_low..s_high on the wheel profile near the patch: the integral
   /// over the arc length, times the silhouette's chord per arc length.
@@ -48,6 +60,11 @@ class Overlap {
   [[nodiscard]] ContactPatch pair_at(const ContactPatch& patch, double s_wheel) const noexcept;
 
  private:
+  struct PointLanes;
+  /// The same at eight points: penetration, y and z. Where there is no silhouette, far outside the rail.
+  [[nodiscard]] PointLanes at(const Eigen::Array<double, 8, 1>& s_wheel,
+                              Eigen::Array<double, 8, 1> s_rail) const noexcept;
+
   const WheelRailPair& pair_;
   WheelsetPose pose_;
   PoseTrigonometry trigonometry_;
