@@ -6,13 +6,11 @@
 
 namespace railtab {
 
-PatchCreepage patch_creepage(const RelativeMotion& motion, const Eigen::Vector3d& arm, double angle,
+PatchCreepage patch_creepage(const RelativeMotion& motion, const Eigen::Vector3d& arm, const ContactAxes& axes,
                              double speed) noexcept {
   assert(speed > 0.0);
-  const Eigen::Vector3d tangent(0.0, std::cos(angle), std::sin(angle));
-  const Eigen::Vector3d normal(0.0, -std::sin(angle), std::cos(angle));
   const Eigen::Vector3d slip = motion.velocity + motion.angular_velocity.cross(arm);
-  return {slip.x() / speed, slip.dot(tangent) / speed, motion.angular_velocity.dot(normal) / speed};
+  return {slip.x() / speed, slip.dot(axes.tangent) / speed, motion.angular_velocity.dot(axes.normal) / speed};
 }
 
 Creepage normalised_creepage(double upsilon_x, double upsilon_y, double phi, double a, double b, double G,

@@ -124,8 +124,8 @@ PatchLoad overlap_load(const NormalContactModel& model, const Overlap& overlap, 
 }
 
 PatchLoads published_loads(const NormalContactModel& model, const ContactPatches& patches) {
-  PatchLoads loads;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+  PatchLoads loads(patches.count);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
     const ContactPatch& patch = patches.patch[i];
     loads[i] = load(model, patch, 0.5 * (patch.curv_wheel + patch.curv_rail), 0.0);
   }
@@ -144,7 +144,7 @@ PatchLoads patch_loads(const NormalContactModel& model, const ContactGeometry& g
   for (std::size_t i = 0; i + 1 < count; ++i) {
     junctions[i] = junction(overlap, patches.patch[i], patches.patch[i + 1]);
   }
-  PatchLoads loads;
+  PatchLoads loads(patches.count);
   for (std::size_t i = 0; i < count; ++i) {
     const ContactPatch& patch = patches.patch[i];
     Neighbourhood left, right;

@@ -42,13 +42,6 @@ WheelsetPose pose_on_right(const WheelRailPair& pair, const WheelsetMotion& w, c
           w.displacement[5] - r.yaw};
 }
 
-// Contact axes of a right wheel's patch, in rail-head axes: x forward, t across, n into the rail.
-struct ContactAxes {
-  Vector3 t, n;
-  explicit ContactAxes(double angle)
-      : t(0.0, std::cos(angle), std::sin(angle)), n(0.0, -std::sin(angle), std::cos(angle)) {}
-};
-
 struct PatchForce {
   Vector3 force, moment;  // on the wheel, in rail-head axes, moment about the wheelset centre
   double normal;          // [N]
@@ -57,14 +50,13 @@ struct PatchForce {
 
 // velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact
 // point.
-PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, const Vector3& arm,
-                       const Vector3& velocity, const Vector3& rotation) {
-  const ContactAxes axes(load.contact.angle);
-  const double approach = (velocity + rotation.cross(arm)).dot(axes.n);
+PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, const ContactAxes& axes,
+                       const Vector3& arm, const Vector3& velocity, const Vector3& rotation) {
+  const double approach = (velocity + rotation.cross(arm)).dot(axes.normal);
   const double N = std::max(0.0, load.elastic_force * (1.0 + model.damping * approach));
   if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero(), 0.0};
 
-  Vector3 force = -N * axes.n;
+  Vector3 force = -N * axes.normal;
   if (model.gravitational_stiffness == GravitationalStiffness::neglected) force[1] = 0.0;
   Vector3 moment = Vector3::Zero();
   bool outside = false;
@@ -72,13 +64,12 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
   if (bound > 0.0) {
     const auto [a, b] =
         model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
-    const PatchCreepage slip =
-        patch_creepage({velocity, rotation}, arm, load.contact.angle, model.speed / model.creepage_share);
+    const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, axes, model.speed / model.creepage_share);
     const Creepage creepage =
         normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.normal.material.shear_modulus(), bound);
     const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
-    force += creep.x * Vector3::UnitX() + creep.y * axes.t;
-    moment = creep.moment * axes.n;
+    force += creep.x * Vector3::UnitX() + creep.y * axes.tangent;
+    moment = creep.moment * axes.normal;
     const auto* table = std::get_if<TableCreep>(&model.creep_law);
     outside = table && table->share(a / b, creepage) < 1.0;
   }
@@ -93,9 +84,9 @@ WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const Whee
 }
 
 WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                       const RailHeadMotion& rail, std::span<const PatchLoad> loads) noexcept {
+                       const RailHeadMotion& rail, const PatchLoads& loads) noexcept {
   WheelForce result;
-  if (loads.empty()) return result;
+  if (loads.size() == 0) return result;
   const WheelRailPair& pair = model.geometry->pair();
   const WheelsetMotion w = on_right(side, wheelset);
   const RailHeadMotion r = on_right(side, rail);
@@ -113,15 +104,16 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
 
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const ContactPatch& patch = loads[i].contact;
+    const ContactAxes axes(patch.angle);
     // To the wheel's own undeformed surface, the penetration below the rail's: rolling radii are those of the wheel.
     const Vector3 arm = Vector3(patch.x, patch.y_rail - (pose.y - pair.rail_offset()),
                                 patch.z_rail - (pose.z - pair.nominal_radius())) +
-                        patch.penetration * ContactAxes(patch.angle).n;
+                        patch.penetration * axes.normal;
     // The rail's own roll rate moves its surface at the contact point.
     const Vector3 surface_velocity = r.velocity[2] * Vector3(0.0, -patch.z_rail, patch.y_rail);
     // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
     const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
-    const PatchForce p = patch_force(model, loads[i], arm, velocity + centre_shift - surface_velocity, rotation);
+    const PatchForce p = patch_force(model, loads[i], axes, arm, velocity + centre_shift - surface_velocity, rotation);
     result.normal[i] = p.normal;
     result.outside_creep_table += p.outside_creep_table;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
@@ -141,8 +133,7 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
 WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                        const RailHeadMotion& rail, const ContactPatches& patches) noexcept {
   const WheelsetPose pose = relative_pose(model.geometry->pair(), side, wheelset, rail);
-  return wheel_force(model, side, wheelset, rail,
-                     of_patches(patch_loads(model.normal, *model.geometry, pose, patches), patches));
+  return wheel_force(model, side, wheelset, rail, patch_loads(model.normal, *model.geometry, pose, patches));
 }
 
 ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatches& patches, const WheelsetPose& from,
@@ -161,6 +152,20 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
       }
     }
     q.penetration += PenetrationGradient(pair, p, from).change(from, to);  // the pair frozen
+  }
+  return moved;
+}
+
+PatchLoads moved_loads(const PatchLoads& loads, const ContactMemory& from, const WheelsetPose& to) noexcept {
+  PatchLoads moved = loads;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    PatchLoad& load = moved[i];
+    const double change = from.patch[i].gradient.change(from.pose, to);
+    load.contact.penetration += change;
+    // The depth of a spring with this force: patches that have merged share theirs.
+    const double ratio = std::max(load.elastic_force, 0.0) / load.hertz.stiffness;
+    const double depth = std::max(std::cbrt(ratio * ratio) + change, 0.0);
+    load.elastic_force = load.hertz.stiffness * depth * std::sqrt(depth);
   }
   return moved;
 }
@@ -200,9 +205,8 @@ void add_change(const PatchLoad& from, const PatchLoad& to, double share, PatchL
 // Loads at a pose near by, to first order from those at poses moved in y, z and roll: only relative motion counts, so a
 // rail that rolls asks for no overlap of its own. None where an ellipse changes by more than first order can say: at
 // the edge of an overlap.
-std::optional<PatchLoads> combined_loads(const PatchLoads& here, int count, const WheelsetPose& from,
-                                         const Neighbour& y, const Neighbour& z, const Neighbour& roll,
-                                         const WheelsetPose& to) {
+std::optional<PatchLoads> combined_loads(const PatchLoads& here, const WheelsetPose& from, const Neighbour& y,
+                                         const Neighbour& z, const Neighbour& roll, const WheelsetPose& to) {
   const Eigen::Vector2d by_y(y.pose.y - from.y, y.pose.z - from.z);
   const Eigen::Vector2d by_z(z.pose.y - from.y, z.pose.z - from.z);
   const Eigen::Vector2d wanted(to.y - from.y, to.z - from.z);
@@ -211,7 +215,7 @@ std::optional<PatchLoads> combined_loads(const PatchLoads& here, int count, cons
   const double share_z = (by_y[0] * wanted[1] - by_y[1] * wanted[0]) / determinant;
   const double share_roll = (to.roll - from.roll) / (roll.pose.roll - from.roll);
   PatchLoads loads = here;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
     add_change(here[i], y.loads[i], share_y, loads[i]);
     add_change(here[i], z.loads[i], share_z, loads[i]);
     add_change(here[i], roll.loads[i], share_roll, loads[i]);
@@ -237,10 +241,10 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
     return sum;
   };
   const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
-  const Vector9 here = total(pose, patches, wheel_force(model, side, wheelset, rail, of_patches(loads, patches)));
+  const Vector9 here = total(pose, patches, wheel_force(model, side, wheelset, rail, loads));
   const auto difference = [&](const WheelsetMotion& w, const RailHeadMotion& r, const WheelsetPose& at,
                               const ContactPatches& p, const PatchLoads& l, double step) {
-    return Vector9((total(at, p, wheel_force(model, side, w, r, of_patches(l, p))) - here) / step);
+    return Vector9((total(at, p, wheel_force(model, side, w, r, l)) - here) / step);
   };
   // Steps well above the Newton tolerance of the pair and well below the penetration [m, rad].
   constexpr std::array<double, 6> steps{1e-7, 1e-8, 1e-8, 2e-8, 1e-7, 1e-7};
@@ -270,8 +274,7 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   rolled.velocity[2] += rail_velocity_rate * roll_step;
   const WheelsetPose to = relative_pose(pair, side, wheelset, rolled);
   const ContactPatches moved = moved_patches(*model.geometry, patches, pose, to);
-  const std::optional<PatchLoads> combined =
-      combined_loads(loads, patches.count, pose, neighbour[1], neighbour[2], neighbour[3], to);
+  const std::optional<PatchLoads> combined = combined_loads(loads, pose, neighbour[1], neighbour[2], neighbour[3], to);
   tangent.col(8) = difference(wheelset, rolled, to, moved,
                               combined ? *combined : patch_loads(model.normal, *model.geometry, to, moved), roll_step);
   return tangent;

@@ -71,7 +71,7 @@ class Integrator {
   }
   /// From here on as a run that begins here: nothing of earlier steps but the numbers of a checkpoint.
   void begin(VsiState& state) {
-    workspace_.newton.factor.clear();
+    workspace_.newton.inverse.clear();
     if (rule_ != ContactForceRule::endpoint) remember_contact(model_, state);
     if (account_ || (!energy_ && !contact_energy_) || model_.normal_contact != NormalContact::hertz) return;
     account_.emplace(model_, state);

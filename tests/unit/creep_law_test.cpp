@@ -209,7 +209,7 @@ RelativeMotion rolling(double rotation_factor) {
 }
 
 TEST(Creepage, PureRollingHasNone) {
-  const PatchCreepage c = patch_creepage(rolling(1.0), {0.0, 0.75, kRadius}, 0.0, kSpeed);
+  const PatchCreepage c = patch_creepage(rolling(1.0), {0.0, 0.75, kRadius}, ContactAxes(0.0), kSpeed);
   EXPECT_NEAR(c.x, 0.0, 1e-15);
   EXPECT_NEAR(c.y, 0.0, 1e-15);
   EXPECT_NEAR(c.spin, 0.0, 1e-15);
@@ -217,24 +217,24 @@ TEST(Creepage, PureRollingHasNone) {
 
 TEST(Creepage, TractionPushesForwardAndBrakingBackward) {
   const Eigen::Vector3d arm(0.0, 0.75, kRadius);
-  const PatchCreepage driven = patch_creepage(rolling(1.002), arm, 0.0, kSpeed);
+  const PatchCreepage driven = patch_creepage(rolling(1.002), arm, ContactAxes(0.0), kSpeed);
   EXPECT_NEAR(driven.x, -0.002, 1e-15);
   const double a = 6e-3, b = 4e-3, G = 82e9, bound = 0.3 * 60e3;
   const CreepForce f =
       creep_force(PolachCreep{}, a / b, normalised_creepage(driven.x, driven.y, driven.spin, a, b, G, bound));
   EXPECT_GT(dimensional_creep_force(f, a, b, bound).x, 1e3);
-  EXPECT_GT(patch_creepage(rolling(0.998), arm, 0.0, kSpeed).x, 0.0);
+  EXPECT_GT(patch_creepage(rolling(0.998), arm, ContactAxes(0.0), kSpeed).x, 0.0);
 }
 
 TEST(Creepage, RollingRadiusSetsLongitudinalCreepage) {
   // A larger rolling radius than nominal is as if the wheel turned too fast: υx = (R0 - r)/R0.
-  const PatchCreepage c = patch_creepage(rolling(1.0), {0.0, 0.75, kRadius + 2e-3}, 0.0, kSpeed);
+  const PatchCreepage c = patch_creepage(rolling(1.0), {0.0, 0.75, kRadius + 2e-3}, ContactAxes(0.0), kSpeed);
   EXPECT_NEAR(c.x, -2e-3 / kRadius, 1e-15);
 }
 
 TEST(Creepage, SpinOfARightWheelIsThatOfItsCone) {
   const double angle = -0.3;
-  const PatchCreepage c = patch_creepage(rolling(1.0), {0.0, 0.72, kRadius}, angle, kSpeed);
+  const PatchCreepage c = patch_creepage(rolling(1.0), {0.0, 0.72, kRadius}, ContactAxes(angle), kSpeed);
   EXPECT_NEAR(c.spin, std::sin(angle) / kRadius, 1e-15);
 }
 
@@ -242,12 +242,13 @@ TEST(Creepage, LateralVelocityAndYaw) {
   // Sideways motion in the tangent plane; yawed wheelset: the axle's rotation has no component along the rail's track.
   RelativeMotion motion = rolling(1.0);
   motion.velocity.y() = 0.1;
-  EXPECT_NEAR(patch_creepage(motion, {0.0, 0.75, kRadius}, 0.0, kSpeed).y, 0.1 / kSpeed, 1e-15);
-  EXPECT_NEAR(patch_creepage(motion, {0.0, 0.75, kRadius}, -1.2, kSpeed).y, 0.1 / kSpeed * std::cos(1.2), 1e-15);
+  EXPECT_NEAR(patch_creepage(motion, {0.0, 0.75, kRadius}, ContactAxes(0.0), kSpeed).y, 0.1 / kSpeed, 1e-15);
+  EXPECT_NEAR(patch_creepage(motion, {0.0, 0.75, kRadius}, ContactAxes(-1.2), kSpeed).y, 0.1 / kSpeed * std::cos(1.2),
+              1e-15);
   // Yaw ψ to the right turns the axle to (-sin ψ, cos ψ): υy = -ψ for small ψ.
   const double yaw = 1e-3;
   motion = {{kSpeed, 0.0, 0.0}, -kSpeed / kRadius * Eigen::Vector3d(-std::sin(yaw), std::cos(yaw), 0.0)};
-  EXPECT_NEAR(patch_creepage(motion, {0.0, 0.75, kRadius}, 0.0, kSpeed).y, -std::sin(yaw), 1e-15);
+  EXPECT_NEAR(patch_creepage(motion, {0.0, 0.75, kRadius}, ContactAxes(0.0), kSpeed).y, -std::sin(yaw), 1e-15);
 }
 
 TEST(Creepage, NormalisationKeepsTheDimensionalLinearForce) {

@@ -92,7 +92,7 @@ TEST_P(ChainTangent, IsThatOfTheForces) {
       chain.problem.start = &chain.start;
       chain.problem.mean_weight = 1.0 / (hht.gamma() * hht.load_weight());
     }
-    // What Newton makes of it: one iteration with no compliance at all.
+    // What Newton makes of it before it has learnt from a correction, with no compliance at all.
     NewtonWorkspace workspace;
     chain.problem.free = Eigen::VectorXd::Zero(wheelset_unknowns);
     chain.problem.vehicle_compliance = Eigen::MatrixXd::Zero(6, 6);
@@ -100,7 +100,7 @@ TEST_P(ChainTangent, IsThatOfTheForces) {
     q.head<6>() = step.to;
     chain.end.displacement = q;
     static_cast<void>(
-        solve_contact(chain.model, chain.problem, {.tolerance = 1e-15, .max_iterations = 1}, chain.end, workspace));
+        solve_contact(chain.model, chain.problem, {.tolerance = 1e-15, .max_iterations = 0}, chain.end, workspace));
     ASSERT_EQ(workspace.tangent.size(), 1u);
 
     const double scale_of[] = {1.0, 1.0, 1.0, 0.75, 0.46, 0.75, 1.0, 1.0, 0.1, 1.0, 1.0, 0.1};  // m per m or rad

@@ -51,7 +51,8 @@ Rolling rolling(const ContactGeometry& geometry, const NormalContactModel& model
                       std::cos(pose.yaw) * std::sin(pose.roll));
   const RelativeMotion motion{Vector3d(speed, 0.0, 0.0), pitch_rate * axle};
   Rolling result{};
-  result.creepage = patch_creepage(motion, arm, p.angle, 0.5 * (speed + std::abs(pitch_rate) * p.rolling_radius));
+  result.creepage =
+      patch_creepage(motion, arm, ContactAxes(p.angle), 0.5 * (speed + std::abs(pitch_rate) * p.rolling_radius));
   const double bound = friction * load.elastic_force;
   const double a = load.hertz.a1 * std::cbrt(load.elastic_force);
   const double b = load.hertz.b1 * std::cbrt(load.elastic_force);

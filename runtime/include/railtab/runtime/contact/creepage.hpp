@@ -1,13 +1,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "railtab/runtime/contact/creep_law.hpp"
 
 namespace railtab {
 
-/// Creepages of a contact patch, in contact axes: x forward, y across in the tangent plane (to the right), z the normal
-/// into the rail.
+/// Contact axes: x forward, y across in the tangent plane (to the right), z the normal into the rail.
+struct ContactAxes {
+  Eigen::Vector3d tangent, normal;  ///< y and z
+  /// @param angle contact angle, rotation about x from z to the normal into the rail [rad]
+  explicit ContactAxes(double angle) noexcept
+      : tangent(0.0, std::cos(angle), std::sin(angle)), normal(0.0, -std::sin(angle), std::cos(angle)) {}
+};
+
+/// Creepages of a contact patch, in contact axes.
 struct PatchCreepage {
   double x = 0.0;     ///< υx, longitudinal [-]
   double y = 0.0;     ///< υy, lateral [-]
@@ -28,10 +36,9 @@ struct RelativeMotion {
 /// A wheel that turns slower than it rolls (braked) slides forward: υx > 0, and the creep force on it points backward.
 /// A right wheel (angle < 0) rolling freely has φ = V sin(angle)/(R0 V) < 0.
 /// @param arm from the wheelset centre to the contact point [m]
-/// @param angle contact angle, rotation about x from z to the normal into the rail [rad]
 /// @param speed running speed V > 0 [m/s]
-[[nodiscard]] PatchCreepage patch_creepage(const RelativeMotion& motion, const Eigen::Vector3d& arm, double angle,
-                                           double speed) noexcept;
+[[nodiscard]] PatchCreepage patch_creepage(const RelativeMotion& motion, const Eigen::Vector3d& arm,
+                                           const ContactAxes& axes, double speed) noexcept;
 
 /// Creepages normalised by G ab/(μF_n), spin by G (ab)^{3/2}/(μF_n): what creep_force() takes.
 /// @param upsilon_x, upsilon_y creepages [-]; @param phi spin [1/m]; @param a, b semi-axes [m]

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <span>
+#include <cstddef>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
@@ -16,11 +17,36 @@ struct PatchLoad {
   /// curvatures are constant. Its penetration is the depth there.
   ContactPatch contact{};
 };
-using PatchLoads = std::array<PatchLoad, ContactPatches::capacity>;
-/// As many as there are patches. Refers to `loads`.
-[[nodiscard]] inline std::span<const PatchLoad> of_patches(const PatchLoads& loads, const ContactPatches& patches) {
-  return {loads.data(), static_cast<std::size_t>(patches.count)};
-}
+/// The loads of the patches of one wheel, in their order; as ContactPatches, without heap allocation and without zeros
+/// where there is no patch.
+class PatchLoads {
+ public:
+  PatchLoads() noexcept : PatchLoads(0) {}
+  explicit PatchLoads(int count) noexcept : count_(count) {}
+  PatchLoads(const PatchLoads& other) noexcept : count_(other.count_) {
+    std::copy_n(other.begin(), count_, load_.begin());
+  }
+  PatchLoads& operator=(const PatchLoads& other) noexcept {
+    if (this != &other) std::copy_n(other.begin(), other.count_, load_.begin());
+    count_ = other.count_;
+    return *this;
+  }
+  ~PatchLoads() = default;
+
+  [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+  [[nodiscard]] PatchLoad& operator[](std::size_t i) noexcept { return load_[i]; }
+  [[nodiscard]] const PatchLoad& operator[](std::size_t i) const noexcept { return load_[i]; }
+  [[nodiscard]] PatchLoad* begin() noexcept { return load_.data(); }
+  [[nodiscard]] PatchLoad* end() noexcept { return load_.data() + count_; }
+  [[nodiscard]] const PatchLoad* begin() const noexcept { return load_.data(); }
+  [[nodiscard]] const PatchLoad* end() const noexcept { return load_.data() + count_; }
+
+ private:
+  union {
+    std::array<PatchLoad, ContactPatches::capacity> load_;  ///< the first `count_`; the others are not initialised
+  };
+  int count_;
+};
 
 /// Parameters of the normal contact.
 struct NormalContactModel {

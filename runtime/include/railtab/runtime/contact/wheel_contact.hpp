@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <span>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
@@ -76,7 +75,7 @@ enum class WheelSide { left, right };
 
 /// The same from loads that are known: those of patch_loads() at that pose.
 [[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                                     const RailHeadMotion& rail, std::span<const PatchLoad> loads) noexcept;
+                                     const RailHeadMotion& rail, const PatchLoads& loads) noexcept;
 
 /// Pose of the wheelset against the rail head, as seen by a right wheel (mirrored on the left).
 [[nodiscard]] WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
@@ -88,6 +87,12 @@ enum class WheelSide { left, right };
                                            const WheelsetPose& from, const WheelsetPose& to) noexcept;
 
 struct ContactMemory;
+
+/// The loads of patches after a small motion: pairs and ellipses as they were, forces by the penetrations to first
+/// order. Off by what the geometry changes with the motion: for where Newton's method starts.
+/// @param from the pose of `loads` and the gradients of its patches
+[[nodiscard]] PatchLoads moved_loads(const PatchLoads& loads, const ContactMemory& from,
+                                     const WheelsetPose& to) noexcept;
 
 /// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
 /// velocities follow displacements with dv/da: `velocity_rate` per wheelset dof and `rail_velocity_rate` [1/s]

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <array>
 #include <limits>
 #include <vector>
@@ -90,7 +89,9 @@ struct NewtonLimits {
 
 /// Where the iteration of one group of wheelsets is.
 struct GroupNewton {
-  bool moved = true;         ///< since its forces were computed
+  bool moved = true;                                                  ///< since its forces were computed
+  enum class Turn { rests, goes_back, corrects } turn = Turn::rests;  ///< what its residual asks for
+  bool gains = false;        ///< whether the residual is less than half of that before the last correction
   bool last = false;         ///< whether its last correction was below the displacement's tolerance
   bool new_tangent = false;  ///< whether one is wanted before the next correction
   double previous = std::numeric_limits<double>::infinity();  ///< largest residual before the last correction [m, rad]
@@ -98,16 +99,27 @@ struct GroupNewton {
   int evaluations = 0;
 };
 
-/// Tangents and factors, reused from step to step so that Newton allocates nothing.
+/// What an evaluation of the contact forces has found at one wheel.
+struct WheelLoads {
+  PatchLoads loads;
+  ContactMemory contact;
+};
+
+/// Tangents and inverses, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
-  std::vector<Matrix12> tangent;                             ///< per wheelset, df/dq
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factor;  ///< per group, of I − C df/dq
-  Eigen::MatrixXd compliance, jacobian;                      ///< of one group
+  std::vector<Matrix12> tangent;            ///< per wheelset, df/dq
+  std::vector<Eigen::MatrixXd> compliance;  ///< per group, C
+  std::vector<Eigen::MatrixXd> inverse;     ///< per group, of I − C df/dq
   std::vector<GroupNewton> group;
-  Eigen::VectorXd residual, correction, start;
+  Eigen::VectorXd residual, correction;
+  Eigen::VectorXd first;               ///< displacement before the prediction
+  Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
+  /// What the groups' own corrections change the forces by, and the residual with what that displaces other groups by.
+  Eigen::VectorXd force_change, coupled;
   /// Set before solve_contact() where the solution's forces are those at its displacement already.
   bool forces_known = false;
+  std::vector<WheelLoads> loads;      ///< per wheel, of the last evaluation
   std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
 };
@@ -120,15 +132,15 @@ struct NewtonWorkspace {
 /// Forces at solution.displacement, written into the solution.
 NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
 
-/// Newton on the contact unknowns, from solution.displacement. The Jacobian is block-diagonal over the groups of
-/// wheelsets: their coupling through vehicles and rails enters the residual only, so the solution is exact. Each group
-/// keeps its tangent while it makes the residual five times smaller per iteration, from one step to the next too: a
-/// tangent costs five evaluations of the forces. Without factors in the workspace it is made first of all. A group that
-/// has converged rests while others iterate, unless its neighbours disturb it.
-/// The published method's pairs jump as a wheel moves: they are searched in the first evaluations and then held,
-/// each moving with its bodies' particles, so that Newton ends on forces that are smooth.
-/// Converged: the residual is below the tolerance or the next correction below one of the limits; the forces are those
-/// at the displacement.
+/// Newton on the contact unknowns, from solution.displacement. The Jacobian is inverted group by group of wheelsets;
+/// their coupling through vehicles and rails enters the residual, and the corrections by one sweep over the groups.
+/// Each group keeps its tangent while it halves the residual per iteration, from one step to the next too: a tangent
+/// costs five evaluations of the forces. Where a group is one wheelset, the tangent learns from every correction what
+/// that has changed the forces by [Broyden1965]. Without inverses in the workspace it is made first of all. A group
+/// that has converged rests while others iterate, unless its neighbours disturb it. The published method's pairs jump
+/// as a wheel moves: they are searched in the first evaluations and then held, each moving with its bodies' particles,
+/// so that Newton ends on forces that are smooth. Converged: the residual is below the tolerance or the next correction
+/// below one of the limits; the forces are those at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
                                          NewtonWorkspace& workspace);

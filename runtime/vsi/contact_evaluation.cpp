@@ -1,0 +1,147 @@
+#include "contact_evaluation.hpp"
+
+#include "stopwatch.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Matrix12 = NewtonWorkspace::Matrix12;
+
+constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
+                             NewtonWorkspace& ws) {
+  if (model.without_table) return model.geometry->patches_without_table(pose);
+  if (ws.found.empty()) return model.geometry->patches(pose);
+  if (pairs == Pairs::kept) return moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
+  ws.found[wheel] = model.geometry->patches(pose);
+  ws.found_at[wheel] = pose;
+  return ws.found[wheel];
+}
+
+}  // namespace
+
+void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, int first, int last,
+              ContactSolution& s, NewtonWorkspace& ws, NewtonReport& report) {
+  for (int w = first; w < last; ++w) {
+    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
+    auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    auto end_force = s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    force.setZero();
+    end_force.setZero();
+    for (int side = 0; side < 2; ++side) {
+      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
+      const WheelSide wheel_side = sides[index(side)];
+      const std::size_t number = index(2 * w + side);
+      ContactPatches& patches = s.patches[number];
+      const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
+      {
+        const Stopwatch watch(report.counts.seconds_lookup);
+        patches = wheel_patches(model, number, pose, pairs, ws);
+      }
+      if (pairs == Pairs::searched) {
+        ++report.counts.queries;
+        if (patches.from_table) ++report.counts.table_queries;
+      }
+      const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
+      const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, loads);
+      const int r = 6 + 3 * side;
+      end_force.head<6>() += wheel.wheelset;
+      end_force.segment<3>(r) = wheel.rail;
+      s.rail_x[number] = wheel.rail_x;
+      report.counts.outside_creep_table += wheel.outside_creep_table;
+      s.normal[number] = wheel.normal;
+      s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
+      if (!ws.loads.empty()) ws.loads[number] = {loads, s.memory[number]};
+      if (problem.start) {
+        const ContactMemory& start = problem.start->memory[number];
+        const Vector9 share = problem.mean_weight *
+                              (mean_force(model.geometry->pair(), start, pose, patches, wheel) - 0.5 * start.force());
+        force.head<6>() += share.head<6>();
+        force.segment<3>(r) = share.tail<3>();
+      } else {
+        force.head<6>() += wheel.wheelset;
+        force.segment<3>(r) = wheel.rail;
+      }
+    }
+  }
+}
+
+void evaluate_moved(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
+                    ContactSolution& s, const NewtonWorkspace& ws) {
+  for (int w = first; w < last; ++w) {
+    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
+    auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    force.setZero();
+    for (int side = 0; side < 2; ++side) {
+      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
+      const WheelLoads& was = ws.loads[index(2 * w + side)];
+      const WheelsetPose pose = relative_pose(model.geometry->pair(), sides[index(side)], motion, rail);
+      const WheelForce wheel =
+          wheel_force(model, sides[index(side)], motion, rail, moved_loads(was.loads, was.contact, pose));
+      force.head<6>() += wheel.wheelset;
+      force.segment<3>(6 + 3 * side) = wheel.rail;
+    }
+  }
+}
+
+void differentiate(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
+                   const ContactSolution& s, NewtonWorkspace& ws) {
+  for (int w = first; w < last; ++w) {
+    Matrix12& tangent = ws.tangent[index(w)];
+    tangent.setZero();
+    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
+    for (int side = 0; side < 2; ++side) {
+      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
+      const std::size_t number = index(2 * w + side);
+      const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
+      const Matrix9 t = (start ? problem.mean_weight : 1.0) *
+                        wheel_force_tangent(model, sides[index(side)], motion, rail, s.patches[number],
+                                            problem.velocity_rate, problem.rail_velocity_rate, start);
+      const int r = 6 + 3 * side;
+      tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
+      tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
+      tangent.block<3, 6>(r, 0) += t.bottomLeftCorner<3, 6>();
+      tangent.block<3, 3>(r, r) += t.bottomRightCorner<3, 3>();
+    }
+  }
+}
+
+ContactCounts& ContactCounts::operator+=(const ContactCounts& more) noexcept {
+  queries += more.queries;
+  table_queries += more.table_queries;
+  outside_creep_table += more.outside_creep_table;
+  seconds_lookup += more.seconds_lookup;
+  return *this;
+}
+
+WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset) noexcept {
+  const int k = wheelset_unknowns * wheelset;
+  const Vector6 displacement = q.segment<6>(k);
+  return {displacement, problem.predicted_velocity.segment<6>(k) +
+                            problem.velocity_rate.cwiseProduct(displacement - problem.predicted.segment<6>(k))};
+}
+
+RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset, int side) noexcept {
+  const int k = wheelset_unknowns * wheelset + 6 + 3 * side;
+  RailHeadMotion motion = problem.deviation[index(wheelset)][index(side)];
+  const Vector3 displacement = q.segment<3>(k);
+  motion.displacement += displacement;
+  motion.velocity += problem.predicted_velocity.segment<3>(k) +
+                     problem.rail_velocity_rate * (displacement - problem.predicted.segment<3>(k));
+  return motion;
+}
+
+NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem,
+                              ContactSolution& solution) {
+  NewtonReport report;
+  NewtonWorkspace workspace;
+  const int wheelsets = static_cast<int>(solution.displacement.size()) / wheelset_unknowns;
+  evaluate(model, problem, Pairs::searched, 0, wheelsets, solution, workspace, report);
+  return report;
+}
+
+}  // namespace railtab
