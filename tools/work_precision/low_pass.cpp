@@ -7,15 +7,15 @@
 namespace railtab::work_precision {
 namespace {
 
-/// Direct form II transposed of H(s) = 1/(1 + √2 s/ω + s²/ω²) under the bilinear transform.
-class Butterworth {
+/// Direct form II transposed of H(s) = 1/(1 + c s/ω + s²/ω²) under the bilinear transform.
+class Section {
  public:
-  Butterworth(double limit, double time_step) {
+  Section(double c, double limit, double time_step) {
     const double w = std::tan(std::numbers::pi * limit * time_step);
-    const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * w + w * w);
+    const double norm = 1.0 / (1.0 + c * w + w * w);
     b_ = w * w * norm;
     a1_ = 2.0 * (w * w - 1.0) * norm;
-    a2_ = (1.0 - std::numbers::sqrt2 * w + w * w) * norm;
+    a2_ = (1.0 - c * w + w * w) * norm;
   }
   /// As if `value` had come in for ever.
   void settle(double value) {
@@ -35,15 +35,18 @@ class Butterworth {
 
 void filter(std::vector<std::vector<float>>& steps, double limit, double time_step) {
   if (steps.empty()) return;
-  Butterworth low_pass(limit, time_step);
-  for (std::size_t k = 0; k < steps.front().size(); ++k) {
-    low_pass.settle(steps.front()[k]);
-    for (auto step = steps.begin(); step != steps.end(); ++step) (*step)[k] = static_cast<float>(low_pass((*step)[k]));
-    low_pass.settle(steps.back()[k]);
-    for (auto step = steps.rbegin(); step != steps.rend(); ++step)
-      (*step)[k] = static_cast<float>(low_pass((*step)[k]));
+  for (const double pole : {0.125, 0.375}) {  // Butterworth's, fourth order [half a turn]
+    Section low_pass(2.0 * std::cos(std::numbers::pi * pole), limit, time_step);
+    for (std::size_t k = 0; k < steps.front().size(); ++k) {
+      low_pass.settle(steps.front()[k]);
+      for (auto step = steps.begin(); step != steps.end(); ++step)
+        (*step)[k] = static_cast<float>(low_pass((*step)[k]));
+      low_pass.settle(steps.back()[k]);
+      for (auto step = steps.rbegin(); step != steps.rend(); ++step)
+        (*step)[k] = static_cast<float>(low_pass((*step)[k]));
+    }
   }
-  constexpr double settling = 0.1;  // s
+  constexpr double settling = 0.12;  // s, whole steps of 0.5 to 2 ms and of 1.5 ms
   const auto ends = std::min(static_cast<std::ptrdiff_t>(std::lround(settling / time_step)),
                              static_cast<std::ptrdiff_t>(steps.size() / 2));
   steps.erase(steps.end() - ends, steps.end());
