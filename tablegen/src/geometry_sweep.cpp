@@ -61,13 +61,14 @@ CellBox root_box(const GeometryTableData& table, std::int64_t root) {
 
 std::vector<CellTree> make_trees(const ContactSearch& search, const GeometrySweepOptions& options,
                                  const GeometryTableData& table, const Progress& progress) {
-  const auto [first, end] = root_range(options.shard, root_cells(table));
+  // Not a structured binding: OpenMP's threads cannot share one (clang 14 refuses it).
+  const auto roots = root_range(options.shard, root_cells(table));
   const CellRefinement refinement(search, options);
-  std::vector<CellTree> trees(static_cast<std::size_t>(end - first));
+  std::vector<CellTree> trees(static_cast<std::size_t>(roots.second - roots.first));
   std::atomic<std::size_t> done = 0;
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t n = 0; n < trees.size(); ++n) {
-    trees[n] = refinement.tree(root_box(table, first + static_cast<std::int64_t>(n)));
+    trees[n] = refinement.tree(root_box(table, roots.first + static_cast<std::int64_t>(n)));
     const std::size_t count = ++done;
     if (progress && count % 4 == 0) {
 #pragma omp critical(sweep_progress)

@@ -98,9 +98,12 @@ class TablegenFixture : public ::testing::Test {
     waitpid(child, &status, 0);
     return by_signal(status);
   }
-  /// A process that has ended by itself is to have done so well.
+  /// A process that has ended by itself is to have done so well, and none has aborted before it was killed.
   [[nodiscard]] static bool by_signal(int status) {
-    if (WIFSIGNALED(status)) return true;
+    if (WIFSIGNALED(status)) {
+      EXPECT_EQ(WTERMSIG(status), SIGKILL);
+      return true;
+    }
     EXPECT_EQ(WEXITSTATUS(status), 0);
     return false;
   }
