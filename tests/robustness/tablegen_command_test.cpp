@@ -34,7 +34,7 @@ class TablegenCommand : public TablegenFixture {
 
 constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
 // where any table will do, one that takes no time
-constexpr const char* cone = "geometry --wheel cone-1:20 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
+constexpr const char* quick = "geometry --wheel cone-1:20 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
 
 TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
   for (const std::string command : {"", "conicity ", "geometry ", "info ", "verify "}) {
@@ -81,9 +81,9 @@ TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
 
 TEST_F(TablegenCommand, APartSaysSoAndIsNoTable) {
   for (const char* shard : {"2", "0/2", "3/2", "1/x", "1/2/3", "/2"}) {
-    expect_refused(std::string(cone) + "--shard '" + shard + "'", "shard");
+    expect_refused(std::string(quick) + "--shard '" + shard + "'", "shard");
   }
-  const Outcome made = tablegen(std::string(cone) + "--shard 2/8 --json");
+  const Outcome made = tablegen(std::string(quick) + "--shard 2/8 --json");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["index"], 2);
   EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["count"], 8);
@@ -204,13 +204,13 @@ TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
 }
 
 TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
-  ASSERT_EQ(tablegen(std::string(cone) + "--quiet").exit_code, 0);
+  ASSERT_EQ(tablegen(std::string(quick) + "--quiet").exit_code, 0);
   std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
   expect_refused_with_table("info out.h5", "out.h5");
 }
 
 TEST_F(TablegenCommand, QuietPrintsNothing) {
-  const Outcome made = tablegen(std::string(cone) + "--quiet");
+  const Outcome made = tablegen(std::string(quick) + "--quiet");
   EXPECT_EQ(made.exit_code, 0);
   EXPECT_EQ(made.out + made.err, "");
 }
@@ -244,14 +244,14 @@ TEST_F(TablegenCommand, KilledItGoesOnToTheSameTable) {
 
 // What stands in the place of a part is used only where it is one of this very table.
 TEST_F(TablegenCommand, PartsOfAnotherTableAreMadeAnew) {
-  ASSERT_EQ(tablegen(cone).exit_code, 0);
+  ASSERT_EQ(tablegen(quick).exit_code, 0);
   ASSERT_EQ(tablegen("geometry --wheel cone-1:20 --rail 60E1 --lateral -0.002:0.002 --yaw 0:0.01 --shard 1/8 -o "
                      "out.h5.part-0-1")
                 .exit_code,
             0);
   std::ofstream(folder_ / "out.h5.part-0-2") << "not HDF5";
   const GeometryTableData before = read_geometry_table(folder_ / "out.h5");
-  ASSERT_EQ(tablegen(cone).exit_code, 0);
+  ASSERT_EQ(tablegen(quick).exit_code, 0);
   const GeometryTableData after = read_geometry_table(folder_ / "out.h5");
   EXPECT_EQ(before.node, after.node);
   EXPECT_EQ(before.coefficient, after.coefficient);
@@ -262,7 +262,7 @@ TEST_F(TablegenCommand, TheOutputIsLookedAtBeforeTheSweep) {
   std::filesystem::create_directory(folder_ / "folder.h5");
   expect_refused("geometry --wheel S1002 --rail 60E1 -o folder.h5", "a folder");
   expect_refused("geometry --wheel S1002 --rail 60E1 -o missing/out.h5", "no folder");
-  expect_refused(std::string(cone) + "--refinement 1.5", "--refinement");
+  expect_refused(std::string(quick) + "--refinement 1.5", "--refinement");
 }
 
 }  // namespace
