@@ -21,6 +21,12 @@ TEST_F(VsiCommand, HelpAndVersionOfEveryCommand) {
   }
 }
 
+TEST_F(VsiCommand, StandardOutputThatCannotBeWrittenIsAFailure) {
+  for (const char* arguments : {"--version > /dev/full", "run --help > /dev/full"}) {
+    EXPECT_EQ(vsi(arguments).exit_code, 1) << arguments;
+  }
+}
+
 TEST_F(VsiCommand, WrongCommandLines) {
   expect_refused("", "no command");
   expect_refused("rnu", "unknown command 'rnu'");

@@ -68,7 +68,12 @@ int exit_code(const Arguments& arguments) {
 }  // namespace railtab::vsi
 
 int main(int argc, char** argv) {
-  const int code = railtab::vsi::exit_code({argv + 1, argv + argc});
+  int code = railtab::vsi::exit_code({argv + 1, argv + argc});
+  // What was asked for on standard output has to have arrived there.
+  if (code == 0 && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) {
+    fmt::print(stderr, "vsi: standard output could not be written\n");
+    code = 1;
+  }
   if (code == 0) return 0;
   // What HDF5 could not write or read it keeps open, and its own clean-up at the end of a process crashes on a full
   // disk and complains of damaged files: every file has been closed as far as it can be, so leave without it.
