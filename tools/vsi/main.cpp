@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   int code = railtab::vsi::exit_code({argv + 1, argv + argc});
   // What was asked for on standard output has to have arrived there.
   if (code == 0 && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) {
-    fmt::print(stderr, "vsi: standard output could not be written\n");
+    std::fputs("vsi: standard output could not be written\n", stderr);
     code = 1;
   }
   if (code == 0) return 0;
