@@ -55,6 +55,9 @@ ResultHeader read_header(const ArrayFileReader& in) {
 
 constexpr std::int64_t most_count = 1'000'000'000'000'000;  // of anything in a run
 
+std::string time_of(const columns::WheelExtremeEntry& entry) { return fmt::format("{}_time", entry.name); }
+std::string wheel_of(const columns::WheelExtremeEntry& entry) { return fmt::format("{}_wheel", entry.name); }
+
 RunSummary read_summary(const ArrayFileReader& in) {
   RunSummary summary;
   summary.message = in.text(columns::summary_group, "message");
@@ -75,6 +78,14 @@ RunSummary read_summary(const ArrayFileReader& in) {
     for (const auto& entry : columns::summary_contact_energy) {
       energy.*entry.value = in.number(columns::summary_group, entry.name);
     }
+  }
+  const auto wheels = static_cast<std::int64_t>(in.read("header/static_wheel_load", {-1}).size());
+  for (const auto& entry : columns::summary_wheel_extremes) {
+    if (!std::ranges::count(names, wheel_of(entry))) continue;
+    WheelExtreme& extreme = summary.wheel_extremes.*entry.value;
+    extreme.value = in.number(columns::summary_group, entry.name);
+    extreme.time = in.number(columns::summary_group, time_of(entry));
+    extreme.wheel = static_cast<int>(in.whole_number(columns::summary_group, wheel_of(entry), -1, wheels - 1));
   }
   return summary;
 }
@@ -135,6 +146,12 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   out.attribute(columns::summary_group, columns::contact_energy_impacts, static_cast<std::int64_t>(energy.impacts));
   for (const auto& entry : columns::summary_contact_energy) {
     out.attribute(columns::summary_group, entry.name, energy.*entry.value);
+  }
+  for (const auto& entry : columns::summary_wheel_extremes) {
+    const WheelExtreme& extreme = summary.wheel_extremes.*entry.value;
+    out.attribute(columns::summary_group, entry.name, extreme.value);
+    out.attribute(columns::summary_group, time_of(entry), extreme.time);
+    out.attribute(columns::summary_group, wheel_of(entry), static_cast<std::int64_t>(extreme.wheel));
   }
   // Last: what says that all the others are true.
   out.attribute(columns::summary_group, "complete", static_cast<std::int64_t>(summary.complete));

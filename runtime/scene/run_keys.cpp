@@ -98,7 +98,8 @@ std::vector<KeyBinding> integration_keys() {
        "impacts",
        ContactForceKey{}},
       {"integration.impact_step", "s",
-       "longest step at impacts, where contact_force is automatic; time_step is divided by a power of two",
+       "longest step in the millisecond after a wheel meets its rail, where contact_force is automatic; time_step is "
+       "divided by a power of two",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.impact_step; }, {0.0, 0.1, true}}},
       {"integration.tolerance", "1", "Newton: change of the contact forces relative to the static wheel load",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.tolerance; }, {0.0, 1e-2, true}}},

@@ -21,4 +21,14 @@ std::vector<Touch> touches(const ContactSolution& contact) {
   return result;
 }
 
+TouchChange touch_change(const ContactSolution& before, const ContactSolution& after) {
+  const std::vector<Touch> old_touch = touches(before), new_touch = touches(after);
+  TouchChange change = TouchChange::none;
+  for (std::size_t wheel = 0; wheel < new_touch.size(); ++wheel) {
+    if (new_touch[wheel] > old_touch[wheel]) return TouchChange::met;
+    if (new_touch[wheel] < old_touch[wheel]) change = TouchChange::left;
+  }
+  return change;
+}
+
 }  // namespace railtab

@@ -143,6 +143,7 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   summary =
       simulate(model, scene.integration, duration, scene.output.every, state, selected, resume ? resume->step : 0);
+  if (!scene.output.wheels) summary.wheel_extremes = {};
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;
   summary.contact_mode = contact_mode_name(scene.contact);

@@ -32,6 +32,15 @@ double mean_wheel_load(const VehicleModel& vehicle) {
   return sum / wheelsets;
 }
 
+void add_wheel_extremes(const VsiModel& model, VsiState& state) {
+  for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel) {
+    const int unknown = rail_unknown(wheel);
+    const double static_load = static_wheel_load(model.vehicle, (wheel / 2) % model.wheelsets_per_vehicle());
+    state.wheel_extremes.add(state.time, wheel, state.contact.end_force[unknown], state.contact.end_force[unknown + 1],
+                             static_load);
+  }
+}
+
 // The step that bisects itself where Newton does not converge. Operators of halved steps are made when first needed.
 class Integrator {
  public:
@@ -58,7 +67,12 @@ class Integrator {
     if (!springs || (!rule_ && (model.unreduced || model.contact.geometry->is_paper()))) {
       rule_ = ContactForceRule::endpoint;
     }
-    while (!rule_ && std::ldexp(p.time_step, -impact_level_) > p.impact_step * (1.0 + 1e-9)) ++impact_level_;
+    const auto longer = [&](int level, double step) {
+      return !rule_ && std::ldexp(p.time_step, -level) > step * (1.0 + 1e-9);
+    };
+    while (longer(impact_level_, impact_to_landing * p.impact_step)) ++impact_level_;
+    landing_level_ = impact_level_;
+    while (longer(landing_level_, p.impact_step)) ++landing_level_;
     static_cast<void>(operators(0, p.time_step, seconds_setup));
   }
 
@@ -95,7 +109,7 @@ class Integrator {
   }
 
   bool step(int level, VsiState& state, RunSummary& summary) {
-    const int coarsest = state.time < state.impact_until ? impact_level_ : 0;
+    const int coarsest = coarsest_level(state);
     if (level < coarsest) {
       if (level == 0) ++summary.impact_steps;
       return divided(level, coarsest, state, summary);
@@ -103,17 +117,18 @@ class Integrator {
     const double end = state.time + std::ldexp(parameters_.time_step, -level);
     StepOperators& step_operators = operators(level, end, summary.seconds_setup);
     const ContactForceRule rule = rule_at(state);
-    const bool smooth_only = !rule_ && (rule == ContactForceRule::endpoint || level < impact_level_);
+    const bool smooth_only = !rule_ && (rule == ContactForceRule::endpoint || level < landing_level_);
     StepReport report;
     // Where a table misses a patch, its forces jump, and there may be no solution on either side: then without it.
     for (const bool without_table : {false, true}) {
       if (without_table && (report.converged || !has_table())) break;
       report =
           advance(rule, {.smooth_only = smooth_only, .without_table = without_table}, step_operators, state, summary);
-      if (!report.touch_changed || report.converged) continue;
+      if (report.touch_change == TouchChange::none || report.converged) continue;
       // A wheel meets or leaves its rail: what its spring takes up it shall give back, in steps that resolve how.
-      if (level < impact_level_) {
-        state.impact_until = end;
+      const bool lands = report.touch_change == TouchChange::met;
+      if (level < (lands ? landing_level_ : impact_level_)) {
+        (lands ? state.landing_until : state.impact_until) = end;
         return step(level, state, summary);
       }
       report = advance(ContactForceRule::energy, {.without_table = without_table}, step_operators, state, summary);
@@ -122,12 +137,18 @@ class Integrator {
       if (!rule_) follow_impact(report, step_operators.scheme, state);
       if (account_) account_->step(step_operators.scheme.gamma(), state);
       if (energy_record_) energy_record_->step(*account_, state);
+      if (state.time > 0.0) add_wheel_extremes(model_, state);
       if (account_ && energy_) energy_(account_->balance());
       return true;
     }
     if (level - coarsest >= parameters_.max_halvings) return false;
     ++summary.halved_steps;
     return divided(level, level + 1, state, summary);
+  }
+
+  [[nodiscard]] int coarsest_level(const VsiState& state) const {
+    if (state.time < state.landing_until) return landing_level_;
+    return state.time < state.impact_until ? impact_level_ : 0;
   }
 
   // A step of one level as steps of a finer one.
@@ -140,7 +161,8 @@ class Integrator {
 
   // How long from the end of a step on steps are those of an impact, and contacts keep their energy.
   void follow_impact(const StepReport& report, const HhtScheme& scheme, VsiState& state) const {
-    if (report.touch_changed) state.impact_until = state.energy_until = state.time + longest_impact;
+    if (report.touch_change == TouchChange::met) state.landing_until = state.time + longest_landing;
+    if (report.touch_change != TouchChange::none) state.impact_until = state.energy_until = state.time + longest_impact;
     if (scheme.contact_force == ContactForceRule::energy && swings(state)) {
       state.energy_until = std::max(state.energy_until, state.time + 0.5 * scheme.time_step);
     }
@@ -193,7 +215,8 @@ class Integrator {
   IntegrationParameters parameters_;
   StepLimits endpoint_limits_, energy_limits_;
   std::optional<ContactForceRule> rule_;  // none: automatic
-  int impact_level_ = 0;                  // halvings of a step in which wheels meet or leave their rails
+  int impact_level_ = 0;   // halvings of a step of an impact
+  int landing_level_ = 0;  // and of one just after a wheel has met its rail
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
   std::function<void(const EnergyBalance&)> energy_;
@@ -324,7 +347,10 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
   if (observer.ready) observer.ready();
   bool recorded = true;  // what has been reached
   summary.steps = summary.counted_from = first_step;
-  if (first_step == 0) emit();
+  if (first_step == 0) {
+    add_wheel_extremes(model, state);
+    emit();
+  }
   while (summary.steps < steps) {
     const long iterations_before = summary.newton_iterations;
     if (!integrator.step(state, summary)) {
@@ -352,6 +378,7 @@ RunSummary simulate(const VsiModel& model, const IntegrationParameters& integrat
     if (observer.progress) observer.progress(static_cast<double>(summary.steps) / static_cast<double>(steps));
   }
   summary.contact_energy = integrator.contact_energy();
+  summary.wheel_extremes = state.wheel_extremes;
   if (!recorded) emit();  // after a checkpoint: a resumed run leaves the record away again
   summary.complete = summary.steps == steps && summary.message.empty();
   summary.seconds_total = seconds_since(begin);

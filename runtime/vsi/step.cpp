@@ -279,8 +279,8 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
 
   set_force_rule(hht, state.contact, ws.problem);
   solve_coupling(model, op, limits, state, contacts, ws, report);
-  report.touch_changed = report.converged && touches(ws.solution) != touches(state.contact);
-  if (report.touch_changed && limits.smooth_only) report.converged = false;
+  if (report.converged) report.touch_change = touch_change(state.contact, ws.solution);
+  if (report.touch_change != TouchChange::none && limits.smooth_only) report.converged = false;
   if (report.converged) close_step(model, op, contacts, state, ws, report);
   return report;
 }

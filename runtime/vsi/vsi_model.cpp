@@ -79,6 +79,13 @@ void visit_numbers(State& state, Visitor&& visit) {
   visit_vector(state.contact.step_load);
   visit_vector(state.contact.rail_x);
   visit_vector(state.far_field);
+  for (auto* extreme : {&state.wheel_extremes.largest_Q, &state.wheel_extremes.smallest_Q,
+                        &state.wheel_extremes.derailment, &state.wheel_extremes.unloading}) {
+    visit(&extreme->value, 1);
+    visit(&extreme->time, 1);
+    visit(&extreme->wheel, 1);
+  }
+  visit(&state.landing_until, 1);
   visit(&state.impact_until, 1);
   visit(&state.energy_until, 1);
 }
@@ -87,18 +94,18 @@ void visit_numbers(State& state, Visitor&& visit) {
 
 std::vector<double> packed(const VsiState& state) {
   std::vector<double> numbers;
-  visit_numbers(state, [&](const double* data, std::size_t n) { numbers.insert(numbers.end(), data, data + n); });
+  visit_numbers(state, [&](const auto* data, std::size_t n) { numbers.insert(numbers.end(), data, data + n); });
   return numbers;
 }
 
 void unpack(std::span<const double> numbers, VsiState& state) {
   std::size_t expected = 0;
-  visit_numbers(state, [&](const double*, std::size_t n) { expected += n; });
+  visit_numbers(state, [&](const auto*, std::size_t n) { expected += n; });
   if (numbers.size() != expected) {
     throw input_error("checkpoint", fmt::format("{} numbers", numbers.size()),
                       fmt::format("{}, the unknowns of this scene", expected));
   }
-  visit_numbers(state, [&](double* data, std::size_t n) {
+  visit_numbers(state, [&](auto* data, std::size_t n) {
     std::copy_n(numbers.begin(), n, data);
     numbers = numbers.subspan(n);
   });

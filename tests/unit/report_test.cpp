@@ -158,6 +158,22 @@ TEST(Headline, TakesTheExtremesOfTheRightBodiesAndWheels) {
   EXPECT_DOUBLE_EQ(headline.real_time_factor, 2.0);
 }
 
+TEST(Headline, TakesTheWheelsExtremesOfAllStepsWhereTheSummaryHasThem) {
+  RunResults run = small_run();
+  const Headline recorded = headline_of(run);
+  WheelExtremes& all = run.summary.wheel_extremes;
+  all.largest_Q = {recorded.largest_Q.value + 1.0, 0.125, 1};
+  all.unloading = {recorded.unloading.value + 0.5, 0.25, 0};
+  const Headline headline = headline_of(run);
+  EXPECT_EQ(headline.largest_Q.value, recorded.largest_Q.value + 1.0);
+  EXPECT_EQ(headline.largest_Q.time, 0.125);
+  EXPECT_EQ(headline.largest_Q.where, "wheelset 1 right");
+  EXPECT_EQ(headline.unloading.value, recorded.unloading.value + 0.5);
+  EXPECT_EQ(headline.unloading.where, "wheelset 1 left");
+  EXPECT_EQ(headline.smallest_Q.value, recorded.smallest_Q.value);
+  EXPECT_EQ(headline.derailment_2m.value, recorded.derailment_2m.value);
+}
+
 TEST(SlidingMean, IsTheMeanOverTheLastMetres) {
   SlidingMean mean(2.0);
   EXPECT_FALSE(mean.add(10.0, 1.0));

@@ -143,6 +143,8 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
                             .largest_impact = -6.5,
                             .largest_impact_time = 7.5,
                             .largest_impact_stored = 8.5};
+  summary.wheel_extremes = {
+      .largest_Q = {1e5, 0.1, 0}, .smallest_Q = {2e4, 0.2, 1}, .derailment = {0.8, 0.3, 2}, .unloading = {0.6, 0.4, 3}};
   {
     ResultWriter out(file_, header_, 7);
     for (long i = 0; i < 500; ++i) out.append(made_up_record(i, header_));
@@ -185,6 +187,21 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   EXPECT_EQ((std::vector<double>{e.gain, e.stiffness_work, e.largest_step, e.largest_step_time, e.largest_impact,
                                  e.largest_impact_time, e.largest_impact_stored}),
             (std::vector<double>{1.5, -2.5, 3.5, 4.5, -6.5, 7.5, 8.5}));
+  const auto numbers = [](const WheelExtreme& x) { return std::array{x.value, x.time, double(x.wheel)}; };
+  EXPECT_EQ(numbers(s.wheel_extremes.largest_Q), (std::array{1e5, 0.1, 0.0}));
+  EXPECT_EQ(numbers(s.wheel_extremes.smallest_Q), (std::array{2e4, 0.2, 1.0}));
+  EXPECT_EQ(numbers(s.wheel_extremes.derailment), (std::array{0.8, 0.3, 2.0}));
+  EXPECT_EQ(numbers(s.wheel_extremes.unloading), (std::array{0.6, 0.4, 3.0}));
+}
+
+TEST_F(ResultFile, RefusesTheExtremeOfAWheelThatTheRunDoesNotHave) {
+  RunSummary summary = complete_summary();
+  summary.wheel_extremes.largest_Q = {1e5, 0.1, static_cast<int>(header_.static_wheel_load.size())};
+  {
+    ResultWriter out(file_, header_);
+    out.finish(summary);
+  }
+  EXPECT_THROW(static_cast<void>(read_results(file_)), InputError);
 }
 
 TEST_F(ResultFile, HasNoEnergyWhereNoneWasAccountedFor) {

@@ -10,6 +10,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -52,6 +53,39 @@ SceneParameters landing() {
   return scene;
 }
 
+// A hump of 8 mm in 3 m that wheels leave: treads fall back on flexible track.
+Irregularity hump() {
+  constexpr double height = 8e-3, length = 3.0, begin = 1.0;
+  std::vector<double> x, z;
+  for (int i = 0; i <= 400; ++i) {
+    x.push_back(0.5 + 0.0125 * i);
+    const double along = (x.back() - begin) / length;
+    z.push_back(along > 0.0 && along < 1.0 ? -0.5 * height * (1.0 - std::cos(2.0 * std::numbers::pi * along)) : 0.0);
+  }
+  const std::vector<double> none(x.size(), 0.0);
+  return {x, none, z, none, z};
+}
+
+SceneParameters behind_a_hump() {
+  SceneParameters scene = rough_track(300.0 / 3.6);
+  scene.irregularity.reset();
+  scene.integration.duration = 0.1;
+  return scene;
+}
+
+// A wheelset that a gust has lifted for a tenth of a second comes down.
+SceneParameters gust() {
+  SceneParameters scene = rough_track(120.0 / 3.6);
+  scene.irregularity.reset();
+  LoadParameters load;
+  load.body = "wheelset-2";
+  load.load[2] = -140e3;
+  load.gust_duration = 0.2;
+  scene.loads = {load};
+  scene.integration.duration = 0.25;
+  return scene;
+}
+
 struct Outcome {
   std::vector<StepRecord> steps;
   std::size_t per_millisecond = 1;
@@ -62,7 +96,7 @@ struct Outcome {
 
 using Rule = std::optional<ContactForceRule>;  // none: automatic
 
-Outcome run(SceneParameters scene, Rule rule, double alpha, double time_step, bool account) {
+Outcome run(SceneParameters scene, const Irregularity* irregularity, Rule rule, double alpha, double time_step, bool account) {
   scene.integration.contact_force = rule;
   scene.integration.alpha = alpha;
   scene.integration.time_step = time_step;
@@ -72,7 +106,9 @@ Outcome run(SceneParameters scene, Rule rule, double alpha, double time_step, bo
   observer.record = [&](const StepRecord& record) { result.steps.push_back(record); };
   if (account) observer.energy = [&](const EnergyBalance& balance) { result.energy = balance; };
   const std::clock_t begin = std::clock();
-  result.summary = run_scene(scene, observer);
+  VsiModel model = build_model(scene);
+  if (irregularity) model.irregularity = *irregularity;
+  result.summary = run_scene(scene, model, observer);
   result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   return result;
 }
@@ -97,11 +133,11 @@ Difference difference(const Outcome& a, const Outcome& b) {
   return {std::sqrt(sum.Q / n), std::sqrt(sum.Y / n)};
 }
 
-// Of all wheels and steps [N].
-double peak(const Outcome& outcome, double WheelRecord::*force) {
+// Of all wheels and recorded steps [N].
+double largest_Y(const Outcome& outcome) {
   double largest = 0.0;
   for (const StepRecord& step : outcome.steps)
-    for (const WheelRecord& wheel : step.wheels) largest = std::max(largest, std::abs(wheel.*force));
+    for (const WheelRecord& wheel : step.wheels) largest = std::max(largest, std::abs(wheel.Y));
   return largest;
 }
 
@@ -114,7 +150,7 @@ std::string row(const char* name, Rule rule, double alpha, double step, const Ou
                 const EnergyBalance& energy) {
   const std::string text =
       fmt::format("{},{:g},{:g},{},{:.1f},{:.1f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{},{},{},{:.3f}\n", name, alpha,
-                  1e3 * step, name_of(rule), d.Q, d.Y, 1e-3 * peak(o, &WheelRecord::Y), 1e-3 * peak(o, &WheelRecord::Q),
+                  1e3 * step, name_of(rule), d.Q, d.Y, 1e-3 * largest_Y(o), 1e-3 * o.summary.wheel_extremes.largest_Q.value,
                   energy.contact_gain - energy.stiffness_work, energy.gain(),
                   static_cast<double>(o.summary.newton_iterations) / static_cast<double>(o.summary.steps),
                   o.summary.halved_steps, o.summary.impact_steps, o.summary.complete ? 1 : 0, o.seconds);
@@ -123,17 +159,17 @@ std::string row(const char* name, Rule rule, double alpha, double step, const Ou
   return text;
 }
 
-std::string study(const char* name, const SceneParameters& scene) {
+std::string study(const char* name, const SceneParameters& scene, const Irregularity* irregularity = nullptr) {
   constexpr double fine_step = 3.125e-5;
-  const Outcome reference = run(scene, ContactForceRule::energy, 0.0, fine_step, false);
+  const Outcome reference = run(scene, irregularity, ContactForceRule::energy, 0.0, fine_step, false);
   std::string rows = row(name, ContactForceRule::energy, 0.0, fine_step, reference, {}, {});
-  const Outcome fine = run(scene, ContactForceRule::endpoint, 0.0, fine_step, false);
+  const Outcome fine = run(scene, irregularity, ContactForceRule::endpoint, 0.0, fine_step, false);
   rows += row(name, ContactForceRule::endpoint, 0.0, fine_step, fine, difference(fine, reference), {});
   for (const double alpha : {0.0, -0.05}) {
     for (const double step : {1e-3, 5e-4, 2.5e-4}) {
       for (const Rule rule : {Rule(ContactForceRule::endpoint), Rule(ContactForceRule::energy), Rule()}) {
-        const EnergyBalance energy = run(scene, rule, alpha, step, true).energy;
-        const Outcome o = run(scene, rule, alpha, step, false);
+        const EnergyBalance energy = run(scene, irregularity, rule, alpha, step, true).energy;
+        const Outcome o = run(scene, irregularity, rule, alpha, step, false);
         rows += row(name, rule, alpha, step, o, difference(o, reference), energy);
       }
     }
@@ -158,6 +194,9 @@ int main(int argc, char** argv) {
     text += study("rough", rough_track(300.0 / 3.6));
     text += study("flange", flange_impact());
     text += study("landing", landing());
+    const Irregularity jump = hump();
+    text += study("hump", behind_a_hump(), &jump);
+    text += study("gust", gust());
     write_text_file(std::filesystem::path(argv[1]) / "contact_force.csv", text);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -19,6 +19,11 @@ void lower(Extreme& extreme, double value, double time, const std::string& where
 
 }  // namespace
 
+std::string_view steps_of_extremes(const RunSummary& summary) {
+  return summary.wheel_extremes.largest_Q.found() ? "the recorded steps; Q, Y/Q and unloading of all steps"
+                                                  : "the recorded steps";
+}
+
 std::string wheel_name(std::size_t wheel) {
   return fmt::format("wheelset {} {}", wheel / 2 + 1, wheel % 2 == 0 ? "left" : "right");
 }
@@ -81,6 +86,13 @@ void HeadlineCollector::add(const StepRecord& step) {
 
 Headline HeadlineCollector::result(const RunSummary& summary) const {
   Headline result = headline_;
+  const auto of_all_steps = [&](Extreme& extreme, const WheelExtreme& of_run) {
+    if (of_run.found()) extreme = {of_run.value, of_run.time, wheel_names_.at(static_cast<std::size_t>(of_run.wheel))};
+  };
+  of_all_steps(result.largest_Q, summary.wheel_extremes.largest_Q);
+  of_all_steps(result.smallest_Q, summary.wheel_extremes.smallest_Q);
+  of_all_steps(result.derailment, summary.wheel_extremes.derailment);
+  of_all_steps(result.unloading, summary.wheel_extremes.unloading);
   result.distance = last_position_ - first_position_;
   if (sparse_) result.derailment_2m = result.track_shift_2m = {};
   if (summary.contact_queries > 0) {

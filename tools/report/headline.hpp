@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/results/step_record.hpp"
@@ -16,8 +17,8 @@ struct Extreme {
   [[nodiscard]] bool found() const noexcept { return !where.empty(); }
 };
 
-/// Headline numbers of a run. Maxima over the recorded steps without filter or percentile; raw but for the sliding
-/// means over 2 m of way.
+/// Headline numbers of a run. Maxima without filter or percentile, raw but for the sliding means over 2 m of way, over
+/// the recorded steps; Q, Y/Q and unloading over all steps (RunSummary::wheel_extremes) where the summary has them.
 struct Headline {
   Extreme deck_acceleration;      ///< |vertical| of nodes named deck… [m/s²]
   Extreme deck_displacement;      ///< |vertical| of nodes named deck… [m]
@@ -58,6 +59,8 @@ class HeadlineCollector {
   bool sparse_ = false;  // records too far apart for sliding means
 };
 
+/// Which steps the headline's values are of, in words.
+[[nodiscard]] std::string_view steps_of_extremes(const RunSummary& summary);
 /// "wheelset 3 left" for a wheel's index in StepRecord::wheels.
 [[nodiscard]] std::string wheel_name(std::size_t wheel);
 /// Car bodies are named "<vehicle>/car-body".

@@ -48,7 +48,7 @@ std::string tiles(const Headline& headline, const RunSummary& summary) {
   if (headline.real_time_factor > 0.0) {
     html += tile("Real-time factor", shown(headline.real_time_factor), "×", "simulated time over run time");
   }
-  return html + "</dl><p class=\"lead\">Largest values of the recorded steps, unfiltered.</p>";
+  return html + fmt::format("</dl><p class=\"lead\">Largest values of {}, unfiltered.</p>", steps_of_extremes(summary));
 }
 
 struct Share {

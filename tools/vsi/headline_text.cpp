@@ -79,7 +79,7 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   line(text, "wheel unloading", headline.unloading, 100.0, "%");
   line(text, "largest Q", headline.largest_Q, 1e-3, "kN");
   line(text, "smallest Q", headline.smallest_Q, 1e-3, "kN");
-  if (!text.empty()) text = "Largest values of the recorded steps:\n" + text;
+  if (!text.empty()) text = fmt::format("Largest values of {}:\n", report::steps_of_extremes(summary)) + text;
   if (summary.contact_queries > 0) {
     fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
                    summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);

@@ -71,6 +71,21 @@ struct ContactEnergy {
   double largest_impact_stored = 0;  ///< most that the wheelset's contact springs took up in that impact
 };
 
+/// Where a wheel's force was largest or smallest in a run.
+struct WheelExtreme {
+  double value = 0, time = 0;  ///< [N] or [-], and the end of the step [s]
+  int wheel = -1;              ///< index in StepRecord::wheels; -1: there is none
+  [[nodiscard]] bool found() const noexcept { return wheel >= 0; }
+};
+
+/// Over all steps of a run from t = 0 on, recorded or not, and over the parts of those that are divided.
+struct WheelExtremes {
+  WheelExtreme largest_Q, smallest_Q;  ///< [N]
+  WheelExtreme derailment;             ///< |Y|/Q of a wheel while Q > 0 [-]
+  WheelExtreme unloading;              ///< (Q0 - Q)/Q0, Q0 the wheel's static load [-]
+  void add(double time, int wheel, double Y, double Q, double static_load) noexcept;
+};
+
 /// How the run ended and where its time went.
 struct RunSummary {
   bool complete = false;
@@ -90,6 +105,7 @@ struct RunSummary {
                          ///< in result files
   std::string contact_mode;                     ///< table, online, paper
   std::optional<ContactEnergy> contact_energy;  ///< where output.energy asks for it
+  WheelExtremes wheel_extremes;                 ///< none where wheels are not recorded, and in older files
 };
 
 }  // namespace railtab

@@ -63,7 +63,7 @@ struct IntegrationParameters {
   /// `endpoint`.
   std::optional<ContactForceRule> contact_force;
   /// Longest step of an impact under the automatic rule [s]; it is time_step by a power of two.
-  double impact_step = 2.5e-4;
+  double impact_step = 3.125e-5;
   double tolerance = 1e-4;  ///< Newton: change of contact forces relative to the static wheel load
   int max_iterations = 20;
   int max_halvings = 6;   ///< of a step that does not converge

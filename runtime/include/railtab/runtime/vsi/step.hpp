@@ -40,9 +40,12 @@ struct StepLimits {
   bool without_table = false;         ///< contact geometry by the online search
 };
 
+/// What happens to the wheels of a step that touch their rails, with tread or flange; one that meets it counts first.
+enum class TouchChange { none, left, met };
+
 struct StepReport {
   bool converged = false;
-  bool touch_changed = false;  ///< a wheel meets or leaves its rail with tread or flange
+  TouchChange touch_change = TouchChange::none;
   int newton_iterations = 0;
   int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
   ContactCounts counts;

@@ -10,6 +10,7 @@
 #include "railtab/runtime/loads/body_load.hpp"
 #include "railtab/runtime/loads/ground_motion.hpp"
 #include "railtab/runtime/loads/speed_profile.hpp"
+#include "railtab/runtime/results/step_record.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/track/irregularity.hpp"
 #include "railtab/runtime/track/span_deviation.hpp"
@@ -93,8 +94,11 @@ struct VsiState {
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].
   Eigen::VectorXd far_field;
-  /// Where the force rule is left to the run [s]; runs begin before 0: until when an impact lasts, in steps no longer
-  /// than IntegrationParameters::impact_step, and until when contacts keep their energy, which may be longer.
+  WheelExtremes wheel_extremes;
+  /// Where the force rule is left to the run [s]; runs begin before 0: until when steps are no longer than
+  /// IntegrationParameters::impact_step, since a wheel has met its rail, until when an impact lasts, in steps up to
+  /// eight times as long, and until when contacts keep their energy, which may be longer.
+  double landing_until = std::numeric_limits<double>::lowest();
   double impact_until = std::numeric_limits<double>::lowest();
   double energy_until = std::numeric_limits<double>::lowest();
 
