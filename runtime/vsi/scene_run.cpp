@@ -71,12 +71,13 @@ std::string start(const SceneParameters& scene, const VsiModel& model, VsiState&
   return rest.converged ? std::string() : no_rest_message(at_rest, rest, state.time);
 }
 
-// Where a hunting study begins. @throws InputError where that is beside the rails
+// Where a hunting study begins. @throws InputError where nothing there carries the wheels
 void displace(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
   const double shift = scene.train.initial_lateral_shift, yaw = scene.train.initial_yaw;
   if (displace_train(model, shift, yaw, state)) return;
-  throw input_error("scene: train.initial_lateral_shift", fmt::format("{} m with a yaw of {} rad", shift, yaw),
-                    "a place of the wheelsets at which no flange stands on its rail");
+  throw input_error(
+      "scene: train.initial_lateral_shift", fmt::format("{} m with a yaw of {} rad", shift, yaw),
+      "a place of the wheelsets at which both wheels carry their loads, no more than 40 mm above their rails");
 }
 
 // What was done to the points of measured profiles.

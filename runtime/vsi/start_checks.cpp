@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "static_wheel_load.hpp"
+#include "wheelset_seat.hpp"
 
 namespace railtab {
 
@@ -87,24 +88,30 @@ std::string displacement_warning(const SceneParameters& scene, const VsiModel& m
   const bool displaced = scene.train.initial_lateral_shift != 0.0 || scene.train.initial_yaw != 0.0;
   if (!displaced || !model.geometry) return {};
   const ContactProblem present = present_contact(model, state);
-  double largest = 0.0, load = 0.0;
+  const WheelContactModel contact = contact_at_rest(model.contact);
+  const double b = model.geometry->pair().tape_circle_offset();
+  double largest = 0.0, load = 0.0, lift = 0.0;
   for (int w = 0; w < model.wheelsets(); ++w) {
     load = std::max(load, static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
     for (const WheelSide side : {WheelSide::left, WheelSide::right}) {
+      const bool left = side == WheelSide::left;
       const WheelsetMotion motion = wheelset_motion(present, present.predicted, w);
-      const RailHeadMotion rail = rail_motion(present, present.predicted, w, side == WheelSide::left ? 0 : 1);
+      const RailHeadMotion rail = rail_motion(present, present.predicted, w, left ? 0 : 1);
       const ContactPatches patches = model.geometry->patches(relative_pose(model.geometry->pair(), side, motion, rail));
-      const double lateral = wheel_force(model.contact, side, motion, rail, patches).wheelset[1];
+      const double lateral = wheel_force(contact, side, motion, rail, patches).wheelset[1];
       largest = std::max(largest, std::abs(lateral));
+      const double below = motion.displacement[2] + (left ? -b : b) * motion.displacement[3];
+      lift = std::max(lift, rail.displacement[1] - below);
     }
   }
   constexpr double steepest = 0.4;  // of the wheel load: treads and flange roots stay below 0.3
-  if (largest <= steepest * load) return {};
+  constexpr double highest = 5e-3;  // m: treads stay within 1 mm; on the tips of flanges nothing is steep
+  if (largest <= steepest * load && lift <= highest) return {};
   return fmt::format(
-      "the train begins {:.3g} mm aside with a yaw of {:.3g} mrad, where flanges carry wheels and push their rails by "
-      "{:.3g} "
-      "kN (static wheel load {:.3g} kN): the run begins with an impact",
-      1e3 * scene.train.initial_lateral_shift, 1e3 * scene.train.initial_yaw, 1e-3 * largest, 1e-3 * load);
+      "the train begins {:.3g} mm aside with a yaw of {:.3g} mrad, where flanges carry wheels, up to {:.2g} mm above "
+      "their place, and push their rails by {:.3g} kN (static wheel load {:.3g} kN): the run begins with an impact",
+      1e3 * scene.train.initial_lateral_shift, 1e3 * scene.train.initial_yaw, 1e3 * std::max(lift, 0.0), 1e-3 * largest,
+      1e-3 * load);
 }
 
 }  // namespace railtab

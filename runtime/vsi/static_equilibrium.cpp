@@ -7,7 +7,7 @@
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
-#include "static_wheel_load.hpp"
+#include "wheelset_seat.hpp"
 
 namespace railtab {
 
@@ -31,10 +31,12 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // The linear parts at rest, made once.
 struct RestOperators {
+  WheelContactModel contact;
   VehicleResponse vehicle;
   std::unique_ptr<StructureResponse> structure;
   std::unique_ptr<LocalFlexibility> local;
-  explicit RestOperators(const VsiModel& model) : vehicle(model.vehicle, regularisation) {
+  explicit RestOperators(const VsiModel& model)
+      : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
     if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
     if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
   }
@@ -86,70 +88,6 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
   if (rest.structure) problem.rail = all_couplings(rest, contacts);
   problem.largest_move = 1e-3;
   return problem;
-}
-
-// Vertical force of one rail on wheelset w, down [N].
-double vertical_force(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement, int w,
-                      int side) {
-  const WheelSide wheel_side = side == 0 ? WheelSide::left : WheelSide::right;
-  const WheelsetMotion motion = wheelset_motion(problem, displacement, w);
-  const RailHeadMotion rail = rail_motion(problem, displacement, w, side);
-  const ContactPatches patches =
-      model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
-  return -wheel_force(model.contact, wheel_side, motion, rail, patches).wheelset[2];
-}
-
-const DofIndices& wheelset_dof(const VsiModel& model, int w) {
-  return model.vehicle.dof[index(model.vehicle.wheelsets[index(w % model.wheelsets_per_vehicle())])];
-}
-
-constexpr double height_range = 0.02;  // m, of wheels about their nominal height: rail deviations are less
-
-// Lowers or lifts wheelset w, as it is turned and rolled, until the wheel on `side` carries `load` [N].
-double level_of_wheel(const VsiModel& model, const ContactProblem& problem, double load, int w, int side,
-                      Eigen::VectorXd& displacement) {
-  constexpr double accuracy = 1e-9;
-  double& z = displacement[wheelset_unknowns * w + 2];
-  double high = -height_range, low = height_range;
-  while (low - high > accuracy) {
-    z = 0.5 * (low + high);
-    (vertical_force(model, problem, displacement, w, side) > load ? low : high) = z;
-  }
-  return z;
-}
-
-// Lowers a wheelset onto its rails, level, until each wheel carries half its static load: where Newton starts. From
-// above the rails, with one wheel in the air or from deep inside, its first corrections would be worth nothing.
-void set_down(const VsiModel& model, const ContactProblem& problem, Eigen::VectorXd& displacement) {
-  for (int w = 0; w < model.wheelsets(); ++w) {
-    const DofIndices& dof = wheelset_dof(model, w);
-    if (dof[2] == held) continue;
-    const double load = static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle());
-    const double left = level_of_wheel(model, problem, load, w, 0, displacement);
-    const double right = level_of_wheel(model, problem, load, w, 1, displacement);
-    displacement[wheelset_unknowns * w + 2] = 0.5 * (left + right);
-    if (dof[3] == held) continue;
-    displacement[wheelset_unknowns * w + 3] = (right - left) / (2.0 * model.geometry->pair().tape_circle_offset());
-  }
-}
-
-// Height and roll at which the wheels of wheelset w carry these loads [N]; false where there are none near its rails.
-bool seat(const VsiModel& model, const ContactProblem& problem, const std::array<double, 2>& load, int w,
-          Eigen::VectorXd& displacement) {
-  constexpr int most_passes = 50;  // rolling moves the contact points by a tenth of what the pass before did
-  constexpr double level_enough = 2e-9;
-  const double half_distance = model.geometry->pair().tape_circle_offset();
-  for (int pass = 0; pass < most_passes; ++pass) {
-    const double left = level_of_wheel(model, problem, load[0], w, 0, displacement);
-    const double right = level_of_wheel(model, problem, load[1], w, 1, displacement);
-    displacement[wheelset_unknowns * w + 2] = 0.5 * (left + right);
-    const bool level = std::abs(right - left) < level_enough;
-    if (level || wheelset_dof(model, w)[3] == held) {
-      return std::max(std::abs(left), std::abs(right)) < 0.99 * height_range;
-    }
-    displacement[wheelset_unknowns * w + 3] += (right - left) / (2.0 * half_distance);
-  }
-  return false;
 }
 
 // What the static correction adds to the rail heads' displacement.
@@ -239,12 +177,12 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
     }
     if (model.normal_contact == NormalContact::hertz && report.iterations == 0 && state.contact.displacement.isZero()) {
-      set_down(model, problem, state.contact.displacement);
+      set_down(model, rest.contact, problem, state.contact.displacement);
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;
     if (model.normal_contact == NormalContact::rigid) {
       rest_on_rails(problem, state.contact);
-    } else if (!solve_contact_by_continuation(model.contact, problem, limits, state.contact, workspace).converged) {
+    } else if (!solve_contact_by_continuation(rest.contact, problem, limits, state.contact, workspace).converged) {
       ++report.iterations;
       return report;
     }
@@ -356,39 +294,6 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
     report.converged = report.converged && r.converged;
   }
   return report;
-}
-
-bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& state) {
-  if (shift == 0.0 && yaw == 0.0) return true;
-  const bool seated = model.normal_contact == NormalContact::hertz;
-  std::vector<std::array<double, 2>> load(index(model.wheelsets()));
-  if (seated) {
-    const ContactProblem before = present_contact(model, state);
-    for (int w = 0; w < model.wheelsets(); ++w) {
-      for (int side = 0; side < 2; ++side) {
-        load[index(w)][index(side)] = vertical_force(model, before, before.predicted, w, side);
-      }
-    }
-  }
-  for (LinearMotion& motion : state.vehicle) {
-    motion.displacement += shift * model.vehicle.lateral_shift;
-    for (int body : model.vehicle.wheelsets) {
-      const int turned = model.vehicle.dof[index(body)][5];
-      if (turned != held) motion.displacement[turned] += yaw;
-    }
-  }
-  if (!seated) return true;
-  const ContactProblem displaced = present_contact(model, state);
-  Eigen::VectorXd displacement = displaced.predicted;
-  for (int w = 0; w < model.wheelsets(); ++w) {
-    const DofIndices& dof = wheelset_dof(model, w);
-    if (dof[2] == held) continue;
-    if (!seat(model, displaced, load[index(w)], w, displacement)) return false;
-    LinearMotion& motion = state.vehicle[index(w / model.wheelsets_per_vehicle())];
-    motion.displacement[dof[2]] = displacement[wheelset_unknowns * w + 2];
-    if (dof[3] != held) motion.displacement[dof[3]] = displacement[wheelset_unknowns * w + 3];
-  }
-  return true;
 }
 
 }  // namespace railtab

@@ -28,9 +28,9 @@ struct EquilibriumReport {
 [[nodiscard]] EquilibriumReport steady_start(const VsiModel& model, VsiState& state);
 
 /// The train moved to the right by `shift` [m] and its wheelsets turned by `yaw` [rad], from a state of rest: where a
-/// hunting study begins. Wheelsets rise and roll with their treads, so that every wheel carries what it did; without
-/// that a shift of millimetres begins with an impact. False where no height near the rails does that: a flange would
-/// stand on a rail.
+/// hunting study begins. Wheelsets rise and roll with their treads and, farther aside, with flanges that climb their
+/// rails, so that every wheel carries what it did; without that a shift of millimetres begins with an impact. False
+/// where no height near the rails does that: a wheel is beside its rail.
 [[nodiscard]] bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& state);
 
 }  // namespace railtab
