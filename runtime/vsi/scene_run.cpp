@@ -51,7 +51,8 @@ IntegrationParameters run_in_parameters(const IntegrationParameters& integration
 
 // State at t = 0: steady, and run in where there is track for it. A run-in that fails is left out. Returns why there is
 // none, or nothing.
-std::string start(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
+template <class Warn>
+std::string start(const SceneParameters& scene, const VsiModel& model, const Warn& warn, VsiState& state) {
   const std::optional<VsiModel> other = other_model_at_rest(scene, model);
   const VsiModel& at_rest = other ? *other : model;
   const long before = run_in_steps(scene, model);
@@ -63,12 +64,15 @@ std::string start(const SceneParameters& scene, const VsiModel& model, VsiState&
     early.time = -static_cast<double>(before) * scene.integration.time_step;
     const EquilibriumReport rest = steady_start(at_rest, early);
     if (rest.converged && simulate(model, run_in, 0.0, 1, early, {}, -before).complete) {
+      warn(start_warning(rest));
       state = std::move(early);
       return {};
     }
   }
   const EquilibriumReport rest = steady_start(at_rest, state);
-  return rest.converged ? std::string() : no_rest_message(at_rest, rest, state.time);
+  if (!rest.converged) return no_rest_message(at_rest, rest, state.time);
+  warn(start_warning(rest));
+  return {};
 }
 
 // Where a hunting study begins. @throws InputError where nothing there carries the wheels
@@ -119,7 +123,7 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
     unpack(resume->state, state);
   } else {
     setup("state of rest");
-    no_rest = start(scene, model, state);
+    no_rest = start(scene, model, warn, state);
     if (no_rest.empty()) {
       displace(scene, model, state);
       warn(displacement_warning(scene, model, state));

@@ -29,6 +29,12 @@ VsiModel without_loads(const VsiModel& model, double time, bool keep_acceleratio
   return bare;
 }
 
+VsiModel with_steel(const VsiModel& model) {
+  VsiModel steel = model;
+  steel.contact.normal.material = {};
+  return steel;
+}
+
 /// How far the rails under the train are out of place, where that alone holds it from rest.
 std::optional<std::string> no_rest_for_deviations(const VsiModel& model, double share, double time) {
   if (model.irregularity.empty() && !model.span_deviation) return std::nullopt;
@@ -75,6 +81,10 @@ std::string no_rest_message(const VsiModel& model, const EquilibriumReport& rest
                        what, time);
   }
   if (!model.geometry) return what;
+  if (has_rest(with_steel(model), time)) {
+    return fmt::format("{}; there is one with wheels and rails of steel, not with contact.material.E = {:.3g} Pa", what,
+                       model.contact.normal.material.E);
+  }
   const WheelRailPair& pair = model.geometry->pair();
   return fmt::format(
       "{}, {}: do the wheels fit on the rails ({} on {}, track gauge {} m, flange backs {} m apart, origins of profile "
@@ -82,6 +92,13 @@ std::string no_rest_message(const VsiModel& model, const EquilibriumReport& rest
       what, loads || acceleration != 0.0 ? "nor is there one without the loads at t = 0" : "under its weight alone",
       pair.wheel().knots().name, pair.rail().knots().name, pair.dimensions().track_gauge,
       pair.dimensions().flange_back);
+}
+
+std::string start_warning(const EquilibriumReport& start) {
+  if (start.steady) return {};
+  return "the deflection that travels with the train is far from that at rest (a track so soft that its dampers bear "
+         "more than its springs, or a train near the track's critical speed): the run begins with the one at rest, and "
+         "the first seconds are not those of a train that has long been running";
 }
 
 std::string displacement_warning(const SceneParameters& scene, const VsiModel& model, const VsiState& state) {

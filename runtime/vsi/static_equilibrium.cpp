@@ -1,12 +1,15 @@
 #include "railtab/runtime/vsi/static_equilibrium.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
+#include "static_wheel_load.hpp"
 #include "wheelset_seat.hpp"
 
 namespace railtab {
@@ -23,7 +26,7 @@ constexpr double dof_tolerance = 1e-7;  // m, rad
 // Where iterations no longer gain, what rounding leaves of the forces is the end: it moves the contact unknowns by some
 // 1e-9 and, over the weak eps M, the dofs by some 1e-7.
 constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
-constexpr double dof_apart = 1e-5;                              // m, rad: of contact unknowns and dofs
+constexpr double out_of_balance = 1e-3;                         // of the static wheel load
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
 
@@ -35,11 +38,50 @@ struct RestOperators {
   VehicleResponse vehicle;
   std::unique_ptr<StructureResponse> structure;
   std::unique_ptr<LocalFlexibility> local;
+
   explicit RestOperators(const VsiModel& model)
       : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
     if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
     if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
   }
+};
+
+constexpr int pitch = 4;
+
+// A vehicle whose wheelsets are where their contacts put them. What contact forces displace it by would say the same
+// but for the rounding of those forces, which a contact's stiffness over that of eps M enlarges: by a million on steel.
+class WheelsetConstraint {
+ public:
+  WheelsetConstraint(const VsiModel& model, const VehicleResponse& vehicle) {
+    for (int k = 0; k < vehicle.compliance().rows(); ++k) {
+      const int body = model.vehicle.wheelsets[index(k / 6)];
+      const int dof = model.vehicle.dof[index(body)][index(k % 6)];
+      if (dof == held || k % 6 == pitch) continue;
+      unknown_.push_back(wheelset_unknowns * (k / 6) + k % 6);
+      dof_.push_back(dof);
+    }
+    answer_ = vehicle.inverse()(Eigen::all, dof_);
+    compliance_.compute(vehicle.inverse()(dof_, dof_));
+    first_unknown_ = wheelset_unknowns * model.wheelsets_per_vehicle();
+  }
+
+  // Moves the dofs of vehicle v to the wheelsets' displacement q; what that takes beside the contact forces [N, N m].
+  double apply(int v, const Eigen::VectorXd& q, Eigen::VectorXd& dofs) const {
+    if (dof_.empty()) return 0.0;
+    Eigen::VectorXd apart(dofs(dof_));
+    for (std::size_t i = 0; i < dof_.size(); ++i) {
+      apart[static_cast<Eigen::Index>(i)] = q[first_unknown_ * v + unknown_[i]] - apart[static_cast<Eigen::Index>(i)];
+    }
+    const Eigen::VectorXd force = compliance_.solve(apart);
+    dofs += answer_ * force;
+    return force.cwiseAbs().maxCoeff();
+  }
+
+ private:
+  std::vector<int> unknown_, dof_;
+  Eigen::MatrixXd answer_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> compliance_;
+  int first_unknown_ = 0;
 };
 
 std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::vector<RailContact>& contacts) {
@@ -55,8 +97,6 @@ std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::ve
   }
   return rail;
 }
-
-constexpr int pitch = 4;
 
 // A wheelset's pitch angle has no effect at rest: in its place stands the deviation from the nominal rotation, which is
 // free of torque. No angle is left behind.
@@ -113,18 +153,11 @@ void scale(double share, std::vector<std::array<RailHeadMotion, 2>>& deviation) 
   }
 }
 
-// How far wheelsets are from where their contacts are solved: nothing but where forces jump (wheels deep in their
-// rails) and a correction of nothing is left of a residual that has not vanished [m, rad].
-double apart(const VsiModel& model, const VsiState& state) {
-  Eigen::VectorXd q = state.contact.displacement;
-  for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
-    gather_wheelsets(model, v, state.vehicle[index(v)].displacement, q);
-  }
-  for (int w = 0; w < model.wheelsets(); ++w) {
-    const int k = wheelset_unknowns * w + pitch;
-    q[k] = state.contact.displacement[k];
-  }
-  return (q - state.contact.displacement).cwiseAbs().maxCoeff();
+double largest_static_load(const VsiModel& model) {
+  double load = 0.0;
+  for (int w = 0; w < model.wheelsets_per_vehicle(); ++w)
+    load = std::max(load, std::abs(static_wheel_load(model.vehicle, w)));
+  return load;
 }
 
 // Whether a wheel is not where it runs: its flange on top of the rail, where there is rest too but no train comes to by
@@ -143,9 +176,14 @@ bool off_its_rail(const VsiModel& model, const ContactProblem& problem, const Ei
   return false;
 }
 
-// Equilibrium at state.time with `structure_load` on the structure besides the wheels, and a share of the track's
-// deviations.
-EquilibriumReport equilibrium_at(double share, const VsiModel& model, const RestOperators& rest,
+// Shares of what rest is sought with, 1 but on the way there.
+struct RestShares {
+  double deviation = 1.0;  // of the track's deviations
+  double E = 1.0;          // of the Young's modulus of wheel and rail
+};
+
+// Equilibrium at state.time with `structure_load` on the structure besides the wheels.
+EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model, const RestOperators& rest,
                                  const Eigen::VectorXd& structure_load, VsiState& state) {
   EquilibriumReport report;
   const VehicleResponse& vehicle = rest.vehicle;
@@ -155,6 +193,10 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
     rest.local->follow(model.wheelset_x(model.wheelsets() - 1, state.time), model.wheelset_x(0, state.time));
   ContactProblem problem = rest_problem(model, rest, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
+  WheelContactModel contact = rest.contact;
+  contact.normal.material.E *= share.E;
+  const WheelsetConstraint constraint(model, vehicle);
+  const double balanced = out_of_balance * largest_static_load(model);
   NewtonWorkspace workspace;
   const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
@@ -166,7 +208,7 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
 
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
     rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
-    if (share < 1.0) scale(share, problem.deviation);
+    if (share.deviation < 1.0) scale(share.deviation, problem.deviation);
     for (int v = 0; v < vehicles; ++v) {
       const LinearMotion& motion = state.vehicle[index(v)];
       const Eigen::VectorXd free =
@@ -177,24 +219,26 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
     }
     if (model.normal_contact == NormalContact::hertz && report.iterations == 0 && state.contact.displacement.isZero()) {
-      set_down(model, rest.contact, problem, state.contact.displacement);
+      set_down(model, contact, problem, state.contact.displacement);
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;
     if (model.normal_contact == NormalContact::rigid) {
       rest_on_rails(problem, state.contact);
-    } else if (!solve_contact_by_continuation(rest.contact, problem, limits, state.contact, workspace).converged) {
+    } else if (!solve_contact_by_continuation(contact, problem, limits, state.contact, workspace).converged) {
       ++report.iterations;
       return report;
     }
 
     const double change_before = report.change;
     report.change = 0.0;
+    double unbalanced = 0.0;
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
       Eigen::VectorXd next = vehicle.inverse() * (load[index(v)] + motion.contact_load +
                                                   regularisation * (model.vehicle.mass * motion.displacement));
       clear_pitch(model, next);
+      unbalanced = std::max(unbalanced, constraint.apply(v, state.contact.displacement, next));
       report.change = std::max(report.change, (next - motion.displacement).cwiseAbs().maxCoeff());
       motion.displacement = next;
     }
@@ -208,7 +252,9 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
     const bool gains = report.change < 0.5 * change_before;
     report.converged = (contact_change < contact_tolerance && report.change < dof_tolerance) ||
                        (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
-    if (report.converged && apart(model, state) > dof_apart) return {.iterations = report.iterations + 1};
+    // Nothing but where forces jump (wheels deep in their rails) and a correction of nothing is left of a residual that
+    // has not vanished.
+    if (report.converged && unbalanced > balanced) return {.iterations = report.iterations + 1};
   }
   if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
   if (rest.local) local_at_rest(*rest.local, contacts, state);
@@ -226,24 +272,19 @@ EquilibriumReport equilibrium_at(double share, const VsiModel& model, const Rest
   return report;
 }
 
-// From where the train stands, and if that leads nowhere (a wheelset far beside its rails would have to climb) from the
-// smooth track, whose deviations grow.
-EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
-                              VsiState& state) {
+// Rest on the smooth track, whose deviations grow: for a wheelset far beside its rails, which would have to climb.
+EquilibriumReport by_growing_deviations(const VsiModel& model, const RestOperators& rest,
+                                        const Eigen::VectorXd& structure_load, VsiState& state) {
   constexpr double first_growth = 0.25, least_growth = 1.0 / 64.0;
-  const VsiState begin = state;
-  EquilibriumReport report = equilibrium_at(1.0, model, rest, structure_load, state);
-  report.deviation_share = 1.0;
-  if (report.converged) return report;
-  int iterations = report.iterations;
-  VsiState reached = begin;
-  report = equilibrium_at(0.0, model, rest, structure_load, reached);
+  VsiState reached = state;
+  EquilibriumReport report = equilibrium_at({.deviation = 0.0}, model, rest, structure_load, reached);
+  int iterations = 0;
   double share = 0.0, growth = first_growth;
   while (report.converged && share < 1.0) {
     state = reached;
     iterations += report.iterations;
     const double next = std::min(1.0, share + growth);
-    report = equilibrium_at(next, model, rest, structure_load, state);
+    report = equilibrium_at({.deviation = next}, model, rest, structure_load, state);
     if (report.converged) {
       reached = state;
       share = next;
@@ -254,6 +295,52 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   }
   report.iterations += iterations;
   report.deviation_share = share;
+  return report;
+}
+
+// Rest on wheels and rails of steel, which grow stiffer: a wheel that sinks in by a tenth of a micrometre is lost to
+// Newton's method when rails and vehicle move first.
+EquilibriumReport by_growing_stiffness(const VsiModel& model, const RestOperators& rest,
+                                       const Eigen::VectorXd& structure_load, VsiState& state) {
+  constexpr double steel = 2.1e11;  // Pa
+  constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
+  const double full = rest.contact.normal.material.E;
+  if (!(full > largest_ratio * steel)) return {};
+  double share = steel / full, ratio = largest_ratio;
+  EquilibriumReport report = equilibrium_at({.E = share}, model, rest, structure_load, state);
+  int iterations = 0;
+  while (report.converged && share < 1.0) {
+    iterations += report.iterations;
+    const VsiState reached = state;
+    const double next = std::min(1.0, share * ratio);
+    report = equilibrium_at({.E = next}, model, rest, structure_load, state);
+    if (report.converged) {
+      share = next;
+      ratio = std::min(largest_ratio, ratio * ratio);
+    } else if (ratio > smallest_ratio) {
+      state = reached;
+      ratio = std::sqrt(ratio);
+      report.converged = true;  // with the share before
+    }
+  }
+  report.iterations += iterations;
+  report.deviation_share = report.converged ? 1.0 : 0.0;
+  return report;
+}
+
+// From where the train stands, and if that leads nowhere by a detour.
+EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
+                              VsiState& state) {
+  const VsiState begin = state;
+  EquilibriumReport report = equilibrium_at({}, model, rest, structure_load, state);
+  report.deviation_share = 1.0;
+  for (const auto detour : {by_growing_stiffness, by_growing_deviations}) {
+    if (report.converged) break;
+    state = begin;
+    const int iterations = report.iterations;
+    report = detour(model, rest, structure_load, state);
+    report.iterations += iterations;
+  }
   return report;
 }
 
@@ -268,13 +355,18 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
   const RestOperators rest(model);
   Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
   EquilibriumReport report = equilibrium(model, rest, inertia, state);
-  if (!model.structure) return report;
+  if (!model.structure || !report.converged) return report;
 
-  // The load that the moving deflection's inertia and damping exert is found from the deflection, and the deflection
-  // under it again: each pass gains a factor of (V / critical speed)².
+  // The load that the moving deflection's inertia and damping exert, from the deflection at rest: the first term of a
+  // series in (V / critical speed)², and in what dampers bear over what springs do. A second pass settles the contacts.
+  // Where the first term is no small one, nothing follows from it, and the structure rests.
+  const VsiState at_rest = state;
   LinearMotion& structure = state.structure;
   constexpr int passes = 4;
-  for (int pass = 0; pass < passes && report.converged; ++pass) {
+  constexpr double largest_term = 0.5;
+  const double most = largest_term * structure.displacement.cwiseAbs().maxCoeff();
+  double change = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < passes && report.steady && change > dof_tolerance; ++pass) {
     VsiState before = state;
     VsiState after = state;
     before.time -= time_step;
@@ -282,17 +374,20 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
     for (VsiState* neighbour : {&before, &after}) {
       const EquilibriumReport r = equilibrium(model, rest, inertia, *neighbour);
       report.iterations += r.iterations;
-      report.converged = report.converged && r.converged;
+      report.steady = report.steady && r.converged;
     }
     structure.velocity = (after.structure.displacement - before.structure.displacement) / (2.0 * time_step);
     structure.acceleration =
         (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /
         (time_step * time_step);
     inertia = -(model.structure->mass * structure.acceleration) - model.structure->damping * structure.velocity;
+    const Eigen::VectorXd displacement = structure.displacement;
     const EquilibriumReport r = equilibrium(model, rest, inertia, state);
+    change = (structure.displacement - displacement).cwiseAbs().maxCoeff();
     report.iterations += r.iterations;
-    report.converged = report.converged && r.converged;
+    report.steady = report.steady && r.converged && change < most;
   }
+  if (!report.steady) state = at_rest;
   return report;
 }
 

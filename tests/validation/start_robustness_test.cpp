@@ -157,6 +157,69 @@ TEST(Start, WithoutFrictionOnFlexibleTrack) {
   EXPECT_NEAR(carried(state) / train_weight(model), 1.0, 1e-6);
 }
 
+SceneParameters coach_on_flexible_track() {
+  SceneParameters scene = coach_on_rigid_track(120.0 / 3.6);
+  scene.track_kind = TrackKind::flexible;
+  scene.track.length_before = scene.track.length_after = 30.0;
+  return scene;
+}
+
+// Vertical forces of the wheels at rest [N].
+Eigen::VectorXd wheel_loads(const VsiModel& model) {
+  VsiState state(model);
+  EXPECT_TRUE(static_equilibrium(model, state).converged);
+  Eigen::VectorXd loads(2 * model.wheelsets());
+  for (int wheel = 0; wheel < loads.size(); ++wheel) loads[wheel] = state.contact.force[rail_unknown(wheel) + 1];
+  return loads;
+}
+
+// At rest nothing approaches, though wheels stand where rails are deflected and slope.
+TEST(Start, RestDoesNotDependOnTheContactsDamping) {
+  SceneParameters scene = coach_on_flexible_track();
+  const Eigen::VectorXd without = wheel_loads(build_model(scene));
+  scene.contact.damping = 1000.0;
+  EXPECT_LT((wheel_loads(build_model(scene)) - without).cwiseAbs().maxCoeff(), 1e-6 * without[0]);
+  scene.integration.duration = 0.005;
+  const RunSummary summary = run_scene(scene, {});
+  EXPECT_TRUE(summary.complete) << summary.message;
+}
+
+// From rubber's to five thousand times steel's stiffness the track carries the train as it does on steel.
+TEST(Start, OnContactsOfAnyStiffness) {
+  SceneParameters scene = coach_on_flexible_track();
+  const Eigen::VectorXd steel = wheel_loads(build_model(scene));
+  for (const double E : {1e10, 1e12, 1e14, 1e15}) {
+    scene.contact.material.E = E;
+    const Eigen::VectorXd loads = wheel_loads(build_model(scene));
+    EXPECT_LT((loads - steel).cwiseAbs().maxCoeff(), 0.01 * steel[0]) << E << " Pa";
+    EXPECT_NEAR(loads.sum() / steel.sum(), 1.0, 1e-5) << E << " Pa";
+    scene.integration.duration = 0.002;
+    const RunSummary summary = run_scene(scene, {});
+    EXPECT_TRUE(summary.complete) << E << " Pa: " << summary.message;
+  }
+}
+
+// Pads on which rails sink by 8 cm, at rest. Under the train that moves their dampers bear the most of it.
+TEST(Start, OnPadsThatSinkByCentimetres) {
+  SceneParameters scene = coach_on_flexible_track();
+  scene.track.pad.kz = 1e5;
+  const VsiModel model = build_model(scene);
+  VsiState state(model);
+  ASSERT_TRUE(static_equilibrium(model, state).converged);
+  EXPECT_NEAR(carried(state) / train_weight(model), 1.0, 1e-5);
+  EXPECT_GT(state.contact.displacement[2], 0.05);
+  EXPECT_LT(state.contact.displacement[2], 0.15);
+  std::vector<std::string> warnings;
+  RunObserver observer;
+  observer.warning = [&](std::string_view warning) { warnings.emplace_back(warning); };
+  scene.integration.duration = 0.01;
+  const RunSummary summary = run_scene(scene, observer);
+  EXPECT_TRUE(summary.complete) << summary.message;
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+    return warning.find("the run begins with the one at rest") != std::string::npos;
+  }));
+}
+
 // The third wheelset stands where both rails lie aside by more than the flanges' clearance: it is reached from the
 // smooth track, the deviations growing.
 TEST(Start, WithOneWheelsetOnItsFlange) {

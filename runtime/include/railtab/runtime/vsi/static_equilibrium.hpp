@@ -9,6 +9,7 @@ struct EquilibriumReport {
   int iterations = 0;
   double change = 0.0;           ///< of the last iteration [m, rad]
   double deviation_share = 0.0;  ///< of the track's deviations, for which there is a state of rest: 1 where converged
+  bool steady = true;            ///< of steady_start(): false where the structure does not move
 };
 
 /// The train at rest on the track (rolling steadily: creep forces act, rates are zero) with its first position at
@@ -24,7 +25,7 @@ struct EquilibriumReport {
 /// The start of a run at constant speed: static equilibrium, with the structure moving as a deflection that travels
 /// with the train does. Velocity and acceleration come from equilibria some centimetres before and after, and their
 /// inertia and damping forces load the structure, so that the first step finds it in balance. Vehicles start without
-/// vibration.
+/// vibration. Where that deflection is not found (track whose dampers bear more than its springs), the structure rests.
 [[nodiscard]] EquilibriumReport steady_start(const VsiModel& model, VsiState& state);
 
 /// The train moved to the right by `shift` [m] and its wheelsets turned by `yaw` [rad], from a state of rest: where a
