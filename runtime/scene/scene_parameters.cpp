@@ -60,7 +60,7 @@ void IntegrationParameters::validate() const {
   require(duration >= 0.0, "integration.duration", duration, ">= 0 s");
   require(alpha >= -1.0 / 3.0 && alpha <= 0.0, "integration.alpha", alpha, "-1/3 to 0");
   require(impact_step > 0.0 && impact_step <= 0.1, "integration.impact_step", impact_step, "> 0, <= 0.1 s");
-  require(tolerance > 0.0 && tolerance <= 1e-2, "integration.tolerance", tolerance, "> 0, <= 0.01");
+  require(tolerance >= 1e-12 && tolerance <= 1e-2, "integration.tolerance", tolerance, "1e-12 to 0.01");
   require(max_iterations >= 2, "integration.max_iterations", max_iterations, ">= 2");
   require(max_halvings >= 0, "integration.max_halvings", max_halvings, ">= 0");
 }
@@ -159,7 +159,7 @@ void SceneParameters::validate() const {
   check_structure(*this);
   if (train.vehicle == imported_vehicle) vehicle.validate(train.count);
   if (train.count < 1) throw input_error("train.count", fmt::format("{}", train.count), ">= 1");
-  require(train.speed > 0.0, "train.speed", train.speed, "> 0 m/s");
+  require(train.speed >= 1e-3, "train.speed", train.speed, ">= 0.001 m/s");
   integration.validate();
   reduction.validate();
   if (spectrum) spectrum->validate();

@@ -220,6 +220,21 @@ TEST(Start, OnPadsThatSinkByCentimetres) {
   }));
 }
 
+// What the scene's keys allow at the least: speed, and change of the forces that is none.
+TEST(Start, RunsAtTheLeastSpeedAndTolerance) {
+  SceneParameters scene = coach_on_flexible_track();
+  scene.integration.duration = 0.01;
+  scene.train.speed = 1e-3;
+  RunSummary summary = run_scene(scene, {});
+  EXPECT_TRUE(summary.complete) << summary.message;
+  EXPECT_EQ(summary.halved_steps, 0);
+  scene.train.speed = 30.0;
+  scene.integration.tolerance = 1e-12;
+  summary = run_scene(scene, {});
+  EXPECT_TRUE(summary.complete) << summary.message;
+  EXPECT_EQ(summary.halved_steps, 0);
+}
+
 // The third wheelset stands where both rails lie aside by more than the flanges' clearance: it is reached from the
 // smooth track, the deviations growing.
 TEST(Start, WithOneWheelsetOnItsFlange) {
