@@ -24,7 +24,7 @@ struct Bridge {
   std::vector<double> dof_x;                 // position along the track of each unknown [m]
   std::vector<std::array<double, 2>> spans;  // from and to [m]
   std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
-  bool supports_alike_only = false;          // some of them are known only for ground that moves alike under all
+  std::string beyond_supports;               // StructureSupports::beyond
   std::vector<std::string> doubts;           // on what was imported
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too

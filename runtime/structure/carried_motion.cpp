@@ -1,6 +1,5 @@
 #include "railtab/runtime/structure/carried_motion.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cassert>
 
@@ -41,13 +40,15 @@ Columns node_rows(const std::vector<StructureNode>& nodes, const Columns& carrie
 
 }  // namespace
 
+void factorise(const Sparse& stiffness, StiffnessFactor& factor) {
+  factor.compute(stiffness);
+  if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 0.0) return;
+  throw ComputationError("the structure's stiffness is not positive definite: check supports and stiffnesses");
+}
+
 // Some columns at a time. A support under one sleeper carries a few metres of track: what is zero but for rounding is
 // not kept.
-Sparse carried_by_supports(const Sparse& stiffness, const Columns& of_supports) {
-  const Eigen::SimplicialLDLT<Sparse> factor(stiffness);
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) {
-    throw ComputationError("the structure's stiffness is not positive definite: check supports and stiffnesses");
-  }
+Sparse carried_by_supports(const StiffnessFactor& factor, const Columns& of_supports) {
   constexpr Eigen::Index at_a_time = 16;
   const Sparse columns = of_supports;
   std::vector<Eigen::Triplet<double>> entries;
@@ -67,6 +68,12 @@ Sparse carried_by_supports(const Sparse& stiffness, const Columns& of_supports) 
   return result;
 }
 
+Sparse carried_by_supports(const Sparse& stiffness, const Columns& of_supports) {
+  StiffnessFactor factor;
+  factorise(stiffness, factor);
+  return carried_by_supports(factor, of_supports);
+}
+
 StructureModel relative_to_supports(StructureModel structure) {
   StructureSupports& s = structure.supports;
   assert(s.columns() > 0 && s.carried.size() == 0);
@@ -82,7 +89,7 @@ StructureModel relative_to_supports(StructureModel structure) {
 StructureSupports gathered(const StructureSupports& supports, const Sparse& shares, std::vector<double> x) {
   StructureSupports result;
   result.x = std::move(x);
-  result.alike_only = supports.alike_only;
+  result.beyond = supports.beyond;
   result.mass = supports.mass * shares;
   result.damping = supports.damping * shares;
   result.stiffness = supports.stiffness * shares;

@@ -82,17 +82,27 @@ Eigen::MatrixXd of_all(const Columns& matrix, Eigen::Index rows) {
   return sum;
 }
 
-/// A r + ΣA_s, what a translation of everything meets; zero where it is rounding of what it is made of.
+/// A r + A_s 1, what a translation of structure and supports meets.
 Eigen::MatrixXd resistance(const Sparse& matrix, const Columns& of_supports, const Eigen::MatrixXd& translation) {
-  constexpr double rounding = 1e-8;  // of matrices written with ten digits
-  Eigen::MatrixXd sum = matrix * translation + of_all(of_supports, matrix.rows());
-  const Eigen::MatrixXd parts = matrix.cwiseAbs() * translation.cwiseAbs();
-  for (Eigen::Index j = 0; j < 2; ++j) {
-    for (Eigen::Index i = 0; i < sum.rows(); ++i) {
-      if (std::abs(sum(i, j)) <= rounding * parts(i, j)) sum(i, j) = 0.0;
-    }
+  return matrix * translation + of_all(of_supports, matrix.rows());
+}
+
+/// Where K⁻¹ times a resistance holds the structure back most, among all that a translation moves.
+struct LeftBehind {
+  double size = 0.0;
+  Eigen::Index row = 0;
+};
+
+LeftBehind left_behind(const StiffnessFactor& factor, const Eigen::MatrixXd& resistance,
+                       const Eigen::MatrixXd& translation) {
+  const Eigen::MatrixXd answer = factor.solve(resistance);
+  LeftBehind most;
+  for (Eigen::Index i = 0; i < answer.rows(); ++i) {
+    if (translation.row(i).isZero(0.0)) continue;
+    const double size = answer.row(i).cwiseAbs().maxCoeff();
+    if (size > most.size) most = {size, i};
   }
-  return sum;
+  return most;
 }
 
 /// a of what C r has of a·m + b·k, m and k what the translation meets of mass and stiffness.
@@ -104,7 +114,10 @@ double mass_share(const Eigen::MatrixXd& damping, const Eigen::MatrixXd& mass, c
   return (cm * kk - ck * mk) / (mm * kk - mk * mk);
 }
 
+/// Entries that are rounding of the largest are left out.
 void append_support(const Eigen::MatrixXd& columns, Columns& matrix) {
+  constexpr double rounding = 1e-12;
+  const double least = rounding * (columns.size() > 0 ? columns.cwiseAbs().maxCoeff() : 0.0);
   Columns wider(columns.rows(), matrix.cols() + 2);
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     wider.startVec(i);
@@ -112,11 +125,54 @@ void append_support(const Eigen::MatrixXd& columns, Columns& matrix) {
       for (Columns::InnerIterator entry(matrix, i); entry; ++entry) wider.insertBack(i, entry.col()) = entry.value();
     }
     for (Eigen::Index number = 0; number < 2; ++number) {
-      if (columns(i, number) != 0.0) wider.insertBack(i, matrix.cols() + number) = columns(i, number);
+      if (std::abs(columns(i, number)) > least) wider.insertBack(i, matrix.cols() + number) = columns(i, number);
     }
   }
   wider.finalize();
   matrix = std::move(wider);
+}
+
+/// What a translation meets of what stands on other ground than the declared supports.
+struct Resistances {
+  Eigen::MatrixXd strained, braked;
+};
+
+/// Takes rounding, and damping in proportion to the mass, out of what resists a translation; says what is left.
+std::string settle_declared_supports(const FeMatrices& m, const Eigen::MatrixXd& translation, const RowName& name,
+                                     StructureSupports& s, Resistances& resistances) {
+  constexpr double rigid = 1e-4;     // of the supports' translation
+  constexpr double undamped = 1e-6;  // [m per m/s]: 1e-4 of the translation at 100 rad/s
+  constexpr double rounding = 1e-9;  // of what the damping's entries add up to
+  std::string beyond;
+  StiffnessFactor factor;
+  factorise(m.stiffness, factor);
+  auto& [missing, braking] = resistances;
+  const LeftBehind strained = left_behind(factor, missing, translation);
+  if (strained.size <= rigid) {
+    missing.setZero();
+  } else {
+    beyond = fmt::format(
+        "that stands on more than its [[support]]s, or whose matrices were written with few digits: where all supports "
+        "move alike, {} stays behind by {:.2g} of it",
+        name(strained.row), strained.size);
+  }
+  const Eigen::MatrixXd inertia = resistance(m.mass, s.mass, translation);
+  const double a = mass_share(braking, inertia, missing);
+  if (a * inertia.norm() > rounding * (m.damping.cwiseAbs() * translation.cwiseAbs()).norm()) {
+    Sparse of_mass = m.mass * carried_by_supports(factor, s.stiffness);
+    of_mass += Sparse(s.mass);
+    s.damping = Sparse(s.damping) - a * of_mass;
+    braking = resistance(m.damping, s.damping, translation);
+  }
+  const LeftBehind braked = left_behind(factor, braking, translation);
+  if (braked.size <= undamped) {
+    braking.setZero();
+  } else if (beyond.empty()) {
+    beyond = fmt::format(
+        "with dampers to more than its [[support]]s: where they all move at 1 m/s, {} stays behind by {:.2g} m",
+        name(braked.row), braked.size);
+  }
+  return beyond;
 }
 
 }  // namespace
@@ -187,18 +243,18 @@ Eigen::MatrixXd translations(const FeStructure& structure) {
 }
 
 void stand_on_ground(const std::vector<int>& nodes, FeStructure& structure, StructureSupports& supports) {
-  const bool any = std::any_of(nodes.begin(), nodes.end(), [&](int name) {
+  const auto loose = std::find_if(nodes.begin(), nodes.end(), [&](int name) {
     const FeNode& node = structure.nodes.at(name);
     return (node.rows[lateral].empty() && node.support[0] == held) ||
            (node.rows[vertical].empty() && node.support[1] == held);
   });
-  if (any && !supports.alike_only) {
-    supports.alike_only = true;
+  if (loose != nodes.end() && !supports.alike_only()) {
+    supports.beyond = fmt::format("whose deck node {} has no row of y or z and stands on no [[support]]", *loose);
     for (Columns* matrix : {&supports.stiffness, &supports.damping, &supports.mass})
       append_support(Eigen::MatrixXd::Zero(structure.dofs(), 2), *matrix);
     supports.x.push_back(supports.x.empty() ? 0.0 : supports.x.front());
   }
-  if (!supports.alike_only) return;
+  if (!supports.alike_only()) return;
   const int missing = supports.columns() - 2;
   for (int name : nodes) {
     std::array<int, 2>& support = structure.nodes.at(name).support;
@@ -209,27 +265,16 @@ void stand_on_ground(const std::vector<int>& nodes, FeStructure& structure, Stru
   }
 }
 
-void settle_supports(const Sparse& mass, const Sparse& damping, const Sparse& stiffness,
-                     const Eigen::MatrixXd& translation, StructureSupports& s) {
-  const Eigen::MatrixXd missing = resistance(stiffness, s.stiffness, translation);
-  if (s.columns() > 0) {
-    const Eigen::MatrixXd inertia = mass * translation + of_all(s.mass, mass.rows());
-    const double a = mass_share(resistance(damping, s.damping, translation), inertia, missing);
-    const Eigen::MatrixXd parts = damping.cwiseAbs() * translation;
-    constexpr double rounding = 1e-9;
-    if (a * inertia.norm() > rounding * parts.norm()) {
-      const Sparse carried = carried_by_supports(stiffness, s.stiffness);
-      Sparse of_mass = mass * carried;
-      of_mass += Sparse(s.mass);
-      s.damping = Sparse(s.damping) - a * of_mass;
-    }
-  }
-  const Eigen::MatrixXd braking = resistance(damping, s.damping, translation);
-  if (missing.isZero(0.0) && braking.isZero(0.0)) return;
-  s.alike_only = true;
-  append_support(-missing, s.stiffness);
-  append_support(-braking, s.damping);
-  append_support(Eigen::MatrixXd::Zero(mass.rows(), 2), s.mass);
+void settle_supports(const FeMatrices& m, const Eigen::MatrixXd& translation, const RowName& name,
+                     StructureSupports& s) {
+  Resistances resistances{resistance(m.stiffness, s.stiffness, translation),
+                          resistance(m.damping, s.damping, translation)};
+  s.beyond = s.columns() == 0 ? "without [[support]], whose matrices do not have the supports' own rows"
+                              : settle_declared_supports(m, translation, name, s, resistances);
+  if (!s.alike_only()) return;
+  append_support(-resistances.strained, s.stiffness);
+  append_support(-resistances.braked, s.damping);
+  append_support(Eigen::MatrixXd::Zero(m.mass.rows(), 2), s.mass);
   s.x.push_back(s.x.empty() ? 0.0 : s.x.front());
 }
 

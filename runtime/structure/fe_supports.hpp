@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "railtab/runtime/structure/fe_structure.hpp"
@@ -32,14 +34,25 @@ class RowSplit {
 /// Unit translation of all unknowns along y (first column) and z.
 [[nodiscard]] Eigen::MatrixXd translations(const FeStructure& structure);
 
+/// M, C and K of the unknowns.
+struct FeMatrices {
+  const Eigen::SparseMatrix<double>&mass, &damping, &stiffness;
+};
+/// What a message calls a row.
+using RowName = std::function<std::string(Eigen::Index)>;
+
 /// Completes supports that have K_s, M_s and C_s as the matrices know them:
 /// - damping in proportion to the mass, which would brake a structure that moves with its ground, acts on the motion
 ///   relative to what the supports carry along: C_s −= a (M_s + M ι), a fitted to what of C resists a translation;
 /// - what resists a translation of structure and supports stands on supports whose rows are missing. They become one
-///   more, K_s = −(K r + ΣK_s 1) and C_s likewise, known only for ground that moves alike. Their M_s is left out.
-/// @param translation r, unknowns × 2
-void settle_supports(const Eigen::SparseMatrix<double>& mass, const Eigen::SparseMatrix<double>& damping,
-                     const Eigen::SparseMatrix<double>& stiffness, const Eigen::MatrixXd& translation,
+///   more, K_s = −(K r + K_s 1) and C_s likewise, known only for ground that moves alike. Their M_s is left out.
+///
+/// Where supports are declared, a resistance is what holds a y or z of the structure back by more than 1e-4 of a
+/// translation of all supports at rest, |K⁻¹ (K r + K_s 1)| = |r − ι 1|, or by more than 1e-6 m while they move at
+/// 1 m/s, |K⁻¹ (C r + C_s 1)|. Less is taken for the rounding with which the matrices were written: single rows cannot
+/// tell, for an entry that is zero but for rounding adds up with others like it to nothing but rounding.
+/// @param translation r, unknowns × 2 @throws ComputationError where K is not positive definite
+void settle_supports(const FeMatrices& matrices, const Eigen::MatrixXd& translation, const RowName& name,
                      StructureSupports& supports);
 
 /// Lets nodes that carry the track move with the ground where they have no row of y or z: with the [[support]] that

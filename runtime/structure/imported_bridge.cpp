@@ -12,6 +12,7 @@
 #include "free_motion.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/vehicle/motion_names.hpp"
 #include "railtab/tables/input_error.hpp"
 
 namespace railtab {
@@ -40,7 +41,12 @@ void append_supports(const StructureSupports::Columns& matrix, std::vector<Eigen
 StructureSupports settled_supports(const FeStructure& structure, FeDampingMatrix damping) {
   StructureSupports supports = structure.supports;
   supports.damping = std::move(damping.of_supports);
-  settle_supports(structure.mass, damping.of_unknowns, structure.stiffness, translations(structure), supports);
+  const auto name = [&](Eigen::Index row) {
+    const auto r = static_cast<std::size_t>(row);
+    return fmt::format("node {} along {}", structure.node_of_row[r],
+                       motion_names[static_cast<std::size_t>(structure.motion[r])]);
+  };
+  settle_supports({structure.mass, damping.of_unknowns, structure.stiffness}, translations(structure), name, supports);
   return supports;
 }
 
@@ -116,7 +122,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   append_supports(supports.stiffness, bridge.matrices.stiffness);
   append_supports(supports.damping, bridge.matrices.damping);
   bridge.support_x = supports.x;
-  bridge.supports_alike_only = supports.alike_only;
+  bridge.beyond_supports = supports.beyond;
   bridge.dof_x = positions(structure);
   double begin = INFINITY;
   bridge.end = -INFINITY;

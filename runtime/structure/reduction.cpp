@@ -108,7 +108,7 @@ StructureSupports project_supports(const StructureSupports& supports, const Tran
     return product.sparseView();
   };
   projected.x = supports.x;
-  projected.alike_only = supports.alike_only;
+  projected.beyond = supports.beyond;
   projected.mass = columns(supports.mass);
   projected.damping = columns(supports.damping);
   projected.stiffness.resize(transposed.rows(), supports.columns());

@@ -196,7 +196,8 @@ void settle_named_supports(const std::filesystem::path& file, StructureModel& mo
           "all supports, whose translation strains nothing");
     }
   }
-  settle_supports(model.mass, model.damping, model.stiffness, translation, s);
+  const auto name = [](Eigen::Index row) { return fmt::format("unknown {} beside the supports' rows", row + 1); };
+  settle_supports({model.mass, model.damping, model.stiffness}, translation, name, s);
 }
 
 }  // namespace

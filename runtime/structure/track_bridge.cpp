@@ -208,7 +208,7 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
 
   StructureModel model;
   model.supports.x = std::move(bridge.support_x);
-  model.supports.alike_only = bridge.supports_alike_only;
+  model.supports.beyond = std::move(bridge.beyond_supports);
   model.nodes = named_nodes(nodes, bridge);
   const OrderAlongTrack order(bridge.dof_x);
   for (auto* entries : {&assembly.mass, &assembly.damping, &assembly.stiffness}) order.renumber(*entries);

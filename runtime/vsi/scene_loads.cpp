@@ -95,10 +95,9 @@ void check_supports(const SceneParameters& scene, const VsiModel& model) {
     throw input_error(first_record(scene), "rails that have no lateral motion",
                       "rails with it, or contact.normal = \"rigid\"");
   }
-  if (supports.alike_only && !model.ground_motion->uniform()) {
+  if (supports.alike_only() && !model.ground_motion->uniform()) {
     throw input_error(first_record(scene),
-                      "motion that differs along the track, and an imported structure that stands on more than its "
-                      "[[support]]s: a translation of all of them strains it or is damped",
+                      "motion that differs along the track, and an imported structure " + supports.beyond,
                       "one record for all, or the rows of all supports in the matrices and a [[support]] for each");
   }
 }

@@ -240,7 +240,7 @@ TEST_P(ImportedSpan, OnMovingSupportsIsTheBuiltInOne) {
   const StructureModel built = build_track_bridge(short_track(), {span()});
   const StructureModel imported =
       build_track_on_import(short_track(), WrittenSpan(GetParam(), SupportRows::kept).parameters);
-  EXPECT_FALSE(imported.supports.alike_only);
+  EXPECT_FALSE(imported.supports.alike_only());
   ASSERT_EQ(imported.supports.x.size(), built.supports.x.size());
   for (std::size_t i = 0; i < built.supports.x.size(); ++i)
     EXPECT_NEAR(imported.supports.x[i], built.supports.x[i], 1e-9);
@@ -255,7 +255,7 @@ TEST_P(ImportedSpan, OnMovingSupportsIsTheBuiltInOne) {
 TEST_P(ImportedSpan, WithoutItsSupportsRowsMovesAlike) {
   const StructureModel built = build_track_bridge(short_track(), {span()});
   const StructureModel imported = build_track_on_import(short_track(), WrittenSpan(GetParam()).parameters);
-  EXPECT_TRUE(imported.supports.alike_only);
+  EXPECT_TRUE(imported.supports.alike_only());
   // The mass between held and free motions of the last elements is not known.
   const Eigen::MatrixXd a = answer_to_supports(imported, 0.0), b = answer_to_supports(built, 0.0);
   for (int component = 0; component < 2; ++component) {

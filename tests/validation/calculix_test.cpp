@@ -248,7 +248,7 @@ TEST(Calculix, MidspanUnderATrainAndOnMovingGroundIsThatOfTheBuiltInBridge) {
   EXPECT_NEAR(imported.deflection, built.deflection, 0.01 * built.deflection);
   EXPECT_NEAR(imported.acceleration, built.acceleration, 0.01 * built.acceleration);
 
-  EXPECT_TRUE(of_calculix.supports.alike_only) << "the rows of its supports are not in the matrices";
+  EXPECT_TRUE(of_calculix.supports.alike_only()) << "the rows of its supports are not in the matrices";
   const std::vector<double> found = shaken(of_calculix), expected = shaken(built_in_span);
   double worst = 0.0, size = 0.0;
   for (std::size_t i = 0; i < expected.size(); ++i) {

@@ -146,7 +146,7 @@ TEST(MovingSupports, ImportedAndReducedMassesAreTheClosedFormOscillator) {
   const StructureModel imported = imported_masses();
   ASSERT_EQ(imported.dofs(), 2);
   ASSERT_EQ(imported.supports.columns(), 2);
-  EXPECT_FALSE(imported.supports.alike_only);
+  EXPECT_FALSE(imported.supports.alike_only());
   const StructureModel relative = relative_to_supports(imported);
   for (const auto& [name, structure] : {std::pair{"imported", imported},
                                         {"relative", relative},

@@ -47,12 +47,15 @@ struct StructureSupports {
   using Columns = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   std::vector<double> x{};                 ///< of each support [m]
   Columns mass{}, damping{}, stiffness{};  ///< dofs × 2 per support
-  bool alike_only = false;                 ///< some supports are known only for ground that moves alike under all
+  /// Why some supports are known only for ground that moves alike under all, "a structure that …"; empty: all are
+  /// known.
+  std::string beyond{};
   /// Rows by the rails' dofs × 2 per support. Not empty: the unknowns are relative to what the supports carry along,
   /// and the rails' motion is theirs and carried·s (relative_to_supports()).
   Columns carried{};
   Columns carried_nodes{};  ///< the same for the nodes of interest, 6 rows each
   [[nodiscard]] int columns() const noexcept { return static_cast<int>(2 * x.size()); }
+  [[nodiscard]] bool alike_only() const noexcept { return !beyond.empty(); }
 };
 
 /// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite.
