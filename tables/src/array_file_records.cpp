@@ -23,7 +23,6 @@ void ArrayFileWriter::Impl::begin_records() {
   require_written(H5Fflush(handle.get(), H5F_SCOPE_LOCAL) >= 0, file.string());
   require_written(handle.reset(), file.string());
   if (std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
-  lock = WriterLock(temporary);
   // Readers find the file by its name only when it says that it is being written.
   open_records();
   publish();

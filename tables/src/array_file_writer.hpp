@@ -23,7 +23,7 @@ struct ArrayFileWriter::Impl {
   std::filesystem::path temporary;  ///< the name now; empty once the file has its own
   Mode mode = Mode::whole_or_nothing;
   bool broken = false;  ///< something could not be written: nothing more is, and the file gets no new name
-  WriterLock lock;
+  WriterLock lock;      ///< of the file under its name now
   hdf5::File handle;
 
   struct Growing {

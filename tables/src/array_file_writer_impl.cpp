@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include "array_file_seal.hpp"
 #include "array_file_writer.hpp"
 #include "railtab/tables/text_file.hpp"
+#include "temporary_file.hpp"
 
 namespace railtab {
 
@@ -37,13 +37,6 @@ hdf5::Properties group_properties(hid_t kind) {
 hsize_t chunk_rows(std::size_t row_size) {
   constexpr std::size_t chunk_values = 2048, fewest = 8;
   return std::max(fewest, chunk_values / row_size);
-}
-
-std::filesystem::path temporary_name(const std::filesystem::path& file) {
-  static std::atomic<unsigned> count{0};
-  std::filesystem::path name = file;
-  name += fmt::format(".part-{}-{}", ::getpid(), count++);
-  return name;
 }
 
 /// To the disk itself, so that the new name never stands for a file that a power failure emptied. @return 0, or the
@@ -97,6 +90,7 @@ void ArrayFileWriter::Impl::abandon() noexcept {
 void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version) {
   file = output_file(file);
   if (mode == Mode::growing && std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
+  remove_abandoned(file);
   temporary = temporary_name(file);
   const hdf5::Properties access = hdf5::file_access();
   const hdf5::Properties creation = group_properties(H5P_FILE_CREATE);
@@ -110,6 +104,7 @@ void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version
     temporary.clear();
     throw hdf5::failure(file.string(), "a file that can be created");
   }
+  lock = WriterLock(temporary);
   write_text("", "filetype", filetype, 0);
   const std::int64_t version = format_version;
   write_attribute("", "format_version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version);

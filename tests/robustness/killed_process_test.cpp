@@ -100,6 +100,10 @@ TEST_F(KilledProcess, ARunGoesOnToTheSameBits) {
   EXPECT_TRUE(last.summary.complete);
   ASSERT_EQ(last.steps.size(), expected.steps.size());
   expect_prefix(last, expected);
+  ASSERT_EQ(vsi("run scene.toml -o r.h5 -q").exit_code, 0);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    EXPECT_EQ(entry.path().filename().string().find(".part-"), std::string::npos) << entry.path();
+  }
 }
 
 const std::string geometry =
