@@ -13,6 +13,7 @@
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/process_end.hpp"
 #include "railtab/tables/text_file.hpp"
 
 namespace railtab {
@@ -174,7 +175,7 @@ void batch_command(const std::vector<std::string>& arguments) {
     }
     if (text && job.state != State::failed) fmt::print("{}: {}\n", job.pair.output.string(), state_name(job.state));
     if (job.state != State::failed) continue;
-    fmt::print(stderr, "{}: {}: failed: {}\n", job.pair.place, job.pair.output.string(), job.message);
+    print_message(fmt::format("{}: {}: failed: {}\n", job.pair.place, job.pair.output.string(), job.message));
     ++failed;
   }
   if (line.json()) print_json(jobs);

@@ -7,6 +7,7 @@
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/tables/geometry_table_file.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/process_end.hpp"
 #include "railtab/tables/text_file.hpp"
 
 namespace railtab {
@@ -54,7 +55,8 @@ GeometryRequest geometry_request(const CommandLine& line) {
 void print_notes(const GeometryRequest& request) {
   const WheelRailPair& pair = request.search.pair();
   for (const ProfileCurve* profile : {&pair.wheel(), &pair.rail()}) {
-    for (const std::string& note : profile->knots().notes) fmt::print(stderr, "tablegen geometry: note: {}\n", note);
+    for (const std::string& note : profile->knots().notes)
+      print_message(fmt::format("tablegen geometry: note: {}\n", note));
   }
 }
 

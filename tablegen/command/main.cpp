@@ -1,15 +1,11 @@
 #include <fmt/format.h>
-#include <cstdlib>
 
-#include <cstdio>
-#include <exception>
-#include <filesystem>
 #include <functional>
 #include <map>
 
 #include "commands.hpp"
 #include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/tables/process_end.hpp"
 
 namespace {
 
@@ -52,33 +48,8 @@ int run(const std::vector<std::string>& arguments) {
   return 0;
 }
 
-int exit_code(const std::vector<std::string>& arguments) {
-  try {
-    return run(arguments);
-  } catch (const railtab::InputError& e) {
-    fmt::print(stderr, "tablegen: {}\n", e.what());
-    return 2;
-  } catch (const std::filesystem::filesystem_error& e) {
-    fmt::print(stderr, "tablegen: {}: {}\n", e.path1().string(), e.code().message());
-    return railtab::is_wrong_name(e.code()) ? 2 : 1;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "tablegen: {}\n", e.what());
-    return 1;
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  int code = exit_code({argv + 1, argv + argc});
-  // What was asked for on standard output has to have arrived there.
-  if (code == 0 && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) {
-    std::fputs("tablegen: standard output could not be written\n", stderr);
-    code = 1;
-  }
-  if (code == 0) return 0;
-  // What HDF5 could not write or read it keeps open, and its own clean-up at the end of a process crashes on a full
-  // disk and complains of damaged files: every file has been closed as far as it can be, so leave without it.
-  std::fflush(nullptr);
-  std::_Exit(code);
+  return railtab::run_process("tablegen", [&] { return run({argv + 1, argv + argc}); });
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include "railtab/tables/process_end.hpp"
 
 namespace railtab {
 
@@ -30,8 +31,8 @@ void ProgressBar::show(double share) {
   const double left = share > 0 ? elapsed * (1.0 - share) / share : 0.0;
   constexpr int width = 40;
   const int full = static_cast<int>(share * width);
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} % {:4.0f} s left\x1b[K", title_, "", full, "", width - full,
-             100 * share, left);
+  print_message(fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f} % {:4.0f} s left\x1b[K", title_, "", full, "", width - full,
+                            100 * share, left));
   std::fflush(stderr);
 }
 

@@ -5,13 +5,14 @@
 
 #include <cstdio>
 #include <string>
+#include "railtab/tables/process_end.hpp"
 
 namespace railtab::vsi {
 
 ProgressBar::ProgressBar(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 void ProgressBar::wipe() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) print_message("\r\033[K");
   drawn_ = false;
 }
 
@@ -26,8 +27,8 @@ void ProgressBar::show(double fraction) {
   const int done = static_cast<int>(width * fraction);
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const std::string left = fraction > 0.0 ? fmt::format("{:.0f} s left", elapsed * (1.0 - fraction) / fraction) : "";
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}", std::string(static_cast<std::size_t>(done), '#'),
-             std::string(static_cast<std::size_t>(width - done), ' '), 100.0 * fraction, left);
+  print_message(fmt::format("\r\033[K[{}{}] {:3.0f} %  {}", std::string(static_cast<std::size_t>(done), '#'),
+                            std::string(static_cast<std::size_t>(width - done), ' '), 100.0 * fraction, left));
   std::fflush(stderr);
 }
 
@@ -55,11 +56,11 @@ void SetupProgress::draw() {
   std::unique_lock lock(mutex_);
   for (bool drawn = false;; drawn = true) {
     if (changed_.wait_for(lock, drawn ? 500ms : 2000ms, [this] { return ended_; })) {
-      if (drawn) fmt::print(stderr, "\r\033[K");
+      if (drawn) print_message("\r\033[K");
       return;
     }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-    fmt::print(stderr, "\r\033[Kset-up: {}, {:.0f} s", part_, elapsed.count());
+    print_message(fmt::format("\r\033[Kset-up: {}, {:.0f} s", part_, elapsed.count()));
     std::fflush(stderr);
   }
 }

@@ -19,6 +19,7 @@
 #include "railtab/tables/array_file.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/process_end.hpp"
 #include "railtab/tables/text_file.hpp"
 #include "reduction_report.hpp"
 #include "run_command.hpp"
@@ -34,7 +35,7 @@ ContactMode contact_mode(const std::string& name) {
   throw input_error("--contact", name, "table, online or paper");
 }
 
-void print_warning(std::string_view warning) { fmt::print(stderr, "vsi run: warning: {}\n", warning); }
+void print_warning(std::string_view warning) { print_message(fmt::format("vsi run: warning: {}\n", warning)); }
 
 int print_plan(const SceneParameters& scene, const RunOptions& options) {
   SetupProgress progress(options.quiet || options.json);
@@ -99,14 +100,14 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
   if (!options.quiet) warn_of_uncovered_queries(summary);
   if (summary.complete) return 0;
   if (summary.interrupted) {
-    fmt::print(stderr,
-               "vsi run: interrupted at t = {:.6g} s; everything up to there is in {}; the same command with --resume "
-               "goes on from there\n",
-               headline.simulated_time, options.output);
+    print_message(fmt::format(
+        "vsi run: interrupted at t = {:.6g} s; everything up to there is in {}; the same command with --resume "
+        "goes on from there\n",
+        headline.simulated_time, options.output));
     return interrupted;
   }
-  fmt::print(stderr, "vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
-             headline.simulated_time, summary.message, options.output);
+  print_message(fmt::format("vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
+                            headline.simulated_time, summary.message, options.output));
   return 1;
 }
 
@@ -115,7 +116,8 @@ void say_what_is_replaced(const RunOptions& options) {
   if (options.quiet || !std::filesystem::exists(options.output)) return;
   try {
     if (!read_run_summary(options.output).complete) return;
-    fmt::print(stderr, "vsi run: note: {} holds the results of a whole run, which this one replaces\n", options.output);
+    print_message(
+        fmt::format("vsi run: note: {} holds the results of a whole run, which this one replaces\n", options.output));
   } catch (const InputError&) {  // nothing that could be read is lost
   }
 }
@@ -145,7 +147,7 @@ class RunRecorder {
     RunObserver observer;
     observer.setup = [this](std::string_view part) { setup_.show(part); };
     observer.note = [this](std::string_view note) {
-      if (!options_.quiet) fmt::print(stderr, "vsi run: note: {}\n", note);
+      if (!options_.quiet) print_message(fmt::format("vsi run: note: {}\n", note));
     };
     observer.warning = [this](std::string_view warning) {
       if (!options_.quiet) print_warning(warning);

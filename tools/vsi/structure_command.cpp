@@ -10,6 +10,7 @@
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/process_end.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -74,7 +75,8 @@ int structure_command(const Arguments& arguments) {
       throw with_scene_line(wrong, scene, file);
     }
   }();
-  for (const std::string& doubt : doubts(scene, summary)) fmt::print(stderr, "vsi structure: warning: {}\n", doubt);
+  for (const std::string& doubt : doubts(scene, summary))
+    print_message(fmt::format("vsi structure: warning: {}\n", doubt));
   if (values->contains("json")) {
     print_json(scene, summary);
   } else {

@@ -21,6 +21,7 @@
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/tables/file_checksum.hpp"
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/process_end.hpp"
 #include "railtab/tables/text_file.hpp"
 #include "run_command.hpp"
 #include "sweep_plan.hpp"
@@ -110,8 +111,8 @@ class Sweep {
     fs::path aside = old.string() + "." + why;
     for (int k = 2; fs::exists(aside); ++k) aside = fmt::format("{}.{}-{}", old.string(), why, k);
     fs::rename(old, aside);
-    fmt::print(stderr, "vsi sweep: {}: {} is set aside as {}\n", run.name, old.filename().string(),
-               aside.filename().string());
+    print_message(fmt::format("vsi sweep: {}: {} is set aside as {}\n", run.name, old.filename().string(),
+                              aside.filename().string()));
   }
 
   /// Whether results there are the run's own, which it can keep or go on from. @throws InputError why they are not
@@ -133,7 +134,7 @@ class Sweep {
         check_results(run, scene);
         return;
       } catch (const InputError& wrong) {
-        fmt::print(stderr, "vsi sweep: {}: {}; the run is made again\n", run.name, wrong.what());
+        print_message(fmt::format("vsi sweep: {}: {}; the run is made again\n", run.name, wrong.what()));
       }
       why = is_readable(file(run, ".h5")) ? "other" : "damaged";
       set_aside(run, ".h5", why);
@@ -157,9 +158,9 @@ class Sweep {
       if (!row.empty()) write_text_file(file(run, ".row"), row);
       return code;
     } catch (const InputError& wrong) {
-      fmt::print(stderr, "vsi sweep: {}: {}\n", run.name, with_scene_line(wrong, scene, scene_file_).what());
+      print_message(fmt::format("vsi sweep: {}: {}\n", run.name, with_scene_line(wrong, scene, scene_file_).what()));
     } catch (const std::exception& failure) {
-      fmt::print(stderr, "vsi sweep: {}: {}\n", run.name, failure.what());
+      print_message(fmt::format("vsi sweep: {}: {}\n", run.name, failure.what()));
     }
     return failed;
   }

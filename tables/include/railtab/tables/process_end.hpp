@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace railtab {
+
+/// Writes a message to standard error. That it cannot be written there (a full disk) changes nothing else.
+void print_message(const std::string& text) noexcept;
+
+/// Runs all of a command, `program` in its messages on standard error, and says how the process ends: what `command`
+/// returns; 2 for InputError and names that the system refuses; 1 for any other exception and where standard output
+/// could not be written. A process that fails ends here, without the clean-up of libraries: HDF5 keeps open what it
+/// could not write or read, crashes over it on a full disk and complains of damaged files; every file has been closed
+/// as far as it can be. @return 0
+int run_process(std::string_view program, const std::function<int()>& command);
+
+}  // namespace railtab
