@@ -39,7 +39,10 @@ struct Assign {
   void operator()(const FileKey& key) const {
     const std::filesystem::path named = file.parent_path() / text("a file name");
     if (!is_file(named)) {
-      throw leaf_error(file, leaf, "no file " + named.string(), "an existing file, relative to the scene");
+      std::error_code refused;
+      const bool none = !std::filesystem::exists(named, refused);
+      throw leaf_error(file, leaf, fmt::format("{} {}", none ? "no file" : what_is_at(named), named.string()),
+                       "an existing file, relative to the scene");
     }
     draft.parameters.files.push_back(named);
     key.member(draft) = named;
@@ -289,11 +292,7 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
 }
 
 std::string whole_file(const std::filesystem::path& file) {
-  if (!is_file(file)) {
-    std::error_code refused;
-    const bool folder = std::filesystem::is_directory(file, refused);
-    throw input_error(file.string(), folder ? "a folder" : "no such file", "a TOML scene");
-  }
+  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "a TOML scene");
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
   content << stream.rdbuf();
@@ -315,7 +314,10 @@ SceneParameters read_scene(const std::filesystem::path& file) {
     scene::assign(draft, file, leaves);
     return scene::settle(std::move(draft), file, leaves);
   } catch (const toml::parse_error& wrong) {
-    throw InputError(fmt::format("{}:{}: {}", file.string(), wrong.source().begin.line, wrong.description()));
+    const toml::source_position at = wrong.source().begin;
+    const std::string key = scene::key_before(draft.parameters.text, at);
+    throw InputError(
+        fmt::format("{}:{}: {}{}{}", file.string(), at.line, key, key.empty() ? "" : ": ", wrong.description()));
   }
 }
 

@@ -104,7 +104,7 @@ std::vector<KeyBinding> span_keys() {
   return {
       {"bridge.count", "1", "equal spans that this [[bridge]] stands for",
        IntegerKey{[](SceneDraft& d) -> int& { return d.span_count; }, 1, 1000}},
-      {"bridge.length", "m", "span", NumberKey{of_span<&BridgeParameters::length>, {0.0, 1e3, true}}},
+      {"bridge.length", "m", "span", NumberKey{of_span<&BridgeParameters::length>, {0.5, 1e3}}},
       {"bridge.E", "Pa", "Young's modulus", NumberKey{of_span<&BridgeParameters::E>, {1e9, 1e13}}},
       {"bridge.G", "Pa", "shear modulus", NumberKey{of_span<&BridgeParameters::G>, {1e8, 1e13}}},
       {"bridge.A", "m²", "cross-section", NumberKey{of_span<&BridgeParameters::A>, {1e-3, 1e4}}},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 namespace railtab::scene {
@@ -61,6 +62,29 @@ std::vector<Leaf> leaves_of(const toml::table& root, const std::filesystem::path
 InputError leaf_error(const std::filesystem::path& file, const Leaf& leaf, std::string_view found,
                       std::string_view expected) {
   return input_error(fmt::format("{}:{}: {}", file.string(), leaf.line, leaf.path), found, expected);
+}
+
+std::string key_before(std::string_view text, toml::source_position place) {
+  const auto trimmed = [](std::string_view words) {
+    constexpr std::string_view blank = " \t\r";
+    const std::size_t first = words.find_first_not_of(blank);
+    return first == words.npos ? words.substr(0, 0) : words.substr(first, words.find_last_not_of(blank) - first + 1);
+  };
+  std::string_view section;
+  for (unsigned line = 1; line < place.line; ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view words = trimmed(text.substr(0, end));
+    const std::string_view inside = words.substr(std::min(words.find_first_not_of('['), words.size()));
+    const std::string_view name = trimmed(inside.substr(0, inside.find(']')));
+    const bool heading = words.starts_with('[') && !name.empty() && std::isalpha(static_cast<unsigned char>(name[0]));
+    if (heading && name.find_first_of(",\"'") == name.npos) section = name;  // else a line of an array's
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  const std::string_view before = text.substr(0, std::min<std::size_t>(text.find('\n'), place.column - 1));
+  const std::size_t equals = before.find('=');
+  const std::string_view key = trimmed(before.substr(0, equals));
+  if (equals == before.npos || key.empty() || key.front() == '#') return {};
+  return section.empty() ? std::string(key) : fmt::format("{}.{}", section, key);
 }
 
 std::string found_text(const toml::node& node) {

@@ -33,6 +33,10 @@ struct Leaf {
 [[nodiscard]] InputError leaf_error(const std::filesystem::path& file, const Leaf& leaf, std::string_view found,
                                     std::string_view expected);
 
+/// Key, with its section, of what stands at a place of a text that is no TOML, for its messages; empty where no key
+/// stands before it on its line.
+[[nodiscard]] std::string key_before(std::string_view text, toml::source_position place);
+
 /// What a message shows of a value.
 [[nodiscard]] std::string found_text(const toml::node& node);
 

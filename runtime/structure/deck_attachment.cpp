@@ -21,9 +21,7 @@ struct DeckNode {
   FeNode node;
 };
 
-std::string named(const FeStructure& structure, int number) {
-  return fmt::format("{}: node {}", structure.source, number);
-}
+std::string named(int number) { return fmt::format("structure.deck: node {}", number); }
 
 std::size_t most_rows(const FeNode& node) {
   return std::max({node.rows[0].size(), node.rows[1].size(), node.rows[2].size()});
@@ -32,7 +30,7 @@ std::size_t most_rows(const FeNode& node) {
 /// The mean of an expanded node's rows is its motion where all of them are there. CalculiX takes a row away for what is
 /// held. Of a beam there are four rows or eight in each direction, and a direction with fewer is held: its mean is
 /// zero. Of a shell, with two or three, it cannot be told how many there were.
-void settle_expanded(const FeStructure& structure, std::vector<DeckNode>& nodes) {
+void settle_expanded(std::vector<DeckNode>& nodes) {
   constexpr std::size_t corners = 4, with_midsides = 8;
   const bool beams =
       std::any_of(nodes.begin(), nodes.end(), [](const DeckNode& n) { return most_rows(n.node) >= corners; });
@@ -44,7 +42,7 @@ void settle_expanded(const FeStructure& structure, std::vector<DeckNode>& nodes)
       if (rows[k].size() != whole) rows[k].clear();
     }
     if (beams || (rows[0].size() == rows[1].size() && rows[1].size() == rows[2].size())) continue;
-    throw input_error(named(structure, n.number),
+    throw input_error(named(n.number),
                       fmt::format("{}, {} and {} rows of x, y and z: a shell node that is partly held", rows[0].size(),
                                   rows[1].size(), rows[2].size()),
                       "deck nodes that are free; supports at other nodes");
@@ -95,11 +93,11 @@ void add_beam_shapes(DeckAttachment& deck, const FeNode& a, const FeNode& b, dou
   }
 }
 
-DeckFunction beam_deck(const FeStructure& structure, std::vector<DeckNode> nodes) {
+DeckFunction beam_deck(std::vector<DeckNode> nodes) {
   std::vector<double> x;
   for (const DeckNode& n : nodes) {
     if (!x.empty() && n.node.position[0] - x.back() <= rounding) {
-      throw input_error(named(structure, n.number), fmt::format("a second deck node at x = {} m", n.node.position[0]),
+      throw input_error(named(n.number), fmt::format("a second deck node at x = {} m", n.node.position[0]),
                         "one of each position along a beam");
     }
     x.push_back(n.node.position[0]);
@@ -128,8 +126,7 @@ DeckFunction beam_deck(const FeStructure& structure, std::vector<DeckNode> nodes
 /// Nodes of a deck's surface, sorted by x.
 class DeckSurface {
  public:
-  explicit DeckSurface(std::string source, std::vector<DeckNode> nodes)
-      : source_(std::move(source)), nodes_(std::move(nodes)) {}
+  explicit DeckSurface(std::vector<DeckNode> nodes) : nodes_(std::move(nodes)) {}
 
   [[nodiscard]] std::optional<DeckAttachment> operator()(double x, double y, double z) const {
     if (x < nodes_.front().node.position[0] - rounding || x >= nodes_.back().node.position[0] - rounding) {
@@ -144,7 +141,7 @@ class DeckSurface {
 
  private:
   [[nodiscard]] std::string place(double x, double y) const {
-    return fmt::format("{}: deck at x = {:.3f} m, y = {:.3f} m", source_, x, y);
+    return fmt::format("structure.deck: at x = {:.3f} m, y = {:.3f} m", x, y);
   }
   [[nodiscard]] static double distance(const DeckNode& n, double x, double y) {
     return std::hypot(n.node.position[0] - x, n.node.position[1] - y);
@@ -216,7 +213,6 @@ class DeckSurface {
     add_motion(deck, 5, node, 0, -0.5 * d_dy);
   }
 
-  std::string source_;
   std::vector<DeckNode> nodes_;
 };
 
@@ -230,15 +226,17 @@ DeckFunction deck_function(const FeStructure& structure, const std::vector<int>&
     low = std::min(low, nodes.back().node.position[1]);
     high = std::max(high, nodes.back().node.position[1]);
   }
-  settle_expanded(structure, nodes);
+  settle_expanded(nodes);
   std::stable_sort(nodes.begin(), nodes.end(),
                    [](const DeckNode& a, const DeckNode& b) { return a.node.position[0] < b.node.position[0]; });
   if (nodes.size() < 2 || nodes.back().node.position[0] - nodes.front().node.position[0] <= rounding) {
-    throw input_error(structure.source + ": deck", fmt::format("{} nodes at one place along the track", nodes.size()),
-                      "nodes along the track");
+    throw input_error("structure.deck",
+                      nodes.size() == 1 ? fmt::format("node {} alone", nodes.front().number)
+                                        : fmt::format("{} nodes at one place along the track", nodes.size()),
+                      "nodes along the track, on which it lies");
   }
-  if (high - low <= rounding) return beam_deck(structure, std::move(nodes));
-  return DeckSurface(structure.source, std::move(nodes));
+  if (high - low <= rounding) return beam_deck(std::move(nodes));
+  return DeckSurface(std::move(nodes));
 }
 
 }  // namespace railtab

@@ -8,6 +8,7 @@ namespace railtab {
 namespace {
 
 constexpr double longest_track = 1e4, longest_span = 1e3;  // [m]: more than any run needs
+constexpr double shortest_span = 0.5;                      // [m]: as of an imported deck
 
 void check_support(const std::string& place, const SupportParameters& support) {
   require_positive(place + ".kx", support.kx, "N/m");
@@ -62,8 +63,7 @@ void TrackParameters::validate() const {
 }
 
 void BridgeParameters::validate() const {
-  require_positive("bridge.length", length, "m");
-  require_between("bridge.length", length, 0.0, longest_span, "m");
+  require_between("bridge.length", length, shortest_span, longest_span, "m");
   require_positive("bridge.E", E, "Pa");
   require_positive("bridge.G", G, "Pa");
   require_positive("bridge.A", A, "m²");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "railtab/tables/input_error.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab {
 namespace {
@@ -81,8 +82,10 @@ void append_row(std::vector<FileColumn>& columns, const std::string& file, long 
 std::string FileColumn::place(std::size_t row) const { return fmt::format("{}:{}: column {}", file, line[row], name); }
 
 std::vector<FileColumn> read_columns(const std::filesystem::path& file) {
+  constexpr std::string_view expected = "a text file with columns";
+  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), std::string(expected));
   std::ifstream stream(file);
-  if (!stream) throw input_error(file.string(), "no readable file", "a text file with columns");
+  if (!stream) throw input_error(file.string(), "no readable file", std::string(expected));
   std::vector<FileColumn> columns;
   std::string text;
   for (long line = 1; std::getline(stream, text); ++line) {

@@ -43,11 +43,10 @@ std::size_t split(std::string_view text, std::span<std::string_view> words, std:
 }
 
 LineReader::LineReader(const std::filesystem::path& file, std::string_view kind) : file_(file) {
-  if (is_file(file)) {
-    stream_.open(file);
-    std::error_code none;
-    bytes_ = std::filesystem::file_size(file, none);
-  }
+  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), kind);
+  stream_.open(file);
+  std::error_code none;
+  bytes_ = std::filesystem::file_size(file, none);
   if (!stream_.is_open() || !stream_) throw input_error(file.string(), "no readable file", kind);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -49,6 +50,16 @@ std::vector<double> natural_curvatures(const std::vector<double>& x, const std::
   return curvature;
 }
 
+/// Where between two points a distance h apart, from 0 to 1, their spline is level: the roots b of
+/// (v1 − v0)/h² + ((1 − 3(1 − b)²) m0 + (3b² − 1) m1)/6 = 0. Other numbers where there are none.
+std::array<double, 2> level_places(double v0, double v1, double m0, double m1, double h) {
+  const double p = 0.5 * (m1 - m0), q = m0, r = (v1 - v0) / (h * h) - (2.0 * m0 + m1) / 6.0;
+  const double root = q * q - 4.0 * p * r;
+  if (!(root >= 0.0)) return {-1.0, -1.0};
+  const double s = -0.5 * (q + std::copysign(std::sqrt(root), q));  // [Press2007, Eq. 5.6.4]
+  return {p != 0.0 ? s / p : -1.0, s != 0.0 ? r / s : -1.0};
+}
+
 }  // namespace
 
 Irregularity::Irregularity(std::vector<double> x, std::vector<double> y_left, std::vector<double> z_left,
@@ -75,6 +86,29 @@ double Irregularity::largest() const noexcept {
     for (const double value : knot.value) largest = std::max(largest, std::abs(value));
   }
   return largest;
+}
+
+Irregularity::Extreme Irregularity::farthest_out() const noexcept {
+  Extreme farthest;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto less = [c](const Knot& a, const Knot& b) { return a.value[c] < b.value[c]; };
+    const auto [lowest, highest] = std::minmax_element(knots_.begin(), knots_.end(), less);
+    if (lowest == knots_.end() || lowest->value[c] == highest->value[c]) continue;  // straight
+    const double low = lowest->value[c], high = highest->value[c];
+    for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
+      const double h = x_[i + 1] - x_[i];
+      const double v0 = knots_[i].value[c], v1 = knots_[i + 1].value[c];
+      const double m0 = knots_[i].curvature[c], m1 = knots_[i + 1].curvature[c];
+      for (const double b : level_places(v0, v1, m0, m1, h)) {
+        if (!(b > 0.0 && b < 1.0)) continue;
+        const double a = 1 - b;
+        const double value = a * v0 + b * v1 + (a * (a * a - 1) * m0 + b * (b * b - 1) * m1) * h * h / 6;
+        const double beyond = std::max(low - value, value - high) / (high - low);
+        if (beyond > farthest.beyond) farthest = {c, i, x_[i] + b * h, value, beyond};
+      }
+    }
+  }
+  return farthest;
 }
 
 RailDeviation Irregularity::at(RailSide side, double x) const noexcept {

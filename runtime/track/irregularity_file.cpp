@@ -10,6 +10,23 @@
 
 namespace railtab {
 
+namespace {
+
+// Points so uneven that their spline has little to do with them.
+void refuse_swings(const Irregularity& irregularity, const std::vector<FileColumn>& columns) {
+  const Irregularity::Extreme swing = irregularity.farthest_out();
+  if (swing.beyond <= 1.0) return;
+  const FileColumn& column = columns[swing.column + 1];
+  throw input_error(
+      column.place(swing.point + 1),
+      fmt::format("a spline through the points that swings to {:.3g} m at x = {:.6g} m, before the next row, {:.3g} "
+                  "times the range of the column's values beyond it",
+                  swing.value, swing.x, swing.beyond),
+      "points more evenly spaced: beside a steep change as near to each other as in it");
+}
+
+}  // namespace
+
 Irregularity read_irregularity(const std::filesystem::path& file) {
   constexpr std::array<std::string_view, 5> names{"x", "y_left", "z_left", "y_right", "z_right"};
   constexpr std::string_view expected = "5 columns: x, y_left, z_left, y_right, z_right";
@@ -28,8 +45,10 @@ Irregularity read_irregularity(const std::filesystem::path& file) {
     for (double& value : columns[c].values) value *= factor;
     if (c == 0) require_argument(columns[c]);
   }
-  return Irregularity(std::move(columns[0].values), std::move(columns[1].values), std::move(columns[2].values),
-                      std::move(columns[3].values), std::move(columns[4].values));
+  Irregularity irregularity(std::move(columns[0].values), std::move(columns[1].values), std::move(columns[2].values),
+                            std::move(columns[3].values), std::move(columns[4].values));
+  refuse_swings(irregularity, columns);
+  return irregularity;
 }
 
 }  // namespace railtab

@@ -89,7 +89,7 @@ BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file
 }
 
 toml::table parsed(const std::filesystem::path& file) {
-  if (!is_file(file)) throw input_error(file.string(), "no file", "a list of pairs in TOML");
+  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "a list of pairs in TOML");
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& wrong) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "array_file_seal.hpp"
+#include "railtab/tables/text_file.hpp"
 
 namespace railtab::hdf5 {
 namespace {
@@ -161,9 +162,7 @@ std::string text_attribute(hid_t object, const std::string& at, std::string_view
 
 FileState inspect_file(const std::filesystem::path& file) {
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw input_error(file.string(), "no such file", "an HDF5 file");
-  if (!std::filesystem::is_regular_file(status)) throw input_error(file.string(), "no regular file", "an HDF5 file");
+  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "an HDF5 file");
   FileState state;
   state.bytes = std::filesystem::file_size(file, error);
 

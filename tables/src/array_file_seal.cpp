@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -66,12 +67,23 @@ void check_seal(const std::filesystem::path& file) {
   stream.clear();
   const std::string expected = expected_seal(stream);
   if (found == expected) return;
-  const auto words = [](const std::string& block) {
-    const std::size_t end = std::min(block.find('\n', mark.size()), std::size_t{100});
-    return block.substr(mark.size(), end - mark.size());
-  };
-  throw input_error(file.string(), fmt::format("contents of which {}", words(expected)),
-                    fmt::format("{}: the file is damaged or cut short", words(found)));
+  // Of a seal that is as it was written, the length tells what happened.
+  unsigned long long length = 0, sum = 0;
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, failed);
+  if (std::sscanf(found.c_str() + mark.size(), "%llu bytes follow this block of %*u, FNV-1a %llx", &length, &sum) !=
+          2 ||
+      found != seal_of(length, sum)) {
+    throw input_error(file.string(), fmt::format("damage in the first {} bytes", seal_bytes),
+                      "the seal with which railtab writes tables");
+  }
+  const std::uint64_t written = seal_bytes + length;
+  if (bytes != written) {
+    throw input_error(file.string(), fmt::format("{} bytes", bytes),
+                      fmt::format("{} bytes: the file is {}", written, bytes < written ? "cut short" : "too long"));
+  }
+  throw input_error(file.string(), fmt::format("contents that are not those that were written ({} bytes)", bytes),
+                    fmt::format("their checksum {:016x}: the file is damaged", sum));
 }
 
 }  // namespace railtab

@@ -16,6 +16,26 @@ bool is_file(const std::filesystem::path& file) noexcept {
   return std::filesystem::is_regular_file(file, refused);
 }
 
+std::string_view what_is_at(const std::filesystem::path& file) noexcept {
+  std::error_code refused;
+  switch (std::filesystem::status(file, refused).type()) {
+    case std::filesystem::file_type::none:
+    case std::filesystem::file_type::not_found:
+      return "no such file";
+    case std::filesystem::file_type::directory:
+      return "a folder";
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::character:
+      return "a device";
+    case std::filesystem::file_type::fifo:
+      return "a pipe";
+    case std::filesystem::file_type::socket:
+      return "a socket";
+    default:
+      return "no regular file";
+  }
+}
+
 bool is_wrong_name(const std::error_code& refused) noexcept {
   return refused == std::errc::filename_too_long || refused == std::errc::too_many_symbolic_link_levels ||
          refused == std::errc::permission_denied || refused == std::errc::not_a_directory ||
@@ -31,8 +51,7 @@ std::filesystem::path output_file(const std::filesystem::path& named) {
     file = file.parent_path() / std::filesystem::read_symlink(file, failed);
   }
   if (std::filesystem::exists(file, failed) && !std::filesystem::is_regular_file(file, failed)) {
-    throw input_error(named.string(), std::filesystem::is_directory(file, failed) ? "a folder" : "no regular file",
-                      "the name of a file");
+    throw input_error(named.string(), std::string(what_is_at(file)), "the name of a file");
   }
   return file;
 }

@@ -66,6 +66,30 @@ TEST_F(IrregularityFile, ReadsPositionsInMillimetres) {
   EXPECT_DOUBLE_EQ(irregularity.at(RailSide::left, 0.25).y, 1e-3);
 }
 
+// A step of 5 mm within 1 mm, its neighbours 10 m away: the natural spline swings by metres beside it.
+TEST_F(IrregularityFile, RefusesASplineThatSwings) {
+  const std::string step = header + "0,0,0,0,0\n10,0,0,0,0\n10.001,0,0,0,5\n20,0,0,0,5\n40,0,0,0,0\n";
+  const std::string message = message_of(step);
+  EXPECT_TRUE(message.starts_with("track.csv:2: column z_right: found a spline through the points that swings to"))
+      << message;
+  // points of a step evenly spaced, as those of any measured record, are its spline's own affair
+  std::string even = header, noise = header;
+  for (int i = 0; i < 40; ++i) {
+    even += std::to_string(i) + ",0,0,0," + (i < 20 ? "0\n" : "5\n");
+    noise += std::to_string(0.25 * i) + ",0,0,0," + (i * i % 7 < 3 ? "-3\n" : "3\n");
+  }
+  EXPECT_EQ(message_of(even), "no InputError");
+  EXPECT_EQ(message_of(noise), "no InputError");
+  const Irregularity::Extreme overshoot = read(even).farthest_out();
+  EXPECT_GT(overshoot.beyond, 0.05);
+  EXPECT_LT(overshoot.beyond, 0.5);
+  EXPECT_EQ(overshoot.column, 3U);
+  // the extreme is where the spline is level, and is its value
+  const RailDeviation there = read(even).at(RailSide::right, overshoot.x);
+  EXPECT_NEAR(there.z, overshoot.value, 1e-15);
+  EXPECT_NEAR(there.dz_dx, 0.0, 1e-12);
+}
+
 TEST_F(IrregularityFile, ReadsAFileWithAByteOrderMark) {
   const Irregularity irregularity =
       read("\xEF\xBB\xBFx[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,1,0,0,0\n2,0,0,0,0\n");

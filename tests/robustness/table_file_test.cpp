@@ -62,7 +62,17 @@ TEST_F(TableFile, CutAnywhereIsRefused) {
     EXPECT_NE(outcome(), "") << "cut to " << length << " of " << bytes_.size() << " bytes";
   }
   write_bytes(std::string_view(bytes_).substr(0, bytes_.size() - 1));
-  EXPECT_NE(outcome().find("cut short"), std::string::npos);
+  const std::string sizes = "found " + std::to_string(bytes_.size() - 1) + " bytes, expected " +
+                            std::to_string(bytes_.size()) + " bytes: the file is cut short";
+  EXPECT_NE(outcome().find(sizes), std::string::npos) << outcome();
+  std::string damaged = bytes_;
+  damaged[bytes_.size() / 2] ^= 1;
+  write_bytes(damaged);
+  EXPECT_NE(outcome().find("the file is damaged"), std::string::npos) << outcome();
+  damaged = bytes_;
+  damaged[20] ^= 1;
+  write_bytes(damaged);
+  EXPECT_NE(outcome().find("damage in the first 512 bytes"), std::string::npos) << outcome();
   write_bytes(bytes_);
   EXPECT_EQ(outcome(), "") << "the whole file is still a good one";
 }

@@ -46,6 +46,52 @@ TEST_F(VsiCommand, MissingFiles) {
   expect_refused("creep --law polach --query absent.csv -o out", "absent.csv: found no such file");
 }
 
+TEST_F(VsiCommand, WhatIsNoRegularFileIsNamed) {
+  expect_refused("run /dev/zero -o out", "/dev/zero: found a device, expected a TOML scene");
+  expect_refused("run . -o out", ".: found a folder");
+  expect_refused("report /dev/zero -o out", "/dev/zero: found a device");
+  expect_refused("creep --law polach --query /dev/zero -o out", "/dev/zero: found a device");
+  write("device.toml", rigid_scene + "duration = 0.1\n[irregularity]\nfile = \"/dev/zero\"\n");
+  expect_refused("run device.toml -o out", "device.toml:8: irregularity.file: found a device /dev/zero");
+}
+
+// TOML's own reader refuses these numbers.
+TEST_F(VsiCommand, NumbersThatAreNoneNameTheirKey) {
+  write("large.toml", rigid_scene + "duration = 1e999\n");
+  expect_refused("run large.toml -o out", "large.toml:6: integration.duration: ");
+  write("digits.toml", "[contact]\nmode = \"online\"\n[ track . pad ] # of the rail\nkz = 99999999999999999999\n");
+  expect_refused("run digits.toml -o out", "digits.toml:4: track . pad.kz: ");
+  write("top.toml", "name = 1e999\n");
+  expect_refused("run top.toml -o out", "top.toml:1: name: ");
+  write("nokey.toml", "[contact]\nmode \"online\"\n");
+  expect_refused("run nokey.toml -o out", "nokey.toml:2: Error");
+}
+
+TEST_F(VsiCommand, AMillimetreIsNoSpan) {
+  write("short.toml", "[contact]\nmode = \"online\"\n[[bridge]]\nlength = 0.001\n");
+  expect_refused("run short.toml -o out", "short.toml:4: bridge.length: found 0.001, expected a number, 0.5 to 1000 m");
+}
+
+// Messages that cannot be written do not change what a command says by its exit code.
+TEST_F(VsiCommand, ExitCodesOutliveAFullStandardError) {
+  write("lost.toml", rigid_scene + "duration = 0.1\n[irregularity]\nfile = \"jump.csv\"\n");
+  write("jump.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-40,300,0,300,0\n40,300,0,300,0\n");
+  write("warned.toml", rigid_scene + "duration = 0.02\n[irregularity]\nfile = \"zero.csv\"\n");
+  write("zero.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-40,0,0,0,0\n40,0,0,0,0\n");
+  const auto code = [&](const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" VSI_COMMAND "' " + arguments + " > out.txt 2> /dev/full";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  };
+  EXPECT_EQ(code("run absent.toml"), 2);
+  EXPECT_EQ(code("rnu"), 2);
+  EXPECT_NE(vsi("run warned.toml -o w.h5").output.find("warning: irregularity.file zero.csv"), std::string::npos);
+  EXPECT_EQ(code("run warned.toml -o w.h5"), 0);
+  EXPECT_EQ(vsi("run lost.toml -o l.h5").exit_code, 1);
+  EXPECT_EQ(code("run lost.toml -o l.h5"), 1);
+}
+
 TEST_F(VsiCommand, FilesThatAreNotWhatTheyShouldBe) {
   write("text.h5", "not HDF5");
   write("empty.h5", "");

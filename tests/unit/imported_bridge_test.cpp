@@ -353,6 +353,8 @@ TEST(ImportedBridge, RefusesWhatDoesNotFit) {
   EXPECT_NE(changed([](auto& p) { p.deck.set = "DECK"; }).find("structure.deck: found no set \"DECK\""),
             std::string::npos);
   EXPECT_NE(changed([](auto& p) { p.deck.from = p.deck.to = {0, 5e3, 0}; }).find("structure.deck"), std::string::npos);
+  const std::string one = changed([](auto& p) { p.deck.from = p.deck.to = {12e3, 0, 0}; });
+  EXPECT_TRUE(one.starts_with("structure.deck: found node ") && one.find(" alone, ") != one.npos) << one;
   EXPECT_NE(changed([](auto& p) {
               p.damping.frequencies = {1.0, 2.0};
             }).find("no ratio that would hold"),

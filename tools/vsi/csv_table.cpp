@@ -73,7 +73,7 @@ double number(std::string_view field, const std::string& place, const std::strin
 }  // namespace
 
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns) {
-  if (!is_file(file)) throw input_error(file.string(), "no such file", "a CSV file");
+  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "a CSV file");
   std::ifstream stream(file);
   CsvTable table;
   std::vector<std::size_t> order;

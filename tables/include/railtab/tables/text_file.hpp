@@ -11,6 +11,10 @@ namespace railtab {
 /// it.
 [[nodiscard]] bool is_file(const std::filesystem::path& file) noexcept;
 
+/// What there is where a regular file should be, for messages: "no such file", "a folder", "a device", "a pipe",
+/// "a socket", "no regular file".
+[[nodiscard]] std::string_view what_is_at(const std::filesystem::path& file) noexcept;
+
 /// Whether the system refused a name, not an operation: too long, links in a circle, no right to the folder, none
 /// there.
 [[nodiscard]] bool is_wrong_name(const std::error_code& refused) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
@@ -34,6 +35,16 @@ class Irregularity {
   /// Largest deviation at the measured positions [m]; 0 without any.
   [[nodiscard]] double largest() const noexcept;
 
+  /// An extreme of a column's spline between point `point` and the next.
+  struct Extreme {
+    std::size_t column = 0, point = 0;
+    double x = 0.0, value = 0.0;  ///< [m]
+    double beyond = 0.0;          ///< outside the range of the column's points, in sizes of that range
+  };
+  /// The one that is farthest outside; beyond = 0 where none is. Of evenly spaced points a spline leaves the range of
+  /// values by less than half of it (its Lebesgue constant is below 2); unevenly spaced ones have no such bound.
+  [[nodiscard]] Extreme farthest_out() const noexcept;
+
  private:
   /// Values and second derivatives of y_left, z_left, y_right, z_right at one point.
   struct Knot {
@@ -46,7 +57,7 @@ class Irregularity {
 /// Read a text file (docs/file_formats/irregularity.md): comment lines "#", one header row "x[m],y_left[mm],z_left[mm],
 /// y_right[mm],z_right[mm]" with the unit of each column, m or mm, then one row per point.
 /// @throws InputError with file and line: missing unit, wrong columns, a value that is not a finite number, x not
-/// increasing
+/// increasing, a spline that leaves the range of its points by more than the size of that range
 [[nodiscard]] Irregularity read_irregularity(const std::filesystem::path& file);
 
 }  // namespace railtab
