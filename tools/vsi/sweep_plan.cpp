@@ -62,8 +62,8 @@ std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector
   }
   std::vector<SweepRun> runs;
   for (double speed : speeds) {
-    if (!(speed > 0.0 && speed <= 200.0)) {
-      throw input_error("--speed", fmt::format("{} m/s", speed), "> 0, <= 200 m/s (--speed-kmh takes km/h)");
+    if (!(speed >= 1e-3 && speed <= 200.0)) {
+      throw input_error("--speed", fmt::format("{} m/s", speed), "0.001 to 200 m/s (--speed-kmh takes km/h)");
     }
     for (int k = 0; k < seeds; ++k) {
       const int seed = scene.spectrum ? scene.spectrum->seed + k : 0;
