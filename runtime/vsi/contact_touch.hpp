@@ -18,6 +18,9 @@ inline constexpr double longest_impact = 10e-3;
 inline constexpr double longest_landing = 1e-3;
 inline constexpr double impact_to_landing = 8.0;
 
+/// A wheel whose vertical force changes by more of the static wheel load in one step has hit something.
+inline constexpr double hit = 0.25;
+
 /// Of every wheel, by the patches that bear load.
 [[nodiscard]] std::vector<Touch> touches(const ContactSolution& contact);
 [[nodiscard]] TouchChange touch_change(const ContactSolution& before, const ContactSolution& after);

@@ -12,7 +12,6 @@
 #include "contact_touch.hpp"
 #include "derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
-#include "railtab/runtime/vsi/support_motion.hpp"
 #include "static_wheel_load.hpp"
 #include "stopwatch.hpp"
 
@@ -117,21 +116,21 @@ class Integrator {
     const double end = state.time + std::ldexp(parameters_.time_step, -level);
     StepOperators& step_operators = operators(level, end, summary.seconds_setup);
     const ContactForceRule rule = rule_at(state);
-    const bool smooth_only = !rule_ && (rule == ContactForceRule::endpoint || level < landing_level_);
+    StepLimits limits = limits_of(rule);
+    limits.smooth_only = !rule_ && (rule == ContactForceRule::endpoint || level < landing_level_);
+    if (limits.smooth_only && level < landing_level_) limits.largest_change = hit * wheel_load_;
     StepReport report;
     // Where a table misses a patch, its forces jump, and there may be no solution on either side: then without it.
     for (const bool without_table : {false, true}) {
       if (without_table && (report.converged || !has_table())) break;
-      report =
-          advance(rule, {.smooth_only = smooth_only, .without_table = without_table}, step_operators, state, summary);
-      if (report.touch_change == TouchChange::none || report.converged) continue;
-      // A wheel meets or leaves its rail: what its spring takes up it shall give back, in steps that resolve how.
-      const bool lands = report.touch_change == TouchChange::met;
-      if (level < (lands ? landing_level_ : impact_level_)) {
-        (lands ? state.landing_until : state.impact_until) = end;
-        return step(level, state, summary);
-      }
-      report = advance(ContactForceRule::energy, {.without_table = without_table}, step_operators, state, summary);
+      limits.without_table = without_table;
+      report = advance(rule, limits, step_operators, state, summary);
+      if (report.converged || (report.touch_change == TouchChange::none && !report.hits)) continue;
+      if (level < begin_impact(report, end, state)) return step(level, state, summary);
+      // What the spring of a wheel that meets or leaves its rail takes up it shall give back.
+      StepLimits accepting = limits_of(ContactForceRule::energy);
+      accepting.without_table = without_table;
+      report = advance(ContactForceRule::energy, accepting, step_operators, state, summary);
     }
     if (report.converged) {
       if (!rule_) follow_impact(report, step_operators.scheme, state);
@@ -157,6 +156,22 @@ class Integrator {
       if (!step(finer, state, summary)) return false;
     }
     return true;
+  }
+
+  // The level of a step that ends at `end`, with what has happened in it; steps until then take it. A wheel that runs
+  // upon a kink stays on its rail, but its force vibrates as after a landing.
+  int begin_impact(const StepReport& report, double end, VsiState& state) const {
+    if (report.touch_change == TouchChange::met) {
+      state.landing_until = std::max(state.landing_until, end);
+      return landing_level_;
+    }
+    if (report.hits) {
+      state.landing_until = std::max(state.landing_until, end + longest_landing);
+      state.impact_until = std::max(state.impact_until, end + longest_impact);
+      return landing_level_;
+    }
+    state.impact_until = std::max(state.impact_until, end);
+    return impact_level_;
   }
 
   // How long from the end of a step on steps are those of an impact, and contacts keep their energy.
@@ -189,15 +204,12 @@ class Integrator {
     return model_.normal_contact == NormalContact::hertz && model_.contact.geometry->is_table();
   }
 
-  struct Attempt {
-    bool smooth_only = false, without_table = false;  // as those of StepLimits
-  };
-  StepReport advance(ContactForceRule rule, const Attempt& attempt, StepOperators& step_operators, VsiState& state,
+  [[nodiscard]] const StepLimits& limits_of(ContactForceRule rule) const {
+    return rule == ContactForceRule::energy ? energy_limits_ : endpoint_limits_;
+  }
+  StepReport advance(ContactForceRule rule, const StepLimits& limits, StepOperators& step_operators, VsiState& state,
                      RunSummary& summary) {
     step_operators.scheme.contact_force = rule;
-    StepLimits limits = rule == ContactForceRule::energy ? energy_limits_ : endpoint_limits_;
-    limits.smooth_only = attempt.smooth_only;
-    limits.without_table = attempt.without_table;
     const StepReport report = railtab::advance(model_, step_operators, limits, state, workspace_);
     summary.newton_iterations += report.newton_iterations;
     summary.back_substitutions += report.back_substitutions;
@@ -215,8 +227,8 @@ class Integrator {
   IntegrationParameters parameters_;
   StepLimits endpoint_limits_, energy_limits_;
   std::optional<ContactForceRule> rule_;  // none: automatic
-  int impact_level_ = 0;   // halvings of a step of an impact
-  int landing_level_ = 0;  // and of one just after a wheel has met its rail
+  int impact_level_ = 0;                  // halvings of a step of an impact
+  int landing_level_ = 0;                 // and of one just after a wheel has met its rail
   StepWorkspace workspace_;
   std::map<int, StepOperators> operators_;
   std::function<void(const EnergyBalance&)> energy_;
@@ -228,105 +240,7 @@ class Integrator {
   std::optional<MovingWindow> window_;
 };
 
-void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord& record) {
-  for (std::size_t k = 0; k < 6; ++k) {
-    const bool free = dof[k] != held;
-    record.displacement[k] = free ? motion.displacement[dof[k]] : 0.0;
-    record.velocity[k] = free ? motion.velocity[dof[k]] : 0.0;
-    record.acceleration[k] = free ? motion.acceleration[dof[k]] : 0.0;
-  }
-}
-
-// Nodes whose motion is a combination of the unknowns.
-void fill_combined_nodes(const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows, const VsiState& state,
-                         StepRecord& record) {
-  const Eigen::VectorXd displacement = rows * state.structure.displacement;
-  const Eigen::VectorXd velocity = rows * state.structure.velocity;
-  const Eigen::VectorXd acceleration = rows * state.structure.acceleration;
-  for (std::size_t n = 0; n < record.nodes.size(); ++n) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      const auto row = static_cast<Eigen::Index>(6 * n + k);
-      record.nodes[n].displacement[k] = displacement[row];
-      record.nodes[n].velocity[k] = velocity[row];
-      record.nodes[n].acceleration[k] = acceleration[row];
-    }
-  }
-}
-
-// What supports carry the nodes by, where the structure's displacements are relative to them.
-void add_carried(const VsiModel& model, StepRecord& record) {
-  const StructureSupports& supports = model.structure->supports;
-  if (!model.ground_motion || supports.carried_nodes.size() == 0) return;
-  const SupportMotion motion = support_motion(*model.ground_motion, supports.x, record.time);
-  const Eigen::VectorXd displacement = supports.carried_nodes * motion.displacement;
-  const Eigen::VectorXd velocity = supports.carried_nodes * motion.velocity;
-  const Eigen::VectorXd acceleration = supports.carried_nodes * motion.acceleration;
-  for (std::size_t n = 0; n < record.nodes.size(); ++n) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      const auto row = static_cast<Eigen::Index>(6 * n + k);
-      record.nodes[n].displacement[k] += displacement[row];
-      record.nodes[n].velocity[k] += velocity[row];
-      record.nodes[n].acceleration[k] += acceleration[row];
-    }
-  }
-}
-
-void fill_patches(const ContactSolution& contact, std::size_t index, WheelRecord& wheel) {
-  wheel = {};
-  const ContactPatch* first = nullptr;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.patches[index].count); ++i) {
-    const ContactPatch& patch = contact.patches[index].patch[i];
-    const double force = contact.normal[index][i];
-    if (force <= 0.0) continue;
-    ++wheel.patches;
-    if (!first || force > wheel.normal_force) {
-      wheel.second_normal_force = wheel.normal_force;
-      wheel.second_y_rail = wheel.y_rail;
-      wheel.normal_force = force;
-      first = &patch;
-      wheel.y_rail = patch.y_rail;
-      wheel.y_wheel = patch.y_wheel;
-      wheel.angle = patch.angle;
-      wheel.rolling_radius = patch.rolling_radius;
-      wheel.penetration = patch.penetration;
-    } else if (force > wheel.second_normal_force) {
-      wheel.second_normal_force = force;
-      wheel.second_y_rail = patch.y_rail;
-    }
-  }
-}
-
 }  // namespace
-
-void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record) {
-  record.time = state.time;
-  record.position = model.wheelset_x(0, state.time);
-  const auto wheels = static_cast<std::size_t>(2 * model.wheelsets());
-  record.wheels.resize(wheels);
-  for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
-    WheelRecord& w = record.wheels[wheel];
-    fill_patches(state.contact, wheel, w);
-    const int unknown = rail_unknown(static_cast<int>(wheel));
-    w.Y = state.contact.end_force[unknown];
-    w.Q = state.contact.end_force[unknown + 1];
-    w.X = state.contact.rail_x[wheel];
-  }
-  const std::size_t bodies = model.vehicle.bodies.size();
-  record.bodies.resize(bodies * state.vehicle.size());
-  for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
-    for (std::size_t b = 0; b < bodies; ++b)
-      fill_motion(model.vehicle.dof[b], state.vehicle[v], record.bodies[v * bodies + b]);
-  }
-  if (!model.structure) return;
-  record.nodes.resize(model.structure->nodes.size());
-  if (model.structure->node_rows.rows() > 0) {
-    fill_combined_nodes(model.structure->node_rows, state, record);
-  } else {
-    for (std::size_t n = 0; n < record.nodes.size(); ++n)
-      fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
-  }
-  add_carried(model, record);
-}
 
 RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration, int record_every,
                     VsiState& state, const RunObserver& observer, long first_step) {

@@ -168,6 +168,16 @@ void close_contact(const HhtScheme& hht, const ContactSolution& start, ContactSo
   }
 }
 
+// Of the rails' vertical forces on wheels in a step [N].
+double largest_change(const ContactSolution& before, const ContactSolution& after) {
+  double largest = 0.0;
+  for (int wheel = 0; wheel < static_cast<int>(after.patches.size()); ++wheel) {
+    const int vertical = rail_unknown(wheel) + 1;
+    largest = std::max(largest, std::abs(after.end_force[vertical] - before.end_force[vertical]));
+  }
+  return largest;
+}
+
 // Motion and contact forces at t + dt.
 void close_step(const VsiModel& model, const StepOperators& op, const std::vector<RailContact>& contacts,
                 VsiState& state, StepWorkspace& ws, StepReport& report) {
@@ -280,7 +290,9 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   set_force_rule(hht, state.contact, ws.problem);
   solve_coupling(model, op, limits, state, contacts, ws, report);
   if (report.converged) report.touch_change = touch_change(state.contact, ws.solution);
-  if (report.touch_change != TouchChange::none && limits.smooth_only) report.converged = false;
+  report.hits =
+      limits.smooth_only && report.converged && largest_change(state.contact, ws.solution) > limits.largest_change;
+  if (limits.smooth_only && (report.hits || report.touch_change != TouchChange::none)) report.converged = false;
   if (report.converged) close_step(model, op, contacts, state, ws, report);
   return report;
 }

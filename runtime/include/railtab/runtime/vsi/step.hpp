@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "railtab/runtime/vsi/divided_substitution.hpp"
@@ -36,8 +37,11 @@ struct StepLimits {
   NewtonLimits newton;
   double far_field_tolerance = 1e-9;  ///< largest rail displacement the contact solution may miss [m, rad]
   int max_passes = 6;                 ///< contact solutions per step
-  bool smooth_only = false;           ///< leave a step undone in which a wheel meets or leaves its rail
-  bool without_table = false;         ///< contact geometry by the online search
+  /// Leave a step undone in which a wheel meets or leaves its rail, or in which a rail's vertical force on a wheel
+  /// changes by more than `largest_change` [N].
+  bool smooth_only = false;
+  double largest_change = std::numeric_limits<double>::infinity();
+  bool without_table = false;  ///< contact geometry by the online search
 };
 
 /// What happens to the wheels of a step that touch their rails, with tread or flange; one that meets it counts first.
@@ -46,6 +50,7 @@ enum class TouchChange { none, left, met };
 struct StepReport {
   bool converged = false;
   TouchChange touch_change = TouchChange::none;
+  bool hits = false;  ///< a force changes by more than StepLimits::largest_change
   int newton_iterations = 0;
   int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
   ContactCounts counts;
