@@ -43,6 +43,7 @@ std::vector<Rule> without_contact_or_deviation(const SceneDraft& draft) {
   const bool contact = draft.parameters.contact.normal == NormalContact::hertz;
   const bool random = !draft.spectrum_name.empty();
   constexpr std::string_view follow = "contact.normal = \"rigid\"";
+  const ReductionParameters& reduction = draft.parameters.reduction;
   return {
       {{"vehicle."},
        draft.parameters.train.vehicle == imported_vehicle,
@@ -58,6 +59,15 @@ std::vector<Rule> without_contact_or_deviation(const SceneDraft& draft) {
        contact && !draft.parameters.integration.contact_force,
        contact ? "an integration.contact_force of every step" : follow,
        "integration.contact_force = \"automatic\""},
+      {{"integration.impact_step"},
+       draft.parameters.contact.mode != ContactMode::paper,
+       "contact.mode = \"paper\"",
+       "contact.mode = \"table\" or \"online\": no impact of points that jump is divided"},
+      {{"integration.impact_step"},
+       reduction.kind != Reduction::modal || !reduction.static_correction,
+       "structure.reduction = \"modal\" with static correction",
+       "structure.static_correction = false, or another reduction: no impact on modes that answer without inertia is "
+       "divided"},
       {{"irregularity.seed"}, random, "no irregularity.spectrum", "one, or no seed"},
       {{"irregularity.shortest_wave", "irregularity.longest_wave"},
        random,

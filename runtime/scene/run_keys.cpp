@@ -100,7 +100,7 @@ std::vector<KeyBinding> integration_keys() {
       {"integration.impact_step", "s",
        "longest step in the millisecond after a wheel meets its rail, where contact_force is automatic; time_step is "
        "divided by a power of two",
-       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.impact_step; }, {0.0, 0.1, true}}},
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.impact_step; }, {1e-6, 0.1}}},
       {"integration.tolerance", "1", "Newton: change of the contact forces relative to the static wheel load",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.integration.tolerance; }, {1e-12, 1e-2}}},
       {"integration.max_iterations", "1", "Newton iterations before a step is halved",

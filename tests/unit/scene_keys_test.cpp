@@ -196,12 +196,20 @@ TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRefused) {
         Case{rigid, "structure.modes", "10"}, Case{online_text, "track.ballast_deck.kz", "1e8"},
         Case{online_text, "structure.units", "\"m-N-kg\""}, Case{online_text, "structure.rail_left.set", "\"LEFT\""},
         Case{rails, "track.length_before", "10.0"}, Case{rails, "structure.deck.set", "\"DECK\""},
-        Case{rails, "structure.report", "[3.0]"}}) {
+        Case{rails, "structure.report", "[3.0]"}, Case{follow, "integration.impact_step", "1e-4"},
+        Case{"contact.mode = \"paper\"\n", "integration.impact_step", "1e-4"},
+        Case{online_text + "integration.contact_force = \"energy\"\n", "integration.impact_step", "1e-4"},
+        Case{online_text + "structure.reduction = \"modal\"\n", "integration.impact_step", "1e-4"}}) {
     const auto line = 1 + std::count(text.begin(), text.end(), '\n');
     const std::string place = fmt::format("scene.toml:{}: {}: found ", line, key);
     EXPECT_EQ(message(text + key + " = " + value + "\n").substr(0, place.size()), place);
   }
   EXPECT_EQ(message(follow + "track.pad.kz = 1e8\n"), "no error");
+  const std::string impact = "integration.impact_step = 1e-4\n";
+  for (const char* reduction : {"", "structure.reduction = \"window\"\n",
+                                "structure.reduction = \"modal\"\nstructure.static_correction = false\n"}) {
+    EXPECT_EQ(message(online_text + reduction + impact), "no error") << reduction;
+  }
   EXPECT_EQ(message(rigid + "structure.reduction = \"none\"\nstructure.modes = 20\n"), "no error");
   EXPECT_EQ(message(online_text + "track.ballast_deck.kz = 1e8\n[[bridge]]\n"), "no error");
   EXPECT_EQ(message(rails + "structure.deck.set = \"DECK\"\nstructure.report = [3.0]\n"), "no error");
