@@ -41,6 +41,47 @@ Eigen::Array<bool, 6, 1> LoadHistory::acting() const noexcept {
   return result;
 }
 
+namespace {
+
+/// Add the pulses of one component at increasing points.
+void add_pulses(const std::vector<double>& points, const std::vector<double>& value, int component,
+                std::vector<LoadHistory::Pulse>& pulses) {
+  constexpr double noticeable = 0.1;  // of the largest amount
+  double largest = 0.0;
+  for (const double v : value) largest = std::max(largest, std::abs(v));
+  struct Change {
+    std::size_t begin, end;
+  };
+  Change before{0, 0};  // the last one in one direction
+  for (std::size_t i = 0; i + 1 < points.size();) {
+    const double way = value[i + 1] - value[i];
+    std::size_t end = i + 1;
+    while (end + 1 < points.size() && way * (value[end + 1] - value[end]) > 0.0) ++end;
+    if (way != 0.0) {
+      const double now = value[end] - value[i], last = value[before.end] - value[before.begin];
+      const double height = std::min(std::abs(now), std::abs(last));
+      if (now * last < 0.0 && height >= noticeable * largest) {
+        pulses.push_back({points[before.begin], points[end], component, height});
+      }
+      before = {i, end};
+    }
+    i = end;
+  }
+}
+
+}  // namespace
+
+std::vector<LoadHistory::Pulse> LoadHistory::pulses() const {
+  std::vector<Pulse> result;
+  std::vector<double> value(loads_.size());
+  for (int component = 0; component < 6; ++component) {
+    std::transform(loads_.begin(), loads_.end(), value.begin(),
+                   [&](const ForceAndMoment& load) { return load[component]; });
+    add_pulses(points_, value, component, result);
+  }
+  return result;
+}
+
 LoadHistory gust_history(const ForceAndMoment& peak, double start, double duration) {
   constexpr int lines = 400;  // (2π/lines)²/16 of the peak is the largest distance of a chord
   std::vector<double> points;

@@ -57,6 +57,41 @@ std::optional<std::string> of_load(const SceneParameters& scene, const VsiModel&
                      text(run, name, unit), value);
 }
 
+/// When a load is at a point of its history: a time, or the place of a vehicle's loaded body.
+double time_at(const VsiModel& model, const BodyLoad& load, std::size_t vehicle, double point) {
+  if (load.history.argument() == LoadArgument::time) return point;
+  const double begin = model.vehicle_x[vehicle] + model.vehicle.bodies[static_cast<std::size_t>(load.body)].position[0];
+  return model.speed_profile ? model.speed_profile->time_at(point - begin) : (point - begin) / model.contact.speed;
+}
+
+/// A load that rises and falls within a few steps: what acts of it is what the ends of steps happen to meet.
+std::optional<std::string> of_short_load(const SceneParameters& scene, const VsiModel& model, std::size_t index,
+                                         double duration) {
+  constexpr double resolved = 4.0;  // steps from a rise to the end of the fall
+  constexpr const char* names[] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
+  const BodyLoad& load = model.loads[index];
+  const double step = scene.integration.time_step;
+  const bool one = load.vehicle != BodyLoad::every_vehicle || load.history.argument() == LoadArgument::time;
+  const std::size_t first = load.vehicle == BodyLoad::every_vehicle ? 0 : static_cast<std::size_t>(load.vehicle);
+  const std::size_t end = one ? first + 1 : model.vehicle_x.size();
+  Interval shortest{0.0, INFINITY};
+  int component = 0;
+  for (const LoadHistory::Pulse& pulse : load.history.pulses()) {
+    for (std::size_t vehicle = first; vehicle < end; ++vehicle) {
+      const Interval acting{time_at(model, load, vehicle, pulse.begin), time_at(model, load, vehicle, pulse.end)};
+      if (!acting.meets({0.0, duration}) || acting.high - acting.low >= shortest.high - shortest.low) continue;
+      shortest = acting;
+      component = pulse.component;
+    }
+  }
+  const double length = shortest.high - shortest.low;
+  if (length >= resolved * step * (1.0 - 1e-9)) return std::nullopt;
+  return fmt::format(
+      "[[load]] {} of {}: {} rises and falls within {:.3g} s at t = {:.6g} s, in less than four time steps ({:.3g} s): "
+      "it may act in part or not at all; an integration.time_step of {:.3g} s resolves it",
+      index + 1, scene.loads.size(), names[component], length, shortest.low, resolved * step, length / resolved);
+}
+
 /// The stretch of x that a station's record has a share in.
 Interval reach_of_station(const std::vector<GroundMotionParameters>& stations, std::size_t index) {
   return {index == 0 ? -INFINITY : stations[index - 1].x,
@@ -149,6 +184,37 @@ std::optional<std::string> of_irregularity(const SceneParameters& scene, const V
                      scene.irregularity->filename().string(), text(measured, "x", "m"), text(way, "x", "m"));
 }
 
+/// Outside a record the track is perfect: where one ends off zero, wheels meet a step.
+std::optional<std::string> of_steps_in_irregularity(const SceneParameters& scene, const VsiModel& model,
+                                                    const Interval& way) {
+  constexpr double noticeable = 1e-4;  // [m]
+  std::string steps;
+  const auto step_at = [&](double x, std::string_view verb) {
+    if (x < way.low || x > way.high) return;
+    const RailDeviation left = model.irregularity.at(RailSide::left, x),
+                        right = model.irregularity.at(RailSide::right, x);
+    std::pair<std::string_view, double> largest{"", 0.0};
+    for (const auto& column : {std::pair<std::string_view, double>{"y_left", left.y},
+                               {"z_left", left.z},
+                               {"y_right", right.y},
+                               {"z_right", right.z}}) {
+      if (std::abs(column.second) > std::abs(largest.second)) largest = column;
+    }
+    if (std::abs(largest.second) <= noticeable) return;
+    steps += fmt::format("{}{} at x = {:.6g} m with {} = {:.3g} mm", steps.empty() ? "" : " and ", verb, x,
+                         largest.first, 1e3 * largest.second);
+  };
+  step_at(model.irregularity.begin(), "begins");
+  step_at(model.irregularity.end(), "ends");
+  if (steps.empty()) return std::nullopt;
+  return fmt::format(
+      "irregularity.file {} {}, not with zero: {}; fade the record in and out, or let it reach beyond the run",
+      scene.irregularity->filename().string(), steps,
+      model.normal_contact == NormalContact::rigid
+          ? "wheels that follow the rails jump there, without the force that it would take"
+          : "wheels meet a step there, whose force grows without bound as integration.time_step shrinks");
+}
+
 }  // namespace
 
 std::vector<std::string> scene_warnings(const SceneParameters& scene, const VsiModel& model) {
@@ -164,11 +230,17 @@ std::vector<std::string> scene_warnings(const SceneParameters& scene, const VsiM
         "integration.contact_force = \"energy\" with contact.mode = \"paper\": its contact points jump, no force keeps "
         "the springs' energy over a jump, and a step may have no solution; \"automatic\" takes \"endpoint\"");
   }
-  for (std::size_t i = 0; i < scene.loads.size(); ++i) add(of_load(scene, model, i, duration));
+  for (std::size_t i = 0; i < scene.loads.size(); ++i) {
+    add(of_load(scene, model, i, duration));
+    add(of_short_load(scene, model, i, duration));
+  }
   for (std::size_t i = 0; i < scene.ground_motion.size(); ++i) of_ground(scene, model, i, way, duration, warnings);
   if (model.speed_profile) add(of_speed(scene, model, duration));
   if (scene.span_deviation) add(of_deviation(*scene.span_deviation, way));
-  if (scene.irregularity) add(of_irregularity(scene, model, way));
+  if (scene.irregularity) {
+    add(of_irregularity(scene, model, way));
+    add(of_steps_in_irregularity(scene, model, way));
+  }
   return warnings;
 }
 

@@ -96,11 +96,81 @@ TEST_F(SceneWarnings, OfLoadsAndSpeedsThatChangeNothing) {
   expect(plan("[irregularity]\nfile = \"flat.csv\"\n"), "flat.csv is zero throughout: the track is perfect");
 }
 
+TEST_F(SceneWarnings, OfLoadsThatStepsMayPassBy) {
+  const std::string wheelset = "[[load]]\nbody = \"wheelset-1\"\n";
+  const auto gust = [&](const char* duration) {
+    return plan(wheelset + "Fz = 1e5\nstart = 0.05\ngust_duration = " + duration + "\n");
+  };
+  expect(gust("4.9e-4"),
+         "warning: [[load]] 1 of 1: Fz rises and falls within 0.00049 s at t = 0.05 s, in less than four "
+         "time steps (0.002 s): it may act in part or not at all; an integration.time_step of 0.000122 s");
+  EXPECT_EQ(gust("2e-3").find("warning"), std::string::npos);
+  write("spike.csv", "t[s],Fy[kN]\n0,0\n0.05,0\n0.0502,50\n0.0505,0\n1,0\n");
+  expect(plan(wheelset + "file = \"spike.csv\"\n"), "Fy rises and falls within 0.0005 s at t = 0.05 s");
+  EXPECT_EQ(plan(wheelset + "file = \"spike.csv\"\nstart = 0.06\n").find("warning"), std::string::npos);  // too late
+  // over the place of the body: 40 mm are 0.96 ms at 150 km/h and six times that at 25 km/h
+  write("post.csv", "x[m],Fy[kN]\n-90,0\n5.50,0\n5.52,50\n5.54,0\n90,0\n");
+  const std::string post = wheelset + "file = \"post.csv\"\n";
+  expect(plan("[train]\nspeed_kmh = 150.0\nstart = 5.0\n" + post), "Fy rises and falls within 0.00096 s at t = ");
+  EXPECT_EQ(plan("[train]\nspeed_kmh = 25.0\nstart = 5.0\n" + post).find("warning"), std::string::npos);
+}
+
+TEST_F(SceneWarnings, OfIrregularitiesThatEndInAStep) {
+  const auto record = [&](const std::string& rows, const std::string& contact = "mode = \"online\"") {
+    write("abrupt.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n" + rows);
+    return plan("[train]\nspeed_kmh = 360.0\nstart = 0.0\n[irregularity]\nfile = \"abrupt.csv\"\n", contact);
+  };
+  expect(record("2,0,-9,0,-10\n6,0,-10,0.3,0\n"),
+         "warning: irregularity.file abrupt.csv begins at x = 2 m with z_right = -10 mm and ends at x = 6 m with "
+         "z_left = -10 mm, not with zero: wheels meet a step there");
+  expect(record("2,0.09,0,0,0.1\n6,0,0,-0.2,0\n"), "abrupt.csv ends at x = 6 m with y_right = -0.2 mm, not with zero");
+  expect(record("2,0,-9,0,-10\n6,0,0,0,0\n", "normal = \"rigid\""),
+         "with z_right = -10 mm, not with zero: wheels that follow the rails jump there, without the force");
+  EXPECT_EQ(record("2,0.09,0,0,-0.1\n6,0,0,0,0\n").find("warning"), std::string::npos);
+  EXPECT_EQ(record("-90,0,-9,0,-10\n90,0,-9,0,-10\n").find("warning"), std::string::npos);  // reaches beyond the run
+}
+
 // A plan counts modes: seeking 2000 of them takes a minute.
 TEST_F(SceneWarnings, APlanDoesNotSeekModes) {
   const std::string output = plan("[[bridge]]\ncount = 3\n[structure]\nreduction = \"modal\"\nmodes = 2000\n");
   expect(output, "2000 unknowns of the structure");
   expect(output, "modal, 2000 modes with static correction");
+}
+
+// Wheelset 1 is lifted off for some milliseconds: modes have not what it lands on, wheels that follow are held down.
+TEST_F(VsiCommand, ForcesThatASceneCannotGiveAreSaidAtItsEnd) {
+  const auto output_of = [&](const std::string& contact, const std::string& more, const char* lift) {
+    write("scene.toml", "[contact]\n" + contact + "\n[track]\nlength_before = 40\nlength_after = 20\n" + more +
+                            "[[load]]\nbody = \"wheelset-1\"\nFz = " + lift +
+                            "\ngust_duration = 0.02\n[integration]\nduration = 0.02\n");
+    const Outcome outcome = vsi("run scene.toml -o r.h5");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return outcome.output;
+  };
+  const std::string modal = "[structure]\nreduction = \"modal\"\nmodes = 20\n";
+  const std::string online = "mode = \"online\"", rigid = "normal = \"rigid\"";
+  const char* const lands = "vsi run: warning: a wheel left its rail (wheelset 1 ";
+  const std::string landing = output_of(online, modal, "-2e5");
+  EXPECT_NE(landing.find(lands), std::string::npos) << landing;
+  EXPECT_NE(landing.find("take \"craig-bampton\", \"window\" or \"none\""), std::string::npos) << landing;
+  EXPECT_NE(vsi("run scene.toml -o r.h5 --resume").output.find(lands), std::string::npos);
+  EXPECT_EQ(vsi("run scene.toml -o r.h5 -q").output, "");
+  EXPECT_EQ(output_of(online, "", "-2e5").find("left its rail"), std::string::npos);
+  EXPECT_EQ(output_of(online, modal, "-5e4").find("left its rail"), std::string::npos);  // stays on
+  const std::string pull = output_of(rigid, "", "-2e5");
+  EXPECT_NE(pull.find("vsi run: warning: rails pull at wheels (smallest Q -"), std::string::npos) << pull;
+  EXPECT_EQ(output_of(rigid, "", "-5e4").find("warning"), std::string::npos);
+}
+
+// A structure command names the scene's file, a resumed run how its results are damaged.
+TEST_F(VsiCommand, MessagesNameTheFileAndItsDamage) {
+  write("plain.toml", "name = \"Anything\"\n" + rigid_scene + "duration = 0.02\n");
+  expect_refused("structure plain.toml", "plain.toml: found no bridge, expected a [[bridge]]");
+  EXPECT_EQ(vsi("run plain.toml -o r.h5 -q").exit_code, 0);
+  const auto bytes = std::filesystem::file_size(folder_ / "r.h5");
+  std::filesystem::resize_file(folder_ / "r.h5", bytes / 2);
+  expect_refused("run plain.toml -o r.h5 --resume", "r.h5: found " + std::to_string(bytes / 2) + " bytes, expected " +
+                                                        std::to_string(bytes) + " bytes: the file is cut short");
 }
 
 TEST_F(VsiCommand, ATrainPlacedOnItsFlangesIsSaidToBeginWithAnImpact) {

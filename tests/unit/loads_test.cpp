@@ -39,6 +39,37 @@ class HistoryFile : public testing::InFolder {
   }
 };
 
+TEST(LoadHistory, PulsesAreRisesWithTheirFalls) {
+  const auto pulses = [](std::vector<double> points, const std::vector<double>& lateral) {
+    std::vector<ForceAndMoment> loads;
+    for (const double Fy : lateral) {
+      loads.emplace_back(ForceAndMoment::Zero());
+      loads.back()[1] = Fy;
+    }
+    return LoadHistory(LoadArgument::time, std::move(points), std::move(loads)).pulses();
+  };
+  // a level, a spike of two lines each way, a level, and a dent of a fifteenth, which is too small
+  const auto spike = pulses({0, 1, 1.5, 2, 3, 4, 6, 7, 8}, {1, 1, 10, 16, 8, 1, 1, 0, 1});
+  ASSERT_EQ(spike.size(), 1U);
+  EXPECT_EQ(spike[0].component, 1);
+  EXPECT_DOUBLE_EQ(spike[0].begin, 1.0);
+  EXPECT_DOUBLE_EQ(spike[0].end, 4.0);
+  EXPECT_DOUBLE_EQ(spike[0].height, 15.0);
+  // a level at the top belongs to it; a ramp has none; each of two halves of a wave back and forth
+  const auto block = pulses({0, 1, 2, 3}, {0, -5, -5, 0});
+  ASSERT_EQ(block.size(), 1U);
+  EXPECT_DOUBLE_EQ(block[0].end - block[0].begin, 3.0);
+  EXPECT_TRUE(pulses({0, 1, 2, 3}, {0, 1, 2, 2}).empty());
+  EXPECT_EQ(pulses({0, 1, 2, 3}, {0, 2, -2, 0}).size(), 2U);
+  ForceAndMoment peak = ForceAndMoment::Zero();
+  peak[2] = -1e4;
+  const auto gust = gust_history(peak, 3.0, 0.5).pulses();
+  ASSERT_EQ(gust.size(), 1U);
+  EXPECT_DOUBLE_EQ(gust[0].begin, 3.0);
+  EXPECT_DOUBLE_EQ(gust[0].end, 3.5);
+  EXPECT_DOUBLE_EQ(gust[0].height, 1e4);
+}
+
 TEST(SpeedProfile, DistanceIsTheIntegralOfTheSpeed) {
   const SpeedProfile profile({-1.0, 2.0, 5.0, 6.0}, {40.0, 40.0, 10.0, 25.0});
   EXPECT_DOUBLE_EQ(profile.speed(-9.0), 40.0);

@@ -73,6 +73,26 @@ void warn_of_uncovered_queries(const RunSummary& summary) {
       100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
 }
 
+/// Wheel forces that the scene's track or contact cannot give, wherever they come from.
+void warn_of_doubtful_forces(const report::Headline& headline, const SceneParameters& scene) {
+  const report::Extreme& least = headline.smallest_Q;
+  if (!least.found()) return;
+  const std::string where = fmt::format("{}, t = {:.3f} s", least.where, least.time);
+  if (scene.contact.normal == NormalContact::rigid && least.value < 0.0) {
+    print_warning(fmt::format(
+        "rails pull at wheels (smallest Q {:.4g} kN, {}), which they cannot: such a wheel leaves its rail and "
+        "lands again; contact.normal = \"hertz\" says with what force",
+        1e-3 * least.value, where));
+  }
+  if (scene.contact.normal == NormalContact::hertz && scene.reduction.kind == Reduction::modal && least.value <= 0.0) {
+    print_warning(fmt::format(
+        "a wheel left its rail ({}): the force of its landing is made by the track's own stiffness and mass under the "
+        "wheel, which structure.reduction = \"modal\" lacks, and largest values may be far off; take "
+        "\"craig-bampton\", \"window\" or \"none\"",
+        where));
+  }
+}
+
 /// Ctrl-C while steps are made: a first one asks the run to end after its step, a second one ends the program.
 class Interrupt {
  public:
@@ -89,7 +109,8 @@ class Interrupt {
 };
 
 /// What a run that has ended says, and its exit code.
-int conclude(const report::Headline& headline, const RunSummary& summary, const RunOptions& options) {
+int conclude(const SceneParameters& scene, const report::Headline& headline, const RunSummary& summary,
+             const RunOptions& options) {
   if (options.ended) options.ended(headline, summary);
   constexpr int interrupted = 130;  // as a shell says of a program that Ctrl-C has ended
   if (options.json) {
@@ -97,7 +118,10 @@ int conclude(const report::Headline& headline, const RunSummary& summary, const 
   } else if (!options.quiet && summary.steps > 0) {
     fmt::print("{}Results: {}\n", headline_text(headline, summary), options.output);
   }
-  if (!options.quiet) warn_of_uncovered_queries(summary);
+  if (!options.quiet) {
+    warn_of_uncovered_queries(summary);
+    warn_of_doubtful_forces(headline, scene);
+  }
   if (summary.complete) return 0;
   if (summary.interrupted) {
     print_message(fmt::format(
@@ -181,7 +205,7 @@ class RunRecorder {
   }
 
   /// @return exit code
-  [[nodiscard]] int finish(RunSummary summary) {
+  [[nodiscard]] int finish(const SceneParameters& scene, RunSummary summary) {
     setup_.end();
     progress_.wipe();
     if (resumed_at_ && summary.complete) {
@@ -189,7 +213,7 @@ class RunRecorder {
           fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then", *resumed_at_);
     }
     writer_->finish(summary);
-    return conclude(collector_->result(summary), summary, options_);
+    return conclude(scene, collector_->result(summary), summary, options_);
   }
 
  private:
@@ -202,10 +226,15 @@ class RunRecorder {
 };
 
 /// Results must not overwrite what the run reads.
-void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const std::string& output) {
+void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const RunOptions& options) {
+  const std::string& output = options.output;
   require_writable_place(output, "-o");
   require_no_input(output, {scene_file});
   for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
+  // says how results that are wanted are damaged, not only that they may not be replaced
+  if (options.resume && std::filesystem::is_regular_file(output) && is_array_file(output)) {
+    static_cast<void>(array_file_type(output));
+  }
   require_replaceable(output, {results_filetype});
 }
 
@@ -240,12 +269,12 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     if (before.summary.complete) {
       report::HeadlineCollector collector(before.header);
       for (const StepRecord& step : before.steps) collector.add(step);
-      return conclude(collector.result(before.summary), before.summary, options);
+      return conclude(scene, collector.result(before.summary), before.summary, options);
     }
     from = recorder.take_up(before);
   }
   try {
-    return recorder.finish(run_scene(scene, recorder.observer(), from));
+    return recorder.finish(scene, run_scene(scene, recorder.observer(), from));
   } catch (const ComputationError& failure) {
     if (!recorder.resumable()) throw;
     throw ComputationError(fmt::format("{}; the same command with --resume goes on from the last checkpoint in {}",
@@ -294,7 +323,7 @@ int run_command(const Arguments& arguments) {
       if (!(seconds > 0.0)) throw input_error("--check-reduction", fmt::format("{}", seconds), "> 0 s");
       return print_reduction_error(scene, seconds, options.json);
     }
-    check_output(scene, file, options.output);
+    check_output(scene, file, options);
     return run_to_file(scene, options);
   } catch (const InputError& wrong) {
     throw with_scene_line(wrong, scene, file);

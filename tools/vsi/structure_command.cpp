@@ -22,7 +22,7 @@ StructureSummary summary_of(const SceneParameters& scene, int modes) {
     return summarise(structure, scene.structure.damping, modes);
   }
   if (!scene.spans.empty()) return summarise(scene.spans, modes);
-  throw input_error(scene.name, "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
+  throw input_error("scene", "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
 }
 
 std::vector<std::string> doubts(const SceneParameters& scene, const StructureSummary& s) {

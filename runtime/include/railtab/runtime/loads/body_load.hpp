@@ -28,6 +28,16 @@ class LoadHistory {
   /// Components that are not zero throughout.
   [[nodiscard]] Eigen::Array<bool, 6, 1> acting() const noexcept;
 
+  /// A rise and a fall, or a fall and a rise, of a component: from where it leaves a level to where it is back, or
+  /// turns again.
+  struct Pulse {
+    double begin = 0.0, end = 0.0;  ///< [s] or [m]
+    int component = 0;              ///< 0..5: Fx to Mz
+    double height = 0.0;            ///< the smaller of both changes [N] or [N m]
+  };
+  /// Those whose height is at least a tenth of the component's largest amount, by component and place.
+  [[nodiscard]] std::vector<Pulse> pulses() const;
+
  private:
   LoadArgument argument_;
   std::vector<double> points_;
