@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -31,6 +32,15 @@ std::vector<std::string_view> cells_of(std::string_view text) {
   return cells;
 }
 
+/// In quotes, and no more than a message can take.
+std::string quoted(std::string_view cell) {
+  constexpr std::size_t longest = 40;
+  std::size_t end = std::min(cell.size(), longest);
+  while (end + 4 > longest && end < cell.size() && (static_cast<unsigned char>(cell[end]) & 0xC0U) == 0x80U)
+    --end;  // of UTF-8
+  return fmt::format("'{}{}'", cell.substr(0, end), end < cell.size() ? "…" : "");
+}
+
 /// Spreadsheets of many languages write semicolons.
 void refuse_other_separator(std::string_view header, const std::string& place) {
   if (header.find(',') != std::string_view::npos) return;
@@ -43,7 +53,7 @@ void refuse_other_separator(std::string_view header, const std::string& place) {
 FileColumn header_column(const std::string& file, long line, std::string_view cell) {
   const std::size_t bracket = cell.find('[');
   if (bracket == std::string_view::npos || bracket == 0 || cell.back() != ']') {
-    throw input_error(fmt::format("{}:{}", file, line), fmt::format("header '{}'", cell), "name[unit]");
+    throw input_error(fmt::format("{}:{}", file, line), "header " + quoted(cell), "name[unit]");
   }
   FileColumn column;
   column.name = std::string(trimmed(cell.substr(0, bracket)));
@@ -66,7 +76,7 @@ void append_row(std::vector<FileColumn>& columns, const std::string& file, long 
     const char* const end = cells[c].data() + cells[c].size();
     const auto [stop, status] = std::from_chars(cells[c].data(), end, value);
     if (status != std::errc{} || stop != end || !std::isfinite(value)) {
-      throw input_error(column.place(column.values.size() + 1), fmt::format("'{}'", cells[c]), "a finite number");
+      throw input_error(column.place(column.values.size() + 1), quoted(cells[c]), "a finite number");
     }
     column.values.push_back(value);
   }

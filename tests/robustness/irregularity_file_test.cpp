@@ -107,6 +107,27 @@ TEST_F(IrregularityFile, RefusesAHeaderWithoutUnits) {
             "y_right, z_right");
 }
 
+// Another file's bytes are neither sent to a terminal nor shown at length.
+TEST_F(IrregularityFile, AMessageShowsPrintableText) {
+  constexpr std::string_view executable(
+      "\x7F"
+      "ELF\x02\x01\x00\x1B[2J\nmore",
+      16);
+  EXPECT_EQ(message_of(std::string(executable)),
+            "track.csv:1: found header '\\x7FELF\\x02\\x01\\x00\\x1B[2J', expected name[unit]");
+  EXPECT_EQ(message_of(std::string(3000, '\xFF')),
+            "track.csv:1: found header '\\xFF\\xFF\\xFF\\xFF\\xFF\\xFF\\xFF\\xFF…', expected name[unit]");
+  EXPECT_EQ(message_of(std::string(3000, 'a')),
+            "track.csv:1: found header '" + std::string(40, 'a') + "…', expected name[unit]");
+  EXPECT_EQ(message_of("ä\xC2\x9B"
+                       "m\n"),
+            "track.csv:1: found header 'ä\\xC2\\x9Bm', expected name[unit]");
+  EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,\x07,0,0,0\n"),
+            "track.csv:3: column y_left: found '\\x07', expected a finite number");
+  EXPECT_EQ(message_of("x[m],h\x1B[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n").find('\x1B'),
+            std::string::npos);
+}
+
 TEST_F(IrregularityFile, RefusesAWrongNumberOfColumns) {
   const std::string expected = "expected 5, as in the header";
   EXPECT_EQ(message_of("x[m],z[mm]\n0,0\n1,0\n"),
