@@ -103,8 +103,8 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
   plan.wheels = 2 * model.wheelsets();
   plan.time_step = scene.integration.time_step;
-  plan.duration = run_duration(scene, model);
-  plan.steps = step_count(scene.integration, plan.duration);
+  plan.steps = step_count(scene.integration, run_duration(scene, model));
+  plan.duration = static_cast<double>(plan.steps) * scene.integration.time_step;
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
   plan.warnings = scene_warnings(scene, model);
   describe_vehicle(scene, model, plan);

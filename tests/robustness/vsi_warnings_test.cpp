@@ -207,6 +207,11 @@ TEST_F(VsiCommand, NoStateOfRestSaysWhy) {
   expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "the deviations of the rails under it (0.");
 }
 
+TEST_F(VsiCommand, APlanCountsWholeSteps) {
+  write("scene.toml", rigid_scene + "duration = 0.01034\n");
+  EXPECT_NE(vsi("run scene.toml --plan").output.find("21 steps of 0.0005 s, 0.0105 s in all"), std::string::npos);
+}
+
 TEST_F(VsiCommand, APlanRefusesWhatTheRunRefuses) {
   write("scene.toml", rigid_scene + "duration = 0.01\n[output]\nbodies = [\"nothing\"]\n");
   for (const char* command : {"run scene.toml --plan", "run scene.toml -o out"}) {
