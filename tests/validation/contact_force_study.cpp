@@ -96,7 +96,8 @@ struct Outcome {
 
 using Rule = std::optional<ContactForceRule>;  // none: automatic
 
-Outcome run(SceneParameters scene, const Irregularity* irregularity, Rule rule, double alpha, double time_step, bool account) {
+Outcome run(SceneParameters scene, const Irregularity* irregularity, Rule rule, double alpha, double time_step,
+            bool account) {
   scene.integration.contact_force = rule;
   scene.integration.alpha = alpha;
   scene.integration.time_step = time_step;
@@ -148,12 +149,12 @@ const char* name_of(Rule rule) {
 
 std::string row(const char* name, Rule rule, double alpha, double step, const Outcome& o, const Difference& d,
                 const EnergyBalance& energy) {
-  const std::string text =
-      fmt::format("{},{:g},{:g},{},{:.1f},{:.1f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{},{},{},{:.3f}\n", name, alpha,
-                  1e3 * step, name_of(rule), d.Q, d.Y, 1e-3 * largest_Y(o), 1e-3 * o.summary.wheel_extremes.largest_Q.value,
-                  energy.contact_gain - energy.stiffness_work, energy.gain(),
-                  static_cast<double>(o.summary.newton_iterations) / static_cast<double>(o.summary.steps),
-                  o.summary.halved_steps, o.summary.impact_steps, o.summary.complete ? 1 : 0, o.seconds);
+  const std::string text = fmt::format(
+      "{},{:g},{:g},{},{:.1f},{:.1f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{},{},{},{:.3f}\n", name, alpha, 1e3 * step,
+      name_of(rule), d.Q, d.Y, 1e-3 * largest_Y(o), 1e-3 * o.summary.wheel_extremes.largest_Q.value,
+      energy.contact_gain - energy.stiffness_work, energy.gain(),
+      static_cast<double>(o.summary.newton_iterations) / static_cast<double>(o.summary.steps), o.summary.halved_steps,
+      o.summary.impact_steps, o.summary.complete ? 1 : 0, o.seconds);
   fmt::print("{}", text);
   std::fflush(stdout);
   return text;
