@@ -10,10 +10,10 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <string>
 
+#include "kinked_track.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/tables/text_file.hpp"
 
@@ -53,19 +53,7 @@ SceneParameters landing() {
   return scene;
 }
 
-// A hump of 8 mm in 3 m that wheels leave: treads fall back on flexible track.
-Irregularity hump() {
-  constexpr double height = 8e-3, length = 3.0, begin = 1.0;
-  std::vector<double> x, z;
-  for (int i = 0; i <= 400; ++i) {
-    x.push_back(0.5 + 0.0125 * i);
-    const double along = (x.back() - begin) / length;
-    z.push_back(along > 0.0 && along < 1.0 ? -0.5 * height * (1.0 - std::cos(2.0 * std::numbers::pi * along)) : 0.0);
-  }
-  const std::vector<double> none(x.size(), 0.0);
-  return {x, none, z, none, z};
-}
-
+// Treads fall back on flexible track.
 SceneParameters behind_a_hump() {
   SceneParameters scene = rough_track(300.0 / 3.6);
   scene.irregularity.reset();
