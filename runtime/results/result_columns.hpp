@@ -126,6 +126,8 @@ inline constexpr std::array summary_contact_energy{
     ContactEnergyEntry{"contact_energy_largest_impact", &ContactEnergy::largest_impact},
     ContactEnergyEntry{"contact_energy_largest_impact_time", &ContactEnergy::largest_impact_time},
     ContactEnergyEntry{"contact_energy_largest_impact_stored", &ContactEnergy::largest_impact_stored}};
+inline constexpr const char* contact_energy_impacts = "contact_energy_impacts";  // -1 where no account was kept
+
 struct WheelExtremeEntry {
   const char* name;  ///< and of time and wheel: with _time and _wheel
   WheelExtreme WheelExtremes::*value;
@@ -135,8 +137,6 @@ inline constexpr std::array summary_wheel_extremes{
     WheelExtremeEntry{"smallest_Q", &WheelExtremes::smallest_Q},
     WheelExtremeEntry{"largest_derailment_coefficient", &WheelExtremes::derailment},
     WheelExtremeEntry{"largest_wheel_unloading", &WheelExtremes::unloading}};
-
-inline constexpr const char* contact_energy_impacts = "contact_energy_impacts";  // -1 where no account was kept
 
 inline constexpr const char* summary_group = "summary";
 inline constexpr std::array checkpoint_slots{"checkpoint/a", "checkpoint/b"};

@@ -28,14 +28,17 @@ Interval wheel_way(const VsiModel& model, double duration) {
   return {model.wheelset_x(model.wheelsets() - 1, 0.0), model.wheelset_x(0, duration)};
 }
 
+/// Where a vehicle's body that a load acts on is at t = 0 [m].
+double start_of_body(const VsiModel& model, const BodyLoad& load, std::size_t vehicle) {
+  return model.vehicle_x[vehicle] + model.vehicle.bodies[static_cast<std::size_t>(load.body)].position[0];
+}
+
 /// Where the bodies run that a load acts on.
 Interval body_way(const VsiModel& model, const BodyLoad& load, double duration) {
   const bool all = load.vehicle == BodyLoad::every_vehicle;
-  const auto place = [&](std::size_t vehicle) {
-    return model.vehicle_x[vehicle] + model.vehicle.bodies[static_cast<std::size_t>(load.body)].position[0];
-  };
   const std::size_t first = all ? 0 : static_cast<std::size_t>(load.vehicle);
-  return {place(all ? model.vehicle_x.size() - 1 : first), place(first) + model.distance(duration)};
+  return {start_of_body(model, load, all ? model.vehicle_x.size() - 1 : first),
+          start_of_body(model, load, first) + model.distance(duration)};
 }
 
 std::optional<std::string> of_load(const SceneParameters& scene, const VsiModel& model, std::size_t index,
@@ -60,8 +63,8 @@ std::optional<std::string> of_load(const SceneParameters& scene, const VsiModel&
 /// When a load is at a point of its history: a time, or the place of a vehicle's loaded body.
 double time_at(const VsiModel& model, const BodyLoad& load, std::size_t vehicle, double point) {
   if (load.history.argument() == LoadArgument::time) return point;
-  const double begin = model.vehicle_x[vehicle] + model.vehicle.bodies[static_cast<std::size_t>(load.body)].position[0];
-  return model.speed_profile ? model.speed_profile->time_at(point - begin) : (point - begin) / model.contact.speed;
+  const double run = point - start_of_body(model, load, vehicle);
+  return model.speed_profile ? model.speed_profile->time_at(run) : run / model.contact.speed;
 }
 
 /// A load that rises and falls within a few steps: what acts of it is what the ends of steps happen to meet.

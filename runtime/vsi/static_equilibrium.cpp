@@ -302,7 +302,7 @@ EquilibriumReport by_growing_deviations(const VsiModel& model, const RestOperato
 // Newton's method when rails and vehicle move first.
 EquilibriumReport by_growing_stiffness(const VsiModel& model, const RestOperators& rest,
                                        const Eigen::VectorXd& structure_load, VsiState& state) {
-  constexpr double steel = 2.1e11;  // Pa
+  const double steel = ElasticMaterial{}.E;
   constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
   const double full = rest.contact.normal.material.E;
   if (!(full > largest_ratio * steel)) return {};

@@ -13,10 +13,6 @@ void raise(Extreme& extreme, double value, double time, const std::string& where
   if (!extreme.found() || value > extreme.value) extreme = {value, time, where};
 }
 
-void lower(Extreme& extreme, double value, double time, const std::string& where) {
-  if (!extreme.found() || value < extreme.value) extreme = {value, time, where};
-}
-
 }  // namespace
 
 std::string_view steps_of_extremes(const RunSummary& summary) {
@@ -62,11 +58,7 @@ void HeadlineCollector::add(const StepRecord& step) {
   headline_.simulated_time = step.time;
   for (std::size_t i = 0; i < step.wheels.size(); ++i) {
     const WheelRecord& wheel = step.wheels[i];
-    const double static_load = header_.static_wheel_load[i];
-    raise(headline_.largest_Q, wheel.Q, step.time, wheel_names_[i]);
-    lower(headline_.smallest_Q, wheel.Q, step.time, wheel_names_[i]);
-    if (wheel.Q > 0.0) raise(headline_.derailment, std::abs(wheel.Y) / wheel.Q, step.time, wheel_names_[i]);
-    if (static_load > 0.0) raise(headline_.unloading, 1.0 - wheel.Q / static_load, step.time, wheel_names_[i]);
+    recorded_.add(step.time, static_cast<int>(i), wheel.Y, wheel.Q, header_.static_wheel_load[i]);
   }
   add_sliding_means(step);
   for (std::size_t i = 0; i < step.bodies.size(); ++i) {
@@ -86,13 +78,16 @@ void HeadlineCollector::add(const StepRecord& step) {
 
 Headline HeadlineCollector::result(const RunSummary& summary) const {
   Headline result = headline_;
-  const auto of_all_steps = [&](Extreme& extreme, const WheelExtreme& of_run) {
-    if (of_run.found()) extreme = {of_run.value, of_run.time, wheel_names_.at(static_cast<std::size_t>(of_run.wheel))};
+  const auto of_wheels = [&](WheelExtreme WheelExtremes::*which) -> Extreme {
+    const WheelExtreme& of_all_steps = summary.wheel_extremes.*which;
+    const WheelExtreme& extreme = of_all_steps.found() ? of_all_steps : recorded_.*which;
+    if (!extreme.found()) return {};
+    return {extreme.value, extreme.time, wheel_names_.at(static_cast<std::size_t>(extreme.wheel))};
   };
-  of_all_steps(result.largest_Q, summary.wheel_extremes.largest_Q);
-  of_all_steps(result.smallest_Q, summary.wheel_extremes.smallest_Q);
-  of_all_steps(result.derailment, summary.wheel_extremes.derailment);
-  of_all_steps(result.unloading, summary.wheel_extremes.unloading);
+  result.largest_Q = of_wheels(&WheelExtremes::largest_Q);
+  result.smallest_Q = of_wheels(&WheelExtremes::smallest_Q);
+  result.derailment = of_wheels(&WheelExtremes::derailment);
+  result.unloading = of_wheels(&WheelExtremes::unloading);
   result.distance = last_position_ - first_position_;
   if (sparse_) result.derailment_2m = result.track_shift_2m = {};
   if (summary.contact_queries > 0) {

@@ -52,7 +52,8 @@ class HeadlineCollector {
   std::vector<std::string> wheel_names_;
   std::vector<SlidingMean> quotient_;  // per wheel
   std::vector<SlidingMean> shift_;     // per wheelset
-  Headline headline_;
+  WheelExtremes recorded_;             // of the recorded steps
+  Headline headline_;                  // without those
   double first_position_ = 0.0;
   double last_position_ = 0.0;
   bool any_ = false;
