@@ -10,19 +10,44 @@ target_compile_options(railtab_options INTERFACE
   # Contracted multiply-adds are wanted in the kernels, value-changing shortcuts are not: never -ffast-math.
   $<$<AND:$<BOOL:${RAILTAB_NATIVE}>,$<CONFIG:Release,RelWithDebInfo>>:-march=native>)
 
-# railtab_library(<target>): a library whose public headers stand in <folder>/include.
-function(railtab_library target)
-  add_library(${target})
-  add_library(railtab::${target} ALIAS ${target})
-  # librailtab_tables.a, not a bare libtables.a in the system's library folder
-  set_target_properties(${target} PROPERTIES OUTPUT_NAME railtab_${target})
+# railtab_layer(<name> SOURCES ... [USES <layer>...] [PRIVATE_USES <layer or library>...]): the library railtab_<name> with
+# the headers of this folder. A layer sees the headers of the layers that it is linked to and no others: each layer has an
+# include folder of its own in the build tree with links to its headers, so that an arrow that points the wrong way does
+# not compile. Headers are named from the top of the repository, "railtab/runtime/contact/hertz.hpp", here as where
+# they are installed.
+function(railtab_layer name)
+  cmake_parse_arguments(arg "" "" "SOURCES;USES;PRIVATE_USES" ${ARGN})
+  set(target railtab_${name})
+  add_library(${target} ${arg_SOURCES})
+  add_library(railtab::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
+  set(include ${PROJECT_BINARY_DIR}/include/${name})
+  file(REMOVE_RECURSE ${include})
+  file(MAKE_DIRECTORY ${include}/railtab/${folder})
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.hpp)
+  foreach(header IN LISTS headers)
+    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${header} ${include}/railtab/${folder}/${header} SYMBOLIC)
+  endforeach()
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:railtab_options>)
+    $<BUILD_INTERFACE:${include}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM arg_USES PREPEND railtab_ REGEX "^[a-z_]+$")
+  list(TRANSFORM arg_PRIVATE_USES PREPEND railtab_ REGEX "^[a-z_]+$")
+  target_link_libraries(${target} PUBLIC ${arg_USES} PRIVATE ${arg_PRIVATE_USES}
+    $<BUILD_INTERFACE:railtab_options>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   # Eigen derives the alignment of its types and the way it frees memory from the instruction set. With -march=native
   # here and not in a consumer of the installed package, one side would free what the other allocated in another way.
   # Stating the alignment makes it part of the interface.
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=32)
+  set_property(GLOBAL APPEND PROPERTY railtab_layers ${target})
+endfunction()
+
+# railtab_install_headers(<target>): the headers of a layer, under their names.
+function(railtab_install_headers target)
+  get_target_property(folder ${target} SOURCE_DIR)
+  file(GLOB headers RELATIVE ${folder} ${folder}/*.hpp)
+  cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+  list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/railtab/${folder})
 endfunction()

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "contact_search_walk.hpp"
+#include "railtab/runtime/contact/contact_search_walk.hpp"
 
 namespace railtab {
 

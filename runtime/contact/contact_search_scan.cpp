@@ -8,7 +8,7 @@
 #include <limits>
 #include <tuple>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "contact_search_walk.hpp"
+#include "railtab/runtime/contact/contact_search_walk.hpp"
 
 #include <algorithm>
 #include <cmath>

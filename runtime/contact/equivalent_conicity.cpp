@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "fastsim.hpp"
+#include "railtab/runtime/contact/fastsim.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "hertz_ellipse.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/contact/hertz_ellipse.hpp"
 #include "railtab/tables/binade_polynomials.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "hertz_ellipse.hpp"
+#include "railtab/runtime/contact/hertz_ellipse.hpp"
 
 #include <algorithm>
 #include <boost/math/special_functions/ellint_rd.hpp>

@@ -1,4 +1,4 @@
-#include "kalker_asymptotes.hpp"
+#include "railtab/runtime/contact/kalker_asymptotes.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <vector>
 
-#include "../profile/cubic_spline.hpp"
-#include "kalker_asymptotes.hpp"
-#include "kalker_table.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/contact/kalker_asymptotes.hpp"
+#include "railtab/runtime/contact/kalker_table.hpp"
+#include "railtab/runtime/profile/cubic_spline.hpp"
 
 namespace railtab {
 

@@ -1,9 +1,9 @@
-#include "linear_creep.hpp"
+#include "railtab/runtime/contact/linear_creep.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "saturated_moment.hpp"
+#include "railtab/runtime/contact/saturated_moment.hpp"
 
 namespace railtab {
 

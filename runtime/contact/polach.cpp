@@ -1,9 +1,9 @@
-#include "polach.hpp"
+#include "railtab/runtime/contact/polach.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "saturated_moment.hpp"
+#include "railtab/runtime/contact/saturated_moment.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "polish_step.hpp"
+#include "railtab/runtime/contact/polish_step.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "saturated_moment.hpp"
+#include "railtab/runtime/contact/saturated_moment.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "polish_step.hpp"
+#include "railtab/runtime/contact/polish_step.hpp"
 
 namespace railtab {
 

@@ -1,9 +1,9 @@
-#include "table_creep.hpp"
+#include "railtab/runtime/contact/table_creep.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "polach.hpp"
+#include "railtab/runtime/contact/polach.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "conic_arc_wheel.hpp"
+#include "railtab/runtime/profile/conic_arc_wheel.hpp"
 
 #include <cmath>
 #include <numbers>

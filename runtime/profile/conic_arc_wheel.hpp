@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "profile_segments.hpp"
+#include "railtab/runtime/profile/profile_segments.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "cubic_spline.hpp"
+#include "railtab/runtime/profile/cubic_spline.hpp"
 
 #include <cassert>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "lma_type_wheel.hpp"
+#include "railtab/runtime/profile/lma_type_wheel.hpp"
 
 #include <cmath>
 #include <numbers>

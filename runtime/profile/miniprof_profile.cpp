@@ -1,4 +1,4 @@
-#include "miniprof_profile.hpp"
+#include "railtab/runtime/profile/miniprof_profile.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "profile_text.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/profile_text.hpp"
 
 namespace railtab {
 

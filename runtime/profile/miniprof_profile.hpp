@@ -3,7 +3,7 @@
 #include <istream>
 #include <string>
 
-#include "outline.hpp"
+#include "railtab/runtime/profile/outline.hpp"
 #include "railtab/tables/profile_knots.hpp"
 
 namespace railtab {

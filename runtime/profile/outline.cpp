@@ -1,4 +1,4 @@
-#include "outline.hpp"
+#include "railtab/runtime/profile/outline.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "outline_turn.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/outline_turn.hpp"
 
 namespace railtab {
 

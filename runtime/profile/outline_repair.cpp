@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "outline_turn.hpp"
+#include "railtab/runtime/profile/outline_turn.hpp"
 
 namespace railtab {
 

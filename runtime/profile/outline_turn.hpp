@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "outline.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/outline.hpp"
 
 namespace railtab {
 

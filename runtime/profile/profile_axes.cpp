@@ -1,4 +1,4 @@
-#include "profile_axes.hpp"
+#include "railtab/runtime/profile/profile_axes.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "outline.hpp"
+#include "railtab/runtime/profile/outline.hpp"
 #include "railtab/tables/profile_knots.hpp"
 
 namespace railtab {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 

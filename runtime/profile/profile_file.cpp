@@ -7,14 +7,14 @@
 #include <fstream>
 #include <string_view>
 
-#include "miniprof_profile.hpp"
-#include "outline.hpp"
-#include "profile_axes.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/profile/miniprof_profile.hpp"
+#include "railtab/runtime/profile/outline.hpp"
+#include "railtab/runtime/profile/profile_axes.hpp"
+#include "railtab/runtime/profile/simpack_profile.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
-#include "simpack_profile.hpp"
-#include "two_column_profile.hpp"
+#include "railtab/runtime/profile/two_column_profile.hpp"
 
 namespace railtab {
 

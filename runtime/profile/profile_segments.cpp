@@ -1,4 +1,4 @@
-#include "profile_segments.hpp"
+#include "railtab/runtime/profile/profile_segments.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "cubic_spline.hpp"
+#include "railtab/runtime/profile/cubic_spline.hpp"
 
 namespace railtab {
 

@@ -1,11 +1,11 @@
-#include "profile_text.hpp"
+#include "railtab/runtime/profile/profile_text.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 

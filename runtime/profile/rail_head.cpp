@@ -1,4 +1,4 @@
-#include "rail_head.hpp"
+#include "railtab/runtime/profile/rail_head.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "s1002_wheel.hpp"
+#include "railtab/runtime/profile/s1002_wheel.hpp"
 
 #include <array>
 #include <cmath>

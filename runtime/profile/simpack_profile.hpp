@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "outline.hpp"
+#include "railtab/runtime/profile/outline.hpp"
 #include "railtab/tables/profile_knots.hpp"
 
 namespace railtab {

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "arc_lengths.hpp"
-#include "cubic_spline.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/arc_lengths.hpp"
+#include "railtab/runtime/profile/cubic_spline.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

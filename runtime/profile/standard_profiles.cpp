@@ -7,12 +7,12 @@
 #include <cctype>
 #include <numbers>
 
-#include "conic_arc_wheel.hpp"
-#include "lma_type_wheel.hpp"
-#include "profile_segments.hpp"
-#include "rail_head.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "s1002_wheel.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/conic_arc_wheel.hpp"
+#include "railtab/runtime/profile/lma_type_wheel.hpp"
+#include "railtab/runtime/profile/profile_segments.hpp"
+#include "railtab/runtime/profile/rail_head.hpp"
+#include "railtab/runtime/profile/s1002_wheel.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "two_column_profile.hpp"
+#include "railtab/runtime/profile/two_column_profile.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "profile_text.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/profile_text.hpp"
 
 namespace railtab {
 

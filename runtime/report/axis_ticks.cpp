@@ -1,4 +1,4 @@
-#include "axis_ticks.hpp"
+#include "railtab/runtime/report/axis_ticks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "chart.hpp"
+#include "railtab/runtime/report/chart.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <iterator>
 #include <limits>
 
-#include "html_text.hpp"
-#include "polyline.hpp"
+#include "railtab/runtime/report/html_text.hpp"
+#include "railtab/runtime/report/polyline.hpp"
 
 namespace railtab::report {
 namespace {

@@ -1,9 +1,9 @@
-#include "html_page.hpp"
+#include "railtab/runtime/report/html_page.hpp"
 
 #include <fmt/format.h>
 
-#include "html_text.hpp"
-#include "page_assets.hpp"
+#include "railtab/runtime/report/html_text.hpp"
+#include "railtab/runtime/report/page_assets.hpp"
 
 namespace railtab::report {
 

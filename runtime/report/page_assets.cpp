@@ -1,4 +1,4 @@
-#include "page_assets.hpp"
+#include "railtab/runtime/report/page_assets.hpp"
 
 namespace railtab::report {
 

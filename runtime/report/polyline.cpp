@@ -1,4 +1,4 @@
-#include "polyline.hpp"
+#include "railtab/runtime/report/polyline.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "axis_ticks.hpp"
+#include "railtab/runtime/report/axis_ticks.hpp"
 
 namespace railtab::report {
 

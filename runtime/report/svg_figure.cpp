@@ -1,4 +1,4 @@
-#include "svg_figure.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <limits>
 
-#include "axis_ticks.hpp"
-#include "html_text.hpp"
+#include "railtab/runtime/report/axis_ticks.hpp"
+#include "railtab/runtime/report/html_text.hpp"
 
 namespace railtab::report {
 namespace {

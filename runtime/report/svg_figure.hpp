@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "chart.hpp"
+#include "railtab/runtime/report/chart.hpp"
 
 namespace railtab::report {
 

@@ -1,9 +1,9 @@
-#include "checkpoint_slot.hpp"
+#include "railtab/runtime/results/checkpoint_slot.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
 namespace {

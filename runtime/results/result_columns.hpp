@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "railtab/runtime/results/step_record.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab::result_columns {
 

@@ -6,10 +6,10 @@
 #include <cassert>
 #include <map>
 
-#include "checkpoint_slot.hpp"
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "result_columns.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/results/checkpoint_slot.hpp"
+#include "railtab/runtime/results/result_columns.hpp"
+#include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "idle_keys.hpp"
+#include "railtab/runtime/scene/idle_keys.hpp"
 
 #include <algorithm>
 

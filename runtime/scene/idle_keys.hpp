@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "key_table.hpp"
-#include "toml_leaves.hpp"
+#include "railtab/runtime/scene/key_table.hpp"
+#include "railtab/runtime/scene/toml_leaves.hpp"
 
 namespace railtab::scene {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {
@@ -53,16 +53,6 @@ void check_structure(const SceneParameters& scene) {
 std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
   if (contact.normal == NormalContact::rigid) return "rigid";
   return contact.mode == ContactMode::table ? "table" : contact.mode == ContactMode::online ? "online" : "paper";
-}
-
-void IntegrationParameters::validate() const {
-  require(time_step >= 1e-9 && time_step <= 0.1, "integration.time_step", time_step, "1e-9 to 0.1 s");
-  require(duration >= 0.0, "integration.duration", duration, ">= 0 s");
-  require(alpha >= -1.0 / 3.0 && alpha <= 0.0, "integration.alpha", alpha, "-1/3 to 0");
-  require(impact_step >= 1e-6 && impact_step <= 0.1, "integration.impact_step", impact_step, "1e-6 to 0.1 s");
-  require(tolerance >= 1e-12 && tolerance <= 1e-2, "integration.tolerance", tolerance, "1e-12 to 0.01");
-  require(max_iterations >= 2, "integration.max_iterations", max_iterations, ">= 2");
-  require(max_halvings >= 0, "integration.max_halvings", max_halvings, ">= 0");
 }
 
 namespace {

@@ -7,13 +7,13 @@
 #include <sstream>
 #include <utility>
 
-#include "idle_keys.hpp"
-#include "key_table.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/idle_keys.hpp"
+#include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/scene/toml_leaves.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
-#include "railtab/tables/text_file.hpp"
-#include "toml_leaves.hpp"
 
 namespace railtab::scene {
 namespace {

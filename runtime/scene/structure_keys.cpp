@@ -1,7 +1,7 @@
 #include <array>
 #include <string_view>
 
-#include "key_table.hpp"
+#include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 
 namespace railtab::scene {

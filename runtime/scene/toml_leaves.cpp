@@ -1,4 +1,4 @@
-#include "toml_leaves.hpp"
+#include "railtab/runtime/scene/toml_leaves.hpp"
 
 #include <fmt/format.h>
 

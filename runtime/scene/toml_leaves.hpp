@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab::scene {
 

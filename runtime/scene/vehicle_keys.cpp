@@ -1,4 +1,4 @@
-#include "key_table.hpp"
+#include "railtab/runtime/scene/key_table.hpp"
 
 namespace railtab::scene {
 namespace {

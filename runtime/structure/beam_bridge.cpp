@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "bridge.hpp"
+#include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
-#include "railtab/runtime/structure/interval_search.hpp"
+#include "railtab/runtime/structure/bridge.hpp"
 
 namespace railtab {
 namespace {

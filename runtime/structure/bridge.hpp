@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "matrix_assembly.hpp"
+#include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 

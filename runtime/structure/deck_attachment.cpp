@@ -1,4 +1,4 @@
-#include "deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_attachment.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "matrix_assembly.hpp"
-#include "railtab/runtime/structure/interval_search.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/interval_search.hpp"
+#include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
 

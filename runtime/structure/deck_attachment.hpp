@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "bridge.hpp"
+#include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
 
 namespace railtab {

@@ -1,4 +1,4 @@
-#include "fe_supports.hpp"
+#include "railtab/runtime/structure/fe_supports.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
-#include "railtab/runtime/vehicle/motion_names.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

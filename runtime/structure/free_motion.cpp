@@ -1,4 +1,4 @@
-#include "free_motion.hpp"
+#include "railtab/runtime/structure/free_motion.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,8 +12,8 @@
 #include <random>
 #include <set>
 
-#include "railtab/runtime/vehicle/motion_names.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 
 namespace railtab {
 

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "bridge.hpp"
-#include "deck_attachment.hpp"
-#include "fe_supports.hpp"
-#include "free_motion.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/fe_supports.hpp"
+#include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
-#include "railtab/runtime/vehicle/motion_names.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

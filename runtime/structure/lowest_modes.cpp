@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
+#include "railtab/runtime/algebra/structure_factor.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
-#include "railtab/runtime/vsi/structure_factor.hpp"
 
 namespace railtab {
 

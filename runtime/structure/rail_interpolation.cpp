@@ -1,7 +1,7 @@
 #include <cassert>
 
+#include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
-#include "railtab/runtime/structure/interval_search.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 
 namespace railtab {

@@ -3,8 +3,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
-#include "railtab/runtime/vehicle/parameter_range.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
 
 namespace railtab {
 

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "matrix_assembly.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
-#include "railtab/runtime/vehicle/parameter_range.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
 

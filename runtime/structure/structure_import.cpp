@@ -1,4 +1,5 @@
 #include "railtab/runtime/structure/structure_import.hpp"
+#include "railtab/runtime/fe/fe_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -9,12 +10,12 @@
 #include <string>
 #include <string_view>
 
-#include "../text/text_lines.hpp"
-#include "fe_supports.hpp"
-#include "free_motion.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
-#include "railtab/runtime/vehicle/motion_names.hpp"
+#include "railtab/runtime/structure/fe_supports.hpp"
+#include "railtab/runtime/structure/free_motion.hpp"
 
 namespace railtab {
 

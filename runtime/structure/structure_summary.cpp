@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bridge.hpp"
-#include "free_motion.hpp"
+#include "railtab/runtime/structure/bridge.hpp"
+#include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 
 namespace railtab {

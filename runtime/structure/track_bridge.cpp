@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "bridge.hpp"
-#include "railtab/runtime/vehicle/spring_damper.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
+#include "railtab/runtime/structure/bridge.hpp"
 
 namespace railtab {
 namespace {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/runtime/vehicle/parameter_range.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "railtab/runtime/vehicle/parameter_range.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
 
 namespace railtab {
 namespace {

@@ -1,4 +1,4 @@
-#include "vehicle_checks.hpp"
+#include "railtab/runtime/vehicle/vehicle_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "railtab/runtime/vehicle/motion_names.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 
 namespace railtab {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
-#include "vehicle_table.hpp"
+#include "railtab/runtime/vehicle/vehicle_table.hpp"
 
 namespace railtab {
 

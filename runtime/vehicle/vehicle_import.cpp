@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <array>
 
-#include "../structure/fe_frame.hpp"
-#include "railtab/runtime/structure/fe_files.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "vehicle_checks.hpp"
-#include "vehicle_table.hpp"
-#include "vehicle_terms.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/fe_files.hpp"
+#include "railtab/runtime/fe/fe_frame.hpp"
+#include "railtab/runtime/fe/fe_matrix.hpp"
+#include "railtab/runtime/vehicle/vehicle_checks.hpp"
+#include "railtab/runtime/vehicle/vehicle_table.hpp"
+#include "railtab/runtime/vehicle/vehicle_terms.hpp"
 
 namespace railtab {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "railtab/runtime/vehicle/parameter_range.hpp"
-#include "railtab/runtime/vehicle/spring_damper.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "vehicle_terms.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
+#include "railtab/runtime/vehicle/vehicle_terms.hpp"
 
 namespace railtab {
 namespace {

@@ -1,4 +1,4 @@
-#include "vehicle_table.hpp"
+#include "railtab/runtime/vehicle/vehicle_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "../text/text_lines.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "contact_energy_record.hpp"
+#include "railtab/runtime/vsi/contact_energy_record.hpp"
 
 #include <algorithm>
 #include <cmath>

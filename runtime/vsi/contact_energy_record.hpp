@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "contact_touch.hpp"
-#include "railtab/runtime/results/step_record.hpp"
+#include "railtab/runtime/vsi/contact_touch.hpp"
 #include "railtab/runtime/vsi/energy_account.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab {
 

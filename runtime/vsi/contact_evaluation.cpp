@@ -1,6 +1,6 @@
-#include "contact_evaluation.hpp"
+#include "railtab/runtime/vsi/contact_evaluation.hpp"
 
-#include "stopwatch.hpp"
+#include "railtab/runtime/base/stopwatch.hpp"
 
 namespace railtab {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact_evaluation.hpp"
+#include "railtab/runtime/vsi/contact_evaluation.hpp"
 
 namespace railtab {
 

@@ -1,4 +1,4 @@
-#include "contact_touch.hpp"
+#include "railtab/runtime/vsi/contact_touch.hpp"
 
 #include <algorithm>
 #include <cmath>

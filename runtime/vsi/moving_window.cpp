@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "railtab/runtime/vsi/structure_factor.hpp"
+#include "railtab/runtime/algebra/structure_factor.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/step.hpp"
+#include "railtab/runtime/vsi/structure_step.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
-#include "stopwatch.hpp"
-#include "structure_step.hpp"
 
 namespace railtab {
 

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <map>
 
-#include "contact_energy_record.hpp"
-#include "contact_touch.hpp"
-#include "derailment.hpp"
+#include "railtab/runtime/base/stopwatch.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
+#include "railtab/runtime/vsi/contact_energy_record.hpp"
+#include "railtab/runtime/vsi/contact_touch.hpp"
+#include "railtab/runtime/vsi/derailment.hpp"
 #include "railtab/runtime/vsi/step.hpp"
-#include "static_wheel_load.hpp"
-#include "stopwatch.hpp"
 
 namespace railtab {
 

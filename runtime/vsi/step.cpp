@@ -1,10 +1,10 @@
 #include "railtab/runtime/vsi/step.hpp"
 
-#include "contact_touch.hpp"
+#include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
+#include "railtab/runtime/vsi/contact_touch.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
-#include "stopwatch.hpp"
-#include "structure_step.hpp"
+#include "railtab/runtime/vsi/structure_step.hpp"
 
 namespace railtab {
 

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <string_view>
 
-#include "railtab/runtime/structure/interval_search.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "selected_solve.hpp"
+#include "railtab/runtime/algebra/selected_solve.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/interval_search.hpp"
 
 namespace railtab {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

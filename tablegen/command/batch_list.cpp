@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "geometry_options.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab {
 

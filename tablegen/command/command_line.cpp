@@ -16,8 +16,8 @@
 #include <optional>
 #include <string_view>
 
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
 

@@ -4,8 +4,8 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 #include "wheelset_functions.hpp"
 
 namespace railtab {

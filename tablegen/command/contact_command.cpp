@@ -7,8 +7,8 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/rolling_contact.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

@@ -7,10 +7,10 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/creep_job.hpp"
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/creep_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 namespace railtab {
 

@@ -4,7 +4,7 @@
 #include "commands.hpp"
 #include "geometry_request.hpp"
 #include "progress_bar.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/process_end.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 

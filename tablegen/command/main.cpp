@@ -4,8 +4,8 @@
 #include <map>
 
 #include "commands.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/process_end.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
 
 namespace {
 

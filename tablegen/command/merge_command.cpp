@@ -4,13 +4,13 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/tablegen/creep_job.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/creep_table_file.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 

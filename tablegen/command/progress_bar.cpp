@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include "railtab/tables/process_end.hpp"
+#include "railtab/runtime/base/process_end.hpp"
 
 namespace railtab {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "chart.hpp"
-#include "html_page.hpp"
-#include "html_text.hpp"
+#include "railtab/runtime/report/chart.hpp"
+#include "railtab/runtime/report/html_page.hpp"
+#include "railtab/runtime/report/html_text.hpp"
 
 namespace railtab {
 

@@ -4,10 +4,10 @@
 #include "commands.hpp"
 #include "creep_report.hpp"
 #include "progress_bar.hpp"
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/creep_table_file.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 

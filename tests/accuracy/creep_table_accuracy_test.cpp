@@ -7,11 +7,12 @@
 
 #include "../measured.hpp"
 #include "../reference_table.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/tablegen/creep_layout.hpp"
 #include "railtab/tablegen/creep_verification.hpp"
-#include "railtab/tables/creep_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 namespace railtab {
 namespace {

@@ -5,10 +5,10 @@
 #include <new>
 #include <random>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/tablegen/table_verification.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace {
 thread_local long allocations = 0;

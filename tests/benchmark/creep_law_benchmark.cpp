@@ -6,6 +6,7 @@
 #include "../fastsim_scalar.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
 
 namespace railtab {
 namespace {

@@ -19,16 +19,18 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
 
 namespace {
 

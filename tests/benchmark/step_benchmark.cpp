@@ -13,10 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/step.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace {
 

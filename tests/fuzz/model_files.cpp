@@ -1,11 +1,12 @@
-#include "railtab/runtime/structure/fe_files.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/fe_files.hpp"
+#include "railtab/runtime/fe/fe_matrix.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "reading.hpp"
 
 namespace railtab::fuzz {

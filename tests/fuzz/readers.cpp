@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include "csv_table.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/fe_files.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
-#include "railtab/runtime/structure/fe_files.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "reading.hpp"
 
 namespace railtab::fuzz {

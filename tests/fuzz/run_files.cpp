@@ -1,15 +1,17 @@
 #include <algorithm>
 #include <string_view>
 
-#include "railtab/runtime/loads/body_load.hpp"
-#include "railtab/runtime/loads/ground_motion.hpp"
-#include "railtab/runtime/loads/ground_record.hpp"
-#include "railtab/runtime/loads/speed_profile.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/body_load.hpp"
+#include "railtab/runtime/line/ground_motion.hpp"
+#include "railtab/runtime/line/ground_record.hpp"
+#include "railtab/runtime/line/irregularity.hpp"
+#include "railtab/runtime/line/speed_profile.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/track/irregularity.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "reading.hpp"
 
 namespace railtab::fuzz {

@@ -4,16 +4,16 @@
 #include <sstream>
 #include <vector>
 
-#include "../../runtime/results/checkpoint_slot.hpp"
 #include "../unit/small_geometry_table.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/runtime/results/checkpoint_slot.hpp"
 #include "railtab/runtime/results/result_file.hpp"
-#include "railtab/tables/array_file.hpp"
 #include "railtab/tables/creep_table.hpp"
-#include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 #include "railtab/tables/geometry_table.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "reading.hpp"
 
 namespace railtab::fuzz {

@@ -1,8 +1,8 @@
 #include <boost/program_options/errors.hpp>
 
 #include "batch_list.hpp"
-#include "creep_shard_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/creep_shard_file.hpp"
 #include "reading.hpp"
 
 namespace railtab::fuzz {

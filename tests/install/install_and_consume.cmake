@@ -19,7 +19,7 @@ set(configure ${CMAKE_COMMAND} -S ${CONSUMER_DIR} -G Ninja
 
 # With everything that was installed, and with the core alone.
 run(${configure} -B ${WORK_DIR}/all -D RAILTAB_VERSION=${VERSION})
-run(${configure} -B ${WORK_DIR}/core -D RAILTAB_VERSION=${VERSION} -D RAILTAB_COMPONENTS=runtime)
+run(${configure} -B ${WORK_DIR}/core -D RAILTAB_VERSION=${VERSION} -D RAILTAB_COMPONENTS=solver)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/core)
 run(${WORK_DIR}/core/consumer)
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../folder_fixture.hpp"
-#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
 namespace {

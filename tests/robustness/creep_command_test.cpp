@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 #include "tablegen_fixture.hpp"
 
 namespace railtab {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "../../runtime/results/result_columns.hpp"
+#include "railtab/runtime/results/result_columns.hpp"
 #include "railtab/runtime/results/result_file.hpp"
-#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
 #include "tablegen_fixture.hpp"
 
 namespace railtab {

@@ -1,6 +1,6 @@
 // Files of finite-element programs: what they say is read, what is wrong is refused with file and line.
 
-#include "railtab/runtime/structure/fe_files.hpp"
+#include "railtab/runtime/fe/fe_files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "../folder_fixture.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

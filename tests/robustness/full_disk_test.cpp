@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "railtab/runtime/results/result_file.hpp"
-#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
 #include "tablegen_fixture.hpp"
 
 namespace railtab {

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <string>
 
-#include "railtab/runtime/track/irregularity.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/irregularity.hpp"
 
 namespace railtab {
 namespace {

@@ -15,10 +15,10 @@
 #include <thread>
 #include <vector>
 
-#include "../../runtime/results/result_columns.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/results/result_columns.hpp"
 #include "railtab/runtime/results/result_file.hpp"
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
 #include "tablegen_fixture.hpp"
 
 namespace railtab {

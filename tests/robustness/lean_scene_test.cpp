@@ -12,7 +12,11 @@
 #include <vector>
 
 #include "railtab/runtime/contact/creep_law.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/scene/run_plan.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
+#include "railtab/tables/files/shipped_creep_table.hpp"
 
 namespace railtab {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

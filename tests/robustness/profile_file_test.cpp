@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "profile_file_fixture.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

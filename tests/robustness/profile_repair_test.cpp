@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "profile_file_fixture.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

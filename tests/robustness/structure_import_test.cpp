@@ -7,9 +7,9 @@
 #include <fstream>
 #include <string>
 
-#include "railtab/runtime/structure/fe_files.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/fe_files.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

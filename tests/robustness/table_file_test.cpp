@@ -12,9 +12,9 @@
 #include <random>
 
 #include "../unit/small_geometry_table.hpp"
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 namespace {

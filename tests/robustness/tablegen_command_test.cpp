@@ -8,7 +8,7 @@
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/equivalent_conicity.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 #include "tablegen_fixture.hpp"
 
 namespace railtab {

@@ -8,11 +8,13 @@
 #include <string_view>
 
 #include "../imported_vehicle.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
-#include "railtab/runtime/vehicle/spring_damper.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

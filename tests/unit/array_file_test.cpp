@@ -1,4 +1,4 @@
-#include "railtab/tables/array_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <numeric>
 #include <thread>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "contact_test_pairs.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "contact_test_pairs.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace {
 std::atomic<long> allocations{0};

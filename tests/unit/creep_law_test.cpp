@@ -1,4 +1,5 @@
 #include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +9,8 @@
 #include <vector>
 
 #include "../fastsim_scalar.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

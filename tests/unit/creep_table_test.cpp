@@ -12,11 +12,11 @@
 #include <new>
 #include <random>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/tablegen/creep_layout.hpp"
 #include "railtab/tables/creep_coordinates.hpp"
-#include "railtab/tables/creep_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 namespace {
 std::atomic<long> allocations{0};

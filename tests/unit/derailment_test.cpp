@@ -1,4 +1,4 @@
-#include "derailment.hpp"
+#include "railtab/runtime/vsi/derailment.hpp"
 
 #include <gtest/gtest.h>
 

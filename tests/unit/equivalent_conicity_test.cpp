@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -1,11 +1,11 @@
-#include "railtab/tables/geometry_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <unistd.h>
 
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
 #include "small_geometry_table.hpp"
 
 namespace railtab {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -15,11 +15,11 @@
 #include <numeric>
 #include <random>
 
-#include "bridge.hpp"
-#include "deck_attachment.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/runtime/structure/deck_attachment.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

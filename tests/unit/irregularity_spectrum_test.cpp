@@ -1,11 +1,11 @@
-#include "railtab/runtime/track/irregularity_spectrum.hpp"
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -10,11 +10,11 @@
 #include <string>
 
 #include "../folder_fixture.hpp"
-#include "railtab/runtime/loads/body_load.hpp"
-#include "railtab/runtime/loads/ground_motion.hpp"
-#include "railtab/runtime/loads/speed_profile.hpp"
-#include "railtab/runtime/track/span_deviation.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/body_load.hpp"
+#include "railtab/runtime/line/ground_motion.hpp"
+#include "railtab/runtime/line/span_deviation.hpp"
+#include "railtab/runtime/line/speed_profile.hpp"
 
 namespace railtab {
 namespace {

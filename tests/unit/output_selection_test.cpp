@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

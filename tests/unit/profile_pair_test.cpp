@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

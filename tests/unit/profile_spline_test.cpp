@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "s1002_definition.hpp"
 
 namespace railtab {

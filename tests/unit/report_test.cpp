@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "axis_ticks.hpp"
-#include "chart.hpp"
 #include "headline.hpp"
-#include "html_text.hpp"
-#include "polyline.hpp"
+#include "railtab/runtime/report/axis_ticks.hpp"
+#include "railtab/runtime/report/chart.hpp"
+#include "railtab/runtime/report/html_text.hpp"
+#include "railtab/runtime/report/polyline.hpp"
 #include "report_page.hpp"
 
 namespace railtab::report {

@@ -12,8 +12,8 @@
 #include <random>
 #include <thread>
 
-#include "railtab/tables/array_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "../../tablegen/src/influence_numbers.hpp"
-#include "../../tablegen/src/rolling_contact_product.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/influence_numbers.hpp"
+#include "railtab/tablegen/rolling_contact_product.hpp"
 
 namespace railtab {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "../folder_fixture.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 

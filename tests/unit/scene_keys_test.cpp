@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
-#include "railtab/runtime/track/irregularity_spectrum.hpp"
 #include "scene_fixture.hpp"
 
 namespace railtab {

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <string>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/tables/input_error.hpp"
 #include "scene_fixture.hpp"
 
 namespace railtab {

@@ -1,11 +1,11 @@
-#include "railtab/runtime/vsi/structure_factor.hpp"
+#include "railtab/runtime/algebra/structure_factor.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseLU>
 
+#include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/runtime/vsi/divided_substitution.hpp"
 
 namespace railtab {
 namespace {

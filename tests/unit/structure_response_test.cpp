@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

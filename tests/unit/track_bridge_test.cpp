@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../measured.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "railtab/runtime/vehicle/spring_damper.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

@@ -7,8 +7,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab::testing {
 

@@ -16,8 +16,11 @@
 #include <vector>
 
 #include "../measured.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab {
 namespace {

@@ -15,13 +15,13 @@
 #include <string>
 
 #include "../measured.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab {
 namespace {

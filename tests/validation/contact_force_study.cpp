@@ -14,8 +14,12 @@
 #include <string>
 
 #include "kinked_track.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "flange_model.hpp"
-#include "railtab/tables/text_file.hpp"
-#include "svg_figure.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 namespace {
 

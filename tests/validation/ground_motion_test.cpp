@@ -8,10 +8,12 @@
 #include <numbers>
 
 #include "../measured.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab {
 namespace {

@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab::hunting {
 

@@ -15,7 +15,7 @@
 #include "../measured.hpp"
 #include "hunting_model.hpp"
 #include "kinked_track.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 
 namespace railtab::hunting {
 namespace {

@@ -5,7 +5,11 @@
 #include <numbers>
 
 #include "../imported_vehicle.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab {
 namespace {

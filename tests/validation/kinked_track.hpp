@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "railtab/runtime/track/irregularity.hpp"
+#include "railtab/runtime/line/irregularity.hpp"
 
 namespace railtab {
 

@@ -18,6 +18,7 @@
 #include "manchester_wheelset.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
 #include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
 
 namespace railtab {
 namespace {

@@ -12,13 +12,13 @@
 #include <span>
 
 #include "../measured.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/reduction_check.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
-#include "railtab/runtime/vsi/reduction_check.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
-#include "railtab/tables/input_error.hpp"
 
 namespace railtab {
 namespace {

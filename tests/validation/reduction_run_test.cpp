@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../measured.hpp"
-#include "railtab/runtime/vsi/reduction_check.hpp"
+#include "railtab/runtime/scene/reduction_check.hpp"
 
 namespace railtab {
 namespace {

@@ -9,9 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab {
 namespace {

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab {
 namespace {

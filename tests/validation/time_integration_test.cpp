@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab {
 namespace {

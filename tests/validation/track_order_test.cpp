@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "../measured.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 
 namespace railtab {

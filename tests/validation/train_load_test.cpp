@@ -8,9 +8,11 @@
 #include <numbers>
 
 #include "../measured.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
 
 namespace railtab {
 namespace {

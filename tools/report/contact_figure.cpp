@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "html_text.hpp"
+#include "railtab/runtime/report/html_text.hpp"
 
 namespace railtab::report {
 namespace {

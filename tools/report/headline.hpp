@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "railtab/runtime/results/step_record.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 #include "sliding_mean.hpp"
 
 namespace railtab::report {

@@ -8,9 +8,9 @@
 
 #include "contact_figure.hpp"
 #include "headline.hpp"
-#include "html_page.hpp"
-#include "html_text.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/report/html_page.hpp"
+#include "railtab/runtime/report/html_text.hpp"
 #include "run_charts.hpp"
 
 namespace railtab::report {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "chart.hpp"
 #include "headline.hpp"
+#include "railtab/runtime/report/chart.hpp"
 
 namespace railtab::report {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "watched_run.hpp"

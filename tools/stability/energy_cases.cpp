@@ -4,7 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <optional>
 
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "watched_run.hpp"
 
 namespace railtab::stability {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "railtab/runtime/results/step_record.hpp"
 #include "railtab/runtime/vsi/energy_account.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 #include "stability_case.hpp"
 
 namespace railtab::stability {

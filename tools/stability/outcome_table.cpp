@@ -6,8 +6,8 @@
 #include <array>
 #include <fstream>
 
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab::stability {
 namespace {

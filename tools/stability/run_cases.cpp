@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "watched_run.hpp"
 
 namespace railtab::stability {

@@ -4,7 +4,7 @@
 #include <ctime>
 #include <exception>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab::stability {
 

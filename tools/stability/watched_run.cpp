@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "energy_watch.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 
 namespace railtab::stability {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 #include "stability_case.hpp"
 
 namespace railtab::stability {

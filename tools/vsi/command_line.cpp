@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;

@@ -7,10 +7,10 @@
 #include "commands.hpp"
 #include "csv_table.hpp"
 #include "json_object.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;

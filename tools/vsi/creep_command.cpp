@@ -9,10 +9,11 @@
 #include "commands.hpp"
 #include "csv_table.hpp"
 #include "json_object.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
-#include "railtab/tables/creep_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;

@@ -11,8 +11,8 @@
 #include <system_error>
 #include <utility>
 
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab::vsi {
 namespace {

@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include "commands.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/process_end.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
 
 namespace railtab::vsi {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 #include <string>
-#include "railtab/tables/process_end.hpp"
+#include "railtab/runtime/base/process_end.hpp"
 
 namespace railtab::vsi {
 

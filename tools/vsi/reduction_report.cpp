@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "json_object.hpp"
-#include "railtab/runtime/vsi/reduction_check.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/reduction_check.hpp"
 
 namespace railtab::vsi {
 namespace {

@@ -3,8 +3,8 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "json_object.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
-#include "railtab/tables/text_file.hpp"
 #include "report_page.hpp"
 
 namespace railtab::vsi {

@@ -6,11 +6,11 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "json_object.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/process_end.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "railtab/tables/input_error.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab::vsi {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/tablegen/creep_verification.hpp"
-#include "railtab/tables/creep_table_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 namespace railtab::work_precision {
 

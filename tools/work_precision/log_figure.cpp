@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "html_text.hpp"
 #include "label_placement.hpp"
+#include "railtab/runtime/report/html_text.hpp"
 
 namespace railtab::work_precision {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "railtab/runtime/vsi/reduction_check.hpp"
+#include "railtab/runtime/scene/reduction_check.hpp"
 
 namespace railtab::work_precision {
 

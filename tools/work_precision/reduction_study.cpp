@@ -13,9 +13,9 @@
 #include "log_figure.hpp"
 #include "low_pass.hpp"
 #include "machine.hpp"
-#include "railtab/runtime/vsi/reduction_check.hpp"
-#include "railtab/tables/input_error.hpp"
-#include "railtab/tables/text_file.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/scene/reduction_check.hpp"
 
 namespace railtab::work_precision {
 namespace {

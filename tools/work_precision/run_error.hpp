@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab::work_precision {
 

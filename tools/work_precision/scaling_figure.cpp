@@ -8,7 +8,7 @@
 
 #include "interleaved_timing.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 #include "run_error.hpp"
 

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string>
 
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
-#include "railtab/runtime/vsi/static_equilibrium.hpp"
-#include "railtab/tables/text_file.hpp"
 
 namespace railtab::work_precision {
 

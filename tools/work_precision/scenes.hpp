@@ -4,6 +4,7 @@
 
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
 
 namespace railtab::work_precision {
 

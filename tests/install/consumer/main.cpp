@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 #include "railtab/runtime/vehicle/coach.hpp"
-#include "railtab/tables/geometry_table_file.hpp"
-#include "railtab/tables/input_error.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace {
 

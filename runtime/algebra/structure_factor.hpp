@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <span>
+#include <vector>
+
+#include "railtab/runtime/base/dof_range.hpp"
+
+namespace railtab {
+
+/// Cholesky factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
+/// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
+/// factor's numbers and works on vectors [Davis2006, Sect. 4.8].
+///
+/// The two halves of a back-substitution are apart, and either can be restricted to a path: the blocks of given
+/// unknowns and everything above them in the elimination tree. A load on the path changes the forward half there only,
+/// and the backward half needs nothing else to give the solution there. In a long and narrow structure paths are short.
+///
+/// Vectors that the halves work on are in the factor's own order: into() and out_of().
+class StructureFactor {
+ public:
+  using Vector = Eigen::VectorXd;
+
+  /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
+  explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix) : StructureFactor(matrix, {0, matrix.rows()}) {}
+  /// The rows and columns in `range` alone: all other unknowns are held. Unknowns keep their numbers.
+  StructureFactor(const Eigen::SparseMatrix<double>& matrix, const DofRange& range);
+
+  [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
+  /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
+  [[nodiscard]] Eigen::Index room() const noexcept { return size() + 1; }
+  /// What one half of a back-substitution reads [bytes].
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+  /// Blocks of unknowns and everything above them, ascending.
+  class Path {
+    friend class StructureFactor;
+    std::vector<int> blocks_;
+    std::vector<int> mark_;  // of every block: the collection that met it last
+    int collection_ = 0;
+  };
+  void find_path(std::span<const int> unknowns, Path& path) const;
+  /// Calls visitor(first, number) for the neighbouring columns of every block of a path.
+  template <class Visitor>
+  void visit(const Path& path, Visitor&& visitor) const {
+    for (int b : path.blocks_) {
+      visitor(blocks_[static_cast<std::size_t>(b)].first, blocks_[static_cast<std::size_t>(b)].columns);
+    }
+  }
+
+  [[nodiscard]] int position(int unknown) const noexcept {
+    return position_[static_cast<std::size_t>(unknown - first_)];
+  }
+  /// From and to a vector of all unknowns of the structure; those that are held are not touched.
+  void into(const Vector& natural, Vector& ordered) const;
+  void out_of(const Vector& ordered, Vector& natural) const;
+
+  /// y <- L⁻¹ y.
+  void forward(Vector& y) const;
+  /// x <- L⁻ᵀ D⁻¹ x.
+  void backward(Vector& x) const;
+  /// y <- L⁻¹ y for a y that is zero off the path.
+  void forward(Vector& y, const Path& path) const;
+  /// The entries of L⁻ᵀ D⁻¹ y on the path; those of x elsewhere stay as they are.
+  void backward(const Vector& y, Vector& x, const Path& path) const;
+  /// The entries of L⁻ᵀ D⁻¹ y off the path, for an x that has those on it.
+  void backward_off(const Path& path, const Vector& y, Vector& x) const;
+  /// Full solution in the natural order, of all unknowns of the structure; 0 where they are held.
+  [[nodiscard]] Vector solve(const Vector& load) const;
+
+ private:
+  struct Block {
+    int first, columns;  // first column and number of columns
+    int below, rows;     // rows below the triangle: number, and place of the first in rows_
+    std::size_t value;   // place of the first column in values_, see there
+    int parent;          // block of the first row below; -1: a root
+  };
+  void store(const Eigen::MatrixXd& dense, const Block& block);
+  void forward(double* y, const Block& block, double* scratch) const;
+  void backward(double* x, const Block& block, double* scratch) const;
+  void backward(const Vector& y, Vector& x, const Block& block, double* scratch) const;
+
+  std::vector<Block> blocks_;
+  std::vector<int> rows_;
+  /// Of every block with triangle T and rows B below it: T⁻¹ and B T⁻¹, in the order in which they are read.
+  std::vector<double> values_;
+  std::vector<int> block_of_;  // of a column
+  std::vector<int> position_;  // of an unknown in the factor's order
+  Vector inverse_D_;
+  int first_ = 0;  // the unknown that the range begins with
+  int most_height_ = 0;
+};
+
+}  // namespace railtab

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace railtab {
+
+enum class RailSide { left = 0, right = 1 };
+
+}  // namespace railtab

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "railtab/runtime/scene/plan_memory.hpp"
+#include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/scene/run_plan.hpp"
+#include "railtab/runtime/scene/scene_loads.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
+#include "railtab/runtime/scene/scene_warnings.hpp"
+#include "railtab/runtime/scene/step_count.hpp"
+#include "railtab/runtime/vehicle/vehicle_summary.hpp"
+
+namespace railtab {
+
+namespace {
+
+std::string reduction_text(const ReductionParameters& reduction) {
+  const std::string name = fmt::format("reduction of the structure: {}", reduction_name(reduction.kind));
+  if (reduction.kind == Reduction::window) {
+    return fmt::format("{}, {:g} m ahead of the train and {:g} m behind take part", name, reduction.ahead,
+                       reduction.behind);
+  }
+  if (reduction.kind == Reduction::modal) {
+    return fmt::format("{}, {} modes{}", name, reduction.modes,
+                       reduction.static_correction ? " with static correction" : "");
+  }
+  return fmt::format("{}, {} modes of each part", name, reduction.modes);
+}
+
+void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  plan.built.push_back(
+      fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  if (scene.train.vehicle != imported_vehicle) return;
+  constexpr int modes = 6;
+  VehicleSummary vehicle = summarise(model.vehicle, modes);
+  for (double& load : vehicle.wheel_load) load *= 1e-3;
+  plan.built.push_back(fmt::format("vehicle of {}: {:.6g} kg, wheels of the wheelsets carry {:.4g} kN at rest",
+                                   scene.vehicle.stiffness.filename().string(), vehicle.mass,
+                                   fmt::join(vehicle.wheel_load, ", ")));
+  plan.built.push_back(fmt::format("its lowest natural frequencies on standing wheelsets: {:.4g} Hz",
+                                   fmt::join(vehicle.frequencies, ", ")));
+}
+
+void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  if (model.geometry) {
+    plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
+                                     model.geometry->pair().wheel().knots().name,
+                                     model.geometry->pair().rail().knots().name));
+    plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+    if (scene.contact.mode != ContactMode::table) {
+      plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
+    }
+    return;
+  }
+  plan.built.emplace_back("wheels that follow the rails rigidly, vertical motion only");
+  plan.left_out.emplace_back("contact geometry, creep forces, loss of contact: contact.normal is \"rigid\"");
+  plan.left_out.emplace_back("lateral, roll and yaw unknowns of the vehicles: nothing moves them");
+  if (model.structure && structure_plane(scene) == MotionPlane::vertical && scene.track_kind == TrackKind::flexible) {
+    plan.left_out.emplace_back("lateral, roll and yaw unknowns of track and bridge: nothing loads them");
+  }
+}
+
+void describe_structure(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  if (model.structure) {
+    plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",
+                                     scene.track_kind == TrackKind::imported ? "imported" : "flexible",
+                                     2 * model.structure->rail[0].x.size(), scene.spans.size()));
+    if (scene.reduction.kind != Reduction::none) plan.built.push_back(reduction_text(scene.reduction));
+  } else {
+    plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
+  }
+  if (track_on_import(scene)) {
+    plan.built.push_back(fmt::format("bridge of {}", scene.structure.files.stiffness.filename().string()));
+  } else if (scene.spans.empty() && scene.track_kind != TrackKind::imported) {
+    plan.left_out.emplace_back("bridge: the scene names none");
+  }
+}
+
+void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+  if (scene.spectrum) {
+    plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+  } else if (scene.irregularity) {
+    plan.built.push_back(fmt::format("irregularity of {}, measured at x = {:.6g} to {:.6g} m",
+                                     scene.irregularity->filename().string(), model.irregularity.begin(),
+                                     model.irregularity.end()));
+  } else {
+    plan.left_out.emplace_back("irregularity: the scene names none");
+  }
+}
+
+}  // namespace
+
+RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
+  if (setup) setup("building the model");
+  const bool modal = scene.reduction.kind == Reduction::modal && scene.track_kind != TrackKind::rigid;
+  const VsiModel model = modal ? build_unreduced_model(scene) : build_model(scene);  // modes are counted, not sought
+  RunPlan plan;
+  plan.structure_dofs = model.structure ? model.structure->dofs() : 0;
+  if (modal) plan.structure_dofs = std::min(plan.structure_dofs, static_cast<long>(scene.reduction.modes));
+  plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
+  plan.wheels = 2 * model.wheelsets();
+  plan.time_step = scene.integration.time_step;
+  plan.steps = step_count(scene.integration, run_duration(scene, model));
+  plan.duration = static_cast<double>(plan.steps) * scene.integration.time_step;
+  static_cast<void>(OutputSelection(scene.output, model_header(model)));
+  plan.warnings = scene_warnings(scene, model);
+  describe_vehicle(scene, model, plan);
+  describe_contact(scene, model, plan);
+  describe_structure(scene, model, plan);
+  describe_track(scene, model, plan);
+  for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
+  if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
+  plan.memory = modal ? modal_step_memory(model, scene.reduction, scene.integration)
+                      : step_memory(model, scene.integration.time_step, scene.integration.alpha);
+  return plan;
+}
+
+}  // namespace railtab

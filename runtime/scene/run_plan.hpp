@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "railtab/runtime/scene/scene_parameters.hpp"
+
+namespace railtab {
+
+/// What a scene will build and what it leaves out, for `vsi run --plan`.
+struct RunPlan {
+  long structure_dofs = 0, vehicle_dofs = 0;
+  int wheels = 0;
+  long steps = 0;
+  double time_step = 0, duration = 0;  ///< [s]
+  double memory = 0;                   ///< of what the steps work on [bytes]
+  std::vector<std::string> built, left_out;
+  std::vector<std::string> warnings;  ///< as RunObserver::warning
+};
+
+/// @param setup every part of it as it begins; may be empty
+/// @throws InputError as run_scene() does before its first step, but for a train that has no state of rest
+[[nodiscard]] RunPlan plan_run(const SceneParameters& scene,
+                               const std::function<void(std::string_view part)>& setup = {});
+
+}  // namespace railtab

@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/runtime/profile/profile_file.hpp"
+#include "railtab/runtime/scene/scene_loads.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
+#include "railtab/runtime/structure/carried_motion.hpp"
+#include "railtab/runtime/vsi/support_motion.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr int paper_points = 1000;              // of the published method's discretised profiles
+constexpr double paper_curvature_floor = 1e-6;  // 1/m [MontenegroCalcada2023, section 2.2]
+
+WheelRailPair scene_pair(const ContactParameters& contact) {
+  if (!contact.table.empty()) return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair();
+  return WheelRailPair(ProfileCurve(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination)),
+                       ProfileCurve(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination)),
+                       contact.dimensions);
+}
+
+ContactGeometry::Source geometry_source(const ContactParameters& contact) {
+  switch (contact.mode) {
+    case ContactMode::table:
+      return TableContact(GeometryTable(read_geometry_table(contact.table)));
+    case ContactMode::online:
+      return ContactSearch(scene_pair(contact));
+    case ContactMode::paper:
+      return PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline);
+  }
+  throw InputError("contact.mode: unknown");
+}
+
+double spans_length(const SceneParameters& scene) {
+  double length = 0.0;
+  for (const BridgeParameters& span : scene.spans) length += span.length;
+  return length;
+}
+
+// The first wheelset stands at `start`; coaches follow each other at their length over couplers.
+std::vector<double> vehicle_positions(const TrainParameters& train, const VehicleModel& vehicle) {
+  const double first_wheelset = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position[0];
+  std::vector<double> x;
+  for (int i = 0; i < train.count; ++i) x.push_back(train.start - first_wheelset - i * vehicle.length);
+  return x;
+}
+
+void check_on_track(const SceneParameters& scene, const VsiModel& model) {
+  if (!model.structure) return;
+  const RailLine& rail = model.structure->rail[0];
+  const double last = model.wheelset_x(model.wheelsets() - 1, 0.0);
+  const double end = model.wheelset_x(0, run_duration(scene, model));
+  const auto where = [&] { return fmt::format("{:.2f} m to {:.2f} m", rail.x.front(), rail.x.back()); };
+  if (last < rail.x.front() || scene.train.start > rail.x.back()) {
+    throw input_error("scene: train.start",
+                      fmt::format("wheelsets from x = {:.2f} m to {:.2f} m", last, scene.train.start),
+                      fmt::format("all on the modelled track, {} (track.length_before)", where()));
+  }
+  if (end > rail.x.back()) {
+    throw input_error(
+        "scene: track.length_after", fmt::format("a run that ends with the first wheelset at x = {:.2f} m", end),
+        fmt::format("one that ends on the modelled track, {} (a longer track or a shorter duration)", where()));
+  }
+}
+
+// Contact geometry and contact forces; a scene whose wheels follow the rails needs neither.
+void add_contact(const ContactParameters& contact, VsiModel& model) {
+  model.geometry = std::make_shared<const ContactGeometry>(geometry_source(contact));
+  model.contact.geometry = model.geometry.get();
+  model.contact.normal.material = contact.material;
+  model.contact.normal.curvature_floor =
+      contact.mode == ContactMode::paper ? paper_curvature_floor : contact.curvature_floor;
+  model.contact.creep_law = creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
+  model.contact.friction = contact.friction;
+  model.contact.damping = contact.damping;
+  const double radius = model.geometry->pair().nominal_radius();
+  if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
+    throw input_error(contact.table.empty() ? "scene: contact.dimensions.nominal_radius" : "scene: contact.table",
+                      fmt::format("{} m{}", radius, contact.table.empty() ? "" : " as the wheels' nominal radius"),
+                      fmt::format("{} m, the wheels of {}", model.vehicle.nominal_radius, model.vehicle.name));
+  }
+}
+
+// A random track as far as the train comes, its run-in included.
+Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
+  constexpr double margin = 50.0;  // m
+  const double end = run_duration(scene, model);
+  return random_irregularity(*scene.spectrum, model.wheelset_x(model.wheelsets() - 1, 0.0) - margin,
+                             model.wheelset_x(0, end) + margin);
+}
+
+// The structure as the steps will have it.
+void reduce(const ReductionParameters& reduction, VsiModel& model) {
+  if (!model.structure) return;
+  if (model.ground_motion && reduction.kind != Reduction::none) {
+    model.structure->supports = gathered(model.structure->supports, *model.ground_motion);
+    model.structure = relative_to_supports(std::move(*model.structure));
+  }
+  switch (reduction.kind) {
+    case Reduction::modal: {
+      auto unreduced = std::make_shared<const StructureModel>(std::move(*model.structure));
+      model.structure = reduce_to_modes(*unreduced, reduction.modes);
+      if (reduction.static_correction) model.unreduced = std::move(unreduced);
+      break;
+    }
+    case Reduction::craig_bampton:
+      model.structure = reduce_parts(*model.structure, reduction.modes);
+      break;
+    case Reduction::window:
+      if (model.structure->dof_x.empty()) {
+        throw input_error("scene: structure.reduction", "\"window\" of an imported structure",
+                          "another reduction: where its unknowns are along the track is not known");
+      }
+      model.window = make_window(*model.structure, reduction);
+      break;
+    case Reduction::none:
+      break;
+  }
+}
+
+}  // namespace
+
+VsiModel build_unreduced_model(const SceneParameters& scene) {
+  scene.validate();
+  VsiModel model;
+  model.vehicle = scene.train.vehicle == imported_vehicle
+                      ? import_vehicle(scene.vehicle, vehicle_plane(scene))
+                      : build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene));
+  model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
+  model.normal_contact = scene.contact.normal;
+  model.contact.speed = scene.train.speed;
+  if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
+  if (scene.track_kind != TrackKind::rigid) {
+    model.structure = build_structure(scene);
+    model.structure_doubts = model.structure->doubts;
+  }
+  if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
+  add_loads(scene, model);
+  if (scene.spectrum) model.irregularity = random_track(scene, model);
+  check_on_track(scene, model);
+  return model;
+}
+
+VsiModel build_model(const SceneParameters& scene) {
+  VsiModel model = build_unreduced_model(scene);
+  reduce(scene.reduction, model);
+  return model;
+}
+
+double run_duration(const SceneParameters& scene, const VsiModel& model) {
+  if (scene.integration.duration > 0.0) return scene.integration.duration;
+  const auto time_to = [&](double x) {
+    const double way = x - model.wheelset_x(model.wheelsets() - 1, 0.0);
+    return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
+  };
+  if (track_on_import(scene)) {
+    // the track goes on for length_after, rounded up to whole bays
+    return time_to(model.structure->rail[0].x.back() - scene.track.length_after);
+  }
+  if (scene.spans.empty()) {
+    throw input_error("scene: integration.duration", "none, and no bridge",
+                      "a duration in s, or a [[bridge]] to cross");
+  }
+  return time_to(spans_length(scene));
+}
+
+}  // namespace railtab

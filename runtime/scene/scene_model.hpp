@@ -1,0 +1,17 @@
+#pragma once
+
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+namespace railtab {
+
+/// The model of a scene: reads the table, builds vehicle, structure and irregularity. @throws InputError
+[[nodiscard]] VsiModel build_model(const SceneParameters& scene);
+/// Time until the scene's run is over: its duration, or until the last wheelset has left the last span [s].
+/// @throws InputError where a scene without a span names no duration.
+[[nodiscard]] double run_duration(const SceneParameters& scene, const VsiModel& model);
+
+/// build_model() before structure.reduction, for a plan that counts and does not solve. @throws InputError
+[[nodiscard]] VsiModel build_unreduced_model(const SceneParameters& scene);
+
+}  // namespace railtab

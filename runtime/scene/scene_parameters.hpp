@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "railtab/runtime/contact/hertz.hpp"
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
+#include "railtab/runtime/line/span_deviation.hpp"
+#include "railtab/runtime/profile/wheel_rail_pair.hpp"
+#include "railtab/runtime/results/output_selection.hpp"
+#include "railtab/runtime/structure/imported_bridge.hpp"
+#include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vehicle/vehicle_import.hpp"
+#include "railtab/runtime/vsi/integration_parameters.hpp"
+#include "railtab/runtime/vsi/normal_contact.hpp"
+
+namespace railtab {
+
+enum class ContactMode { table, online, paper };
+enum class TrackKind { rigid, flexible, imported };
+
+struct TrainParameters {
+  std::string vehicle = "manchester-coach";  ///< a published vehicle, or imported_vehicle
+  int count = 1;                             ///< coaches, 1..100
+  double speed = 200.0 / 3.6;                ///< [m/s], > 0
+  std::filesystem::path speed_file;          ///< speed over time in place of `speed`; empty: constant
+  double start = 0.0;                        ///< position of the first wheelset at t = 0 [m]
+  /// Initial lateral shift [m] and yaw [rad] of every wheelset (hunting studies).
+  double initial_lateral_shift = 0.0;
+  double initial_yaw = 0.0;
+};
+
+struct ContactParameters {
+  ContactMode mode = ContactMode::table;
+  NormalContact normal = NormalContact::hertz;
+  std::filesystem::path table;  ///< geometry table; also gives the profiles
+  std::string wheel = "S1002";  ///< where no table is named (online, paper)
+  std::string rail = "60E1";
+  double rail_inclination = 1.0 / 40.0;
+  PairDimensions dimensions;          ///< where no table is named
+  std::string creep_law = "table";    ///< the shipped table is for nu = 0.28
+  std::filesystem::path creep_table;  ///< of the law "table"; empty: the shipped one
+  double friction = 0.30;             ///< Coulomb coefficient [-], 0..2
+  ElasticMaterial material;
+  double damping = 0.0;           ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
+  double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]
+};
+
+/// "table", "online", "paper", or "rigid": what results say of how they were made.
+[[nodiscard]] std::string_view contact_mode_name(const ContactParameters& contact) noexcept;
+
+/// One load on bodies of the train: a history from a file, or the constant one given, or a gust of that peak.
+struct LoadParameters {
+  std::string body = "car-body";  ///< name of a body of the vehicle
+  int coach = 0;                  ///< counted from the front; 0: every one
+  std::filesystem::path file;     ///< load history; empty: `load`
+  /// Fx, Fy, Fz [N], Mx, My, Mz [N m]; those that are not named are zero.
+  std::array<std::optional<double>, 6> load{};
+  double start = 0.0;          ///< added to the file's times or positions [s] or [m]; of the gust [s]
+  double gust_duration = 0.0;  ///< of a one-minus-cosine gust [s]; 0: the load is constant
+};
+
+/// Ground motion by one record; several are stations along the track.
+struct GroundMotionParameters {
+  std::filesystem::path file;
+  double x = 0.0;           ///< of the station along the track, where there are several [m]
+  double factor = 1.0;      ///< times the record
+  double start = 0.0;       ///< added to the record's times [s]
+  double wave_speed = 0.0;  ///< of a single record: along the track, backward where negative [m/s]; 0: everywhere alike
+};
+
+/// Everything a run needs, read from a TOML scene. Paths are relative to the scene file.
+struct SceneParameters {
+  std::string name;
+  std::string text;                          ///< the TOML itself, kept with the results
+  std::vector<std::filesystem::path> files;  ///< all that the scene names, in the order of their keys
+  TrainParameters train;
+  VehicleImport vehicle;  ///< where train.vehicle is imported_vehicle
+  ContactParameters contact;
+  TrackKind track_kind = TrackKind::flexible;
+  TrackParameters track;
+  std::vector<BridgeParameters> spans;  ///< none: no bridge
+  ImportParameters structure;  ///< rails (TrackKind::imported) or a bridge under railtab's own track (flexible)
+  ReductionParameters reduction;
+  std::optional<std::filesystem::path> irregularity;
+  std::optional<SpectrumParameters> spectrum;  ///< in place of a file: a random track
+  std::optional<SpanDeviationParameters> span_deviation;
+  std::vector<LoadParameters> loads;
+  std::vector<GroundMotionParameters> ground_motion;
+  IntegrationParameters integration;
+  OutputParameters output;
+
+  /// What no single key can tell: a table where contact.mode needs one, spans only on flexible track, integration.
+  /// To be called again where a command changes a parameter. @throws InputError naming the keys.
+  void validate() const;
+};
+
+/// @throws InputError with file and line: unknown key (with the nearest valid spelling), wrong type, value out of
+/// range,
+///         missing file.
+[[nodiscard]] SceneParameters read_scene(const std::filesystem::path& file);
+
+}  // namespace railtab

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
+#include "railtab/runtime/scene/scene_warnings.hpp"
+#include "railtab/runtime/scene/start_checks.hpp"
+#include "railtab/runtime/scene/step_count.hpp"
+#include "railtab/runtime/scene/timed_model.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
+
+namespace railtab {
+
+namespace {
+
+// Time that a train runs before its scene begins, so that what the steady start leaves out, the rhythm of the sleepers,
+// is there: as long as the modelled track reaches back, for where the rails are rigid there is none. The published
+// method has its own state to settle to.
+long run_in_steps(const SceneParameters& scene, const VsiModel& model) {
+  constexpr double enough = 0.2;  // s: the wheelsets' bouncing on the track has decayed to less than 1e-3
+  const auto steps = [&](double time) {
+    return time > 0.0 ? static_cast<long>(time / scene.integration.time_step) : 0L;
+  };
+  if (!model.structure) return model.geometry && model.geometry->is_paper() ? steps(enough) : 0;
+  const double rear = model.wheelset_x(model.wheelsets() - 1, 0.0);
+  const double track = rear - std::max(model.structure->rail[0].x.front(), model.structure->rail[1].x.front());
+  return steps(std::min(enough, 0.8 * track / model.speed(0.0)));
+}
+
+// The published search's pairs jump as a wheel moves, and at rest there is no inertia to hold it meanwhile: rest is
+// sought with the online search, and the run-in does the difference.
+std::optional<VsiModel> other_model_at_rest(const SceneParameters& scene, const VsiModel& model) {
+  if (!model.geometry || !model.geometry->is_paper()) return std::nullopt;
+  VsiModel rest = model;
+  rest.geometry = std::make_shared<const ContactGeometry>(ContactSearch(model.geometry->pair()));
+  rest.contact.geometry = rest.geometry.get();
+  rest.contact.normal.curvature_floor = scene.contact.curvature_floor;
+  return rest;
+}
+
+// What Newton leaves of the first steps' creep forces decays within tenths of a second only, the slower the train: 100
+// N of Y after the run-in at 40 km/h with the default tolerance. Its few steps bear a tighter one.
+IntegrationParameters run_in_parameters(const IntegrationParameters& integration) {
+  constexpr double tight = 1e-7;
+  IntegrationParameters parameters = integration;
+  parameters.tolerance = std::min(tight, parameters.tolerance);
+  return parameters;
+}
+
+// State at t = 0: steady, and run in where there is track for it. A run-in that fails is left out. Returns why there is
+// none, or nothing.
+template <class Warn>
+std::string start(const SceneParameters& scene, const VsiModel& model, const Warn& warn, VsiState& state) {
+  const std::optional<VsiModel> other = other_model_at_rest(scene, model);
+  const VsiModel& at_rest = other ? *other : model;
+  const long before = run_in_steps(scene, model);
+  if (before > 0) {
+    // pairs that jump have no solution to such a tolerance
+    const bool jumps = model.geometry && model.geometry->is_paper();
+    const IntegrationParameters run_in = jumps ? scene.integration : run_in_parameters(scene.integration);
+    VsiState early(model);
+    early.time = -static_cast<double>(before) * scene.integration.time_step;
+    const EquilibriumReport rest = steady_start(at_rest, early);
+    if (rest.converged && simulate(model, run_in, 0.0, 1, early, {}, -before).complete) {
+      warn(start_warning(rest));
+      state = std::move(early);
+      return {};
+    }
+  }
+  const EquilibriumReport rest = steady_start(at_rest, state);
+  if (!rest.converged) return no_rest_message(at_rest, rest, state.time);
+  warn(start_warning(rest));
+  return {};
+}
+
+// Where a hunting study begins. @throws InputError where nothing there carries the wheels
+void displace(const SceneParameters& scene, const VsiModel& model, VsiState& state) {
+  const double shift = scene.train.initial_lateral_shift, yaw = scene.train.initial_yaw;
+  if (displace_train(model, shift, yaw, state)) return;
+  throw input_error(
+      "scene: train.initial_lateral_shift", fmt::format("{} m with a yaw of {} rad", shift, yaw),
+      "a place of the wheelsets at which both wheels carry their loads, no more than 40 mm above their rails");
+}
+
+// What was done to the points of measured profiles.
+void note_repairs(const VsiModel& model, const RunObserver& observer) {
+  if (!model.geometry) return;
+  const WheelRailPair& pair = model.geometry->pair();
+  for (const ProfileKnots* profile : {&pair.wheel().knots(), &pair.rail().knots()}) {
+    for (const std::string& note : profile->notes) observer.note(note);
+  }
+}
+
+}  // namespace
+
+RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
+                     const std::optional<RunCheckpoint>& resume) {
+  if (observer.setup) observer.setup("building the model");
+  const TimedModel timed(scene);
+  return timed.counted(run_scene(scene, timed.model(), observer, resume));
+}
+
+RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const RunObserver& observer,
+                     const std::optional<RunCheckpoint>& resume) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto setup = [&](std::string_view part) {
+    if (observer.setup) observer.setup(part);
+  };
+  const auto warn = [&](const std::string& warning) {
+    if (observer.warning && !warning.empty()) observer.warning(warning);
+  };
+  if (observer.note) note_repairs(model, observer);
+  for (const std::string& warning : scene_warnings(scene, model)) warn(warning);
+  const double duration = run_duration(scene, model);
+  static_cast<void>(step_count(scene.integration, duration));
+  const ResultHeader header = result_header(scene, model);
+  const OutputSelection selection(scene.output, header);
+  VsiState state(model);
+  std::string no_rest;
+  if (resume) {
+    unpack(resume->state, state);
+  } else {
+    setup("state of rest");
+    no_rest = start(scene, model, warn, state);
+    if (no_rest.empty()) {
+      displace(scene, model, state);
+      warn(displacement_warning(scene, model, state));
+    }
+  }
+  if (observer.start) observer.start(selection.of(header));
+  RunSummary summary;
+  summary.contact_mode = contact_mode_name(scene.contact);
+  if (!no_rest.empty()) {
+    summary.message = no_rest;
+    return summary;
+  }
+  RunObserver selected = observer;
+  selected.contact_energy = observer.contact_energy || scene.output.energy;
+  if (observer.record) {
+    selected.record = [&](StepRecord& record) {
+      selection.cut(record);
+      observer.record(record);
+    };
+  }
+  setup("factorising");
+  const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  summary =
+      simulate(model, scene.integration, duration, scene.output.every, state, selected, resume ? resume->step : 0);
+  if (!scene.output.wheels) summary.wheel_extremes = {};
+  summary.seconds_setup += set_up;
+  summary.seconds_total += set_up;
+  summary.contact_mode = contact_mode_name(scene.contact);
+  return summary;
+}
+
+}  // namespace railtab

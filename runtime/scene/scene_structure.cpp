@@ -1,0 +1,32 @@
+#include "railtab/runtime/scene/scene_structure.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/scene_loads.hpp"
+#include "railtab/runtime/structure/structure_import.hpp"
+
+namespace railtab {
+
+bool track_on_import(const SceneParameters& scene) noexcept {
+  return scene.track_kind == TrackKind::flexible && !scene.structure.files.stiffness.empty();
+}
+
+StructureModel build_structure(const SceneParameters& scene) {
+  const FeFiles& files = scene.structure.files;
+  for (const auto& [file, key] : {std::pair{&files.mass, "mass"}, {&files.damping, "damping"}}) {
+    std::error_code none;
+    if (file->empty() || !std::filesystem::equivalent(*file, files.stiffness, none)) continue;
+    throw input_error(std::string("scene: structure.") + key, "the file of structure.stiffness", "a file of its own");
+  }
+  if (scene.track_kind == TrackKind::imported) {
+    if (!files.nodes.empty()) return import_with_rails(scene.structure);
+    return import_structure({files.mass, files.damping, files.stiffness, files.dofs});
+  }
+  if (track_on_import(scene)) return build_track_on_import(scene.track, scene.structure);
+  return build_track_bridge(scene.track, scene.spans, structure_plane(scene));
+}
+
+}  // namespace railtab

@@ -1,0 +1,394 @@
+#include "railtab/runtime/start/static_equilibrium.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "railtab/runtime/start/wheelset_seat.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
+#include "railtab/runtime/vsi/contact_continuation.hpp"
+#include "railtab/runtime/vsi/external_load.hpp"
+#include "railtab/runtime/vsi/local_flexibility.hpp"
+#include "railtab/runtime/vsi/rigid_wheels.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr double regularisation = 0.05;  // eps [1/s²]: far below the square of any suspended mode (2π·0.5 Hz)² = 10
+constexpr double travel_between = 0.025;  // m: between the equilibria that velocity and acceleration are taken from
+constexpr int max_iterations = 60;
+constexpr double newton_tolerance = 1e-12;   // m, rad
+constexpr double contact_tolerance = 1e-10;  // m, rad: of the contact unknowns
+// Of the dofs: what rounding leaves of the wheel loads, over the weak eps M, moves them by some nm.
+constexpr double dof_tolerance = 1e-7;  // m, rad
+// Where iterations no longer gain, what rounding leaves of the forces is the end: it moves the contact unknowns by some
+// 1e-9 and, over the weak eps M, the dofs by some 1e-7.
+constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
+constexpr double out_of_balance = 1e-3;                         // of the static wheel load
+constexpr double pitch_rate_compliance =
+    1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+// The linear parts at rest, made once.
+struct RestOperators {
+  WheelContactModel contact;
+  VehicleResponse vehicle;
+  std::unique_ptr<StructureResponse> structure;
+  std::unique_ptr<LocalFlexibility> local;
+
+  explicit RestOperators(const VsiModel& model)
+      : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
+    if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
+    if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
+  }
+};
+
+constexpr int pitch = 4;
+
+// A vehicle whose wheelsets are where their contacts put them. What contact forces displace it by would say the same
+// but for the rounding of those forces, which a contact's stiffness over that of eps M enlarges: by a million on steel.
+class WheelsetConstraint {
+ public:
+  WheelsetConstraint(const VsiModel& model, const VehicleResponse& vehicle) {
+    for (int k = 0; k < vehicle.compliance().rows(); ++k) {
+      const int body = model.vehicle.wheelsets[index(k / 6)];
+      const int dof = model.vehicle.dof[index(body)][index(k % 6)];
+      if (dof == held || k % 6 == pitch) continue;
+      unknown_.push_back(wheelset_unknowns * (k / 6) + k % 6);
+      dof_.push_back(dof);
+    }
+    answer_ = vehicle.inverse()(Eigen::all, dof_);
+    compliance_.compute(vehicle.inverse()(dof_, dof_));
+    first_unknown_ = wheelset_unknowns * model.wheelsets_per_vehicle();
+  }
+
+  // Moves the dofs of vehicle v to the wheelsets' displacement q; what that takes beside the contact forces [N, N m].
+  double apply(int v, const Eigen::VectorXd& q, Eigen::VectorXd& dofs) const {
+    if (dof_.empty()) return 0.0;
+    Eigen::VectorXd apart(dofs(dof_));
+    for (std::size_t i = 0; i < dof_.size(); ++i) {
+      apart[static_cast<Eigen::Index>(i)] = q[first_unknown_ * v + unknown_[i]] - apart[static_cast<Eigen::Index>(i)];
+    }
+    const Eigen::VectorXd force = compliance_.solve(apart);
+    dofs += answer_ * force;
+    return force.cwiseAbs().maxCoeff();
+  }
+
+ private:
+  std::vector<int> unknown_, dof_;
+  Eigen::MatrixXd answer_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> compliance_;
+  int first_unknown_ = 0;
+};
+
+std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::vector<RailContact>& contacts) {
+  StructureResponse& response = *rest.structure;
+  const Eigen::MatrixXd compliance = response.compliance_at(contacts);
+  std::vector<RailCoupling> rail;
+  const int wheels = static_cast<int>(contacts.size());
+  for (int i = 0; i < wheels; ++i) {
+    for (int j = 0; j < wheels; ++j) {
+      rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
+      if (rest.local) rail.back().compliance += (*rest.local)(contacts[index(i)], contacts[index(j)]);
+    }
+  }
+  return rail;
+}
+
+// A wheelset's pitch angle has no effect at rest: in its place stands the deviation from the nominal rotation, which is
+// free of torque. No angle is left behind.
+void clear_pitch(const VsiModel& model, Eigen::VectorXd& dofs) {
+  for (int body : model.vehicle.wheelsets) {
+    const int dof = model.vehicle.dof[index(body)][pitch];
+    if (dof != held) dofs[dof] = 0.0;
+  }
+}
+
+ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
+                            const std::vector<RailContact>& contacts) {
+  const VehicleResponse& vehicle = rest.vehicle;
+  ContactProblem problem;
+  problem.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+  problem.wheelsets_per_group = problem.wheelsets_per_vehicle;
+  problem.free = problem.predicted = problem.predicted_velocity =
+      Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
+  problem.vehicle_compliance = vehicle.compliance();
+  problem.velocity_rate[pitch] = 1.0;
+  for (int w = 0; w < problem.wheelsets_per_vehicle; ++w) {
+    const int k = 6 * w + pitch;
+    // Without friction no torque depends on the rotation.
+    const bool free_pitch = problem.vehicle_compliance(k, k) > 0.0 && model.contact.friction > 0.0;
+    problem.vehicle_compliance.row(k).setZero();
+    problem.vehicle_compliance.col(k).setZero();
+    if (free_pitch) problem.vehicle_compliance(k, k) = pitch_rate_compliance;
+  }
+  if (rest.structure) problem.rail = all_couplings(rest, contacts);
+  problem.largest_move = 1e-3;
+  return problem;
+}
+
+// What the static correction adds to the rail heads' displacement.
+void local_at_rest(const LocalFlexibility& local, const std::vector<RailContact>& contacts, VsiState& state) {
+  state.local.setZero();
+  const int wheels = static_cast<int>(contacts.size());
+  for (int i = 0; i < wheels; ++i) {
+    for (int j = 0; j < wheels; ++j)
+      state.local.segment<3>(3 * i) +=
+          local(contacts[index(i)], contacts[index(j)]) * state.contact.force.segment<3>(rail_unknown(j));
+  }
+}
+
+// Track deviations by a share of themselves.
+void scale(double share, std::vector<std::array<RailHeadMotion, 2>>& deviation) {
+  for (std::array<RailHeadMotion, 2>& wheelset : deviation) {
+    for (RailHeadMotion& rail : wheelset) {
+      rail.displacement *= share;
+      rail.velocity *= share;
+      rail.yaw *= share;
+      rail.slope *= share;
+    }
+  }
+}
+
+double largest_static_load(const VsiModel& model) {
+  double load = 0.0;
+  for (int w = 0; w < model.wheelsets_per_vehicle(); ++w)
+    load = std::max(load, std::abs(static_wheel_load(model.vehicle, w)));
+  return load;
+}
+
+// Whether a wheel is not where it runs: its flange on top of the rail, where there is rest too but no train comes to by
+// itself, or the wheel itself deep in the rail or below.
+bool off_its_rail(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement) {
+  if (model.normal_contact != NormalContact::hertz) return false;
+  constexpr double farthest = 15e-3;  // m: flanks lift a wheel by less, the tips of flanges by twice as much
+  const double b = model.geometry->pair().tape_circle_offset();
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const double z = displacement[wheelset_unknowns * w + 2], roll = displacement[wheelset_unknowns * w + 3];
+    for (int side = 0; side < 2; ++side) {
+      const double below = rail_motion(problem, displacement, w, side).displacement[1] - z;
+      if (std::abs(below - (side == 0 ? -b : b) * roll) > farthest) return true;
+    }
+  }
+  return false;
+}
+
+// Shares of what rest is sought with, 1 but on the way there.
+struct RestShares {
+  double deviation = 1.0;  // of the track's deviations
+  double E = 1.0;          // of the Young's modulus of wheel and rail
+};
+
+// Equilibrium at state.time with `structure_load` on the structure besides the wheels.
+EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model, const RestOperators& rest,
+                                 const Eigen::VectorXd& structure_load, VsiState& state) {
+  EquilibriumReport report;
+  const VehicleResponse& vehicle = rest.vehicle;
+  StructureResponse* structure = rest.structure.get();
+  const std::vector<RailContact> contacts = place_wheels(model, state.time);
+  if (rest.local)
+    rest.local->follow(model.wheelset_x(model.wheelsets() - 1, state.time), model.wheelset_x(0, state.time));
+  ContactProblem problem = rest_problem(model, rest, contacts);
+  if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
+  WheelContactModel contact = rest.contact;
+  contact.normal.material.E *= share.E;
+  const WheelsetConstraint constraint(model, vehicle);
+  const double balanced = out_of_balance * largest_static_load(model);
+  NewtonWorkspace workspace;
+  const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
+  const int vehicles = static_cast<int>(model.vehicle_x.size());
+  std::vector<Eigen::VectorXd> load(index(vehicles));  // gravity and the loads that act at this time
+  for (int v = 0; v < vehicles; ++v) {
+    vehicle_load(model, v, state.time, load[index(v)]);
+    load[index(v)] += model.vehicle.static_load;
+  }
+
+  for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
+    rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+    if (share.deviation < 1.0) scale(share.deviation, problem.deviation);
+    for (int v = 0; v < vehicles; ++v) {
+      const LinearMotion& motion = state.vehicle[index(v)];
+      const Eigen::VectorXd free =
+          vehicle.inverse() * (load[index(v)] + regularisation * (model.vehicle.mass * motion.displacement));
+      gather_wheelsets(model, v, free, problem.free);
+    }
+    for (int w = 0; w < model.wheelsets(); ++w) {
+      problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
+    }
+    if (model.normal_contact == NormalContact::hertz && report.iterations == 0 && state.contact.displacement.isZero()) {
+      set_down(model, contact, problem, state.contact.displacement);
+    }
+    const Eigen::VectorXd contact_before = state.contact.displacement;
+    if (model.normal_contact == NormalContact::rigid) {
+      rest_on_rails(problem, state.contact);
+    } else if (!solve_contact_by_continuation(contact, problem, limits, state.contact, workspace).converged) {
+      ++report.iterations;
+      return report;
+    }
+
+    const double change_before = report.change;
+    report.change = 0.0;
+    double unbalanced = 0.0;
+    for (int v = 0; v < vehicles; ++v) {
+      LinearMotion& motion = state.vehicle[index(v)];
+      scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
+      Eigen::VectorXd next = vehicle.inverse() * (load[index(v)] + motion.contact_load +
+                                                  regularisation * (model.vehicle.mass * motion.displacement));
+      clear_pitch(model, next);
+      unbalanced = std::max(unbalanced, constraint.apply(v, state.contact.displacement, next));
+      report.change = std::max(report.change, (next - motion.displacement).cwiseAbs().maxCoeff());
+      motion.displacement = next;
+    }
+    if (structure) {
+      scatter_rail_forces(contacts, state.contact.force, state.structure.contact_load);
+      const Eigen::VectorXd next = structure->solve(state.structure.contact_load + structure_load);
+      report.change = std::max(report.change, (next - state.structure.displacement).cwiseAbs().maxCoeff());
+      state.structure.displacement = next;
+    }
+    const double contact_change = (state.contact.displacement - contact_before).cwiseAbs().maxCoeff();
+    const bool gains = report.change < 0.5 * change_before;
+    report.converged = (contact_change < contact_tolerance && report.change < dof_tolerance) ||
+                       (!gains && contact_change < 5.0 * contact_rounding && report.change < dof_rounding);
+    // Nothing but where forces jump (wheels deep in their rails) and a correction of nothing is left of a residual that
+    // has not vanished.
+    if (report.converged && unbalanced > balanced) return {.iterations = report.iterations + 1};
+  }
+  if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
+  if (rest.local) local_at_rest(*rest.local, contacts, state);
+  state.contact.step_load = state.contact.force;
+  for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;
+  state.structure.step_load = state.structure.contact_load;
+  // The pitch unknowns are rates: hand them to the vehicles as such.
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const int per_vehicle = model.wheelsets_per_vehicle();
+    const int body = model.vehicle.wheelsets[index(w % per_vehicle)];
+    const int dof = model.vehicle.dof[index(body)][pitch];
+    if (dof == held) continue;
+    state.vehicle[index(w / per_vehicle)].velocity[dof] = state.contact.displacement[wheelset_unknowns * w + pitch];
+  }
+  return report;
+}
+
+// Rest on the smooth track, whose deviations grow: for a wheelset far beside its rails, which would have to climb.
+EquilibriumReport by_growing_deviations(const VsiModel& model, const RestOperators& rest,
+                                        const Eigen::VectorXd& structure_load, VsiState& state) {
+  constexpr double first_growth = 0.25, least_growth = 1.0 / 64.0;
+  VsiState reached = state;
+  EquilibriumReport report = equilibrium_at({.deviation = 0.0}, model, rest, structure_load, reached);
+  int iterations = 0;
+  double share = 0.0, growth = first_growth;
+  while (report.converged && share < 1.0) {
+    state = reached;
+    iterations += report.iterations;
+    const double next = std::min(1.0, share + growth);
+    report = equilibrium_at({.deviation = next}, model, rest, structure_load, state);
+    if (report.converged) {
+      reached = state;
+      share = next;
+    } else if (growth > least_growth) {
+      growth *= 0.5;
+      report.converged = true;  // with the share before
+    }
+  }
+  report.iterations += iterations;
+  report.deviation_share = share;
+  return report;
+}
+
+// Rest on wheels and rails of steel, which grow stiffer: a wheel that sinks in by a tenth of a micrometre is lost to
+// Newton's method when rails and vehicle move first.
+EquilibriumReport by_growing_stiffness(const VsiModel& model, const RestOperators& rest,
+                                       const Eigen::VectorXd& structure_load, VsiState& state) {
+  const double steel = ElasticMaterial{}.E;
+  constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
+  const double full = rest.contact.normal.material.E;
+  if (!(full > largest_ratio * steel)) return {};
+  double share = steel / full, ratio = largest_ratio;
+  EquilibriumReport report = equilibrium_at({.E = share}, model, rest, structure_load, state);
+  int iterations = 0;
+  while (report.converged && share < 1.0) {
+    iterations += report.iterations;
+    const VsiState reached = state;
+    const double next = std::min(1.0, share * ratio);
+    report = equilibrium_at({.E = next}, model, rest, structure_load, state);
+    if (report.converged) {
+      share = next;
+      ratio = std::min(largest_ratio, ratio * ratio);
+    } else if (ratio > smallest_ratio) {
+      state = reached;
+      ratio = std::sqrt(ratio);
+      report.converged = true;  // with the share before
+    }
+  }
+  report.iterations += iterations;
+  report.deviation_share = report.converged ? 1.0 : 0.0;
+  return report;
+}
+
+// From where the train stands, and if that leads nowhere by a detour.
+EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
+                              VsiState& state) {
+  const VsiState begin = state;
+  EquilibriumReport report = equilibrium_at({}, model, rest, structure_load, state);
+  report.deviation_share = 1.0;
+  for (const auto detour : {by_growing_stiffness, by_growing_deviations}) {
+    if (report.converged) break;
+    state = begin;
+    const int iterations = report.iterations;
+    report = detour(model, rest, structure_load, state);
+    report.iterations += iterations;
+  }
+  return report;
+}
+
+}  // namespace
+
+EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
+  return equilibrium(model, RestOperators(model), Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
+}
+
+EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
+  const double time_step = travel_between / model.contact.speed;
+  const RestOperators rest(model);
+  Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
+  EquilibriumReport report = equilibrium(model, rest, inertia, state);
+  if (!model.structure || !report.converged) return report;
+
+  // The load that the moving deflection's inertia and damping exert, from the deflection at rest: the first term of a
+  // series in (V / critical speed)², and in what dampers bear over what springs do. A second pass settles the contacts.
+  // Where the first term is no small one, nothing follows from it, and the structure rests.
+  const VsiState at_rest = state;
+  LinearMotion& structure = state.structure;
+  constexpr int passes = 4;
+  constexpr double largest_term = 0.5;
+  const double most = largest_term * structure.displacement.cwiseAbs().maxCoeff();
+  double change = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < passes && report.steady && change > dof_tolerance; ++pass) {
+    VsiState before = state;
+    VsiState after = state;
+    before.time -= time_step;
+    after.time += time_step;
+    for (VsiState* neighbour : {&before, &after}) {
+      const EquilibriumReport r = equilibrium(model, rest, inertia, *neighbour);
+      report.iterations += r.iterations;
+      report.steady = report.steady && r.converged;
+    }
+    structure.velocity = (after.structure.displacement - before.structure.displacement) / (2.0 * time_step);
+    structure.acceleration =
+        (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /
+        (time_step * time_step);
+    inertia = -(model.structure->mass * structure.acceleration) - model.structure->damping * structure.velocity;
+    const Eigen::VectorXd displacement = structure.displacement;
+    const EquilibriumReport r = equilibrium(model, rest, inertia, state);
+    change = (structure.displacement - displacement).cwiseAbs().maxCoeff();
+    report.iterations += r.iterations;
+    report.steady = report.steady && r.converged && change < most;
+  }
+  if (!report.steady) state = at_rest;
+  return report;
+}
+
+}  // namespace railtab

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "railtab/runtime/fe/fe_files.hpp"
+#include "railtab/runtime/fe/fe_frame.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
+
+namespace railtab {
+
+/// Which program's files these are.
+enum class FeFormat { matrix_market, calculix, ansys };
+
+/// Files of a finite-element model. `dofs` says what the rows are, `nodes` where the nodes stand.
+struct FeFiles {
+  FeFormat format = FeFormat::matrix_market;
+  std::filesystem::path mass, stiffness;
+  std::filesystem::path damping;  ///< empty: none
+  std::filesystem::path dofs, nodes;
+};
+
+/// Some of a mesh's nodes: a named set, or those in a box.
+struct NodeSelection {
+  std::string set;                                ///< empty: the box
+  std::optional<std::array<double, 3>> from, to;  ///< corners of the box in the model's own axes and unit of length
+  double tolerance = 1e-3;                        ///< by which the box is widened on all sides [model's length]
+  [[nodiscard]] bool given() const noexcept { return !set.empty() || from || to; }
+};
+
+/// Nodes that stand on the ground and move with it alike, and whose rows the matrices have.
+struct FeSupport {
+  NodeSelection nodes;
+  std::vector<std::string> holds{"x", "y", "z"};  ///< motions in railtab's axes; the ground moves y and z
+  std::optional<double> x;  ///< place along the track whose ground it stands on [m]; empty: the mean of its nodes
+};
+
+/// A node in railtab's axes [m], and its rows: none for a motion that is held (or that the model does not have), one,
+/// or several where the program has expanded a beam or shell into solids that share the number of the node; the node's
+/// motion is then the mean of theirs.
+struct FeNode {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  std::array<std::vector<int>, 6> rows;
+  /// Columns of supports that move y and z where there is no row; held: at rest.
+  std::array<int, 2> support{held, held};
+  [[nodiscard]] bool expanded() const noexcept;
+};
+
+inline constexpr int no_node = 0;
+
+/// A finite-element model in SI units and railtab's axes: every row is a motion x, y, z, roll, pitch or yaw, in
+/// railtab's sense. Symmetric.
+struct FeStructure {
+  Eigen::SparseMatrix<double> mass, stiffness;
+  Eigen::SparseMatrix<double> damping;  ///< 0 × 0: none
+  StructureSupports supports;           ///< as the matrices know them; without damping matrix without C_s
+  std::vector<int> motion;              ///< of each row: 0..5 for x, y, z, roll, pitch, yaw
+  std::vector<int> node_of_row;         ///< no_node for an inner mode of an element, which rests in rigid motions
+  std::map<int, FeNode> nodes;          ///< all nodes of the mesh that have a row or a position
+  FeMesh mesh;                          ///< as it was read, for selections
+  std::string source;                   ///< name of the stiffness file, for messages
+  [[nodiscard]] int dofs() const noexcept { return static_cast<int>(stiffness.rows()); }
+};
+
+/// Reads a model, checks that its matrices are symmetric (1e-9 of the largest diagonal entry; the mean of both halves
+/// is taken), that no diagonal entry of K is zero or negative and none of M negative, and turns it into railtab's axes
+/// and units: with q_railtab = S·q_model, S = ±(unit of length) for a translation and ±1 for a rotation, K becomes F·L
+/// · S⁻ᵀ K S⁻¹, and likewise M and C with the second. @throws InputError with file and line, row, or key
+[[nodiscard]] FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame);
+
+/// Numbers of the selected nodes, ascending. @throws InputError naming `key` where there is no such set or no node
+[[nodiscard]] std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection,
+                                              const std::string& key);
+
+}  // namespace railtab

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/base/dof_indices.hpp"
+#include "railtab/runtime/base/rail_side.hpp"
+
+namespace railtab {
+
+/// A rail as a line of beam nodes along x.
+struct RailLine {
+  std::vector<double> x;        ///< strictly increasing node positions [m]
+  std::vector<DofIndices> dof;  ///< of each node
+  double head_height = 0.0;     ///< of the rail-head top above the beam axis [m]
+};
+
+/// Rows that give the rail head's motion at a position from the 12 dofs of the beam element there (cubic Hermite for
+/// bending, linear for torsion): value = Σ row[k]·a[dof[k]], held dofs skipped. The transpose distributes a load.
+struct RailInterpolation {
+  std::array<int, 12> dof;
+  std::array<double, 12> y, z, roll;  ///< lateral and vertical displacement of the rail head, roll
+  std::array<double, 12> yaw, pitch;  ///< slopes dy/dx of row y, and -dz/dx of row z: a wheel at speed V sees V·dy/dx
+  std::array<double, 12> bend;        ///< d²z/dx² of row z
+};
+/// The rail head stands head_height above the axis, r = (0, 0, -h), so that u_head = u + θ × r gives y_head = y +
+/// h·roll; the transpose of row y therefore carries a lateral force at the head into the axis with its torsional moment
+/// h·F_y. Constant time on evenly spaced nodes, O(log n) else; allocation-free.
+/// @pre x lies on the rail (contains(rail, x)).
+[[nodiscard]] RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept;
+[[nodiscard]] bool contains(const RailLine& rail, double x) noexcept;
+
+/// A node whose motion is asked for by name ("deck-midspan").
+struct StructureNode {
+  std::string name;
+  double x = 0.0;  ///< position along the track [m]
+  DofIndices dof;
+};
+
+/// Where the ground holds a structure. With the unknowns u and the supports' translations s, y and z of each in turn,
+///   M u'' + C u' + K u = F − (M_s s'' + C_s s' + K_s s),
+/// so that K u + K_s s = 0 where all moves alike. Empty: supports are not known, and the ground stands still.
+struct StructureSupports {
+  using Columns = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  std::vector<double> x{};                 ///< of each support [m]
+  Columns mass{}, damping{}, stiffness{};  ///< dofs × 2 per support
+  /// Why some supports are known only for ground that moves alike under all, "a structure that …"; empty: all are
+  /// known.
+  std::string beyond{};
+  /// Rows by the rails' dofs × 2 per support. Not empty: the unknowns are relative to what the supports carry along,
+  /// and the rails' motion is theirs and carried·s (relative_to_supports()).
+  Columns carried{};
+  Columns carried_nodes{};  ///< the same for the nodes of interest, 6 rows each
+  [[nodiscard]] int columns() const noexcept { return static_cast<int>(2 * x.size()); }
+  [[nodiscard]] bool alike_only() const noexcept { return !beyond.empty(); }
+};
+
+/// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite.
+struct StructureModel {
+  Eigen::SparseMatrix<double> mass, damping, stiffness;
+  std::array<RailLine, 2> rail;      ///< indexed by RailSide
+  std::vector<StructureNode> nodes;  ///< nodes of interest
+  /// Modal coordinates: the dofs of the rails are rows of this basis (rows × unknowns). Empty: they are unknowns.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> basis;
+  /// Motion of the nodes of interest, 6 rows each, as combinations of the unknowns. Empty: their dofs are unknowns.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> node_rows;
+  /// Position along the track of every unknown [m], not decreasing; empty where it is not known.
+  std::vector<double> dof_x;
+  /// Parts that move as wholes, from and to [m]: the spans of a bridge.
+  std::vector<std::array<double, 2>> spans;
+  StructureSupports supports;
+  std::vector<std::string> doubts{};  ///< sentences on an imported structure that is hardly what was meant
+  [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
+};
+
+}  // namespace railtab

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/base/dof_indices.hpp"
+
+namespace railtab {
+
+/// A rigid body; position of its centre of gravity in the vehicle frame: x forward from the vehicle centre, y right,
+/// z down from the rail-head tops [m].
+struct RigidBody {
+  std::string name;
+  double mass;               ///< [kg]
+  Eigen::Vector3d inertia;   ///< about x, y, z through the centre of gravity [kg m²]
+  Eigen::Vector3d position;  ///< [m]
+};
+
+/// Spring-damper between two bodies at one point of the nominal position.
+struct Suspension {
+  int body_a, body_b;                                              ///< indices
+  Eigen::Vector3d point;                                           ///< vehicle frame [m]
+  Eigen::Vector3d stiffness;                                       ///< along x, y, z [N/m]
+  Eigen::Vector3d damping;                                         ///< [N s/m]
+  Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();  ///< about x, y, z [N m/rad]
+};
+
+/// A body of a vehicle as results and loads know it; position of the point whose motion its dofs are, vehicle frame.
+struct VehicleBody {
+  std::string name;
+  Eigen::Vector3d position;  ///< [m]
+};
+
+/// A vehicle with linear suspension, running at constant speed (the car body's x is held). Small displacements from the
+/// vehicle's own static equilibrium, so that gravity acts as the static axle loads only. Rows of the matrices that no
+/// body has are inner unknowns (flexible bodies, springs in series with dampers).
+struct VehicleModel {
+  std::string name;
+  std::vector<VehicleBody> bodies;
+  std::vector<DofIndices> dof;               ///< per body
+  std::vector<int> wheelsets;                ///< bodies that are wheelsets, front first
+  double nominal_radius = 0.46;              ///< [m]
+  double length = 26.4;                      ///< over couplers: distance to the next vehicle of the same kind [m]
+  Eigen::MatrixXd mass, damping, stiffness;  ///< dofs × dofs
+  /// Velocity matrix at a wheelset rotation of 1 rad/s in the sense of forward rolling (ω_y = -1 rad/s, z being down)
+  /// [kg m²]; antisymmetric. Damping of the running vehicle: damping + (V/R0)·gyroscopic.
+  Eigen::MatrixXd gyroscopic;
+  Eigen::VectorXd static_load;  ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
+  /// Load per acceleration of the train, of masses that are described in its frame, −m [kg], and of wheelsets whose
+  /// nominal rotation changes with the speed, J_y/R0 [kg m].
+  Eigen::VectorXd acceleration_load;
+  Eigen::VectorXd lateral_shift;  ///< what the dofs are when the whole vehicle has gone 1 m to the right
+
+  [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
+};
+
+/// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points).
+/// Dofs are numbered body by body. Static load: the reactions of the wheelsets' z and roll under gravity, so that zero
+/// displacement is the equilibrium on a rigid level track; z parts [N] add up to the weight, roll parts [N m] vanish on
+/// a vehicle that is loaded symmetrically.
+/// @param held_dofs per body; an entry `held` holds that dof, any other value frees it; empty: all are free
+/// @throws InputError where a mass or inertia is not positive, an index is out of range, or the suspension does not
+/// carry
+///         a body's weight.
+[[nodiscard]] VehicleModel assemble_vehicle(std::string name, const std::vector<RigidBody>& bodies,
+                                            const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
+                                            const std::vector<DofIndices>& held_dofs, double nominal_radius,
+                                            double length, double gravity = 9.81);
+
+}  // namespace railtab

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "railtab/runtime/algebra/nested_dissection.hpp"
+#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
+#include "railtab/runtime/vsi/linear_motion.hpp"
+
+namespace railtab {
+
+/// Where one wheel stands on the structure's rail; `on_rail` is false beyond the modelled track, where rails are rigid.
+struct RailContact {
+  RailSide side = RailSide::left;
+  bool on_rail = false;
+  int element = 0;  ///< left node of the beam element
+  double x = 0.0;   ///< along the track [m]
+  RailInterpolation rows{};
+  /// The rows y, z, roll, yaw and pitch over modal coordinates, where the structure is in them.
+  Eigen::Matrix<double, 5, Eigen::Dynamic> modal;
+};
+[[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
+
+/// Append the structure's unknowns that a wheel loads.
+void append_dofs(const RailContact& contact, std::vector<int>& dofs);
+
+/// Displacement (y, z, roll) of a rail head from a vector of structure dofs.
+[[nodiscard]] Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept;
+/// Slopes yaw = dy/dx and pitch = -dz/dx of a rail head.
+[[nodiscard]] Eigen::Vector2d rail_slopes(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept;
+/// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
+void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
+
+/// The structure for one time-step size: the Cholesky factor of its effective matrix
+/// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K), made once.
+class StructureResponse {
+ public:
+  /// @throws InputError naming the matrix and the entry that is not finite; ComputationError where the effective matrix
+  ///         is not positive definite.
+  StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
+  /// At rest: K̄ = K.
+  explicit StructureResponse(const StructureModel& structure);
+  ~StructureResponse();
+
+  [[nodiscard]] const StructureFactor& factor() const noexcept { return *factor_; }
+
+  /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
+  void activate(const DofRange& dofs);
+  [[nodiscard]] const DofRange& active() const noexcept { return active_; }
+
+  /// Right-hand side of Eq. 13 without contact forces at the end of the step. Not at rest.
+  void step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
+                 Eigen::VectorXd& load) const;
+  /// What step_load() reads of the matrices [bytes].
+  [[nodiscard]] std::size_t load_bytes() const noexcept { return entry_.size() * (sizeof(Entry) + sizeof(int)); }
+
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
+
+  /// Make the table of node-by-node compliances cover loads on the rails between positions `from` and `to` [m], coupled
+  /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
+  /// dropped: a moving train takes its table along, at a price that does not depend on the track's length.
+  void tabulate_compliance(const StructureModel& structure, double window, double from, double to);
+  /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
+  /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
+  /// @pre the table covers `j`
+  [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
+
+  /// Vertical displacement z, slope dz/dx and curvature d²z/dx² of rail `i` from a unit vertical load on rail `j`, from
+  /// the same table.
+  [[nodiscard]] Eigen::Vector3d vertical_compliance(const RailContact& i, const RailContact& j) const noexcept;
+
+  /// The same without tabulation, by solving for the columns of every contact (3n × 3n): exact, for few positions.
+  [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts);
+
+ private:
+  using Block = Eigen::Matrix<double, 6, 6>;
+  /// Compliances of one node; empty where the table does not cover it.
+  struct Column {
+    std::array<int, 2> first{};              // first node of the window on each rail
+    std::array<std::vector<Block>, 2> rows;  // displacement of the window's nodes from unit loads on this node
+  };
+  /// Calls visitor(block, first row, first column) for the tabulated compliances between the nodes of the elements of i
+  /// and j; row and column within the 12 unknowns of either element.
+  template <class Visitor>
+  void visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept;
+  /// The factor with the fewest entries serves the steps' back-substitutions; the one with the lowest elimination tree,
+  /// three times as large, gives single entries of the inverse (SelectedSolve).
+  using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
+
+  [[nodiscard]] Eigen::Matrix3d modal(const RailContact& i, const RailContact& j) const noexcept;
+  void prepare(const StructureModel& structure);
+  [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
+
+  Eigen::SparseMatrix<double> effective_;  ///< K̄
+  std::unique_ptr<StructureFactor> factor_;
+  DofRange active_;
+  /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
+  struct Entry {
+    double stiffness, damping;
+  };
+  std::vector<Entry> entry_;
+  std::vector<int> entry_row_, entry_begin_;
+  /// Made when first needed.
+  struct Entries;
+  [[nodiscard]] Entries& entries();
+  std::unique_ptr<Entries> entries_;
+  Eigen::Index dofs_ = 0;
+  std::array<std::vector<Column>, 2> column_;  ///< per rail and node
+  /// In modal coordinates, in place of the table: 1/K̄ by its diagonal, from which damping alone makes it differ.
+  Eigen::VectorXd modal_compliance_;
+  double modal_window_ = 0.0;  ///< [m]
+};
+
+}  // namespace railtab

@@ -1,0 +1,101 @@
+#include "railtab/tablegen/rolling_contact_single.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+namespace railtab {
+
+namespace {
+
+fftwf_complex* raw(std::complex<float>* p) { return reinterpret_cast<fftwf_complex*>(p); }
+
+std::complex<float>* allocate(int count) {
+  return reinterpret_cast<std::complex<float>*>(fftwf_alloc_complex(static_cast<std::size_t>(count)));
+}
+
+}  // namespace
+
+RollingContactSingle::RollingContactSingle(const RollingContactProduct& product)
+    : n_(product.elements()),
+      padded_(product.padded()),
+      rows_(allocate(n_ * padded_)),
+      spectrum_(allocate(padded_ * padded_)),
+      product_(allocate(padded_ * padded_)) {
+  const std::lock_guard lock(fftw_planner());
+  const unsigned flags = FFTW_ESTIMATE;  // a timed plan could sum in another order on the next run
+  const int n = n_, wide = padded_;
+  // Transforms along x leave their results transposed, so that those across are on contiguous numbers.
+  along_ = fftwf_plan_many_dft(1, &wide, n, raw(rows_), nullptr, 1, wide, raw(spectrum_), nullptr, wide, 1,
+                               FFTW_FORWARD, flags);
+  across_ = fftwf_plan_many_dft(1, &wide, wide, raw(spectrum_), nullptr, 1, wide, raw(spectrum_), nullptr, 1, wide,
+                                FFTW_FORWARD, flags);
+  across_back_ = fftwf_plan_many_dft(1, &wide, wide, raw(product_), nullptr, 1, wide, raw(product_), nullptr, 1, wide,
+                                     FFTW_BACKWARD, flags);
+  along_back_ = fftwf_plan_many_dft(1, &wide, n, raw(product_), nullptr, wide, 1, raw(spectrum_), nullptr, 1, wide,
+                                    FFTW_BACKWARD, flags);
+  std::fill(rows_, rows_ + n * wide, Complex{});
+  for (int kx = 0; kx < wide; ++kx) {
+    for (int ky = 0; ky < wide; ++ky) {
+      const RollingContactProduct::Spectrum b = product.spectrum(kx, ky);
+      const std::complex<double> i(0.0, 1.0);
+      alpha_.emplace_back(0.5 * (b.xx + b.yy));
+      beta_.emplace_back(0.5 * (b.xx - b.yy) + i * b.xy);
+    }
+  }
+}
+
+RollingContactSingle::~RollingContactSingle() {
+  const std::lock_guard lock(fftw_planner());
+  for (fftwf_plan plan : {along_, across_, across_back_, along_back_}) fftwf_destroy_plan(plan);
+  for (Complex* p : {rows_, spectrum_, product_}) fftwf_free(p);
+}
+
+/// product_ = α spectrum_ + β conj spectrum_(−k)
+void RollingContactSingle::multiply() {
+  // spelled out: the product of std::complex guards against infinities, at ten times the price
+  const auto line = [](const float* q, const float* mirrored, const float* a, const float* b, float* out, int count) {
+    for (int k = 0; k < count; ++k) {
+      const float qr = q[2 * k], qi = q[2 * k + 1], mr = mirrored[-2 * k], mi = mirrored[-2 * k + 1];
+      const float ar = a[2 * k], ai = a[2 * k + 1], br = b[2 * k], bi = b[2 * k + 1];
+      out[2 * k] = ar * qr - ai * qi + br * mr + bi * mi;
+      out[2 * k + 1] = ar * qi + ai * qr + bi * mr - br * mi;
+    }
+  };
+  const auto numbers = [](const Complex* p) { return reinterpret_cast<const float*>(p); };
+  for (int kx = 0; kx < padded_; ++kx) {
+    const int row = kx * padded_, mirrored = (padded_ - kx) % padded_ * padded_;
+    const auto part = [&](int first, int from, int count) {
+      line(numbers(spectrum_ + row + first), numbers(spectrum_ + mirrored + from), numbers(&alpha_[row + first]),
+           numbers(&beta_[row + first]), reinterpret_cast<float*>(product_ + row + first), count);
+    };
+    part(0, 0, 1);
+    part(1, padded_ - 1, padded_ - 1);
+  }
+}
+
+void RollingContactSingle::apply(const ElementFieldSingle& traction, ElementFieldSingle& slip) {
+  const int m = n_ * n_;
+  for (int j = 0; j < n_; ++j) {
+    const float* x = traction.data() + j * n_;
+    Complex* row = rows_ + j * padded_;
+    for (int i = 0; i < n_; ++i) row[i] = {x[i], x[m + i]};
+  }
+  fftwf_execute(along_);
+  for (int kx = 0; kx < padded_; ++kx) {
+    std::fill(spectrum_ + kx * padded_ + n_, spectrum_ + (kx + 1) * padded_, Complex{});
+  }
+  fftwf_execute(across_);
+  multiply();
+  fftwf_execute(across_back_);
+  fftwf_execute(along_back_);
+  for (int j = 0; j < n_; ++j) {
+    float* x = slip.data() + j * n_;
+    const Complex* row = spectrum_ + j * padded_;
+    for (int i = 0; i < n_; ++i) {
+      x[i] = row[i].real();
+      x[m + i] = row[i].imag();
+    }
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/geometry_parts.hpp"
+#include "railtab/tablegen/table_verification.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr int certification_samples = 2000;
+constexpr std::uint64_t certification_seed = 20230601;
+constexpr int refinements = 2;
+
+void store_statistics(const GeometryVerification& v, GeometryTableData& table) {
+  table.statistics.emplace_back("certified.samples", v.samples);
+  table.statistics.emplace_back("certified.answered_by_table", v.answered_by_table);
+  table.statistics.emplace_back("certified.fallback_share", v.fallback_share);
+  table.statistics.emplace_back("certified.searched_share", v.searched_share);
+  table.statistics.emplace_back("certified.finer_mismatch_share", v.finer_mismatch_share);
+  table.statistics.emplace_back("certified.patch_mismatch_share", v.patch_mismatch_share);
+  for (const auto& [quantity, errors] : v.errors()) {
+    for (const auto& [name, value] : errors->named()) {
+      table.statistics.emplace_back(fmt::format("certified.error.{}.{}", quantity, name), value);
+    }
+  }
+}
+
+GeometryVerification certify(GeometryTableData& table) {
+  const TableContact contact{GeometryTable(table)};
+  VerificationOptions check = verification_options(table);
+  check.samples = certification_samples;
+  check.seed = certification_seed;
+  check.timing = false;
+  const GeometryVerification result = verify_geometry_table(contact, check);
+  store_statistics(result, table);
+  return result;
+}
+
+bool keeps_its_word(const GeometryVerification& v, double tolerance) {
+  return v.penetration.p999 <= tolerance && v.finer_mismatch_share == 0;
+}
+
+std::string shortfall(const GeometryVerification& v, double tolerance) {
+  return fmt::format(
+      "the penetration error is {:.3g} m (99.9 %) and patches are missed or invented at {:.3g} of the queries; asked "
+      "for were {:.3g} m and none",
+      v.penetration.p999, v.finer_mismatch_share, tolerance);
+}
+
+using Sweep = std::function<GeometryTableData(const GeometrySweepOptions&, int refinement)>;
+
+GeometryTableData refined_until_it_keeps_its_word(const GeometrySweepOptions& options, const Sweep& sweep) {
+  GeometryVerification verification;
+  for (int refinement = 0; refinement <= refinements; ++refinement) {
+    GeometryTableData table = sweep(options.refined(refinement), refinement);
+    verification = certify(table);
+    if (keeps_its_word(verification, options.tolerance)) return table;
+  }
+  throw ComputationError(
+      fmt::format("geometry table: after {} refinements {}. Ask for less (--tolerance), or start finer (--refinement)",
+                  refinements, shortfall(verification, options.tolerance)));
+}
+
+std::filesystem::path part_file(const std::filesystem::path& file, int refinement, int part) {
+  return fmt::format("{}.part-{}-{}", file.string(), refinement, part);
+}
+
+/// Shards of one process: as many as may be lost in a kill.
+constexpr int parts_of_a_table = 8;
+
+/// A part that an earlier run has left, if it is one of this table.
+std::optional<GeometryTableData> earlier_part(const std::filesystem::path& file, const GeometryTableData& heading) {
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    GeometryTableData part = read_geometry_table(file);
+    if (part.shard == heading.shard && difference_of_parts(heading, part).empty()) return part;
+  } catch (const InputError&) {  // cut short, or of another version: made anew
+  }
+  return {};
+}
+
+GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySweepOptions& options, int refinement,
+                                 const std::filesystem::path& file, const Progress& progress) {
+  GeometrySweepOptions own = options;
+  const auto count =
+      static_cast<int>(std::min<std::int64_t>(parts_of_a_table, root_cells(geometry_heading(search, options))));
+  std::vector<GeometryTableData> parts;
+  for (int part = 1; part <= count; ++part) {
+    own.shard = {part, count};
+    const std::filesystem::path place = part_file(file, refinement, part);
+    std::optional<GeometryTableData> found = earlier_part(place, geometry_heading(search, own));
+    if (!found) {
+      found = sweep_geometry(search, own, [&](double share) {
+        if (progress) progress((part - 1 + share) / count);
+      });
+      write_geometry_table(place, *found);
+    }
+    parts.push_back(std::move(*found));
+  }
+  GeometryTableData table = merge_geometry_tables(std::move(parts));
+  if (table.coefficient.empty()) {
+    throw ComputationError("geometry sweep: the wheel does not meet the rail anywhere in the range");
+  }
+  return table;
+}
+
+}  // namespace
+
+GeometrySweepOptions GeometrySweepOptions::refined(int times) const {
+  GeometrySweepOptions finer = *this;
+  finer.start_error *= std::pow(0.5, times);
+  finer.iterated_cell *= std::pow(0.25, times);
+  finer.fallback_cell *= std::pow(0.25, times);
+  return finer;
+}
+
+void certify_merged_geometry_table(GeometryTableData& table) {
+  const GeometryVerification verification = certify(table);
+  if (keeps_its_word(verification, table.tolerance)) return;
+  throw ComputationError(
+      fmt::format("{}. Make all shards anew with --refinement one higher, or the table in one piece, which refines "
+                  "by itself",
+                  shortfall(verification, table.tolerance)));
+}
+
+GeometryTableData generate_geometry_table(const ContactSearch& search, const GeometrySweepOptions& options,
+                                          const Progress& progress) {
+  if (!options.shard.whole()) return sweep_geometry(search, options, progress);
+  return refined_until_it_keeps_its_word(
+      options, [&](const GeometrySweepOptions& current, int) { return sweep_geometry(search, current, progress); });
+}
+
+void generate_geometry_table_file(const ContactSearch& search, const GeometrySweepOptions& options,
+                                  const TableProvenance& provenance, const std::filesystem::path& file,
+                                  const Progress& progress) {
+  GeometryTableData table;
+  if (options.shard.whole()) {
+    table = refined_until_it_keeps_its_word(options, [&](const GeometrySweepOptions& current, int refinement) {
+      return sweep_in_parts(search, current, refinement, file, progress);
+    });
+  } else {
+    table = sweep_geometry(search, options, progress);
+  }
+  table.provenance = provenance;
+  write_geometry_table(file, table);
+  for (int refinement = 0; refinement <= refinements; ++refinement) {
+    for (int part = 1; part <= parts_of_a_table; ++part) std::filesystem::remove(part_file(file, refinement, part));
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,190 @@
+#include "railtab/tables/creep_spline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "railtab/tables/creep_coordinates.hpp"
+#include "railtab/tables/cubic_spline_axis.hpp"
+
+namespace railtab {
+
+namespace {
+
+using std::numbers::pi;
+constexpr std::size_t components = 3;
+
+/// Creepages beyond it are scaled down to it so that their squares do not overflow: complete sliding to rounding.
+constexpr double largest_creepage = 1e100;
+/// Below this angle to pure longitudinal creepage V_β/sin α is taken as V_αβ, which it is to relative order α²: both
+/// are then right to 1e-10.
+constexpr double pole_sine = 1e-5;
+
+/// Applies a matrix along one axis of an array with `before` slower and `after` faster entries.
+std::vector<double> along_axis(const std::vector<double>& in, std::size_t before, std::size_t after,
+                               const Eigen::MatrixXd& matrix) {
+  const auto rows = static_cast<std::size_t>(matrix.rows()), columns = static_cast<std::size_t>(matrix.cols());
+  std::vector<double> out(before * rows * after, 0.0);
+  using Plane = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto extent = [](std::size_t n) { return static_cast<Eigen::Index>(n); };
+  for (std::size_t i = 0; i < before; ++i) {
+    const Eigen::Map<const Plane> from(in.data() + i * columns * after, extent(columns), extent(after));
+    Eigen::Map<Plane>(out.data() + i * rows * after, extent(rows), extent(after)).noalias() = matrix * from;
+  }
+  return out;
+}
+
+}  // namespace
+
+/// Scaled creepages u, folded by the symmetries into u_x >= 0, u_spin >= 0, in polar coordinates.
+struct CreepSpline::Direction {
+  double turn_x, turn;        ///< signs of x and F_x; of (y, spin) and (F_y, M_z)
+  double x, y, spin;          ///< u
+  double rho, across;         ///< |u|, |(u_y, u_spin)|
+  double cosine, sine;        ///< of the angle to pure longitudinal creepage
+  double cos_beta, sin_beta;  ///< around it; (1, 0) on it
+
+  Direction(double u_x, double u_y, double u_spin) noexcept
+      : turn_x(std::copysign(1.0, u_x)),
+        turn(std::copysign(1.0, u_spin)),
+        x(std::abs(u_x)),
+        y(turn * u_y),
+        spin(std::abs(u_spin)) {
+    const double across_squared = y * y + spin * spin;
+    across = std::sqrt(across_squared);
+    rho = std::sqrt(across_squared + x * x);
+    const double by_rho = 1.0 / rho, by_across = 1.0 / across;  // not used where they are infinite
+    cosine = rho > 0.0 ? x * by_rho : 1.0;
+    sine = rho > 0.0 ? across * by_rho : 0.0;
+    cos_beta = across > 0.0 ? y * by_across : 1.0;
+    sin_beta = across > 0.0 ? spin * by_across : 0.0;
+  }
+};
+
+double CreepSpline::angle(double y, double x) const noexcept {
+  const double width = std::abs(x), larger = std::max(width, y);
+  const double tangent = larger > 0.0 ? std::min(width, y) / larger : 0.0;
+  const double first = arc_tangent_(1.0 + tangent)[0];
+  const double folded = y > width ? 0.5 * pi - first : first;
+  return x < 0.0 ? pi - folded : folded;
+}
+
+CreepSpline::CreepSpline(const CreepTableData& data)
+    : ratio_first_(data.nodes[0].front()),
+      ratio_last_(data.nodes[0].back()),
+      radius_unit_(data.radius_unit),
+      ratio_functions_([&data](double ratio) -> std::array<double, 8> {
+        const double low = squeezed_ratio(data.nodes[0].front(), data.ratio_stretch);
+        const double high = squeezed_ratio(data.nodes[0].back(), data.ratio_stretch);
+        const double steps = (squeezed_ratio(ratio, data.ratio_stretch) - low) / (high - low) *
+                             static_cast<double>(data.nodes[0].size() - 1);
+        const CreepScale s = creep_scale(ratio);
+        return {steps, s.x, s.y, s.spin, s.moment, s.alpha, s.beta, 0.0};
+      }),
+      arc_tangent_([](double v) -> std::array<double, 1> { return {std::atan(v - 1.0)}; }) {
+  std::array<int, 4> n;
+  for (std::size_t i = 0; i < 4; ++i) n[i] = static_cast<int>(data.nodes[i].size());
+  last_cell_ = {n[0] - 2, n[1] - 2, n[2] - 2, n[3] - 1};
+  inverse_step_ = {n[1] - 1.0, (n[2] - 1) / (0.5 * pi), n[3] / pi};
+  set_coefficients(data);
+}
+
+void CreepSpline::set_coefficients(const CreepTableData& data) {
+  std::array<int, 4> n;
+  for (std::size_t i = 0; i < 4; ++i) n[i] = static_cast<int>(data.nodes[i].size());
+  const Eigen::MatrixXd along_ratio = spline_coefficient_matrix(n[0], SplineEnd::free, SplineEnd::free);
+  const Eigen::MatrixXd along_t = spline_coefficient_matrix(n[1], SplineEnd::free, SplineEnd::free);
+  const std::array<std::size_t, 4> size{static_cast<std::size_t>(n[0]) + 2, static_cast<std::size_t>(n[1]) + 2,
+                                        static_cast<std::size_t>(n[2]) + 2, static_cast<std::size_t>(n[3]) + 3};
+  stride_ = {size[1] * size[2] * size[3] * components, size[2] * size[3] * components, size[3] * components};
+  coefficient_.assign(size[0] * stride_[0], 0.0F);
+  const std::size_t nodes = data.values.size() / 3;
+  for (std::size_t c = 0; c < 3; ++c) {
+    // Over α: F_x is even at pure longitudinal creepage and odd where υx = 0; F_y and M_z the other way round.
+    const bool x = c == 0;
+    const Eigen::MatrixXd along_alpha =
+        spline_coefficient_matrix(n[2], x ? SplineEnd::even : SplineEnd::odd, x ? SplineEnd::odd : SplineEnd::even);
+    const SplineEnd closed = x ? SplineEnd::periodic : SplineEnd::turned;
+    const Eigen::MatrixXd along_beta = spline_coefficient_matrix(n[3], closed, closed);
+    std::vector<double> v(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) v[i] = data.values[3 * i + c];
+    v = along_axis(v, nodes / data.nodes[3].size(), 1, along_beta);
+    v = along_axis(v, data.nodes[0].size() * data.nodes[1].size(), size[3], along_alpha);
+    v = along_axis(v, data.nodes[0].size(), size[2] * size[3], along_t);
+    v = along_axis(v, 1, size[1] * size[2] * size[3], along_ratio);
+    for (std::size_t i = 0; i < v.size(); ++i) coefficient_[components * i + c] = static_cast<float>(v[i]);
+  }
+}
+
+void CreepSpline::evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept {
+  std::array<std::size_t, 4> cell;
+  Pack fraction;
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    const int whole = std::clamp(static_cast<int>(steps[axis]), 0, last_cell_[axis]);
+    cell[axis] = static_cast<std::size_t>(whole);
+    fraction[axis] = steps[axis] - whole;
+  }
+  const float* corner =
+      coefficient_.data() + cell[0] * stride_[0] + cell[1] * stride_[1] + cell[2] * stride_[2] + cell[3] * components;
+  creep_spline_jet(corner, stride_, CreepSplineWeights(fraction), jet);
+}
+
+CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  CreepLookup result;
+  if (!(ratio >= ratio_first_ && ratio <= ratio_last_)) return result;
+  result.inside = true;
+  if (!(std::abs(creepage[0]) <= largest_creepage && std::abs(creepage[1]) <= largest_creepage &&
+        std::abs(creepage[2]) <= largest_creepage)) {
+    return beyond(ratio, creepage);
+  }
+  const auto [ratio_steps, scale_x, scale_y, scale_spin, moment, alpha_spread, beta_spread, unused] =
+      ratio_functions_(ratio);
+  const Direction d(scale_x * creepage[0], scale_y * creepage[1], scale_spin * creepage[2]);
+  const double h = 1.0 / (d.rho + radius_unit_);  // t/ρ
+  const double t = d.rho * h;
+  CreepSplineJet v;
+  evaluate({ratio_steps, inverse_step_[0] * t, inverse_step_[1] * angle(d.across, alpha_spread * d.x),
+            inverse_step_[2] * angle(d.spin, beta_spread * d.y)},
+           v);
+
+  // F = t V; its gradient over u in the directions of growing ρ, α, β.
+  // What a spread axis moves by when the angle itself moves: q/(q² cos² + sin²).
+  const auto spread_rate = [](double q, double c, double s) { return q / (q * q * c * c + s * s); };
+  const double alpha_rate = h * inverse_step_[1] * spread_rate(alpha_spread, d.cosine, d.sine);
+  const double beta_rate = inverse_step_[2] * spread_rate(beta_spread, d.cos_beta, d.sin_beta);
+  const double outward = radius_unit_ * h * h;
+  const Pack unit{d.turn_x, d.turn, d.turn * moment, 0.0};
+  const Pack by_rho = unit * outward * (v.value + (t * inverse_step_[0]) * v.t);
+  const Pack by_alpha = unit * alpha_rate * v.alpha;
+  const Pack by_beta =
+      d.sine > pole_sine ? unit * (h * beta_rate / d.sine) * v.beta : unit * (alpha_rate * beta_rate) * v.alpha_beta;
+  const Pack by_across = d.sine * by_rho + d.cosine * by_alpha;
+  const Pack force = unit * t * v.value;
+  const Pack by_x = (d.turn_x * scale_x) * (d.cosine * by_rho - d.sine * by_alpha);
+  const Pack by_y = (d.turn * scale_y) * (d.cos_beta * by_across - d.sin_beta * by_beta);
+  const Pack by_spin = (d.turn * scale_spin) * (d.sin_beta * by_across + d.cos_beta * by_beta);
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.force[i] = force[i];
+    result.derivative[i] = {by_x[i], by_y[i], by_spin[i]};
+  }
+  return result;
+}
+
+CreepLookup CreepSpline::beyond(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  const double largest = std::max({std::abs(creepage[0]), std::abs(creepage[1]), std::abs(creepage[2])});
+  const bool finite = std::isfinite(creepage[0]) && std::isfinite(creepage[1]) && std::isfinite(creepage[2]);
+  if (finite) {
+    const double down = largest_creepage / largest;
+    CreepLookup scaled = lookup(ratio, {down * creepage[0], down * creepage[1], down * creepage[2]});
+    for (auto& row : scaled.derivative) row.fill(0.0);
+    return scaled;
+  }
+  CreepLookup result;
+  result.inside = true;
+  result.force.fill(std::numeric_limits<double>::quiet_NaN());
+  for (auto& row : result.derivative) row.fill(std::numeric_limits<double>::quiet_NaN());
+  return result;
+}
+
+}  // namespace railtab

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "railtab/tables/binade_polynomials.hpp"
+#include "railtab/tables/creep_spline_jet.hpp"
+#include "railtab/tables/creep_table.hpp"
+
+namespace railtab {
+
+/// The cubic B-spline of the smooth layout: coefficients of F_x/t, F_y/t, M_z/(t m) over squeezed a/b, t, α, β.
+class CreepSpline {
+ public:
+  /// a/b of every table lies within these.
+  static constexpr double least_ratio = 0x1p-10, ratio_end = 0x1p10;
+
+  /// @param data of the smooth layout, checked
+  explicit CreepSpline(const CreepTableData& data);
+
+  [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  [[nodiscard]] std::size_t bytes() const noexcept { return coefficient_.size() * sizeof(float); }
+
+ private:
+  struct Direction;
+
+  /// Of (x, y), y >= 0, to (1, 0), 0..π: a division and a polynomial. 0 at (0, 0).
+  [[nodiscard]] double angle(double y, double x) const noexcept;
+  void set_coefficients(const CreepTableData& data);
+  /// @param steps from the first nodes of the axes
+  void evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept;
+  /// Creepages that are not finite, or so large that their squares would not be.
+  [[nodiscard]] CreepLookup beyond(double ratio, const std::array<double, 3>& creepage) const noexcept;
+
+  std::array<int, 4> last_cell_;
+  std::array<double, 3> inverse_step_;  ///< of t, α, β
+  std::array<std::size_t, 3> stride_;   ///< of a/b, t, α, in floats
+  std::vector<float> coefficient_;
+  double ratio_first_, ratio_last_, radius_unit_;
+  /// Of a/b, without logarithm and roots: steps from the first node, and the numbers of CreepScale in their order.
+  BinadePolynomials<8, 7, -10, 9> ratio_functions_;
+  BinadePolynomials<1, 5, 0, 1, 6> arc_tangent_;  ///< arctan(v - 1), v in 1..2
+};
+
+}  // namespace railtab

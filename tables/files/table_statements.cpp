@@ -1,0 +1,39 @@
+#include "railtab/tables/files/table_statements.hpp"
+
+#include <fmt/format.h>
+
+#include "railtab/runtime/base/input_error.hpp"
+
+namespace railtab {
+
+void write_statements(ArrayFileWriter& file, const TableProvenance& provenance, const TableStatistics& statistics,
+                      const std::string& content_checksum) {
+  file.attribute("provenance", "program_version", provenance.program_version);
+  file.attribute("provenance", "command_line", provenance.command_line);
+  file.attribute("provenance", "created", provenance.created);
+  for (const auto& [name, value] : statistics) file.attribute("statistics", name, value);
+  file.attribute("", "checksum", content_checksum);
+}
+
+TableStatistics read_statistics(const ArrayFileReader& file) {
+  TableStatistics statistics;
+  if (!file.contains("statistics")) return statistics;
+  for (const std::string& name : file.attribute_names("statistics")) {
+    statistics.emplace_back(name, file.number("statistics", name));
+  }
+  return statistics;
+}
+
+TableProvenance read_provenance(const ArrayFileReader& file) {
+  return {file.text("provenance", "program_version"), file.text("provenance", "command_line"),
+          file.text("provenance", "created")};
+}
+
+void require_checksum(const ArrayFileReader& file, const std::filesystem::path& name, const std::string& found) {
+  const std::string expected = file.text("", "checksum");
+  if (found == expected) return;
+  throw input_error(name.string(), fmt::format("contents with checksum {}", found),
+                    fmt::format("{}: the file is damaged", expected));
+}
+
+}  // namespace railtab
