@@ -15,6 +15,9 @@
 #include "../measured.hpp"
 #include "hunting_model.hpp"
 #include "kinked_track.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 
 namespace railtab::hunting {

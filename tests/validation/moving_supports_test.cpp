@@ -14,6 +14,7 @@
 #include "../measured.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/reduction_check.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"

@@ -12,6 +12,7 @@
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
 #include "watched_run.hpp"
 
 namespace railtab::stability {

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <optional>
 
+#include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "watched_run.hpp"
 

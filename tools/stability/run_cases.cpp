@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "watched_run.hpp"
 

@@ -1,4 +1,6 @@
 #include "watched_run.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
 
 #include <fmt/format.h>
 

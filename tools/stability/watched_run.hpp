@@ -2,6 +2,7 @@
 
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
+#include "railtab/runtime/vsi/vsi_model.hpp"
 #include "stability_case.hpp"
 
 namespace railtab::stability {
