@@ -5,6 +5,7 @@ measured), by name; cells of every other CSV of docs/validation and of tests/ben
 """
 
 import csv
+import operator
 import re
 from decimal import Decimal
 from pathlib import Path
@@ -17,6 +18,9 @@ MARK = re.compile(rf"(?P<shown>{GROUPED}(?=<!--[^>]*%')|{PLAIN}|)<!--(?P<value>[
 TABLE = re.compile(
     r"<!--table (?P<file>\S+)(?: where (?P<where>[^\n]+))?\n(?P<row>[^\n]+)\n-->\n"
     r"(?P<head>(?:[^\n]*\n)?(?:\|[ -]+)+\|\n)(?P<body>(?:\|[^\n]*\n)*)")
+CLAIM = re.compile(r"^<!--claim (.+)-->$", re.M)
+COMPARISON = re.compile(r"(<=|>=|==|!=|<|>)")
+HOLDS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge, "==": operator.eq, "!=": operator.ne}
 
 NUMBER = r"[−+-]?\d[\d.,]*(?:·10[⁻⁰¹²³⁴-⁹]+)?"
 MEASURED = re.compile(rf"{NUMBER}\s?(?:%|(?:ns|µs|ms|s|min|minutes|hours|kB|MB|GB|KiB|MiB|GiB)(?![\w/²]))")
@@ -93,21 +97,45 @@ class Measurements:
             raise QuoteError(f"{len(found)} rows [{reference}], or no such column")
         return {"max": max, "min": min, "": max}[choice](float(row[column]) for row in found if row[column])
 
-    def value(self, expression):
-        """Names and cells, joined by arithmetic."""
+    def numbers_for(self, expression):
+        """The expression with a number in place of each name and cell."""
         def name(match):
-            if match[0] not in self.named:
+            if match[0] != "and" and match[0] not in self.named:
                 raise QuoteError(f"no measured number {match[0]}")
-            return repr(self.named[match[0]])
+            return repr(self.named[match[0]]) if match[0] in self.named else match[0]
 
         cells = []
         text = CELL.sub(lambda match: cells.append(self.cell(match[1], match[2])) or "\0", expression)
         text = NAME.sub(name, text)
         for cell in cells:
             text = text.replace("\0", repr(cell), 1)
+        return text
+
+    @staticmethod
+    def arithmetic(text):
+        """The value of digits and operators."""
         if not re.fullmatch(r"[0-9.e+\-*/() ]+", text):
-            raise QuoteError(f"not arithmetic: {expression}")
-        return eval(text, {"__builtins__": {}})  # digits and operators alone
+            raise QuoteError(f"not arithmetic: {text}")
+        return eval(text, {"__builtins__": {}})
+
+    def value(self, expression):
+        """Names and cells, joined by arithmetic."""
+        return self.arithmetic(self.numbers_for(expression))
+
+    def false_comparisons(self, expression):
+        """Comparisons joined by `and`: those that do not hold, with the values of both sides."""
+        false = []
+        for comparison in self.numbers_for(expression).split(" and "):
+            first, *rest = COMPARISON.split(comparison)
+            if not rest:
+                raise QuoteError(f"compares nothing: {comparison}")
+            left = self.arithmetic(first.strip())
+            for sign, text in zip(rest[::2], rest[1::2]):
+                right = self.arithmetic(text.strip())
+                if not HOLDS[sign](left, right):
+                    false.append(f"{left:.6g} {sign} {right:.6g}")
+                left = right
+        return false
 
     def table_body(self, name, row_form, where):
         """A Markdown row for every row of the CSV that the condition chooses."""
@@ -159,6 +187,15 @@ def renewed(text, measurements):
             differing.append(f"{line(match)}: table {match['file']} has other numbers")
         return match[0][:len(match[0]) - len(match["body"])] + body
 
+    for claim in CLAIM.finditer(text):
+        marks += 1
+        try:
+            wrong += [f"{line(claim)}: claim {claim[1]}: {comparison} is false"
+                      for comparison in measurements.false_comparisons(claim[1])]
+        except (QuoteError, ValueError, TypeError, SyntaxError, ZeroDivisionError) as error:
+            wrong.append(f"{line(claim)}: claim {claim[1]}: {error}")
+    if text.count("<!--claim") != len(CLAIM.findall(text)):
+        wrong.append("a <!--claim that does not stand alone on its line")
     new = MARK.sub(mark, text)
     if "<!--table" in text:
         starts = len(re.findall(r"^<!--table ", text, re.M))
@@ -173,14 +210,31 @@ def without(pattern, text):
     return pattern.sub(lambda match: "\n" * match[0].count("\n"), text)
 
 
+CODE = re.compile(r"^```.*?^```|^ {4,}\S[^\n]*", re.M | re.S)
+
+
+def marks_in_prose(text):
+    """Marks, with their lines, that stand in no row of a table."""
+    lines = enumerate(without(CODE, text).splitlines(), 1)
+    return [(number, match[0]) for number, line in lines if not line.lstrip().startswith("|")
+            for match in MARK.finditer(line)]
+
+
+def long_lines(text, limit=120):
+    """Lines of prose, with their lengths, beyond the limit. Code, comments, rows of tables and bare URLs may be longer."""
+    lines = enumerate(without(re.compile(f"{CODE.pattern}|^<!--(?:(?!-->).)*-->$", re.M | re.S), text).splitlines(), 1)
+    return [(number, len(line)) for number, line in lines
+            if len(line) > limit and not re.match(r"\s*\||\s*[-*]?\s*<?https?://\S+$", line)]
+
+
 def unmarked(text):
     """Numbers of time, memory and per cent, with their lines, that have no mark and stand neither in a generated table nor
     in code nor on a line that says <!--given-->. Time steps, inputs on nearly every line, are known by their words.
     """
     text = re.sub(r"(<!-- outcomes -->).*?(<!-- end -->)", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
-    text = without(re.compile(r"^```.*?^```|^ {4,}\S[^\n]*|`[^`\n]*`", re.M | re.S), text)
+    text = without(re.compile(rf"{CODE.pattern}|`[^`\n]*`", re.M | re.S), text)
     given = {number for number, line in enumerate(text.splitlines(), 1) if "<!--given-->" in line}
-    text = re.sub(rf"{MARK.pattern}\s?(?:%|\w+)?", "", without(TABLE, text))
+    text = re.sub(rf"{MARK.pattern}\s?(?:%|\w+)?", "", without(CLAIM, without(TABLE, text)))
     found = []
     for number, line in enumerate(text.splitlines(), 1):
         if number not in given:
