@@ -11,7 +11,7 @@ from decimal import Decimal
 from pathlib import Path
 
 NAME = re.compile(r"(?<![0-9.])[A-Za-z][A-Za-z0-9_.]*")
-CELL = re.compile(r"(max|min|)\[([^\]]+)\]")
+CELL = re.compile(r"(max|min|count|)\[([^\]]+)\]")
 GROUPED = r"[−+-]?\d{1,3}(?:\u00a0\d{3})*"
 PLAIN = r"[−+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 MARK = re.compile(rf"(?P<shown>{GROUPED}(?=<!--[^>]*%')|{PLAIN}|)<!--(?P<value>[a-z0-9(\[][^<>]*?) %(?P<form>[^ <>]+)-->")
@@ -90,12 +90,13 @@ class Measurements:
     def cell(self, choice, reference):
         """[file; first field; second field; ...; column]: the one row that begins with these fields, * being any.
 
-        With max or min before it, that of all rows that do."""
+        With max or min before it, that of all rows that do; with count, how many of them have something there."""
         name, *key, column = [part.strip() for part in reference.split(";")]
         found = [row for row in self.table(name) if self.begins_with(row, key)]
         if not found or (len(found) > 1 and not choice) or column not in found[0]:
             raise QuoteError(f"{len(found)} rows [{reference}], or no such column")
-        return {"max": max, "min": min, "": max}[choice](float(row[column]) for row in found if row[column])
+        values = [row[column] for row in found if row[column]]
+        return len(values) if choice == "count" else {"max": max, "min": min, "": max}[choice](map(float, values))
 
     def numbers_for(self, expression):
         """The expression with a number in place of each name and cell."""
@@ -138,16 +139,18 @@ class Measurements:
         return false
 
     def table_body(self, name, row_form, where):
-        """A Markdown row for every row of the CSV that the condition chooses."""
+        """A Markdown row for every row of the CSV that the condition chooses. Beside the row's own fields, form and condition
+        may name cell(file, first field, ..., column), one number of another row."""
+        outside = {"__builtins__": {}, "cell": lambda *reference: self.cell("", "; ".join(reference))}
         body = ""
         for row in self.table(name):
             fields = {key: number(text) for key, text in row.items()}
 
             def field(match):
-                value = eval(match[1], {"__builtins__": {}}, fields)
+                value = eval(match[1], outside, fields)
                 return value if isinstance(value, str) else shown(value, match[2] or "g")
 
-            if where is None or eval(where, {"__builtins__": {}}, fields):
+            if where is None or eval(where, outside, fields):
                 body += re.sub(r"\{([^{}:]+)(?::([^{}]+))?\}", field, row_form) + "\n"
         if not body:
             raise QuoteError("no row is chosen")
