@@ -224,8 +224,10 @@ def marks_in_prose(text):
 
 
 def long_lines(text, limit=120):
-    """Lines of prose, with their lengths, beyond the limit. Code, comments, rows of tables and bare URLs may be longer."""
-    lines = enumerate(without(re.compile(f"{CODE.pattern}|^<!--(?:(?!-->).)*-->$", re.M | re.S), text).splitlines(), 1)
+    """Lines of prose, with their lengths, beyond the limit. Code, rows of tables and bare URLs may be longer; comments, which
+    no reader sees, do not count.
+    """
+    lines = enumerate(without(re.compile(f"{CODE.pattern}|<!--.*?-->", re.M | re.S), text).splitlines(), 1)
     return [(number, len(line)) for number, line in lines
             if len(line) > limit and not re.match(r"\s*\||\s*[-*]?\s*<?https?://\S+$", line)]
 
