@@ -236,7 +236,6 @@ def unmarked(text):
     """Numbers of time, memory and per cent, with their lines, that have no mark and stand neither in a generated table nor
     in code nor on a line that says <!--given-->. Time steps, inputs on nearly every line, are known by their words.
     """
-    text = re.sub(r"(<!-- outcomes -->).*?(<!-- end -->)", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
     text = without(re.compile(rf"{CODE.pattern}|`[^`\n]*`", re.M | re.S), text)
     given = {number for number, line in enumerate(text.splitlines(), 1) if "<!--given-->" in line}
     text = re.sub(rf"{MARK.pattern}\s?(?:%|\w+)?", "", without(CLAIM, without(TABLE, text)))
