@@ -239,8 +239,9 @@ def unmarked(text):
     text = without(re.compile(rf"{CODE.pattern}|`[^`\n]*`", re.M | re.S), text)
     given = {number for number, line in enumerate(text.splitlines(), 1) if "<!--given-->" in line}
     text = re.sub(rf"{MARK.pattern}\s?(?:%|\w+)?", "", without(CLAIM, without(TABLE, text)))
+    text = without(INPUT, text)
     found = []
     for number, line in enumerate(text.splitlines(), 1):
         if number not in given:
-            found += [(number, match[0]) for match in MEASURED.finditer(INPUT.sub("", line))]
+            found += [(number, match[0]) for match in MEASURED.finditer(line)]
     return found
