@@ -18,6 +18,7 @@ MARK = re.compile(rf"(?P<shown>{GROUPED}(?=<!--[^>]*%')|{PLAIN}|)<!--(?P<value>[
 TABLE = re.compile(
     r"<!--table (?P<file>\S+)(?: where (?P<where>[^\n]+))?\n(?P<row>[^\n]+)\n-->\n"
     r"(?P<head>(?:[^\n]*\n)?(?:\|[ -]+)+\|\n)(?P<body>(?:\|[^\n]*\n)*)")
+CODE = re.compile(r"^```.*?^```|^ {4,}\S[^\n]*", re.M | re.S)
 CLAIM = re.compile(r"^<!--claim (.+)-->$", re.M)
 COMPARISON = re.compile(r"(<=|>=|==|!=|<|>)")
 HOLDS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge, "==": operator.eq, "!=": operator.ne}
@@ -211,9 +212,6 @@ def renewed(text, measurements):
 def without(pattern, text):
     """The text without what matches, lines kept."""
     return pattern.sub(lambda match: "\n" * match[0].count("\n"), text)
-
-
-CODE = re.compile(r"^```.*?^```|^ {4,}\S[^\n]*", re.M | re.S)
 
 
 def marks_in_prose(text):
