@@ -26,7 +26,8 @@ HOLDS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.g
 NUMBER = r"[−+-]?\d[\d.,]*(?:·10[⁻⁰¹²³⁴-⁹]+)?"
 MEASURED = re.compile(rf"{NUMBER}\s?(?:%|(?:ns|µs|ms|s|min|minutes|hours|kB|MB|GB|KiB|MiB|GiB)(?![\w/²]))")
 INPUT = re.compile(  # steps of 1 ms, at 0.5 ms, a step of 1 ms and 2 ms
-    rf"\b(?:steps?(?: of| at| up to)?|at|from|to|in|and|or|,)\s{NUMBER}(?:(?: to| and| or|,) {NUMBER})* [mµ]s\b(?: steps)?")
+    rf"\b(?:steps?(?:\s(?:of|at|up\sto))?|at|from|to|in|and|or|,)\s{NUMBER}(?:(?:\s(?:to|and|or)|,)\s{NUMBER})*"
+    r"\s[mµ]s\b(?:\ssteps)?")
 
 
 class QuoteError(Exception):
