@@ -1,4 +1,4 @@
-// Stiff and extreme cases, each with its outcome: text on the screen, CSV and a page for docs/validation.
+// Stiff and extreme cases, each with its outcome: text on the screen and CSV for docs/validation.
 
 #include <fmt/format.h>
 
@@ -18,9 +18,8 @@ namespace {
 
 constexpr const char* usage =
     "stability [--quick] [--group WORDS] [-o FOLDER]\n"
-    "Runs the matrix of stiff and extreme cases and prints what became of each; writes FOLDER/stability.csv and the\n"
-    "table of FOLDER/stability.md between its marks. --quick: the reduced matrix of the tests. --group: only groups "
-    "whose\n"
+    "Runs the matrix of stiff and extreme cases, prints the outcome of each and writes FOLDER/stability.csv.\n"
+    "--quick: the reduced matrix of the tests. --group: only groups whose\n"
     "name has these words. Exit code 1 where an outcome is not the expected one.\n";
 
 int run(const std::vector<std::string>& arguments) {
@@ -56,10 +55,7 @@ int run(const std::vector<std::string>& arguments) {
     unexpected += !as_expected(one, rows.back().result);
   }
   fmt::print("{} cases, {} with another outcome than expected\n", rows.size(), unexpected);
-  if (!folder.empty()) {
-    write_text_file(folder / "stability.csv", csv_text(rows));
-    fill_page(folder / "stability.md", rows);
-  }
+  if (!folder.empty()) write_text_file(folder / "stability.csv", csv_text(rows));
   return unexpected == 0 ? 0 : 1;
 }
 

@@ -4,10 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-
-#include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab::stability {
 namespace {
@@ -27,25 +23,6 @@ std::array<std::string, 3> energy_texts(const EnergyResult& energy) {
   if (!energy.kept) return {};
   return {fmt::format("{:.0e}", energy.step), fmt::format("{:+.0e}", energy.total),
           energy.impacts > 0 ? fmt::format("{:.1e}", energy.impact) : ""};
-}
-
-std::string markdown(const std::vector<Row>& rows) {
-  std::string text =
-      "| group | case | outcome | error | stated | measured by | steps (halved) | energy: step | run | impact | note "
-      "|\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
-  std::string group;
-  for (const Row& row : rows) {
-    const CaseResult& r = row.result;
-    const auto [step, total, impact] = energy_texts(r.energy);
-    text += fmt::format("| {} | {} | {}{} | {} | {:.0e} | {} | {} | {} | {} | {} | {} |\n",
-                        row.one.group == group ? "" : row.one.group, row.one.setting, outcome_name(r.outcome),
-                        as_expected(row.one, r) ? "" : " (unexpected)", error_text(row), row.one.allowed,
-                        row.one.measure, r.steps > 0 ? fmt::format("{} ({})", r.steps, r.halved_steps) : "", step,
-                        total, impact, without(r.note, '|'));
-    group = row.one.group;
-  }
-  return text;
 }
 
 }  // namespace
@@ -71,18 +48,6 @@ std::string csv_text(const std::vector<Row>& rows) {
                         total, r.energy.impacts, impact, r.seconds, without(r.note, ','));
   }
   return text;
-}
-
-void fill_page(const std::filesystem::path& page, const std::vector<Row>& rows) {
-  std::ifstream stream(page);
-  std::string text((std::istreambuf_iterator<char>(stream)), {});
-  constexpr std::string_view begin = "<!-- outcomes -->\n", end = "<!-- end -->";
-  const std::size_t from = text.find(begin), to = text.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from) {
-    throw input_error(page.string(), "no marks", "the lines <!-- outcomes --> and <!-- end -->");
-  }
-  text.replace(from + begin.size(), to - from - begin.size(), markdown(rows));
-  write_text_file(page, text);
 }
 
 }  // namespace railtab::stability

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,7 @@ struct Row {
 };
 
 [[nodiscard]] std::string text_line(const Row& row);
+/// stability.csv, from which docs/validation/stability.md takes its tables.
 [[nodiscard]] std::string csv_text(const std::vector<Row>& rows);
-/// Puts the table between the lines "<!-- outcomes -->" and "<!-- end -->" of a page. @throws InputError where they are
-/// missing.
-void fill_page(const std::filesystem::path& page, const std::vector<Row>& rows);
 
 }  // namespace railtab::stability

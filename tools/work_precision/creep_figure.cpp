@@ -15,9 +15,9 @@ WorkFigure creep_figure(const std::vector<std::filesystem::path>& tables, bool q
   figure.y_label = "error of the force vector, 99 % point [of mu F_n]";
   figure.least_error = 1e-5;
   figure.advice =
-      "Take the table: it is more than an order of magnitude nearer to exact theory than FASTSIM on any grid, at a "
-      "fraction of its time. Polach's closed form takes two thirds of the table's time; it and linear theory are for "
-      "studies in which large spin and slender ellipses do not occur, where their largest errors are.";
+      "Take the table: its error is more than an order of magnitude below FASTSIM's on any grid, in less time. "
+      "Polach's closed form takes a little less time than the table. Use it and linear theory only where large spin "
+      "and slender ellipses do not occur, for their errors are largest there.";
   CreepVerificationOptions options;
   options.samples = quick ? 200 : 4000;
   options.seed = 7;

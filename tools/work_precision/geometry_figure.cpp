@@ -107,11 +107,11 @@ WorkFigure geometry_figure(bool quick) {
   figure.y_label = "error of penetration, 99.9 % point [m]";
   figure.least_error = 2e-12;
   figure.advice =
-      "Take the table as it is made by default: it gives the online search's own answer to a picometre at a fortieth "
-      "of "
-      "its time. The size of the cells hardly matters, since polishing the pair on the stored profiles makes up for a "
-      "worse start; the polynomials alone show what it buys. The published search with discretised profiles is slower "
-      "than the online search, and off by the spacing of its points.";
+      "Take the default table (32 µm): its penetration agrees with the online search's to two picometres, in a small "
+      "fraction of the time. Where the default is drawn hollow, another size of cells has the same error in less "
+      "time. The size hardly matters because the contact pair is polished on the stored profiles; the polynomials "
+      "alone show the effect of the polishing. The published search with discretised profiles is slower than the "
+      "online search, and its error is that of the spacing of its points.";
   const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
                                            ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
                                            PairDimensions{}));

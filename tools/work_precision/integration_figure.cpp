@@ -130,23 +130,23 @@ std::vector<WorkFigure> integration_figures(bool quick) {
   beam.name = "integration_sprung_mass";
   beam.title = "Time integration: sprung mass over a beam";
   beam.advice =
-      "Everything is linear here: alpha = 0 (Newmark) is nearest at every step, and the time step buys the accuracy.";
+      "The system is linear: alpha = 0 (Newmark) has the smallest error at every time step, and the time step "
+      "sets the error.";
   figures.push_back(figure_of(
       beam, cross_beam,
       {beam_crossing / 1800.0, beam_crossing / 225.0, beam_steps, beam_crossing / (quick ? 7200.0 : 28800.0)}, quick));
   WorkFigure hunting;
   hunting.name = "integration_hunting";
   hunting.title = "Time integration: hunting with flange impacts, coach at 100 m/s";
-  hunting.advice = "The time step decides, and alpha and Newton's tolerance matter little beside it.";
+  hunting.advice = "The time step matters most. Alpha and Newton's tolerance matter less at the default step.";
   figures.push_back(figure_of(hunting, of_scene(hunting_coach(), quick),
                               {step, 4 * step, steps, quick ? step / 4 : step / 16}, quick));
   WorkFigure coach;
   coach.name = "integration_coach";
   coach.title = "Time integration: coach over a rough bridge";
   coach.advice =
-      "The error is that of the time step; a little numerical damping helps at long steps, where the highest "
-      "frequencies of "
-      "the track are not resolved.";
+      "The time step sets the error. A little numerical damping helps at long steps, which do not resolve the "
+      "highest frequencies of the track.";
   figures.push_back(
       figure_of(coach, of_scene(coach_over_bridge(RAILTAB_SOURCE_DIR "/docs/examples/demo_irregularity.csv"), quick),
                 {step, 4 * step, steps, quick ? step / 4 : step / 16}, quick));

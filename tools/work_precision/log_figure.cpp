@@ -211,6 +211,11 @@ std::string legend(const WorkFigure& figure, const std::vector<std::string>& met
     svg += text(left + width + 16, above + height - 28, "start", "filled: on the Pareto front", 10);
     svg += text(left + width + 16, above + height - 14, "start", "(dashed)", 10);
     svg += text(left + width + 16, above + height, "start", "ringed: default settings", 10);
+    if (std::any_of(figure.points.begin(), figure.points.end(),
+                    [&](const WorkPoint& p) { return p.y < figure.least_error; })) {
+      svg += text(left + width + 16, above + height + 14, "start",
+                  fmt::format("errors below {0:.0e} are drawn at {0:.0e}", figure.least_error), 10);
+    }
   }
   return svg;
 }

@@ -70,20 +70,20 @@ WorkFigure size_figure(const std::string& name, const std::string& title, const 
 }  // namespace
 
 std::vector<WorkFigure> scaling_figures(const std::filesystem::path& geometry_table, bool quick) {
-  WorkFigure step = size_figure("scaling_step", "Scaling: a step over the unknowns of the structure",
-                                "unknowns of the structure", "processor time per step [s]",
-                                "A step costs one back-substitution and the contacts: in proportion to the track on "
-                                "long tracks, to the wheels on short "
-                                "ones. Model as much track as the train needs and no more.");
-  WorkFigure setup = size_figure("scaling_setup", "Scaling: the set-up over the unknowns of the structure",
-                                 "unknowns of the structure", "processor time of model, rest and factors [s]",
-                                 "The set-up grows with the track, and with the wheels through the rails' compliance "
-                                 "at rest, every wheel upon every "
-                                 "other: for long trains it is the larger part of a short run.");
+  WorkFigure step = size_figure("scaling_step", "Scaling: a step over the degrees of freedom of the structure",
+                                "degrees of freedom of the structure", "processor time per step [s]",
+                                "A step costs one back-substitution and the contacts: in proportion to the track "
+                                "on long tracks, to the wheels on short ones. Model as much track as the train "
+                                "needs and no more.");
+  WorkFigure setup = size_figure("scaling_setup", "Scaling: the set-up over the degrees of freedom of the structure",
+                                 "degrees of freedom of the structure", "processor time of model, rest and factors [s]",
+                                 "The set-up grows with the track, and with the wheels through the rails' "
+                                 "compliance at rest, which couples every wheel with every other: for long "
+                                 "trains it is the larger part of a short run.");
   WorkFigure wheels = size_figure("scaling_wheels", "Scaling: a step over the wheels of the train", "wheels",
                                   "processor time per step [s]",
-                                  "Contacts cost the same for every wheel; the structure's part below a short train on "
-                                  "a long track does not depend on them.");
+                                  "The contacts cost the same for every wheel. The structure's part, which "
+                                  "remains for a short train on a long track, does not depend on the wheels.");
   std::vector<double> lengths{40.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0, 19500.0};  // m
   std::vector<int> trains{1, 8, 32};
   if (quick) {
@@ -116,9 +116,8 @@ std::vector<WorkFigure> scaling_figures(const std::filesystem::path& geometry_ta
 WorkFigure threads_figure(bool quick) {
   WorkFigure figure =
       size_figure("scaling_threads", "Scaling: a geometry table over threads", "threads", "wall time of the table [s]",
-                  "A sweep's root cells are independent: use as many threads as there are cores. A run is serial; many "
-                  "runs at once are "
-                  "what further cores are for.");
+                  "The root cells of a sweep are independent: use as many threads as there are cores. A run is "
+                  "serial; use further cores for further runs.");
   const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
                                            ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
                                            PairDimensions{}));

@@ -122,10 +122,9 @@ std::vector<WorkFigure> scene_figures(const SceneTables& tables, bool quick) {
         .name = kind.name, .title = kind.title, .y_label = kind.error_label, .advice = "", .least_error = 1e-9};
     figure.x_label = "processor time of the run, 0.6 s";
     figure.advice =
-        "Take the geometry table and the creep table: the run is the online search's with exact theory, in less time. "
-        "The "
-        "creep law decides the error of the forces, and no smaller step mends it. The published search is off by its "
-        "jumps, whatever the law.";
+        "Take the geometry table and the creep table: the forces are those of the online search, in less time. "
+        "The creep law decides the error of the forces; a smaller step does not reduce Polach's. The published "
+        "search's error comes from the jumps of its contact pairs, whatever the law.";
     for (std::size_t i = 0; i < all.size(); ++i) {
       const RunError error = run_error(reference, last[i], kind.quantity);
       if (!std::isfinite(error.rms)) continue;
