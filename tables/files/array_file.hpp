@@ -53,7 +53,6 @@ class ArrayFileWriter {
              std::string_view unit, std::string_view description);
   void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
-  /// Stored with 32 bits; read_integers() reads them.
   /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
   void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
              std::string_view unit, std::string_view description);
@@ -95,7 +94,8 @@ class ArrayFileWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a file of named arrays, also one that is being written or whose writer was killed.
+/// Reads a file of named arrays, also one that is being written or whose writer was killed. What lies in other files,
+/// behind links or filters is rejected; sizes are held against that of the file before anything is read.
 class ArrayFileReader {
  public:
   /// Checks that the file exists, is HDF5 and whole, then its filetype, then its format version.
@@ -103,6 +103,7 @@ class ArrayFileReader {
   ~ArrayFileReader();
   ArrayFileReader(ArrayFileReader&&) noexcept;
 
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
   [[nodiscard]] bool contains(std::string_view path) const;
   /// Of a growing dataset, the rows that were flushed.
   [[nodiscard]] Array read(std::string_view path) const;

@@ -172,8 +172,7 @@ void ArrayFileWriter::replace(std::string_view path, std::span<const double> val
   const Section section;
   impl_->begin_records();
   const std::string at = place(impl_->file, path);
-  const hdf5::Dataset dataset(H5Dopen2(impl_->handle.get(), std::string(path).c_str(), H5P_DEFAULT));
-  require(dataset.valid(), at, "a slot");
+  const hdf5::Object dataset = hdf5::open_object(impl_->handle.get(), impl_->file, path);
   hsize_t extent = 0;
   H5Sget_simple_extent_dims(hdf5::Space(H5Dget_space(dataset.get())).get(), &extent, nullptr);
   std::vector<double> content(values.begin(), values.end());

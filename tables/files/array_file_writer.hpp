@@ -27,7 +27,7 @@ struct ArrayFileWriter::Impl {
   hdf5::File handle;
 
   struct Growing {
-    hdf5::Dataset dataset;
+    hdf5::Object dataset;
     std::vector<hsize_t> extent;  ///< rows that there is room for, then the shape of a row
     std::size_t rows = 0;         ///< rows that are written
     std::size_t row_size = 1;
@@ -36,7 +36,7 @@ struct ArrayFileWriter::Impl {
   };
   std::map<std::string, Growing, std::less<>> growing;
   Growing blocks;  ///< checksums; its rows count blocks, not records
-  hdf5::Dataset records_dataset;
+  hdf5::Object records_dataset;
   std::size_t records = 0;
 
   Impl() = default;
@@ -52,13 +52,13 @@ struct ArrayFileWriter::Impl {
   void create(std::string_view filetype, int format_version);
   void create_groups_of(std::string_view path);
   void create_group(const std::string& path);
-  hdf5::Dataset create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
+  hdf5::Object create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
   void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
                      const std::vector<std::size_t>& shape, std::string_view unit, std::string_view description);
   /// @param fill of rows that were never written; null: zeros
-  hdf5::Dataset create_extendible(std::string_view path, hid_t file_type, const double* fill,
-                                  const std::vector<hsize_t>& extent, std::string_view unit,
-                                  std::string_view description);
+  hdf5::Object create_extendible(std::string_view path, hid_t file_type, const double* fill,
+                                 const std::vector<hsize_t>& extent, std::string_view unit,
+                                 std::string_view description);
   void write_attribute(std::string_view path, std::string_view name, hid_t file_type, hid_t memory_type,
                        const void* value);
   void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity);
@@ -68,8 +68,6 @@ struct ArrayFileWriter::Impl {
   void open_records();
   void create_blocks();
   [[nodiscard]] Growing open_growing(const std::string& path) const;
-  /// Also of a file whose writer was killed.
-  void open_for_writing();
   /// Never less than there is: a chunk given back could be used again before the file stops naming its old place, and
   /// a process that ends in between leaves two owners of one place.
   void make_room(const std::string& path, Growing& dataset, std::size_t rows);
