@@ -76,6 +76,11 @@ ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
   for (const columns::MotionGroup& group : columns::motion_groups) {
     header.*group.names = fields.texts(field_of(group));
   }
+  if (header.wheel_x.size() % 2 != 0) {
+    throw input_error(fmt::format("{}: header/wheel_x", in.file().string()),
+                      fmt::format("{} wheels", header.wheel_x.size()),
+                      "an even number: left and right of each wheelset");
+  }
   return header;
 }
 

@@ -104,8 +104,9 @@ void require_plain(hid_t dataset, const std::string& at) {
   std::array<char, 64> filter{};
   std::size_t values = 0;
   unsigned flags = 0;
-  H5Pget_filter2(properties.get(), 0, &flags, &values, nullptr, filter.size() - 1, filter.data(), nullptr);
-  throw input_error(at, fmt::format("values behind the filter \"{}\"", filter.data()), expected);
+  const H5Z_filter_t id =
+      H5Pget_filter2(properties.get(), 0, &flags, &values, nullptr, filter.size() - 1, filter.data(), nullptr);
+  throw input_error(at, fmt::format("values behind the filter {} ({})", id, filter.data()), expected);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <system_error>
+#include <utility>
 
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/text_file.hpp"
@@ -93,7 +94,8 @@ struct ArrayFileReader::Impl {
   std::size_t block_width = 0;  ///< columns
 
   /// Of the datasets that were read: all together have room in the file.
-  mutable std::map<std::string, std::uint64_t, std::less<>> bytes_of;
+  mutable std::map<std::string, std::uint64_t> bytes_of;
+  mutable std::uint64_t all_bytes = 0;
 
   /// Size of the file; of one that is being written, now.
   [[nodiscard]] std::uint64_t bytes() const {
@@ -124,11 +126,10 @@ struct ArrayFileReader::Impl {
     H5Sget_simple_extent_dims(space.get(), source.extent.data(), nullptr);
     limit_rows(source, at);
     source.count = count_values(source, bytes(), at);
-    bytes_of.insert_or_assign(std::string(path), source.count * source.value_bytes);
-    std::uint64_t all = 0;
-    for (const auto& [name, size] : bytes_of) all += size;
-    if (all > bytes()) {
-      throw input_error(at, fmt::format("{} bytes of values up to this dataset", all),
+    std::uint64_t& own = bytes_of[std::string(path)];
+    all_bytes += source.count * source.value_bytes - std::exchange(own, source.count * source.value_bytes);
+    if (all_bytes > bytes()) {
+      throw input_error(at, fmt::format("{} bytes of values up to this dataset", all_bytes),
                         fmt::format("no more than the {} bytes of the file", bytes()));
     }
     return source;
