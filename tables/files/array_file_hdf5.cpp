@@ -208,6 +208,14 @@ FileState inspect_file(const std::filesystem::path& file) {
   return state;
 }
 
+Type text_type(std::size_t length) {
+  Type type(H5Tcopy(H5T_C_S1));
+  const bool done = H5Tset_size(type.get(), length) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
+                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
+  require(done, "HDF5 text", "its type");
+  return type;
+}
+
 Properties group_properties(hid_t kind) {
   Properties properties(H5Pcreate(kind));
   constexpr unsigned always_compact = 65535;

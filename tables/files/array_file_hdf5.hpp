@@ -56,7 +56,6 @@ class Handle {
 };
 using File = Handle<H5Fclose>;
 using Object = Handle<H5Oclose>;
-using Group = Handle<H5Gclose>;
 using Attribute = Handle<H5Aclose>;
 using Space = Handle<H5Sclose>;
 using Type = Handle<H5Tclose>;
@@ -102,6 +101,9 @@ struct FileState {
 [[nodiscard]] hid_t file_driver();
 /// Drop whatever HDF5 still has to write, also when the file is closed: it stays as it is on the disk.
 void stop_writing(hid_t file);
+
+/// Fixed length: HDF5 keeps variable-length text in a heap without checksums.
+[[nodiscard]] Type text_type(std::size_t length);
 
 enum class Access { create_whole, create_growing, read, read_growing, write_growing };
 /// The one place where files are opened. Invalid where HDF5 cannot.

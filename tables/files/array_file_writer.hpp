@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cassert>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "railtab/runtime/base/file_checksum.hpp"
@@ -15,6 +18,11 @@ namespace railtab {
 inline std::array<std::int64_t, 2> records_and_complement(std::size_t records) {
   const auto count = static_cast<std::int64_t>(records);
   return {count, -1 - count};
+}
+
+/// Number of values.
+[[nodiscard]] inline std::size_t size_of(const ArrayFileWriter::Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
 }
 
 /// State of a file being written. Its members call HDF5 without taking a Section: the public functions do.
@@ -50,11 +58,18 @@ struct ArrayFileWriter::Impl {
   void abandon() noexcept;
 
   void create(std::string_view filetype, int format_version);
+  /// Those before each '/'.
   void create_groups_of(std::string_view path);
-  void create_group(const std::string& path);
   hdf5::Object create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
-  void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
-                     const std::vector<std::size_t>& shape, std::string_view unit, std::string_view description);
+  void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values, const Shape& shape,
+                     std::string_view unit, std::string_view description);
+  template <typename Number>
+  void write_numbers(std::string_view path, hid_t file_type, hid_t memory_type, std::span<const Number> values,
+                     const Shape& shape, std::string_view unit, std::string_view description) {
+    assert(values.size() == size_of(shape));
+    const hdf5::Section section;
+    write_dataset(path, file_type, memory_type, values.data(), shape, unit, description);
+  }
   /// @param fill of rows that were never written; null: zeros
   hdf5::Object create_extendible(std::string_view path, hid_t file_type, const double* fill,
                                  const std::vector<hsize_t>& extent, std::string_view unit,

@@ -89,16 +89,13 @@ void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version
 }
 
 void ArrayFileWriter::Impl::create_groups_of(std::string_view path) {
-  for (std::size_t end = path.find('/'); end != std::string_view::npos; end = path.find('/', end + 1)) {
-    create_group(std::string(path.substr(0, end)));
-  }
-}
-
-void ArrayFileWriter::Impl::create_group(const std::string& path) {
-  if (H5Lexists(handle.get(), path.c_str(), H5P_DEFAULT) > 0) return;
   const hdf5::Properties properties = hdf5::group_properties(H5P_GROUP_CREATE);
-  const hdf5::Group group(H5Gcreate2(handle.get(), path.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
-  require_written(group.valid(), place(file, path));
+  for (std::size_t end = path.find('/'); end != std::string_view::npos; end = path.find('/', end + 1)) {
+    const std::string group(path.substr(0, end));
+    if (H5Lexists(handle.get(), group.c_str(), H5P_DEFAULT) > 0) continue;
+    const hdf5::Object created(H5Gcreate2(handle.get(), group.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+    require_written(created.valid(), place(file, group));
+  }
 }
 
 hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties) {
@@ -111,8 +108,7 @@ hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t 
 }
 
 void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
-                                          const std::vector<std::size_t>& shape, std::string_view unit,
-                                          std::string_view description) {
+                                          const Shape& shape, std::string_view unit, std::string_view description) {
   const std::vector<hsize_t> extent(shape.begin(), shape.end());
   const hdf5::Space space(shape.empty() ? H5Screate(H5S_SCALAR)
                                         : H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
@@ -124,8 +120,7 @@ void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t file_type
   write_text(path, "unit", unit, 0);
   write_text(path, "description", description, 0);
   if (mode != Mode::growing || path == hdf5::records_dataset) return;
-  std::size_t bytes = H5Tget_size(memory_type);
-  for (const std::size_t length : shape) bytes *= length;
+  const std::size_t bytes = H5Tget_size(memory_type) * size_of(shape);
   const auto sum = static_cast<std::int64_t>(word_checksum({static_cast<const std::byte*>(values), bytes}));
   write_attribute(path, hdf5::checksum_attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &sum);
 }
@@ -155,8 +150,9 @@ void ArrayFileWriter::Impl::write_attribute(std::string_view path, std::string_v
                                             hid_t memory_type, const void* value) {
   const std::string at = place(file, path, name);
   const std::string key(name);
-  create_groups_of(path);
-  if (!path.empty()) create_group(std::string(path));
+  if (!path.empty() && H5Lexists(handle.get(), std::string(path).c_str(), H5P_DEFAULT) <= 0) {
+    create_groups_of(std::string(path) + "/");
+  }
   const hdf5::Object object = hdf5::open_object(handle.get(), file, path);
   hdf5::Attribute attribute;
   if (H5Aexists(object.get(), key.c_str()) > 0) {
@@ -186,10 +182,7 @@ void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view n
   constexpr std::string_view cut = "...";
   if (bytes.size() > room) bytes.replace(room - std::min(room, cut.size()), std::string::npos, cut);
   bytes.resize(room, '\0');
-  const hdf5::Type type(H5Tcopy(H5T_C_S1));
-  const bool done = H5Tset_size(type.get(), room) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
-                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
-  require(done, place(file, path, name), "a text type");
+  const hdf5::Type type = hdf5::text_type(room);
   write_attribute(path, name, type.get(), type.get(), bytes.data());
 }
 
