@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/base/column_rows.hpp"
 
 namespace railtab {
 
@@ -33,12 +33,12 @@ TableBody& body_of_line(const LineReader& reader, std::string_view name, const E
 }  // namespace
 
 std::vector<TableBody> read_vehicle_table(const std::filesystem::path& file, int rows) {
-  LineReader reader(file, "a table of a vehicle's rows");
+  ColumnRows table(file, "a table of a vehicle's rows", header);
+  const LineReader& reader = table.reader();
   std::vector<TableBody> bodies;
   std::vector<bool> taken(static_cast<std::size_t>(rows), false);
-  TableRows table(reader, header);
-  std::array<std::string_view, 6> words;
-  while (table.next(words)) {
+  while (table.next()) {
+    const std::vector<std::string_view>& words = table.cells();
     const int row = reader.number<int>(words[0], "the number of a row");
     if (row < 1 || row > rows) {
       throw reader.error(fmt::format("row {}", row), fmt::format("1 to {}, the matrices' rows", rows));
@@ -58,7 +58,6 @@ std::vector<TableBody> read_vehicle_table(const std::filesystem::path& file, int
     if (of_motion != held) throw reader.error(fmt::format("{} of body {} again", *motion, body.name), "each once");
     of_motion = row - 1;
   }
-  if (!table.has_header()) throw reader.file_error("no line", header);
   return bodies;
 }
 

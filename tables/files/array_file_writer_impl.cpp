@@ -90,8 +90,9 @@ void ArrayFileWriter::Impl::abandon() noexcept {
 void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version) {
   file = output_file(file);
   if (mode == Mode::growing && std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
-  remove_abandoned(file);
-  temporary = temporary_name(file);
+  TemporaryFile made = create_temporary(file);
+  temporary = made.name;
+  lock = std::move(made.lock);
   const hdf5::Properties access = hdf5::file_access();
   const hdf5::Properties creation = group_properties(H5P_FILE_CREATE);
   if (mode == Mode::growing) {
@@ -99,12 +100,8 @@ void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version
   } else {
     require(H5Pset_userblock(creation.get(), seal_bytes) >= 0, file.string(), "room for the seal");
   }
-  handle = hdf5::File(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, creation.get(), access.get()));
-  if (!handle.valid()) {
-    temporary.clear();
-    throw hdf5::failure(file.string(), "a file that can be created");
-  }
-  lock = WriterLock(temporary);
+  handle = hdf5::File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
+  if (!handle.valid()) throw hdf5::failure(file.string(), "a file that can be created");
   write_text("", "filetype", filetype, 0);
   const std::int64_t version = format_version;
   write_attribute("", "format_version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version);
