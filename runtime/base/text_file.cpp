@@ -10,6 +10,7 @@
 #include <string>
 #include <system_error>
 
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/printable_text.hpp"
 #include "railtab/runtime/base/temporary_file.hpp"
@@ -100,10 +101,10 @@ void require_replaceable_text(const std::filesystem::path& named, std::string_vi
   if (head.starts_with(mark)) return;
   const bool binary = head.find('\0') != std::string::npos;
   const std::string found = binary ? "a table or results of railtab, or HDF5"
-                                   : fmt::format("a file that begins with '{}'", first_line(head).substr(0, 20));
-  throw input_error("-o " + named.string(), found,
+                                   : "a file that begins with " + quoted(first_line(head));
+  throw input_error(named.string(), found,
                     fmt::format("a new name, or an earlier output of this kind to replace, which begins with '{}'",
-                                printable(first_line(mark).substr(0, 80))));
+                                printable(first_line(mark).substr(0, 140))));
 }
 
 void write_text_file(const std::filesystem::path& named, std::string_view text, std::string_view mark) {

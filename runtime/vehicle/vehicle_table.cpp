@@ -18,8 +18,8 @@ constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "rotx", "roty",
 // Of one line; new bodies are added.
 TableBody& body_of_line(const LineReader& reader, std::string_view name, const Eigen::Vector3d& position,
                         std::vector<TableBody>& bodies) {
-  if (name.find_first_of("/*") != std::string_view::npos) {
-    throw reader.error(fmt::format("body '{}'", name), "a name without / and *, which results have a use for");
+  if (name.empty() || name.find_first_of("/* \t") != std::string_view::npos) {
+    throw reader.error(fmt::format("body '{}'", name), "a name without blanks, / and *, which results have a use for");
   }
   const auto known =
       std::find_if(bodies.begin(), bodies.end(), [name](const TableBody& body) { return body.name == name; });
