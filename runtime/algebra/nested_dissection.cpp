@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "railtab/runtime/base/index.hpp"
+
 namespace railtab {
 
 namespace {
@@ -22,8 +24,6 @@ class Dissection {
   [[nodiscard]] std::vector<int> order() && { return std::move(order_); }
 
  private:
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
   // The vertices of `part` that can be reached from `start`, level by level.
   std::vector<int> search(int start, int part) {
     const int seen = ++last_part_;

@@ -70,15 +70,12 @@ void ArrayFileWriter::Impl::abandon() noexcept {
 void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version) {
   file = output_file(file);
   if (mode == Mode::growing && std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
-  remove_abandoned(file);
-  temporary = temporary_name(file);
+  TemporaryFile made = create_temporary(file);
+  temporary = made.name;
+  lock = std::move(made.lock);
   const bool whole = mode == Mode::whole_or_nothing;
   handle = hdf5::open_file(temporary, whole ? hdf5::Access::create_whole : hdf5::Access::create_growing);
-  if (!handle.valid()) {
-    temporary.clear();
-    throw hdf5::failure(file.string(), "a file that can be created");
-  }
-  lock = WriterLock(temporary);
+  if (!handle.valid()) throw hdf5::failure(file.string(), "a file that can be created");
   write_text("", "filetype", filetype, 0);
   const std::int64_t version = format_version;
   write_attribute("", "format_version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version);

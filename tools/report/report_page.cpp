@@ -145,7 +145,7 @@ std::string report_page(const RunResults& results) {
   body +=
       html_section("Scene", fmt::format("<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
                                         escaped(results.header.scene_text)));
-  return html_page(results.header.scene_name, body, results.header.program_version);
+  return html_page(page_kind, results.header.scene_name, body, results.header.program_version);
 }
 
 void write_report(const std::filesystem::path& file, const RunResults& results) {
