@@ -130,7 +130,7 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
     no_rest = start(scene, model, warn, state);
     if (no_rest.empty()) {
       displace(scene, model, state);
-      warn(displacement_warning(scene, model, state));
+      for (const std::string& warning : start_warnings(scene, model, state)) warn(warning);
     }
   }
   if (observer.start) observer.start(selection.of(header));
