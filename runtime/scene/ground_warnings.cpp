@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "railtab/runtime/scene/key_warnings.hpp"
+#include "railtab/runtime/scene/scene_case.hpp"
 #include "railtab/runtime/scene/scene_loads.hpp"
 
 // Ground motion that moves nothing, or of which something is left out.

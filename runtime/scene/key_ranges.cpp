@@ -51,7 +51,9 @@ void require_section(std::string_view begin, SceneDraft& draft) {
     if (values == numbers_of(row, defaults)) continue;
     for (const double value : values) {
       if (range->accepts(value)) continue;
-      throw input_error(row.path, fmt::format("{}", value), expected_number(*range, row.unit));
+      const bool integer = std::holds_alternative<IntegerKey>(row.value);
+      throw input_error(row.path, fmt::format("{}", value),
+                        integer ? "an integer " + range->text() : expected_number(*range, row.unit));
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "railtab/runtime/scene/key_warnings.hpp"
+#include "railtab/runtime/scene/scene_case.hpp"
 
 // Deviations of the rails and speeds over time that the run does not meet, or that begin or end abruptly.
 

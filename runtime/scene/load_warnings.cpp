@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "railtab/runtime/scene/key_warnings.hpp"
+#include "railtab/runtime/scene/scene_case.hpp"
 
 // Loads that do not act in the run, or that its time steps may miss.
 

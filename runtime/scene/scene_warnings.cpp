@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "railtab/runtime/scene/key_table.hpp"
+#include "railtab/runtime/scene/scene_case.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/start_checks.hpp"
 

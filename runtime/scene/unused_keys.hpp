@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/toml_leaves.hpp"
 
 namespace railtab::scene {
