@@ -108,7 +108,7 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
     if (!part.empty()) plan.left_out.push_back(std::move(part));
   }
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
-  if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
+  if (setup) setup(fmt::format("memory of a factor of {} degrees of freedom", plan.structure_dofs));
   plan.memory = modal ? modal_step_memory(model, scene.reduction, scene.integration)
                       : step_memory(model, scene.integration.time_step, scene.integration.alpha);
   return plan;

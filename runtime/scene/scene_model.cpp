@@ -89,7 +89,7 @@ void add_contact(const ContactParameters& contact, VsiModel& model) {
   }
 }
 
-// A random track as far as the train comes, its run-in included.
+// A random track as far as the train runs, its pre-roll included.
 Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
   constexpr double margin = 50.0;  // m
   const double end = run_duration(scene, model);

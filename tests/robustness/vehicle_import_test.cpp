@@ -9,11 +9,11 @@
 
 #include "../imported_vehicle.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
