@@ -220,7 +220,7 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
   std::sort(bridge.dof_x.begin(), bridge.dof_x.end());
   model.dof_x = std::move(bridge.dof_x);
   model.spans = std::move(bridge.spans);
-  model.doubts = std::move(bridge.doubts);
+  model.warnings = std::move(bridge.warnings);
   for (size_t side = 0; side < 2; ++side) {
     model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, rail.head_height};
   }
