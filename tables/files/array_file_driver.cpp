@@ -44,8 +44,9 @@ herr_t stop(DriverFile& file) {
 H5FD_t* open(const char* name, unsigned flags, hid_t, haddr_t) {
   auto file = std::make_unique<DriverFile>();
   file->writable = (flags & H5F_ACC_RDWR) != 0;
-  const int create = (flags & H5F_ACC_CREAT) != 0 ? O_CREAT | O_EXCL : 0;
-  file->descriptor = ::open(name, (file->writable ? O_RDWR : O_RDONLY) | create | O_CLOEXEC, 0666);
+  // A new file is there already, empty and locked (create_temporary).
+  const int begin = (flags & H5F_ACC_TRUNC) != 0 ? O_TRUNC | O_NOFOLLOW : 0;
+  file->descriptor = ::open(name, (file->writable ? O_RDWR : O_RDONLY) | begin | O_CLOEXEC);
   if (file->descriptor < 0 || ::fstat(file->descriptor, &file->identity) != 0) {
     report(std::strerror(errno));
     if (file->descriptor >= 0) ::close(file->descriptor);

@@ -258,7 +258,7 @@ File open_file(const std::filesystem::path& file, Access access) {
   }
   const Properties creation = group_properties(H5P_FILE_CREATE);
   require(growing || H5Pset_userblock(creation.get(), seal_bytes) >= 0, file.string(), "room for the seal");
-  return File(H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation.get(), id));
+  return File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), id));
 }
 
 File open_for_reading(const std::filesystem::path& file, FileState& state) {
