@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <exception>
 #include <map>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -259,7 +260,7 @@ ResultWriter::~ResultWriter() {
   try {
     impl_->flush();
     impl_->out.close();
-  } catch (const ComputationError&) {
+  } catch (const std::exception&) {
     // The file keeps what was flushed before, and says that it is incomplete.
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -142,9 +143,17 @@ void require_replaceable(const std::filesystem::path& file, std::initializer_lis
 [[nodiscard]] std::string array_file_checksum(const std::filesystem::path& file);
 
 /// 64-bit FNV-1a over the little-endian bytes: the checksum of what a table stores.
-[[nodiscard]] std::uint64_t checksum(std::span<const double> values,
-                                     std::uint64_t seed = 14695981039346656037ULL) noexcept;
-[[nodiscard]] std::uint64_t checksum(std::span<const float> values, std::uint64_t seed) noexcept;
-[[nodiscard]] std::uint64_t checksum(std::span<const std::uint32_t> values, std::uint64_t seed) noexcept;
+inline constexpr std::uint64_t checksum_seed = 14695981039346656037ULL;
+[[nodiscard]] std::uint64_t checksum_of_bytes(std::span<const std::byte> bytes, std::uint64_t seed) noexcept;
+[[nodiscard]] inline std::uint64_t checksum(std::span<const double> values,
+                                            std::uint64_t seed = checksum_seed) noexcept {
+  return checksum_of_bytes(std::as_bytes(values), seed);
+}
+[[nodiscard]] inline std::uint64_t checksum(std::span<const float> values, std::uint64_t seed) noexcept {
+  return checksum_of_bytes(std::as_bytes(values), seed);
+}
+[[nodiscard]] inline std::uint64_t checksum(std::span<const std::uint32_t> values, std::uint64_t seed) noexcept {
+  return checksum_of_bytes(std::as_bytes(values), seed);
+}
 
 }  // namespace railtab

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "railtab/runtime/base/text_file.hpp"
@@ -137,23 +138,31 @@ Attribute open_attribute(hid_t object, const std::string& at, const char* name) 
 
 }  // namespace
 
-std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name) {
-  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
-  const Type type(H5Aget_type(attribute.get()));
-  if (!type.valid() || H5Tget_class(type.get()) != H5T_INTEGER) throw input_error(at, "no integer", "an integer");
-  std::int64_t value = 0;
-  require(H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) >= 0, at, "a readable integer");
-  return value;
-}
+namespace {
 
-double number_attribute(hid_t object, const std::string& at, std::string_view name) {
+/// Of an integer; where `Number` is floating-point, also of a floating-point attribute.
+template <typename Number>
+Number scalar_attribute(hid_t object, const std::string& at, std::string_view name) {
+  constexpr bool integer = std::is_integral_v<Number>;
   const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
   const Type type(H5Aget_type(attribute.get()));
   const H5T_class_t found = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
-  if (found != H5T_INTEGER && found != H5T_FLOAT) throw input_error(at, "no number", "a number");
-  double value = 0;
-  require(H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0, at, "a readable number");
+  if (found != H5T_INTEGER && (integer || found != H5T_FLOAT)) {
+    throw input_error(at, integer ? "no integer" : "no number", integer ? "an integer" : "a number");
+  }
+  Number value{};
+  require(H5Aread(attribute.get(), integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, &value) >= 0, at, "readable");
   return value;
+}
+
+}  // namespace
+
+std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name) {
+  return scalar_attribute<std::int64_t>(object, at, name);
+}
+
+double number_attribute(hid_t object, const std::string& at, std::string_view name) {
+  return scalar_attribute<double>(object, at, name);
 }
 
 std::string text_attribute(hid_t object, const std::string& at, std::string_view name) {

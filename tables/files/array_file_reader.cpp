@@ -6,7 +6,6 @@
 #include <fstream>
 #include <map>
 #include <system_error>
-#include <utility>
 
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/text_file.hpp"
@@ -127,11 +126,13 @@ struct ArrayFileReader::Impl {
     limit_rows(source, at);
     source.count = count_values(source, bytes(), at);
     std::uint64_t& own = bytes_of[std::string(path)];
-    all_bytes += source.count * source.value_bytes - std::exchange(own, source.count * source.value_bytes);
-    if (all_bytes > bytes()) {
-      throw input_error(at, fmt::format("{} bytes of values up to this dataset", all_bytes),
+    const std::uint64_t now = source.count * source.value_bytes, together = all_bytes - own + now;
+    if (together > bytes()) {
+      throw input_error(at, fmt::format("{} bytes of values up to this dataset", together),
                         fmt::format("no more than the {} bytes of the file", bytes()));
     }
+    all_bytes = together;
+    own = now;
     return source;
   }
 

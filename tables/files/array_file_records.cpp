@@ -49,6 +49,7 @@ ArrayFileWriter::Impl::Growing ArrayFileWriter::Impl::open_growing(const std::st
   entry.extent.resize(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.get(), entry.extent.data(), nullptr);
   for (std::size_t i = 1; i < entry.extent.size(); ++i) entry.row_size *= entry.extent[i];
+  if (entry.row_size == 0) throw input_error(place(file, path), "rows without values", "a growing dataset");
   return entry;
 }
 
@@ -75,6 +76,10 @@ void ArrayFileWriter::Impl::open_records() {
   }
   if (growing.empty()) return;
   blocks = open_growing(hdf5::blocks_dataset);
+  if (blocks.extent.size() != 2 || blocks.row_size != 1 + growing.size()) {
+    throw input_error(place(file, hdf5::blocks_dataset), fmt::format("{} columns", blocks.row_size),
+                      fmt::format("{}, one for each growing dataset and one more", 1 + growing.size()));
+  }
   for (const auto& [path, entry] : growing) {
     if (entry.column < blocks.row_size && entry.column > 0) continue;
     throw input_error(place(file, path, hdf5::column_attribute), fmt::format("{}", entry.column),

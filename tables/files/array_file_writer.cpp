@@ -114,7 +114,9 @@ void ArrayFileWriter::append(std::string_view path, std::span<const double> valu
   const Section section;
   impl_->begin_records();
   const auto found = impl_->growing.find(path);
-  assert(found != impl_->growing.end() && values.size() % found->second.row_size == 0);
+  if (found == impl_->growing.end() || values.size() % found->second.row_size != 0) {  // of a file that was reopened
+    throw input_error(place(impl_->file, path), "no growing dataset with rows of that size", "one to go on with");
+  }
   auto& [name, entry] = *found;
   if (values.empty()) return;
   impl_->append_rows(name, entry, H5T_NATIVE_DOUBLE, values.data(), values.size() / entry.row_size);
