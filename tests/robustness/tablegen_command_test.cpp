@@ -256,6 +256,7 @@ TEST_F(TablegenCommand, PartsOfAnotherTableAreMadeAnew) {
   EXPECT_EQ(before.node, after.node);
   EXPECT_EQ(before.coefficient, after.coefficient);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5.part-0-1"));
+  EXPECT_EQ(contents(folder_ / "out.h5.part-0-2"), "not HDF5") << "somebody's file is replaced";
 }
 
 TEST_F(TablegenCommand, TheOutputIsLookedAtBeforeTheSweep) {

@@ -21,11 +21,11 @@ void require_writable_place(const std::string& file, const std::string& option) 
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     throw input_error(place, fmt::format("no right to write in {}", folder.string()), "a folder that can be written");
   }
-  if (std::filesystem::is_directory(path, refused)) throw input_error(place, "a folder", "a file");
+  static_cast<void>(output_file(path));
+  static_cast<void>(std::filesystem::status(path, refused));
   if (refused && refused != std::errc::no_such_file_or_directory) {
     throw input_error(place, refused.message(), "a name that a file can have");
   }
-  static_cast<void>(output_file(path));
 }
 
 }  // namespace railtab
