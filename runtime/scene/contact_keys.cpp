@@ -52,7 +52,7 @@ std::vector<KeyRow> force_keys() {
        FileKey{of_contact<&ContactParameters::creep_table>},
        {&with_creep_table_law}},
       {"contact.friction", "1", "Coulomb friction coefficient",
-       NumberKey{of_contact<&ContactParameters::friction>, {1e-6, 2.0, true}}},
+       NumberKey{of_contact<&ContactParameters::friction>, {0.0, 2.0}}},
       {"contact.damping", "s/m", "contact damping c of F_n·(1 + c·d'), with the rate of penetration d'",
        NumberKey{of_contact<&ContactParameters::damping>, {0.0, 1e3}}},
       {"contact.curvature_floor", "1/m", "smallest relative lateral curvature of the Hertz ellipse",

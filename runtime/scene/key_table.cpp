@@ -147,7 +147,7 @@ bool KeyRange::accepts(double value) const noexcept {
 }
 
 std::string KeyRange::text() const {
-  return fmt::format("{}{:.6g} to {:.6g}{}", zero ? "0, or " : "", low, high, either_sign ? " of either sign" : "");
+  return fmt::format("{}{:.6g} to {:.6g}{}", zero ? "0 or " : "", low, high, either_sign ? " of either sign" : "");
 }
 
 std::vector<SceneKey> scene_keys() {

@@ -99,16 +99,16 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   plan.duration = static_cast<double>(plan.steps) * scene.integration.time_step;
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
   plan.warnings = scene_warnings(scene, model);
-  describe_vehicle(scene, model, plan);
-  describe_contact(scene, model, plan);
-  describe_structure(scene, model, plan);
-  describe_track(scene, model, plan);
   for (const scene::KeyRow& row : scene::all_keys()) {
     std::string part = row.left_out ? row.left_out(scene) : "";
     if (!part.empty()) plan.left_out.push_back(std::move(part));
   }
+  describe_vehicle(scene, model, plan);
+  describe_contact(scene, model, plan);
+  describe_structure(scene, model, plan);
+  describe_track(scene, model, plan);
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
-  if (setup) setup(fmt::format("memory of a factor of {} degrees of freedom", plan.structure_dofs));
+  if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
   plan.memory = modal ? modal_step_memory(model, scene.reduction, scene.integration)
                       : step_memory(model, scene.integration.time_step, scene.integration.alpha);
   return plan;

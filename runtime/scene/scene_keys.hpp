@@ -17,7 +17,7 @@ struct KeyRange {
   bool either_sign = false;  ///< the range is that of the magnitude
   /// False for NaN and for infinities.
   [[nodiscard]] bool accepts(double value) const noexcept;
-  [[nodiscard]] std::string text() const;  ///< "0.001 to 200", "0, or 10 to 100000 of either sign"
+  [[nodiscard]] std::string text() const;  ///< "0.001 to 200", "0 or 10 to 100000 of either sign"
 };
 
 /// One key that a scene may have, as the reader knows it: the source of the tables in docs/guide/scene.md.

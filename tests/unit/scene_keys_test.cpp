@@ -149,9 +149,9 @@ TEST_F(Scene, ExtremesAreReadOrRejectedWithTheRange) {
   EXPECT_EQ(message(std::string(online) + "[span_deviation]\nshape = \"bending\"\nspan = 1e-300\n"),
             "scene.toml:5: span_deviation.span: found 1e-300, expected a number, 0.5 to 1000 m");
   EXPECT_EQ(message(std::string(online) + "[span_deviation]\nshape = \"bending\"\nbeta = 1e-300\n"),
-            "scene.toml:5: span_deviation.beta: found 1e-300, expected a number, 0, or 0.01 to 100 1/m");
+            "scene.toml:5: span_deviation.beta: found 1e-300, expected a number, 0 or 0.01 to 100 1/m");
   EXPECT_EQ(message(imported_with("") + "structure.origin = [0, 1e300, 0]\n").substr(0, 77),
-            "scene.toml:8: structure.origin: found 1e+300 in the list, expected three numbe");
+            "scene.toml:8: structure.origin: found 1e+300 in the list, expected three numb");
   for (const char* number : {"nan", "inf", "-inf"}) {
     EXPECT_TRUE(message(std::string(online) + "friction = " + number + "\n")
                     .starts_with("scene.toml:3: contact.friction: found"))
@@ -174,7 +174,7 @@ TEST_F(Scene, RangesHoldForParametersOfAProgram) {
   };
   EXPECT_EQ(what([](SceneParameters&) {}), "no error");
   EXPECT_EQ(what([](SceneParameters& scene) { scene.span_deviation.emplace().beta = 1e-300; }),
-            "span_deviation.beta: found 1e-300, expected a number, 0, or 0.01 to 100 1/m");
+            "span_deviation.beta: found 1e-300, expected a number, 0 or 0.01 to 100 1/m");
   EXPECT_EQ(what([](SceneParameters& scene) { scene.train.speed = 0.0; }),
             "train.speed: found 0, expected a number, 0.001 to 200 m/s");
   EXPECT_EQ(what([](SceneParameters& scene) { scene.train.count = 0; }),

@@ -82,7 +82,7 @@ int structure_command(const Arguments& arguments) {
     }
   }();
   for (const std::string& warning : warnings(scene, summary))
-    print_message(fmt::format("vsi structure: warning: {}\n", doubt));
+    print_message(fmt::format("vsi structure: warning: {}\n", warning));
   if (line.json()) {
     print_as_json(scene, summary);
   } else {
