@@ -9,11 +9,11 @@
 
 #include "../imported_vehicle.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
@@ -176,7 +176,7 @@ TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
 TEST_F(VehicleImportFiles, HaveInnerUnknownsOnSprings) {
   FreeCoach coach = free_coach();
   coach.hang_mass(100.0, 0.0);
-  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner unknown", "springs hold"});
+  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner degree of freedom", "springs hold"});
 }
 
 TEST_F(VehicleImportFiles, HaveATableThatFits) {
