@@ -140,7 +140,7 @@ VsiModel build_unreduced_model(const SceneParameters& scene) {
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
   if (scene.track_kind != TrackKind::rigid) {
     model.structure = build_structure(scene);
-    model.structure_doubts = model.structure->doubts;
+    model.structure_doubts = model.structure->warnings;
   }
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   add_loads(scene, model);
