@@ -49,7 +49,7 @@ struct ImportParameters {
 /// The model on its supports. @throws InputError with file and line, row, or key
 [[nodiscard]] FeStructure read_on_supports(const ImportParameters& parameters);
 
-/// Damping of an imported structure, of its unknowns and from the rows that are supports'.
+/// Damping of an imported structure, of its degrees of freedom and from the rows that are supports'.
 struct FeDampingMatrix {
   Eigen::SparseMatrix<double> of_unknowns;
   StructureSupports::Columns of_supports;

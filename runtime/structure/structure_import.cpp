@@ -124,10 +124,10 @@ Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
   return symmetric_mean(file, read_matrix_market(file), rows);
 }
 
-// What becomes of each row: unknown, moved by the ground (y and z of a support), or held.
+// The role of each row: degree of freedom, moved by the ground (y and z of a support), or held.
 std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& support_x) {
   constexpr std::size_t lateral = 1, vertical = 2;
-  std::vector<int> column_of_row(table.sign.size(), RowSplit::unknown);
+  std::vector<int> column_of_row(table.sign.size(), RowSplit::dof);
   for (const auto& [name, node] : table.nodes) {
     if (!node.support) continue;
     const int first = static_cast<int>(2 * support_x.size());
@@ -176,7 +176,9 @@ void settle_named_supports(const std::filesystem::path& file, StructureModel& mo
           "all supports, whose translation strains nothing");
     }
   }
-  const auto name = [](Eigen::Index row) { return fmt::format("unknown {} beside the supports' rows", row + 1); };
+  const auto name = [](Eigen::Index row) {
+    return fmt::format("degree of freedom {} beside the supports' rows", row + 1);
+  };
   settle_supports({model.mass, model.damping, model.stiffness}, translation, name, s);
 }
 

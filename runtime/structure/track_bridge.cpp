@@ -164,7 +164,7 @@ std::vector<StructureNode> named_nodes(const TrackNodes& nodes, const Bridge& br
   return named;
 }
 
-/// Renumbers all unknowns in the order of x, so that the matrices are banded as they stand.
+/// Renumbers all degrees of freedom in the order of x, so that the matrices are banded as they stand.
 class OrderAlongTrack {
  public:
   explicit OrderAlongTrack(const std::vector<double>& dof_x) : number_(dof_x.size()) {

@@ -1,19 +1,19 @@
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
-#include <Eigen/LU>
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 namespace railtab {
 
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme) {
   const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
                                     scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
-  inverse_ = effective.partialPivLu().inverse();
+  inverse_ = dense_inverse(effective);
   restrict_to_wheelsets(vehicle);
 }
 
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, double regularisation) {
   const Eigen::MatrixXd effective = vehicle.stiffness + regularisation * vehicle.mass;
-  inverse_ = effective.partialPivLu().inverse();
+  inverse_ = dense_inverse(effective);
   restrict_to_wheelsets(vehicle);
 }
 

@@ -176,7 +176,7 @@ TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
 TEST_F(VehicleImportFiles, HaveInnerUnknownsOnSprings) {
   FreeCoach coach = free_coach();
   coach.hang_mass(100.0, 0.0);
-  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner unknown", "springs hold"});
+  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner degree of freedom", "springs hold"});
 }
 
 TEST_F(VehicleImportFiles, HaveATableThatFits) {
