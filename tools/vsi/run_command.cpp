@@ -50,7 +50,10 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
     json.add("scene", scene.name).add("structure_dofs", plan.structure_dofs).add("vehicle_dofs", plan.vehicle_dofs);
     json.add("wheels", static_cast<long>(plan.wheels)).add("steps", plan.steps).add("time_step", plan.time_step);
     json.add("duration", plan.duration)
-        .add("memory_bytes", plan.memory)
+        .add("memory_bytes", plan.memory.most)
+        .add("memory_undivided_bytes", plan.memory.undivided)
+        .add("results_bytes", plan.memory.results)
+        .add("step_reads_bytes", plan.memory.step_reads)
         .add("built", plan.built)
         .add("left_out", plan.left_out)
         .add("warnings", plan.warnings);
@@ -60,7 +63,9 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   fmt::print("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
   fmt::print("  {} unknowns of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs, plan.vehicle_dofs,
              plan.wheels);
-  fmt::print("  {:.3g} MB for what the steps work on, besides contact tables and records\n", 1e-6 * plan.memory);
+  fmt::print("  at most {:.4g} MB of memory in all, {:.4g} MB where no step is divided; a step reads {:.3g} MB of it\n",
+             1e-6 * plan.memory.most, 1e-6 * plan.memory.undivided, 1e-6 * plan.memory.step_reads);
+  fmt::print("  {:.4g} MB of results\n", 1e-6 * plan.memory.results);
   for (const std::string& part : plan.built) fmt::print("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) fmt::print("  left out: {}\n", part);
   for (const std::string& warning : plan.warnings) print_warning(warning);
