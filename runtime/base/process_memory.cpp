@@ -15,7 +15,7 @@ double resident_memory() noexcept {
   long pages = 0;
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   if (!file) return 0.0;
-  const bool read = std::fscanf(file, "%*ld %ld", &pages) == 1;
+  const bool read = std::fscanf(file, "%*d %ld", &pages) == 1;
   std::fclose(file);
   return read ? static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0.0;
 }
