@@ -83,6 +83,8 @@ void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan
   }
 }
 
+constexpr double wide = 1000.0;  // entries per degree of freedom: tracks have 100, narrow solid bridges 500
+
 }  // namespace
 
 RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
@@ -109,8 +111,14 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   describe_track(scene, model, plan);
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
   if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
-  plan.memory = modal ? modal_step_memory(model, scene.reduction, scene.integration)
-                      : step_memory(model, scene.integration.time_step, scene.integration.alpha);
+  plan.memory = planned_memory(scene, model, plan.duration);
+  if (plan.memory.entries_per_dof > wide) {
+    plan.warnings.push_back(fmt::format(
+        "the structure is coupled widely: its factor has {:.0f} entries per degree of freedom, and every step and the "
+        "set-up take accordingly long; long beam elements under many sleepers (bridge.elements) and solid models that "
+        "are wide and high do that",
+        plan.memory.entries_per_dof));
+  }
   return plan;
 }
 

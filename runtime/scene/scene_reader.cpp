@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
@@ -260,15 +259,6 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
   return std::move(draft.parameters);
 }
 
-std::string whole_file(const std::filesystem::path& file) {
-  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "a TOML scene");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (!stream) throw input_error(file.string(), "a file that cannot be read", "a TOML scene");
-  return content.str();
-}
-
 }  // namespace
 }  // namespace railtab::scene
 
@@ -276,7 +266,7 @@ namespace railtab {
 
 SceneParameters read_scene(const std::filesystem::path& file) {
   scene::SceneDraft draft;
-  draft.parameters.text = scene::whole_file(file);
+  draft.parameters.text = read_toml_text(file, "a TOML scene");
   try {
     const toml::table root = toml::parse(draft.parameters.text, file.string());
     const std::vector<scene::Leaf> leaves = scene::leaves_of(root, file);

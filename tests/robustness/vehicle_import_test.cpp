@@ -160,6 +160,23 @@ TEST_F(VehicleImportFiles, MustHaveMass) {
   expect_refused(coach, {"m.mtx: row", "symmetric"});
 }
 
+// Finite and absurd numbers are named before anything is computed with them.
+TEST_F(VehicleImportFiles, HaveScalesOfAVehicle) {
+  FreeCoach coach = free_coach();
+  const int row = coach.row("CAR", z);
+  coach.mass(row, row) = 1e150;
+  expect_refused(coach, {"m.mtx: row", "(z of CAR)", "found mass 1e+150, expected -1e+09 to 1e+09 in SI units"});
+  coach = free_coach();
+  coach.stiffness(row, row) = 1e300;
+  expect_refused(coach, {"k.mtx: row", "(z of CAR)", "stiffness 1e+300", "-1e+18 to 1e+18"});
+  coach = free_coach();
+  coach.damping(row, row) = -1e200;
+  expect_refused(coach, {"c.mtx: row", "(z of CAR)", "damping -1e+200"});
+  coach = free_coach();
+  coach.mass(row, row) = 1e-15;
+  expect_refused(coach, {"m.mtx: row", "(z of CAR)", "Hz", "0 to 1e+09 Hz"});
+}
+
 TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
   FreeCoach braked = free_coach();
   add_spring(braked, "WS1", "bogie-1", {0.0, 0.0, 0.0}, {0.0, 1e4, 0.0}, braked.stiffness);
