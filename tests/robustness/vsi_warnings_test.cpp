@@ -136,7 +136,7 @@ TEST_F(SceneWarnings, OfIrregularitiesThatEndInAStep) {
 // A plan counts modes: seeking 2000 of them takes a minute.
 TEST_F(SceneWarnings, APlanDoesNotSeekModes) {
   const std::string output = plan("[[bridge]]\ncount = 3\n[structure]\nreduction = \"modal\"\nmodes = 2000\n");
-  expect(output, "2000 unknowns of the structure");
+  expect(output, "2000 degrees of freedom of the structure");
   expect(output, "modal, 2000 modes with static correction");
 }
 
