@@ -87,7 +87,7 @@ std::optional<GeometryTableData> earlier_part(const std::filesystem::path& file,
   try {
     GeometryTableData part = read_geometry_table(file);
     if (part.shard == heading.shard && difference_of_parts(heading, part).empty()) return part;
-  } catch (const InputError&) {  // cut short, or of another version: made anew
+  } catch (const InputError&) {  // incomplete or of another version: generated again
   }
   return {};
 }

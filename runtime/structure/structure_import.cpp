@@ -1,5 +1,4 @@
 #include "railtab/runtime/structure/structure_import.hpp"
-#include "railtab/runtime/fe/fe_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,9 @@
 
 #include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/fe/fe_matrix.hpp"
+#include "railtab/runtime/fe/matrix_scales.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
 #include "railtab/runtime/structure/fe_supports.hpp"
@@ -124,10 +126,10 @@ Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
   return symmetric_mean(file, read_matrix_market(file), rows);
 }
 
-// What becomes of each row: unknown, moved by the ground (y and z of a support), or held.
+// The role of each row: degree of freedom, moved by the ground (y and z of a support), or held.
 std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& support_x) {
   constexpr std::size_t lateral = 1, vertical = 2;
-  std::vector<int> column_of_row(table.sign.size(), RowSplit::unknown);
+  std::vector<int> column_of_row(table.sign.size(), RowSplit::dof);
   for (const auto& [name, node] : table.nodes) {
     if (!node.support) continue;
     const int first = static_cast<int>(2 * support_x.size());
@@ -176,8 +178,25 @@ void settle_named_supports(const std::filesystem::path& file, StructureModel& mo
           "all supports, whose translation strains nothing");
     }
   }
-  const auto name = [](Eigen::Index row) { return fmt::format("unknown {} beside the supports' rows", row + 1); };
+  const auto name = [](Eigen::Index row) {
+    return fmt::format("degree of freedom {} beside the supports' rows", row + 1);
+  };
   settle_supports({model.mass, model.damping, model.stiffness}, translation, name, s);
+}
+
+void check_numbers(const StructureFiles& files, const DofTable& table, const StructureModel& model) {
+  const auto row_text = [&](Eigen::Index row) {
+    for (const auto& [name, node] : table.nodes) {
+      for (std::size_t k = 0; k < node.dof.size(); ++k) {
+        if (node.dof[k] == row) return fmt::format("row {} (node {}, {})", row + 1, name, motion_names[k]);
+      }
+    }
+    return fmt::format("row {}", row + 1);
+  };
+  const FileMatrix mass{model.mass, files.mass}, stiffness{model.stiffness, files.stiffness};
+  check_scales(mass, {model.damping, files.damping}, stiffness, structure_scales, row_text);
+  check_off_diagonals(mass, "mass", row_text);
+  check_off_diagonals(stiffness, "stiffness", row_text);
 }
 
 }  // namespace
@@ -193,6 +212,7 @@ StructureModel import_structure(const StructureFiles& files) {
     *matrix = sign.asDiagonal() * *matrix * sign.asDiagonal();
     matrix->makeCompressed();
   }
+  check_numbers(files, table, model);
   const RowSplit rows(columns_of_rows(table, model.supports.x));
   if (model.supports.columns() > 0) {
     StructureSupports& s = model.supports;

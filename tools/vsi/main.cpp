@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/process_memory.hpp"
 
 namespace railtab::vsi {
 namespace {
@@ -44,5 +45,6 @@ int dispatch(const Arguments& arguments) {
 }  // namespace railtab::vsi
 
 int main(int argc, char** argv) {
+  railtab::return_large_pieces();
   return railtab::run_process("vsi", [&] { return railtab::vsi::dispatch({argv + 1, argv + argc}); });
 }

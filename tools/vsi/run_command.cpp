@@ -57,16 +57,22 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
                      {"steps", plan.steps},
                      {"time_step", plan.time_step},
                      {"duration", plan.duration},
-                     {"memory_bytes", plan.memory},
+                     {"memory_bytes", plan.memory.most},
+                     {"memory_undivided_bytes", plan.memory.undivided},
+                     {"results_bytes", plan.memory.results},
+                     {"step_reads_bytes", plan.memory.step_reads},
                      {"built", plan.built},
                      {"left_out", plan.left_out},
                      {"warnings", plan.warnings}});
     return 0;
   }
   print_formatted("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
-  print_formatted("  {} unknowns of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
+  print_formatted("  {} degrees of freedom of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
                   plan.vehicle_dofs, plan.wheels);
-  print_formatted("  {:.3g} MB for what the steps work on, besides contact tables and records\n", 1e-6 * plan.memory);
+  print_formatted(
+      "  at most {:.4g} MB of memory in all, {:.4g} MB where no step is divided; a step reads {:.3g} MB of it\n",
+      1e-6 * plan.memory.most, 1e-6 * plan.memory.undivided, 1e-6 * plan.memory.step_reads);
+  print_formatted("  {:.4g} MB of results\n", 1e-6 * plan.memory.results);
   for (const std::string& part : plan.built) print_formatted("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) print_formatted("  left out: {}\n", part);
   for (const std::string& warning : plan.warnings) print_warning(warning);

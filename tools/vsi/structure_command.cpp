@@ -26,10 +26,10 @@ StructureSummary summary_of(const SceneParameters& scene, int modes) {
   throw input_error("scene", "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
 }
 
-std::vector<std::string> doubts(const SceneParameters& scene, const StructureSummary& s) {
+std::vector<std::string> warnings(const SceneParameters& scene, const StructureSummary& s) {
   const double length = s.high[0] - s.low[0];
   if (scene.structure.files.nodes.empty() || !(length > 0.0)) return {};
-  return doubts_about(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
+  return plausibility_warnings(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
 }
 
 /// No "-0.000" for what turning axes leaves of zero [m].
@@ -81,8 +81,8 @@ int structure_command(const Arguments& arguments) {
       throw with_scene_line(wrong, scene, file);
     }
   }();
-  for (const std::string& doubt : doubts(scene, summary))
-    print_message(fmt::format("vsi structure: warning: {}\n", doubt));
+  for (const std::string& warning : warnings(scene, summary))
+    print_message(fmt::format("vsi structure: warning: {}\n", warning));
   if (line.json()) {
     print_as_json(scene, summary);
   } else {

@@ -94,7 +94,11 @@ class Sweep {
   void set_aside(const SweepRun& run, const char* suffix, const std::string& why) const {
     const fs::path old = file(run, suffix);
     fs::path aside = old.string() + "." + why;
-    for (int k = 2; fs::exists(aside); ++k) aside = fmt::format("{}.{}-{}", old.string(), why, k);
+    constexpr int most = 10000;
+    for (int k = 2; fs::exists(aside); ++k) {
+      if (k > most) throw input_error(old.string(), fmt::format("{} files set aside", most), "fewer: remove them");
+      aside = fmt::format("{}.{}-{}", old.string(), why, k);
+    }
     fs::rename(old, aside);
     print_message(fmt::format("vsi sweep: {}: {} is set aside as {}\n", run.name, old.filename().string(),
                               aside.filename().string()));

@@ -1,4 +1,4 @@
-#include "railtab/tablegen/profile_intersection.hpp"
+#include "railtab/tablegen/intersection/profile_intersection.hpp"
 
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
