@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -152,6 +153,22 @@ void add_columns(const double* column, int height, int begin, const double* fact
   }
 }
 
+/// Numbers and rows of all blocks, see StructureFactor::store().
+struct Room {
+  std::size_t values = 0, rows = 0;
+};
+
+Room room_of(const std::vector<Columns>& blocks) {
+  Room room;
+  for (const Columns& columns : blocks) {
+    const int n = columns.count(), below = in_fours(columns.below);
+    room.rows += static_cast<std::size_t>(below);
+    room.values +=
+        static_cast<std::size_t>(n > narrow ? in_fours(n + columns.below) * n : triangle_room(n) + below * n);
+  }
+  return room;
+}
+
 /// result <- columnsᵀ · vector, from row `begin` on.
 template <int number>
 void products(const double* column, int height, int begin, const double* vector, double* result) {
@@ -178,10 +195,15 @@ StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : 
   inverse_D_ = simplicial.vectorD().cwiseInverse();
   const auto& order = simplicial.permutationP().indices();
   position_.assign(order.data(), order.data() + order.size());
-  Sparse L = simplicial.matrixL().nestedExpression();  // below the diagonal, rows ascending
-  L.makeCompressed();
+  const Sparse& L = simplicial.matrixL().nestedExpression();  // below the diagonal, compressed, rows ascending
+  assert(L.isCompressed());
+  entries_ = static_cast<std::size_t>(L.nonZeros());
 
   const std::vector<Columns> found = by_height(supernodes(L), L);
+  const Room room = room_of(found);  // growing by themselves, vectors are there twice
+  values_.reserve(room.values);
+  rows_.reserve(room.rows);
+  blocks_.reserve(found.size());
   block_of_.resize(position_.size());
   for (const Columns& columns : found) {
     Block block{columns.begin, columns.count(), columns.below, static_cast<int>(rows_.size()), values_.size(), -1};
@@ -245,6 +267,11 @@ void StructureFactor::store(const Eigen::MatrixXd& dense, const Block& block) {
 
 std::size_t StructureFactor::bytes() const noexcept {
   return values_.size() * sizeof(double) + rows_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
+}
+
+std::size_t StructureFactor::stored_bytes() const noexcept {
+  return bytes() + (block_of_.size() + position_.size()) * sizeof(int) +
+         static_cast<std::size_t>(inverse_D_.size()) * sizeof(double);
 }
 
 void StructureFactor::find_path(std::span<const int> unknowns, Path& path) const {

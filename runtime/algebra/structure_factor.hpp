@@ -31,6 +31,10 @@ class StructureFactor {
   [[nodiscard]] Eigen::Index room() const noexcept { return size() + 1; }
   /// What one half of a back-substitution reads [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// All that it keeps [bytes].
+  [[nodiscard]] std::size_t stored_bytes() const noexcept;
+  /// Entries of L below the diagonal, which are there in column form too while the factor is made.
+  [[nodiscard]] std::size_t entries() const noexcept { return entries_; }
 
   /// Blocks of unknowns and everything above them, ascending.
   class Path {
@@ -89,6 +93,7 @@ class StructureFactor {
   Vector inverse_D_;
   int first_ = 0;  // the unknown that the range begins with
   int most_height_ = 0;
+  std::size_t entries_ = 0;
 };
 
 }  // namespace railtab

@@ -25,7 +25,7 @@ struct Bridge {
   std::vector<std::array<double, 2>> spans;  // from and to [m]
   std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
   std::string beyond_supports;               // StructureSupports::beyond
-  std::vector<std::string> warnings;         // on the imported structure
+  std::vector<std::string> warnings;         // on what was imported
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
   /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;

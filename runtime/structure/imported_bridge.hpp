@@ -63,6 +63,6 @@ struct FeDampingMatrix {
 
 /// Sentences on a mass per length [kg/m] and a first frequency [Hz] (0: not known) that no railway bridge has: units,
 /// densities or supports may be wrong.
-[[nodiscard]] std::vector<std::string> import_warnings(double mass_per_length, double first_frequency);
+[[nodiscard]] std::vector<std::string> plausibility_warnings(double mass_per_length, double first_frequency);
 
 }  // namespace railtab

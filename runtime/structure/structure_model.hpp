@@ -71,7 +71,7 @@ struct StructureModel {
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.
   std::vector<std::array<double, 2>> spans;
   StructureSupports supports;
-  std::vector<std::string> warnings{};  ///< on an imported structure whose mass or frequency is implausible
+  std::vector<std::string> warnings{};  ///< of an imported structure that is unlike any bridge
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 

@@ -11,6 +11,7 @@
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/fe/matrix_scales.hpp"
 
 namespace railtab {
 
@@ -197,6 +198,13 @@ void check_wheelsets(const FreeVehicle& vehicle) {
   if (car.row[0] == held) {
     throw input_error(car.place, fmt::format("car body {} without x", car.name), "a free vehicle, the train holds it");
   }
+}
+
+void check_numbers(const FreeVehicle& vehicle) {
+  const Eigen::SparseMatrix<double> mass = vehicle.mass.sparseView(), damping = vehicle.damping.sparseView(),
+                                    stiffness = vehicle.stiffness.sparseView();
+  check_scales({mass, vehicle.import.mass}, {damping, vehicle.import.damping}, {stiffness, vehicle.import.stiffness},
+               vehicle_scales, [&](Index row) { return row_text(vehicle, row); });
 }
 
 void check_mass(const FreeVehicle& vehicle) {

@@ -24,6 +24,9 @@ struct FreeVehicle {
 /// their axles at one height. @throws InputError
 void check_wheelsets(const FreeVehicle& vehicle);
 
+/// The matrices' scales fit a vehicle and each other: vehicle_scales. @throws InputError naming file, row and value
+void check_numbers(const FreeVehicle& vehicle);
+
 /// The mass is positive definite. @throws InputError naming file and row
 void check_mass(const FreeVehicle& vehicle);
 

@@ -72,6 +72,7 @@ FreeVehicle read_free_vehicle(const VehicleImport& import) {
   vehicle.car_body = body_index(vehicle.bodies, import.car_body, "vehicle.car_body");
   convert(vehicle);
   check_wheelsets(vehicle);
+  check_numbers(vehicle);
   check_mass(vehicle);
   vehicle.rigid = rigid_motions(vehicle);
   check_free_motions(vehicle);

@@ -250,6 +250,7 @@ StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& op, 
       solve_contact_forces(model, op, free_force, lines, ws);
       ++report.newton_iterations;
     }
+    if (!ws.rigid_wheels.force.allFinite()) break;  // the system of the forces is singular
     if (!model.structure) {
       report.converged = true;
       break;

@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <map>
 
 #include "railtab/runtime/base/stopwatch.hpp"
@@ -100,11 +102,20 @@ class Integrator {
     const Stopwatch watch(seconds_setup);
     auto found = operators_.find(level);
     if (found == operators_.end()) {
+      make_room(level);
       const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = std::ldexp(parameters_.time_step, -level)};
       found = operators_.emplace(level, StepOperators(model_, scheme)).first;
     }
     found->second.follow(model_, time, active_);
     return found->second;
+  }
+
+  // Memory is bounded: of divided steps' operators, those of the level farthest from the one to come go. Nobody holds
+  // on to operators of another level: a step that is divided has done with its own.
+  void make_room(int level) {
+    if (operators_.size() < most_operators) return;
+    const auto finest = std::prev(operators_.end()), coarsest = std::next(operators_.begin());
+    operators_.erase(std::abs(finest->first - level) > std::abs(coarsest->first - level) ? finest : coarsest);
   }
 
   bool step(int level, VsiState& state, RunSummary& summary) {

@@ -28,6 +28,11 @@ class StepOperators {
   /// part.
   void follow(const VsiModel& model, double time, const DofRange& active);
 
+  /// What one of them keeps for a vehicle [bytes].
+  [[nodiscard]] static double vehicle_bytes(const VsiModel& model);
+  /// The largest table of compliances of a run of `duration` [s] [bytes].
+  [[nodiscard]] static double largest_table(const VsiModel& model, double duration, double time_step);
+
  private:
   double speed_;                                   ///< of the gyroscopic terms [m/s]
   double covered_from_ = 0.0, covered_to_ = -1.0;  ///< positions along the track [m]; none at first
