@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "railtab/runtime/base/index.hpp"
+
 namespace railtab {
 
 namespace {
@@ -35,7 +37,6 @@ class Dissection {
 
  private:
   static constexpr int no_part = -1;
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
   // The vertices of `part` that can be reached from `start`, level by level.
   std::vector<int> search(int start, int part) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/wheelset_seat.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
@@ -30,8 +31,6 @@ constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
 constexpr double out_of_balance = 1e-3;                         // of the static wheel load
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // The linear parts at rest, made once.
 struct RestOperators {

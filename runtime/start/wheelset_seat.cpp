@@ -4,14 +4,13 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Heights of wheels against their rails [m]: the tips of flanges lift them by 28 mm.
 constexpr double highest = 0.04, deepest = 0.02;

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 
@@ -12,8 +13,6 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Sparse = Eigen::SparseMatrix<double>;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Which part of the structure an unknown belongs to.
 struct Parts {

@@ -98,7 +98,7 @@ std::vector<VehicleBody> named_bodies(const FreeVehicle& vehicle) {
   return bodies;
 }
 
-// Rows that are no unknowns of a run.
+// Rows that are no degrees of freedom of a run.
 std::vector<bool> held_rows(const FreeVehicle& vehicle, MotionPlane plane) {
   std::vector<bool> is_held(static_cast<std::size_t>(vehicle.mass.rows()), false);
   const auto hold = [&](const TableBody& body, std::size_t motion) {

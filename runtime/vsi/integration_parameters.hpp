@@ -18,8 +18,7 @@ struct IntegrationParameters {
   double impact_step = 3.125e-5;
   double tolerance = 1e-4;  ///< Newton: change of contact forces relative to the static wheel load
   int max_iterations = 20;
-  int max_halvings = 6;   ///< of a step that does not converge
-  void validate() const;  ///< @throws InputError naming the member out of range
+  int max_halvings = 6;  ///< of a step that does not converge
 };
 
 }  // namespace railtab

@@ -1,7 +1,6 @@
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
-#include <Eigen/LU>
-
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -9,7 +8,7 @@ namespace railtab {
 namespace {
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& effective) {
-  Eigen::MatrixXd inverse = effective.partialPivLu().inverse();
+  Eigen::MatrixXd inverse = dense_inverse(effective);
   if (inverse.allFinite()) return inverse;
   throw ComputationError("the vehicle's effective matrix has no inverse: check masses and stiffnesses of the vehicle");
 }

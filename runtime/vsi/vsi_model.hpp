@@ -41,9 +41,9 @@ struct DeviationHistory {
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
-  std::vector<double> vehicle_x;                ///< of the vehicles' centres at t = 0, front first [m]
-  std::optional<StructureModel> structure;      ///< reduced, where a reduction is chosen
-  std::vector<std::string> structure_doubts{};  ///< StructureModel::doubts of what was imported
+  std::vector<double> vehicle_x;                  ///< of the vehicles' centres at t = 0, front first [m]
+  std::optional<StructureModel> structure;        ///< reduced, where a reduction is chosen
+  std::vector<std::string> structure_warnings{};  ///< StructureModel::warnings of what was imported
   /// Of a modal structure whose left-out modes answer without inertia: all of it.
   std::shared_ptr<const StructureModel> unreduced;
   std::optional<WindowModel> window;  ///< for Reduction::window

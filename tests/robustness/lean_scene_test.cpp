@@ -1,4 +1,4 @@
-// A scene pays for what it names: on rigid track with a linear creep law no matrix of a structure is built and no file
+// A scene costs what it names: on rigid track with a linear creep law no matrix of a structure is built and no file
 // of one, nor the creep table, is opened.
 
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
   std::string left_out;
   for (const std::string& part : plan.left_out) left_out += part + "\n";
   EXPECT_NE(left_out.find("the track is rigid"), std::string::npos);
-  EXPECT_NE(left_out.find("lateral, roll and yaw unknowns of the vehicles"), std::string::npos);
+  EXPECT_NE(left_out.find("lateral, roll and yaw degrees of freedom of the vehicles"), std::string::npos);
   EXPECT_NE(left_out.find("creep forces"), std::string::npos);
   vertical.track_kind = TrackKind::flexible;
   vertical.structure.files = {};

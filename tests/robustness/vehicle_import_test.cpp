@@ -9,11 +9,11 @@
 
 #include "../imported_vehicle.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
@@ -109,7 +109,7 @@ TEST_F(VehicleImportFiles, AreSummedUpInThePlan) {
       vehicle_section() + "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1\n"));
   std::string built;
   for (const std::string& part : plan.built) built += part + "\n";
-  EXPECT_NE(built.find("1 x imported, 41 unknowns each"), std::string::npos) << built;
+  EXPECT_NE(built.find("1 x imported, 41 degrees of freedom each"), std::string::npos) << built;
   // 32 t + 2 x 2.615 t + 4 x 1.813 t on eight wheels; bounce as in docs/theory/vehicle.md
   EXPECT_NE(built.find("k.mtx: 44482 kg, wheels of the wheelsets carry 54.55, 54.55, 54.55, 54.55 kN"),
             std::string::npos)
@@ -193,7 +193,7 @@ TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
 TEST_F(VehicleImportFiles, HaveInnerUnknownsOnSprings) {
   FreeCoach coach = free_coach();
   coach.hang_mass(100.0, 0.0);
-  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner unknown", "springs hold"});
+  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner degree of freedom", "springs hold"});
 }
 
 TEST_F(VehicleImportFiles, HaveATableThatFits) {

@@ -147,7 +147,7 @@ void study_long_line(const std::string& table, const std::filesystem::path& fold
       }
     }
   }
-  write_text_file(folder / "long_line.csv", text);
+  write_text_file(folder / "long_line.csv", text, "# railtab ");
 }
 
 // The first seconds of docs/examples/viaduct.toml.
@@ -179,7 +179,7 @@ void study_steps(const std::string& table, const std::filesystem::path& folder) 
     fmt::print("{}", text.substr(text.rfind('\n', text.size() - 2) + 1));
     std::fflush(stdout);
   }
-  write_text_file(folder / "crossing_steps.csv", text);
+  write_text_file(folder / "crossing_steps.csv", text, "# railtab ");
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -229,7 +229,7 @@ int run(const std::vector<std::string>& arguments) {
     std::fflush(stdout);
     write_text_file(folder / "reduction_force.svg", log_figure(force));
     write_text_file(folder / "reduction_deck.svg", log_figure(deck));
-    write_text_file(folder / "reduction.csv", table);
+    write_text_file(folder / "reduction.csv", table, "# railtab ");
   }
   return 0;
 }
