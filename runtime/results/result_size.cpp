@@ -31,7 +31,7 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
     size.memory += std::min(2.0 * bytes, cache) + number * row * std::min(records, between_flushes);
   }
   for (const columns::HeaderColumn& column : columns::header) {
-    size.file += number * static_cast<double>((header.*column.value).size());
+    size.file += number * static_cast<double>((header.*column.values).size());
   }
   size.file += static_cast<double>(header.scene_text.size());
   constexpr double slots = 2.0, copies = 3.0;  // packed, with its counters, and HDF5's own
