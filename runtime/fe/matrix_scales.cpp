@@ -48,8 +48,7 @@ void check_ratio(const FileMatrix& stiffness, double largest_ratio, const RowTex
 void check_frequencies(const FileMatrix& mass, const FileMatrix& stiffness, const MatrixScales& scales,
                        const RowText& row_text) {
   const Eigen::VectorXd m = mass.matrix.diagonal(), k = stiffness.matrix.diagonal();
-  constexpr double massless = 1e-20;  // of the largest: what rounding leaves of no mass
-  const double least = m.size() == 0 ? 0.0 : massless * m.maxCoeff();
+  const double least = m.size() == 0 ? 0.0 : scales.massless * m.maxCoeff();
   for (Index row = 0; row < m.size(); ++row) {
     if (!(m[row] > least) || !(k[row] > 0.0)) continue;
     const double frequency = std::sqrt(k[row] / m[row]) / (2.0 * std::numbers::pi);

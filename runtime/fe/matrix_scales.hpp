@@ -16,6 +16,7 @@ struct MatrixScales {
   double largest_ratio = 1e20;                              ///< of a stiffness on the diagonal to the least one there
   /// sqrt(k/m)/(2π) of single rows [Hz]: the lowest natural frequency is below all of them, the highest above.
   double lowest_frequency, highest_frequency;
+  double massless = 0.0;  ///< share of the largest mass that is rounding of none
 };
 /// The heaviest bridges have 1e9 kg, penalty stiffnesses reach 1e20 N/m, the longest suspension bridges swing at 0.04
 /// Hz. Light rotations on penalties are the fastest rows.
@@ -23,7 +24,8 @@ inline constexpr MatrixScales structure_scales{.largest_mass = 1e15,
                                                .largest_damping = 1e25,
                                                .largest_stiffness = 1e25,
                                                .lowest_frequency = 1e-3,
-                                               .highest_frequency = 1e12};
+                                               .highest_frequency = 1e12,
+                                               .massless = 1e-20};
 /// A row of a free vehicle may have no spring at all, the rotation of a wheelset.
 inline constexpr MatrixScales vehicle_scales{.largest_mass = 1e9,
                                              .largest_damping = 1e15,

@@ -21,6 +21,8 @@ constexpr double state_vectors = 5.0;                        // LinearMotion
 constexpr double start_vectors = 6.0 * state_vectors + 8.0;  // states of steady_start(), loads and solutions
 constexpr double step_vectors = 2.0 * state_vectors + 14.0;  // StepWorkspace, and the state that the run begins with
 constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
+constexpr double small = 1 << 20;   // bytes: vectors that the allocator keeps when they are freed, in pieces
+constexpr double allocator = 1.03;  // of what is asked of it: ends of pages and pieces
 
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {
@@ -44,8 +46,8 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
       result_size(selection.of(result_header(scene, model)), std::floor(steps / scene.output.every) + 2.0, state);
   plan.results = results.file;
   const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);
-  plan.undivided = std::max(peak, built + train + operators + results.memory);
-  plan.most = std::max(peak, built + train + most_operators * operators + results.memory);
+  plan.undivided = allocator * std::max(peak, built + train + operators + results.memory);
+  plan.most = plan.undivided + allocator * (most_operators - 1) * operators;
   if (!model.structure) return plan;
 
   const StructureModel& s = *model.structure;
@@ -57,6 +59,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
   const double start = number * n * start_vectors + m.kept + std::max(m.setup, m.low + m.low_setup);
   const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
+  const double pieces = number * n < small ? number * n * start_vectors : 0.0;  // what the start has left
   const double common = built + train;
   plan.undivided = std::max({peak, common + start, common + vectors + operators + while_made});
   plan.most =
