@@ -63,11 +63,6 @@ std::vector<Rule> without_contact_or_deviation(const SceneDraft& draft) {
        draft.parameters.contact.mode != ContactMode::paper,
        "contact.mode = \"paper\"",
        "contact.mode = \"table\" or \"online\": no impact of points that jump is divided"},
-      {{"integration.impact_step"},
-       reduction.kind != Reduction::modal || !reduction.static_correction,
-       "structure.reduction = \"modal\" with static correction",
-       "structure.static_correction = false, or another reduction: no impact on modes that answer without inertia is "
-       "divided"},
       {{"irregularity.seed"}, random, "no irregularity.spectrum", "one, or no seed"},
       {{"irregularity.shortest_wave", "irregularity.longest_wave"},
        random,
@@ -88,8 +83,7 @@ std::vector<Rule> without_structure(const SceneDraft& draft) {
   const bool import = !scene.structure.files.stiffness.empty();
   const bool by_rows = own_rails && scene.structure.files.nodes.empty();
   const bool deck = scene.structure.deck.given(), report = !scene.structure.report.empty();
-  const std::vector<std::string_view> reductions{"structure.reduction", "structure.modes",
-                                                 "structure.static_correction", "structure.window_"};
+  const std::vector<std::string_view> reductions{"structure.reduction", "structure.window_"};
   constexpr std::string_view no_stiffness = "no structure.stiffness";
   return {
       {{"track."},
@@ -151,14 +145,6 @@ std::vector<Rule> without_reduction(const SceneDraft& draft, const std::vector<L
        off || scene.track_kind != TrackKind::rigid,
        "track.kind = \"rigid\"",
        "a structure to reduce, or \"none\""},
-      {{"structure.modes"},
-       off || kind == Reduction::modal || kind == Reduction::craig_bampton,
-       "a structure.reduction without modes",
-       "\"modal\" or \"craig-bampton\""},
-      {{"structure.static_correction"},
-       off || kind == Reduction::modal,
-       "a structure.reduction without it",
-       "\"modal\""},
       {{"structure.window_"}, off || kind == Reduction::window, "a structure.reduction without window", "\"window\""},
   };
 }

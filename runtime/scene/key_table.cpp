@@ -65,7 +65,7 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
                  [&](const ContactModeKey&) { set("choice", "table, online, paper", "table"); },
                  [&](const TrackKindKey&) { set("choice", "rigid, flexible, imported", "flexible"); },
                  [&](const NormalContactKey&) { set("choice", "hertz, rigid", "hertz"); },
-                 [&](const ReductionKey&) { set("choice", "none, modal, craig-bampton, window", "none"); },
+                 [&](const ReductionKey&) { set("choice", "none, window", "none"); },
                  [&](const TextListKey& k) {
                    const std::vector<std::string>& list = k.member(standard);
                    set("list of texts", "any", list.empty() ? "" : fmt::format("[\"{}\"]", fmt::join(list, "\", \"")));

@@ -18,18 +18,6 @@ double bytes_of(const Matrix& matrix) {
 
 }  // namespace
 
-double modal_step_memory(const VsiModel& unreduced, const ReductionParameters& reduction,
-                         const IntegrationParameters& integration) {
-  const double n = unreduced.structure->dofs(), m = std::min(n, static_cast<double>(reduction.modes));
-  VsiModel rest;  // the vehicle, and with the static correction the structure behind the modes
-  rest.vehicle = unreduced.vehicle;
-  if (reduction.static_correction) rest.structure = unreduced.structure;
-  // damping matrix with its indices; factors for steps and compliances, half full; shapes
-  constexpr double entry = sizeof(double) + sizeof(int), factors = 1.0 + low_factor;
-  return step_memory(rest, integration.time_step, integration.alpha) + entry * m * m +
-         factors * 0.5 * sizeof(double) * m * m + sizeof(double) * n * m;
-}
-
 double step_memory(const VsiModel& model, double time_step, double alpha) {
   constexpr double vehicle_matrices = 6.0;  // M, C, K, gyroscopic, and for the step C with it and the inverse
   const double n = model.vehicle.dofs();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
@@ -9,9 +8,5 @@ namespace railtab {
 /// made for this time step, and the factor that rail compliances come from, by its usual size. Without tables of
 /// contact geometry and creep, records and the program itself.
 [[nodiscard]] double step_memory(const VsiModel& model, double time_step, double alpha);
-
-/// The same of a model whose structure is still to be reduced to modes, without seeking them.
-[[nodiscard]] double modal_step_memory(const VsiModel& unreduced, const ReductionParameters& reduction,
-                                       const IntegrationParameters& integration);
 
 }  // namespace railtab

@@ -19,16 +19,8 @@ namespace railtab {
 namespace {
 
 std::string reduction_text(const ReductionParameters& reduction) {
-  const std::string name = fmt::format("reduction of the structure: {}", reduction_name(reduction.kind));
-  if (reduction.kind == Reduction::window) {
-    return fmt::format("{}, {:g} m ahead of the train and {:g} m behind take part", name, reduction.ahead,
-                       reduction.behind);
-  }
-  if (reduction.kind == Reduction::modal) {
-    return fmt::format("{}, {} modes{}", name, reduction.modes,
-                       reduction.static_correction ? " with static correction" : "");
-  }
-  return fmt::format("{}, {} modes of each part", name, reduction.modes);
+  return fmt::format("reduction of the structure: {}, {:g} m ahead of the train and {:g} m behind take part",
+                     reduction_name(reduction.kind), reduction.ahead, reduction.behind);
 }
 
 void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
@@ -96,11 +88,9 @@ void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan
 
 RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
   if (setup) setup("building the model");
-  const bool modal = scene.reduction.kind == Reduction::modal && scene.track_kind != TrackKind::rigid;
-  const VsiModel model = modal ? build_unreduced_model(scene) : build_model(scene);  // modes are counted, not sought
+  const VsiModel model = build_model(scene);
   RunPlan plan;
   plan.structure_dofs = model.structure ? model.structure->dofs() : 0;
-  if (modal) plan.structure_dofs = std::min(plan.structure_dofs, static_cast<long>(scene.reduction.modes));
   plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
   plan.wheels = 2 * model.wheelsets();
   plan.time_step = scene.integration.time_step;
@@ -114,8 +104,7 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   describe_track(scene, model, plan);
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
   if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
-  plan.memory = modal ? modal_step_memory(model, scene.reduction, scene.integration)
-                      : step_memory(model, scene.integration.time_step, scene.integration.alpha);
+  plan.memory = step_memory(model, scene.integration.time_step, scene.integration.alpha);
   return plan;
 }
 

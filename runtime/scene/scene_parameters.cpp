@@ -153,15 +153,6 @@ void SceneParameters::validate() const {
   integration.validate();
   reduction.validate();
   if (spectrum) spectrum->validate();
-  if (reduction.kind == Reduction::modal && reduction.static_correction &&
-      integration.contact_force == ContactForceRule::energy) {
-    throw input_error("integration.contact_force", "\"energy\" with structure.static_correction",
-                      "structure.static_correction = false: the answer of modes without inertia follows no mean force");
-  }
-  if (reduction.kind == Reduction::modal && contact.normal == NormalContact::rigid) {
-    throw input_error("structure.reduction", "\"modal\" with contact.normal = \"rigid\"",
-                      "another reduction: wheels that follow the rails need their curvature, which few modes have not");
-  }
   if (output.energy && contact.normal == NormalContact::rigid) {
     throw input_error("output.energy", "true with contact.normal = \"rigid\"",
                       "contact.normal = \"hertz\": wheels that follow the rails have no contact springs");

@@ -131,10 +131,6 @@ std::vector<KeyBinding> span_keys() {
 std::vector<KeyBinding> reduction_keys() {
   return {
       {"structure.reduction", "", "how the structure is made smaller for the steps", ReductionKey{}},
-      {"structure.modes", "1", "modal: of the structure; craig-bampton: of each part between the rails",
-       IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.reduction.modes; }, 1, 2000}},
-      {"structure.static_correction", "", "modal: modes left out answer without inertia",
-       SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.reduction.static_correction; }}},
       {"structure.window_ahead", "m", "window: track that takes part before the first wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.ahead; }, {5.0, 1e5}}},
       {"structure.window_behind", "m", "window: track that takes part behind the last wheelset",

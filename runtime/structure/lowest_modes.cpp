@@ -1,10 +1,11 @@
+#include "railtab/runtime/structure/lowest_modes.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "railtab/runtime/algebra/structure_factor.hpp"
-#include "railtab/runtime/structure/reduction.hpp"
 
 namespace railtab {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
 namespace railtab {

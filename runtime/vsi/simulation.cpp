@@ -61,11 +61,9 @@ class Integrator {
     endpoint_limits_ = energy_limits_;
     endpoint_limits_.newton.force_tolerance = p.tolerance * wheel_load_;
     rule_ = p.contact_force;
-    // Contacts that jump, and modes that answer without inertia, keep no energy; a constraint has none.
+    // Contacts that jump keep no energy; a constraint has none.
     const bool springs = model.normal_contact == NormalContact::hertz;
-    if (!springs || (!rule_ && (model.unreduced || model.contact.geometry->is_paper()))) {
-      rule_ = ContactForceRule::endpoint;
-    }
+    if (!springs || (!rule_ && model.contact.geometry->is_paper())) rule_ = ContactForceRule::endpoint;
     const auto longer = [&](int level, double step) {
       return !rule_ && std::ldexp(p.time_step, -level) > step * (1.0 + 1e-9);
     };

@@ -54,29 +54,17 @@ void free_structure(const VsiModel& model, const StepOperators& op, const VsiSta
   }
 }
 
-// What the static correction adds under the wheels.
-void predict_local(const VsiState& state, StepWorkspace& ws) {
-  add_local(state, ws.problem.predicted);
-  add_local(state, ws.solution.displacement);
-}
-
 void rail_couplings(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
   std::vector<RailCoupling>& rail = ws.problem.rail;
   rail.clear();
-  ws.local.clear();
   const int wheels = static_cast<int>(contacts.size());
   for (int j = 0; j < wheels; ++j) {
     if (!contacts[index(j)].on_rail) continue;
     // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
     // symmetric.
     for (int i = j; i < wheels; ++i) {
-      Eigen::Matrix3d c = op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
-      if (op.local) {
-        const Eigen::Matrix3d local = (*op.local)(contacts[index(i)], contacts[index(j)]);
-        c += local;
-        ws.local.push_back({i, j, local});
-        if (i != j) ws.local.push_back({j, i, local.transpose()});
-      }
+      const Eigen::Matrix3d c =
+          op.scheme.load_weight() * op.structure->compliance(contacts[index(i)], contacts[index(j)]);
       if (c.isZero(0.0)) break;
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
@@ -85,24 +73,17 @@ void rail_couplings(const StepOperators& op, const std::vector<RailContact>& con
 }
 
 // The structure's own answer to the contact forces, under the wheels; returns what the contact solution had missed.
-double answer_under_wheels(const StepOperators& op, const VsiState& state, const std::vector<RailContact>& contacts,
-                           StepWorkspace& ws) {
+double answer_under_wheels(const StepOperators& op, const std::vector<RailContact>& contacts, StepWorkspace& ws) {
   for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   add_rail_forces(contacts, ws.solution.force, ws.structure_load);
   ws.structure_solution.respond(op.structure->factor(), op.scheme.load_weight(), ws.structure_load, ws.structure_free);
-  if (op.local) {
-    ws.local_displacement = -state.local;
-    for (const RailCoupling& c : ws.local) {
-      ws.local_displacement.segment<3>(3 * c.i) += c.compliance * ws.solution.force.segment<3>(rail_unknown(c.j));
-    }
-  }
   double missed = 0.0;
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
     const int k = rail_unknown(wheel);
     // What the contact solution has the rail do under its forces: where Newton ended, and what it left.
     const Vector3 expected = ws.solution.displacement.segment<3>(k) + ws.newton.residual.segment<3>(k);
-    Vector3 miss = ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) - expected;
-    if (op.local) miss += ws.local_displacement.segment<3>(3 * wheel);
+    const Vector3 miss =
+        ws.problem.predicted.segment<3>(k) + rail_head(contacts[index(wheel)], ws.structure_free) - expected;
     missed = std::max(missed, miss.cwiseAbs().maxCoeff());
     ws.problem.free.segment<3>(k) += miss;
     ws.far_field.segment<3>(3 * wheel) += miss;
@@ -141,7 +122,7 @@ void solve_coupling(const VsiModel& model, const StepOperators& op, const StepLi
       return;
     }
     const Stopwatch watch(report.seconds_structure);
-    report.converged = answer_under_wheels(op, state, contacts, ws) < limits.far_field_tolerance;
+    report.converged = answer_under_wheels(op, contacts, ws) < limits.far_field_tolerance;
   }
 }
 
@@ -201,7 +182,6 @@ void close_step(const VsiModel& model, const StepOperators& op, const std::vecto
     active.of(motion.contact_load).setZero();
     add_rail_forces(contacts, ws.solution.end_force, motion.contact_load);
     update(hht, ws.structure_prediction, ws.structure_increment, active, motion);
-    if (op.local) state.local += ws.local_displacement;
   }
   close_contact(hht, state.contact, ws.solution);
   std::swap(state.contact, ws.solution);
@@ -221,7 +201,6 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   }
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
-  if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
 }
 
 void StepOperators::follow(const VsiModel& model, double time, const DofRange& active) {
@@ -240,7 +219,6 @@ void StepOperators::follow(const VsiModel& model, double time, const DofRange& a
   covered_from_ = model.wheelset_x(model.wheelsets() - 1, time - scheme.time_step);
   covered_to_ = front + ahead;
   structure->tabulate_compliance(*model.structure, compliance_window, covered_from_, covered_to_);
-  if (local) local->follow(covered_from_, covered_to_);
 }
 
 StepWorkspace::StepWorkspace(const VsiModel& model) {
@@ -279,7 +257,6 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
     const Stopwatch watch(report.seconds_structure);
     free_structure(model, op, state, contacts, ws);
     ++report.back_substitutions;
-    if (op.local) predict_local(state, ws);
     rail_couplings(op, contacts, ws);
   }
   rail_deviation(model, contacts, time, ws.structure_prediction.displacement, ws.problem.deviation);

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "railtab/runtime/algebra/divided_substitution.hpp"
-#include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -18,7 +17,6 @@ class StepOperators {
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
   std::unique_ptr<StructureResponse> structure;    ///< null on rigid track
-  std::unique_ptr<LocalFlexibility> local;         ///< static correction of a modal structure; null without
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);
@@ -66,9 +64,7 @@ struct StepWorkspace {
   Eigen::VectorXd vehicle_load;  ///< of one vehicle
   WheelContactModel contact;     ///< at the speed of the step's end
   DividedSubstitution structure_solution;
-  std::vector<int> rail_dofs;          ///< unknowns of the structure that the wheels load
-  std::vector<RailCoupling> local;     ///< static correction
-  Eigen::VectorXd local_displacement;  ///< by it, 3 per wheel
+  std::vector<int> rail_dofs;  ///< unknowns of the structure that the wheels load
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
   ContactProblem problem;
   ContactSolution solution;

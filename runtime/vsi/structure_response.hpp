@@ -19,8 +19,6 @@ struct RailContact {
   int element = 0;  ///< left node of the beam element
   double x = 0.0;   ///< along the track [m]
   RailInterpolation rows{};
-  /// The rows y, z, roll, yaw and pitch over modal coordinates, where the structure is in them.
-  Eigen::Matrix<double, 5, Eigen::Dynamic> modal;
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
 
@@ -90,8 +88,6 @@ class StructureResponse {
   /// three times as large, gives single entries of the inverse (SelectedSolve).
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
 
-  [[nodiscard]] Eigen::Matrix3d modal(const RailContact& i, const RailContact& j) const noexcept;
-  void prepare(const StructureModel& structure);
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
@@ -109,9 +105,6 @@ class StructureResponse {
   std::unique_ptr<Entries> entries_;
   Eigen::Index dofs_ = 0;
   std::array<std::vector<Column>, 2> column_;  ///< per rail and node
-  /// In modal coordinates, in place of the table: 1/K̄ by its diagonal, from which damping alone makes it differ.
-  Eigen::VectorXd modal_compliance_;
-  double modal_window_ = 0.0;  ///< [m]
 };
 
 }  // namespace railtab

@@ -63,14 +63,6 @@ std::vector<Setting> settings(bool quick) {
   for (double length : quick ? std::vector<double>{20.0} : std::vector<double>{5.0, 10.0, 20.0, 40.0})
     all.push_back(
         {"window", fmt::format("{} m", length), {.kind = Reduction::window, .ahead = length, .behind = length}});
-  for (int n : quick ? std::vector<int>{10, 400} : std::vector<int>{10, 60, 200, 400})
-    all.push_back({"Craig-Bampton", fmt::format("{} per part", n), {.kind = Reduction::craig_bampton, .modes = n}});
-  for (int n : quick ? std::vector<int>{10, 100} : std::vector<int>{10, 20, 50, 100, 200, 500}) {
-    for (bool correction : {true, false})
-      all.push_back({correction ? "modes with static correction" : "modes",
-                     fmt::format("{}", n),
-                     {.kind = Reduction::modal, .modes = n, .static_correction = correction}});
-  }
   return all;
 }
 
