@@ -1,27 +1,53 @@
-# Install rules and the CMake package. find_package(railtab) gives, each with what it needs below it,
+# Install rules and the CMake package. What is installed is a named list of headers for two audiences; all else may change.
 #   railtab::contact        profiles, tables in memory, look-up, wheel force: for other multibody programs
-#   railtab::contact_files  the reader of table files (HDF5)
-#   railtab::solver         vehicles, structures, scenes, runs
-#   railtab::tablegen       the offline side, where it was built; alone needs CGAL, FFTW and OpenMP
+#   railtab::contact_files  the same with the reader of table files (HDF5)
+#   railtab::solver         scenes and their runs
 
 include(CMakePackageConfigHelpers)
 
 set(railtab_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/railtab)
 
-get_property(railtab_layers GLOBAL PROPERTY railtab_layers)
-set(railtab_core ${railtab_layers})
-list(REMOVE_ITEM railtab_core railtab_tablegen railtab_report)
-install(TARGETS ${railtab_core} railtab_solver EXPORT railtabCore)
-install(EXPORT railtabCore NAMESPACE railtab:: DESTINATION ${railtab_package_dir})
-foreach(layer IN LISTS railtab_core)
-  railtab_install_headers(${layer})
-endforeach()
+set(railtab_contact_headers
+  runtime/base/input_error.hpp
+  tables/creep_table.hpp
+  tables/geometry_leaf.hpp
+  tables/geometry_table.hpp
+  tables/profile_knots.hpp
+  tables/provenance.hpp
+  tables/table_shard.hpp
+  runtime/profile/profile_curve.hpp
+  runtime/profile/profile_file.hpp
+  runtime/profile/standard_profiles.hpp
+  runtime/profile/wheel_rail_pair.hpp
+  runtime/contact/contact_geometry.hpp
+  runtime/contact/contact_pair.hpp
+  runtime/contact/contact_patch.hpp
+  runtime/contact/contact_search.hpp
+  runtime/contact/contact_search_scan.hpp
+  runtime/contact/creep_law.hpp
+  runtime/contact/hertz.hpp
+  runtime/contact/paper_search.hpp
+  runtime/contact/patch_loads.hpp
+  runtime/contact/table_contact.hpp
+  runtime/contact/wheel_contact.hpp)
+set(railtab_contact_files_headers
+  tables/files/creep_table_file.hpp
+  tables/files/geometry_table_file.hpp
+  tables/files/shipped_creep_table.hpp
+  runtime/contact_files/creep_law_file.hpp)
 
-if(TARGET railtab_tablegen)
-  install(TARGETS railtab_tablegen EXPORT railtabTablegen)
-  railtab_install_headers(railtab_tablegen)
-  install(EXPORT railtabTablegen NAMESPACE railtab:: DESTINATION ${railtab_package_dir})
-endif()
+set(railtab_contact_layers base tables profile contact)
+set(railtab_contact_files_layers table_files contact_files)
+set(railtab_solver_layers algebra fe vehicle structure line vsi start results scene solver)
+foreach(component contact contact_files solver)
+  list(TRANSFORM railtab_${component}_layers PREPEND railtab_ OUTPUT_VARIABLE layers)
+  install(TARGETS ${layers} EXPORT railtab_${component})
+  install(EXPORT railtab_${component} NAMESPACE railtab:: DESTINATION ${railtab_package_dir})
+  foreach(header IN LISTS railtab_${component}_headers)
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/railtab/${folder})
+  endforeach()
+endforeach()
 
 install(FILES ${PROJECT_SOURCE_DIR}/tables/data/creep_table_nu028.h5 DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab)
 
@@ -33,14 +59,6 @@ foreach(command tablegen_command vsi_command)
   endif()
 endforeach()
 
-# What the static tablegen library needs at a consumer's link.
-set(railtab_tablegen_dependencies "find_dependency(OpenMP COMPONENTS CXX)")
-if(TARGET railtab_tablegen)
-  get_target_property(railtab_tablegen_links railtab_tablegen LINK_LIBRARIES)
-  if("${railtab_tablegen_links}" MATCHES "CGAL::CGAL")
-    string(APPEND railtab_tablegen_dependencies "\n  find_dependency(CGAL)")
-  endif()
-endif()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/railtabConfig.cmake.in
   ${PROJECT_BINARY_DIR}/railtabConfig.cmake INSTALL_DESTINATION ${railtab_package_dir})
 # Before 1.0 a minor version may change the interface.

@@ -40,14 +40,4 @@ function(railtab_layer name)
   # here and not in a consumer of the installed package, one side would free what the other allocated in another way.
   # Stating the alignment makes it part of the interface.
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=32)
-  set_property(GLOBAL APPEND PROPERTY railtab_layers ${target})
-endfunction()
-
-# railtab_install_headers(<target>): the headers of a layer, under their names.
-function(railtab_install_headers target)
-  get_target_property(folder ${target} SOURCE_DIR)
-  file(GLOB headers RELATIVE ${folder} ${folder}/*.hpp)
-  cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
-  list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/railtab/${folder})
 endfunction()

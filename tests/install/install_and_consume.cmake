@@ -1,5 +1,6 @@
-# Install into a temporary prefix, build the consumer against it, run it.
-# Variables: BUILD_DIR (of railtab), CONSUMER_DIR, WORK_DIR (emptied), CXX_COMPILER, CXX_FLAGS, VERSION
+# Install into a temporary prefix, build each consumer against it, run it.
+# Variables: BUILD_DIR (of railtab), CONSUMERS (folder of the three projects), WORK_DIR (emptied), CXX_COMPILER, CXX_FLAGS,
+# VERSION
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -14,18 +15,33 @@ endfunction()
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
 
-set(configure ${CMAKE_COMMAND} -S ${CONSUMER_DIR} -G Ninja
-  -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D "CMAKE_CXX_FLAGS=${CXX_FLAGS}")
+foreach(consumer contact contact_files solver)
+  run(${CMAKE_COMMAND} -S ${CONSUMERS}/${consumer} -B ${WORK_DIR}/${consumer} -G Ninja
+    -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_COMPILER=${CXX_COMPILER} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+    -D RAILTAB_VERSION=${VERSION})
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/${consumer})
+  run(${WORK_DIR}/${consumer}/consumer)
+  file(SIZE ${WORK_DIR}/${consumer}/consumer bytes)
+  message(STATUS "size of the program that uses railtab::${consumer}: ${bytes} bytes")
+endforeach()
 
-# With everything that was installed, and with the core alone.
-run(${configure} -B ${WORK_DIR}/all -D RAILTAB_VERSION=${VERSION})
-run(${configure} -B ${WORK_DIR}/core -D RAILTAB_VERSION=${VERSION} -D RAILTAB_COMPONENTS=solver)
-run(${CMAKE_COMMAND} --build ${WORK_DIR}/core)
-run(${WORK_DIR}/core/consumer)
+# The contact library alone brings neither the reader of files nor any part of the solver.
+function(require_no_symbol consumer pattern)
+  execute_process(COMMAND nm --demangle ${WORK_DIR}/${consumer}/consumer OUTPUT_VARIABLE symbols)
+  string(REGEX MATCH "[^\n]*(${pattern})[^\n]*" found "${symbols}")
+  if(found)
+    message(FATAL_ERROR "railtab::${consumer} brings ${found}")
+  endif()
+endfunction()
+require_no_symbol(contact "H5[A-Z]|toml::|StructureModel|VehicleModel|VsiModel|SceneParameters")
+require_no_symbol(contact_files "toml::|StructureModel|VehicleModel|VsiModel|SceneParameters")
 
-# Another minor version and an unknown component are refused.
+# Another minor version and an unknown component are rejected.
 foreach(wrong -DRAILTAB_VERSION=0.0.9 "-DRAILTAB_VERSION=${VERSION};-DRAILTAB_COMPONENTS=wheels")
-  execute_process(COMMAND ${configure} -B ${WORK_DIR}/wrong ${wrong} RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  file(REMOVE_RECURSE ${WORK_DIR}/wrong)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${CONSUMERS}/contact -B ${WORK_DIR}/wrong -G Ninja
+    -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_COMPILER=${CXX_COMPILER} ${wrong}
+    RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
   if(status EQUAL 0)
     message(FATAL_ERROR "find_package accepted ${wrong}")
   endif()
