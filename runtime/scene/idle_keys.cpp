@@ -43,7 +43,6 @@ std::vector<Rule> without_contact_or_deviation(const SceneDraft& draft) {
   const bool contact = draft.parameters.contact.normal == NormalContact::hertz;
   const bool random = !draft.spectrum_name.empty();
   constexpr std::string_view follow = "contact.normal = \"rigid\"";
-  const ReductionParameters& reduction = draft.parameters.reduction;
   return {
       {{"vehicle."},
        draft.parameters.train.vehicle == imported_vehicle,

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "railtab/runtime/start/wheelset_seat.hpp"
+#include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
@@ -57,7 +57,7 @@ class WheelsetConstraint {
       unknown_.push_back(wheelset_unknowns * (k / 6) + k % 6);
       dof_.push_back(dof);
     }
-    answer_ = vehicle.inverse()(Eigen::all, dof_);
+    response_ = vehicle.inverse()(Eigen::all, dof_);
     compliance_.compute(vehicle.inverse()(dof_, dof_));
     first_unknown_ = wheelset_unknowns * model.wheelsets_per_vehicle();
   }
@@ -70,13 +70,13 @@ class WheelsetConstraint {
       apart[static_cast<Eigen::Index>(i)] = q[first_unknown_ * v + unknown_[i]] - apart[static_cast<Eigen::Index>(i)];
     }
     const Eigen::VectorXd force = compliance_.solve(apart);
-    dofs += answer_ * force;
+    dofs += response_ * force;
     return force.cwiseAbs().maxCoeff();
   }
 
  private:
   std::vector<int> unknown_, dof_;
-  Eigen::MatrixXd answer_;
+  Eigen::MatrixXd response_;
   Eigen::PartialPivLU<Eigen::MatrixXd> compliance_;
   int first_unknown_ = 0;
 };

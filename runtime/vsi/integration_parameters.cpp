@@ -24,6 +24,7 @@ void IntegrationParameters::validate() const {
   require(impact_step >= 1e-6 && impact_step <= 0.1, "integration.impact_step", impact_step, "1e-6 to 0.1 s");
   require(tolerance >= 1e-12 && tolerance <= 1e-2, "integration.tolerance", tolerance, "1e-12 to 0.01");
   require(max_iterations >= 2, "integration.max_iterations", max_iterations, ">= 2");
+  require(reinitialise_every >= 1, "integration.reinitialise_every", static_cast<double>(reinitialise_every), ">= 1");
   require(max_halvings >= 0, "integration.max_halvings", max_halvings, ">= 0");
 }
 

@@ -35,11 +35,14 @@ void require_finite(const StructureModel& structure) {
   require_finite(structure.stiffness, "stiffness");
 }
 
+constexpr const char* not_positive_definite =
+    "the structure's effective matrix is not positive definite: check supports and stiffnesses";
+
 template <class Factor>
 std::unique_ptr<Factor> factorise(const Sparse& effective) {
   auto factor = std::make_unique<Factor>(effective);
   if (factor->info() != Eigen::Success || !(factor->vectorD().minCoeff() > 0.0)) {
-    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
+    throw ComputationError(not_positive_definite);
   }
   return factor;
 }
@@ -144,7 +147,7 @@ StructureResponse::~StructureResponse() = default;
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
-  factor_ = std::make_unique<StructureFactor>(effective_, dofs);
+  factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);
 }
 
 StructureResponse::Entries& StructureResponse::entries() {

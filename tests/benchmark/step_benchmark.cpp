@@ -72,7 +72,7 @@ void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
   Eigen::VectorXd x(s.dofs()), y(s.dofs());
   const Eigen::SimplicialLDLT<Sparse> minimum_degree(effective);
   const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, NestedDissection> dissected(effective);
-  const StructureFactor blocks(effective);
+  const SparseLdlt blocks(effective);
   constexpr int repetitions = 21;
   const double scalar = median_seconds(repetitions, [&] { x = minimum_degree.solve(load); });
   const double scalar_dissected = median_seconds(repetitions, [&] { x = dissected.solve(load); });

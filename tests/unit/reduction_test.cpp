@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 
@@ -60,10 +60,10 @@ TEST(LowestModes, FindsEqualFrequenciesAndOrthonormalShapes) {
 }
 
 // A factor of a range holds everything else.
-TEST(StructureFactor, OfARangeHoldsTheRest) {
+TEST(SparseLdlt, OfARangeHoldsTheRest) {
   const StructureModel structure = two_spans();
   const DofRange range{200, 400};
-  const StructureFactor factor(structure.stiffness, range);
+  const SparseLdlt factor(structure.stiffness, range);
   const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(structure.dofs(), 1.0, 2.0);
   const Eigen::VectorXd x = factor.solve(load);
   EXPECT_EQ(x.head(200).cwiseAbs().maxCoeff(), 0.0);

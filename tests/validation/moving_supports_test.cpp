@@ -232,11 +232,11 @@ TEST(MovingSupports, AResumedWindowIsTheUninterruptedOne) {
   scene.train.speed = 60.0;
   scene.reduction.ahead = scene.reduction.behind = 6.0;
   scene.integration.duration = 1.0;
+  scene.integration.reinitialise_every = 130;
   std::vector<RunCheckpoint> checkpoints;
   const auto last_of = [&](const std::optional<RunCheckpoint>& from) {
     StepRecord last;
     RunObserver observer;
-    observer.checkpoint_every = 130;
     observer.record = [&](const StepRecord& record) { last = record; };
     observer.checkpoint = [&](long step, std::span<const double> state) {
       if (!from) checkpoints.push_back({step, {state.begin(), state.end()}});

@@ -55,7 +55,6 @@ struct RecordedRun {
 RecordedRun recorded(const SceneParameters& scene, const std::optional<RunCheckpoint>& from = std::nullopt) {
   RecordedRun result;
   RunObserver observer;
-  observer.checkpoint_every = 70;
   observer.record = [&](const StepRecord& record) { result.records.push_back(record); };
   observer.checkpoint = [&](long step, std::span<const double> state) {
     result.checkpoints.push_back({step, {state.begin(), state.end()}});
@@ -84,6 +83,7 @@ class ResumedRun : public ::testing::TestWithParam<Reduction> {};
 TEST_P(ResumedRun, IsTheUninterruptedOneToTheLastBit) {
   SceneParameters scene = coach_on_spans(GetParam());
   scene.reduction.behind = scene.reduction.ahead = 6.0;
+  scene.integration.reinitialise_every = 70;
   scene.integration.duration = GetParam() == Reduction::window ? 1.0 : 0.2;
   if (GetParam() == Reduction::window) scene.train.speed = 80.0;
   scene.track.length_after = 60.0;

@@ -1,8 +1,9 @@
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -168,12 +169,13 @@ void products(const double* column, int height, int begin, const double* vector,
 
 }  // namespace
 
-StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : first_(static_cast<int>(range.begin)) {
+SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_view message)
+    : first_(static_cast<int>(range.begin)) {
   // minimum degree: the fewest entries
   const Eigen::SimplicialLDLT<Sparse> simplicial(
       range.count == matrix.rows() ? matrix : Sparse(matrix.block(range.begin, range.begin, range.count, range.count)));
   if (simplicial.info() != Eigen::Success || !(simplicial.vectorD().minCoeff() > 0.0)) {
-    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
+    throw ComputationError(std::string(message));
   }
   inverse_D_ = simplicial.vectorD().cwiseInverse();
   const auto& order = simplicial.permutationP().indices();
@@ -221,7 +223,7 @@ StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : 
 }
 
 // The block's numbers as its substitution reads them.
-void StructureFactor::store(const Eigen::MatrixXd& dense, const Block& block) {
+void SparseLdlt::store(const Eigen::MatrixXd& dense, const Block& block) {
   const int n = block.columns;
   const auto append = [&](int room) {
     values_.resize(values_.size() + static_cast<std::size_t>(room), 0.0);
@@ -243,37 +245,31 @@ void StructureFactor::store(const Eigen::MatrixXd& dense, const Block& block) {
   }
 }
 
-std::size_t StructureFactor::bytes() const noexcept {
+std::size_t SparseLdlt::bytes() const noexcept {
   return values_.size() * sizeof(double) + rows_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
 }
 
-void StructureFactor::find_path(std::span<const int> unknowns, Path& path) const {
-  path.mark_.resize(blocks_.size(), 0);
-  path.blocks_.clear();
-  ++path.collection_;
+void SparseLdlt::find_path(std::span<const int> unknowns, Path& path) const {
+  path.clear(blocks_.size());
   for (int unknown : unknowns) {
-    for (int b = block_of_[static_cast<std::size_t>(position(unknown))];
-         b >= 0 && path.mark_[static_cast<std::size_t>(b)] != path.collection_;
-         b = blocks_[static_cast<std::size_t>(b)].parent) {
-      path.mark_[static_cast<std::size_t>(b)] = path.collection_;
-      path.blocks_.push_back(b);
-    }
+    path.add(block_of_[static_cast<std::size_t>(position(unknown))],
+             [&](int b) { return blocks_[static_cast<std::size_t>(b)].parent; });
   }
-  std::sort(path.blocks_.begin(), path.blocks_.end());
+  path.sort();
 }
 
-void StructureFactor::into(const Vector& natural, Vector& ordered) const {
+void SparseLdlt::into(const Vector& natural, Vector& ordered) const {
   ordered.resize(room());
   for (Eigen::Index i = 0; i < size(); ++i) ordered[position_[static_cast<std::size_t>(i)]] = natural[first_ + i];
   ordered[size()] = 0.0;
 }
 
-void StructureFactor::out_of(const Vector& ordered, Vector& natural) const {
+void SparseLdlt::out_of(const Vector& ordered, Vector& natural) const {
   natural.conservativeResize(std::max(natural.size(), first_ + size()));
   for (Eigen::Index i = 0; i < size(); ++i) natural[first_ + i] = ordered[position_[static_cast<std::size_t>(i)]];
 }
 
-void StructureFactor::forward(double* y, const Block& block, double* scratch) const {
+void SparseLdlt::forward(double* y, const Block& block, double* scratch) const {
   double* const own = y + block.first;
   if (block.columns <= narrow) {
     forward_of[static_cast<std::size_t>(block.columns - 1)](
@@ -292,7 +288,7 @@ void StructureFactor::forward(double* y, const Block& block, double* scratch) co
   for (int i = 0; i < block.below; ++i) y[row[i]] -= change[i];
 }
 
-void StructureFactor::backward(double* x, const Block& block, double* scratch) const {
+void SparseLdlt::backward(double* x, const Block& block, double* scratch) const {
   double* const own = x + block.first;
   if (block.columns <= narrow) {
     backward_of[static_cast<std::size_t>(block.columns - 1)](
@@ -311,42 +307,42 @@ void StructureFactor::backward(double* x, const Block& block, double* scratch) c
   for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
-void StructureFactor::backward(const Vector& y, Vector& x, const Block& block, double* scratch) const {
+void SparseLdlt::backward(const Vector& y, Vector& x, const Block& block, double* scratch) const {
   for (int j = block.first; j < block.first + block.columns; ++j) x[j] = y[j] * inverse_D_[j];
   backward(x.data(), block, scratch);
 }
 
-void StructureFactor::forward(Vector& y) const {
+void SparseLdlt::forward(Vector& y) const {
   Vector scratch(most_height_);
   for (const Block& block : blocks_) forward(y.data(), block, scratch.data());
 }
 
-void StructureFactor::backward(Vector& x) const {
+void SparseLdlt::backward(Vector& x) const {
   Vector scratch(most_height_);
   x.head(size()).array() *= inverse_D_.array();
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x.data(), *block, scratch.data());
 }
 
-void StructureFactor::forward(Vector& y, const Path& path) const {
+void SparseLdlt::forward(Vector& y, const Path& path) const {
   Vector scratch(most_height_);
-  for (int b : path.blocks_) forward(y.data(), blocks_[static_cast<std::size_t>(b)], scratch.data());
+  for (int b : path.nodes()) forward(y.data(), blocks_[static_cast<std::size_t>(b)], scratch.data());
 }
 
-void StructureFactor::backward(const Vector& y, Vector& x, const Path& path) const {
+void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
   Vector scratch(most_height_);
-  for (auto b = path.blocks_.rbegin(); b != path.blocks_.rend(); ++b) {
+  for (auto b = path.nodes().rbegin(); b != path.nodes().rend(); ++b) {
     backward(y, x, blocks_[static_cast<std::size_t>(*b)], scratch.data());
   }
 }
 
-void StructureFactor::backward_off(const Path& path, const Vector& y, Vector& x) const {
+void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
   Vector scratch(most_height_);
   for (std::size_t b = blocks_.size(); b-- > 0;) {
-    if (path.mark_[b] != path.collection_) backward(y, x, blocks_[b], scratch.data());
+    if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b], scratch.data());
   }
 }
 
-StructureFactor::Vector StructureFactor::solve(const Vector& load) const {
+SparseLdlt::Vector SparseLdlt::solve(const Vector& load) const {
   Vector ordered, natural = Vector::Zero(load.size());
   into(load, ordered);
   forward(ordered);
