@@ -29,7 +29,8 @@ set(railtab_contact_headers
   runtime/contact/paper_search.hpp
   runtime/contact/patch_loads.hpp
   runtime/contact/table_contact.hpp
-  runtime/contact/wheel_contact.hpp)
+  runtime/contact/wheel_contact.hpp
+  runtime/contact/wheel_silhouette.hpp)
 set(railtab_contact_files_headers
   tables/files/creep_table_file.hpp
   tables/files/geometry_table_file.hpp

@@ -43,9 +43,9 @@ struct CreepJobOutcome {
 CreepJobOutcome run_creep_job(const CreepJob& job, const std::filesystem::path& file, const TableProvenance& provenance,
                               const Progress& progress = {});
 
-/// The table of all its shards, in any order, equal to the one made in one go to the last bit.
-/// @throws InputError where a file is no finished shard, was made with other options or by another version than the
-/// first (naming the file and what differs), or a shard is there twice or not at all.
+/// The table of all its shards, in any order, equal to the last bit to one generated without shards.
+/// @throws InputError where a file is no finished shard, was generated with other options or by another version than
+/// the first (naming the file and what differs), or a shard is there twice or not at all.
 [[nodiscard]] CreepTableData merge_creep_shards(const std::vector<std::filesystem::path>& shards);
 
 /// "railtab-creep-shard", the file type of a finished shard; "railtab-creep-partial", that of an interrupted job.

@@ -15,7 +15,7 @@ struct CreepCase {
   Creepage creepage;
 };
 
-/// What a creep table is made of.
+/// The axes of a creep table and how its nodes are computed.
 struct CreepLayoutOptions {
   CreepTableLayout layout = CreepTableLayout::smooth;
   double poisson = 0.28;  ///< 0..0.5

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <functional>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/file_fields.hpp"
 
 namespace railtab {
 
@@ -43,6 +43,10 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+Field field_of(const Column& column, const char* dimension) {
+  return {std::string(column.path), {dimension}, "1", std::string(column.description)};
+}
+
 std::vector<double> column_of(const Column& column, std::span<const SolvedCreepCase> solved) {
   std::vector<double> values;
   values.reserve(solved.size());
@@ -76,9 +80,10 @@ CreepShardHeader read_header(const ArrayFileReader& file, const std::filesystem:
   };
   job.layout.layout = creep_table_layout(file.text("options", "layout"));
   for (std::size_t i = 0; i < job.layout.nodes.size(); ++i) job.layout.nodes[i] = whole(fmt::format("nodes_{}", i + 1));
-  job.layout.poisson = file.number("options", "poisson");
+  const FieldReader options(file);
+  job.layout.poisson = options.number("options", "poisson");
   job.layout.elements = whole("elements");
-  job.tolerance = file.number("options", "tolerance");
+  job.tolerance = options.number("options", "tolerance");
   if (whole("shards") > 0) job.shard = TableShard{whole("shard"), whole("shards")};
   if (job.shard && !job.shard->valid()) {
     throw input_error(name.string() + ": options", fmt::format("shard {}/{}", job.shard->index, job.shard->count),
@@ -138,7 +143,8 @@ ArrayFileWriter create_creep_partial(const std::filesystem::path& file, const Cr
   write_header(
       out, header,
       "An unfinished creep table: the cases solved so far. The same tablegen creep command goes on from here.");
-  for (const Column& column : columns()) out.create_growing(column.path, {}, "1", column.description);
+  FieldWriter histories(out);
+  for (const Column& column : columns()) histories.create_growing(field_of(column, "records"));
   out.flush();
   return out;
 }
@@ -151,9 +157,8 @@ void write_creep_shard(const std::filesystem::path& file, const CreepShardHeader
                        std::span<const SolvedCreepCase> solved) {
   ArrayFileWriter out(file, creep_shard_filetype, creep_shard_format_version);
   write_header(out, header, "One shard of a creep table, for tablegen merge.");
-  for (const Column& column : columns()) {
-    out.write(column.path, column_of(column, solved), {solved.size()}, "1", column.description);
-  }
+  FieldWriter arrays(out);
+  for (const Column& column : columns()) arrays.write(field_of(column, "cases"), column_of(column, solved));
   out.close();
 }
 
@@ -161,20 +166,17 @@ CreepShard read_creep_shard(const std::filesystem::path& file, std::string_view 
   const ArrayFileReader in(file, filetype, creep_shard_format_version);
   CreepShard shard{read_header(in, file), {}};
   const bool partial = filetype == creep_partial_filetype;
-  const auto rows = static_cast<long>(partial ? in.records() : static_cast<std::size_t>(shard.header.cases));
-  if (rows > shard.header.cases) {
+  const std::size_t rows = partial ? in.records() : static_cast<std::size_t>(shard.header.cases);
+  if (rows > static_cast<std::size_t>(shard.header.cases)) {
     throw input_error(file.string(), fmt::format("{} cases", rows), fmt::format("at most {}", shard.header.cases));
   }
+  const char* const dimension = partial ? "records" : "cases";
+  FieldReader arrays(in);
+  arrays.set(dimension, rows, partial ? "" : "options");
   for (const Column& column : columns()) {
-    const std::vector<double> values = in.read(column.path, {rows});
+    const std::vector<double> values = arrays.numbers(field_of(column, dimension));
     shard.solved.resize(values.size());  // only now is it sure that the file has so many
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i])) {
-        throw input_error(fmt::format("{}: {}[{}]", file.string(), column.path, i), fmt::format("{}", values[i]),
-                          "a finite number");
-      }
-      column.set(shard.solved[i], values[i]);
-    }
+    for (std::size_t i = 0; i < values.size(); ++i) column.set(shard.solved[i], values[i]);
   }
   return shard;
 }

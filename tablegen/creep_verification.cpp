@@ -59,7 +59,7 @@ std::vector<CreepForce> solve_exactly(const std::vector<CreepCase>& cases, const
     const ExtrapolatedContactSolution s = contact->solve(cases[i].creepage);
     forces[i] = s.force;
     extrapolated[i] = std::hypot(s.force.x - s.fine.force.x, s.force.y - s.fine.force.y);
-    // FFTW plans are made and given back by one thread at a time.
+    // one thread at a time creates and destroys FFTW plans.
 #pragma omp critical(rolling_contact_set_up)
     contact.reset();
 #pragma omp critical(creep_verification)

@@ -61,7 +61,7 @@ CellBox root_box(const GeometryTableData& table, std::int64_t root) {
 
 std::vector<CellTree> make_trees(const ContactSearch& search, const GeometrySweepOptions& options,
                                  const GeometryTableData& table, const Progress& progress) {
-  // Not a structured binding: OpenMP's threads cannot share one (clang 14 refuses it).
+  // Not a structured binding: OpenMP's threads cannot share one (clang 14 rejects it).
   const auto roots = root_range(options.shard, root_cells(table));
   const CellRefinement refinement(search, options);
   std::vector<CellTree> trees(static_cast<std::size_t>(roots.second - roots.first));

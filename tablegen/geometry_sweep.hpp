@@ -23,11 +23,11 @@ struct GeometrySweepOptions {
   double lateral_root = 0.2e-3;       ///< largest width of a root cell along the sheared lateral axis, 1e-6..1e-2 [m]
   int yaw_roots = 4;                  ///< root cells along yaw², where yaw is an interval
   double roll_root = 2.5e-3;          ///< largest width of a root cell along roll, 1e-5..0.05 [rad]
-  double searched_lowering = 0.4e-3;  ///< lowering below first touch up to which the table is made, 1e-6..0.01 [m]
+  double searched_lowering = 0.4e-3;  ///< lowering below first touch up to which the table is generated, 1e-6..0.01 [m]
   double start_error = 32e-6;         ///< a cell is halved where its starts are further off along the wheel [m] ...
   double iterated_cell = 2e-5;        ///< ... as long as this share of uniform queries or more falls into it
   double fallback_cell = 2e-6;        ///< ... and as long as this share of uniform queries is searched in it
-  TableShard shard;                   ///< the slab of root cells that is made
+  TableShard shard;                   ///< the slab of root cells to generate
   double tolerance = 1e-8;            ///< penetration error asked for, 1e-12..1e-3 [m]
 
   /// @throws InputError naming the first member out of its range.
@@ -57,8 +57,8 @@ using Progress = std::function<void(double)>;
 
 /// generate_geometry_table() into a file, written under its final name when it is whole. Of a whole table an eighth at
 /// a time is swept and kept beside it (FILE.part-<refinement>-<1..8>): after a kill the same call goes on from there,
-/// to the same table bit for bit. A part of another pair or other options is made anew; all parts are removed at the
-/// end.
+/// to the same table bit for bit. A part of another pair or other options is generated again; all parts are removed at
+/// the end.
 /// @throws ComputationError as generate_geometry_table(), InputError where the file cannot be written
 void generate_geometry_table_file(const ContactSearch& search, const GeometrySweepOptions& options,
                                   const TableProvenance& provenance, const std::filesystem::path& file,

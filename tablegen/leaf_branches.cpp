@@ -1,10 +1,11 @@
 #include "railtab/tablegen/leaf_branches.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 namespace railtab {
 
@@ -115,7 +116,7 @@ class LinkedMinima {
     }
     return n;
   }
-  /// Refused where the union would have two minima at one sample.
+  /// Rejected where the union would have two minima at one sample.
   void link(int p, int q) {
     const auto i = static_cast<std::size_t>(root(p));
     const auto j = static_cast<std::size_t>(root(q));
@@ -184,13 +185,14 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
       std::vector<BranchDatum> way{datum(s, s.pose.y + shift, z, std::tan(patch.angle), patch.s_wheel, patch.s_rail)};
       const int steps = static_cast<int>(std::clamp(std::ceil(std::abs(shift) / half), 1.0, 4.0));
       TouchPoint touch = touch_of_pair(search.pair(), {s.pose.y + shift, 0, s.pose.roll, s.pose.yaw}, trig,
-                                       patch.s_wheel, patch.s_rail);
+                                       {patch.s_wheel, patch.s_rail});
       bool followed = true;
       for (int k = steps - 1; k >= 0 && followed; --k) {
         const double y = s.pose.y + shift * k / steps;
         const double dy = -shift / steps;
-        const RefinedTouch r = refine_touch(search.pair(), {y, 0, s.pose.roll, s.pose.yaw}, trig,
-                                            touch.s_wheel + dy * touch.s_wheel_dy, touch.s_rail + dy * touch.s_rail_dy);
+        const RefinedTouch r =
+            refine_touch(search.pair(), {y, 0, s.pose.roll, s.pose.yaw}, trig,
+                         {touch.s_wheel + dy * touch.s_wheel_dy, touch.s_rail + dy * touch.s_rail_dy});
         followed = r.status == PairStatus::converged;
         touch = r.touch;
         if (followed && k > 0) way.push_back(datum(s, y, touch.z_touch, touch.z_touch_dy, touch.s_wheel, touch.s_rail));
@@ -310,7 +312,7 @@ std::array<float, most_branch_terms * branch_quantities> fit_branch(const Sample
   const Eigen::VectorXd scale = A.colwise().norm().cwiseMax(1e-3).transpose();
   A = A * scale.cwiseInverse().asDiagonal();
   for (int t = 1; t < terms; ++t) A(rows + t, t) = small;
-  const Eigen::MatrixXd X = scale.cwiseInverse().asDiagonal() * Eigen::MatrixXd(A.householderQr().solve(B));
+  const Eigen::MatrixXd X = scale.cwiseInverse().asDiagonal() * least_squares_solution(A, B);
   std::array<float, most_branch_terms * branch_quantities> coefficient{};
   for (int t = 0; t < terms; ++t)
     for (int q = 0; q < branch_quantities; ++q) {

@@ -20,7 +20,7 @@ struct CellBox {
   }
 };
 
-/// What the online search says at one point of a box.
+/// The result of the online search at one point of a box.
 struct BoxSample {
   std::array<double, 3> local{};  ///< -1..1, 0 on a fixed axis
   std::array<int, 3> grid{};      ///< place among the samples along each axis

@@ -43,7 +43,7 @@ struct RollingContact::Impl {
   double nu;
   RollingContactGrid grid;
   RollingContactNewton newton;
-  std::optional<RollingContactTransient> transient;  // made when first needed
+  std::optional<RollingContactTransient> transient;  // created at first use
   ElementField rigid_slip;
 };
 

@@ -1,7 +1,8 @@
 #include "railtab/tablegen/rolling_contact_linear.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 namespace railtab {
 
@@ -22,7 +23,7 @@ RollingContactLinear::RollingContactLinear(const RollingContactGrid& grid, const
       for (int j = 0; j < n; ++j) row(i, j) = product.in_row(c, j - i) / diagonal_[c];
     }
     for (int length = 1; length <= n; ++length) {
-      run_inverse_[c].emplace_back(row.topLeftCorner(length, length).inverse().cast<float>());
+      run_inverse_[c].emplace_back(dense_inverse(row.topLeftCorner(length, length)).cast<float>());
     }
   }
   state_.assign(static_cast<std::size_t>(n * n), State::outside);

@@ -7,7 +7,7 @@ namespace railtab {
 
 namespace {
 
-/// std::hypot guards against overflow, at five times the price; squares of 1e150 do not occur here.
+/// std::hypot guards against overflow, at five times the run time; squares of 1e150 do not occur here.
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
 }  // namespace

@@ -115,7 +115,7 @@ void RollingContactProduct::apply(const ElementField& traction, ElementField& sl
     std::fill(spectrum + n_ * columns_, spectrum + plane, 0.0);
     fftw_execute_dft(columns_forward_, raw(spectrum), raw(spectrum));
   }
-  // spelled out: the product of std::complex guards against infinities, at ten times the price
+  // spelled out: the product of std::complex guards against infinities, at ten times the run time
   double* x = reinterpret_cast<double*>(spectrum_);
   double* y = reinterpret_cast<double*>(spectrum_ + plane);
   const double* kxx = reinterpret_cast<const double*>(xx_.data());

@@ -52,7 +52,7 @@ RollingContactSingle::~RollingContactSingle() {
 
 /// product_ = α spectrum_ + β conj spectrum_(−k)
 void RollingContactSingle::multiply() {
-  // spelled out: the product of std::complex guards against infinities, at ten times the price
+  // spelled out: the product of std::complex guards against infinities, at ten times the run time
   const auto line = [](const float* q, const float* mirrored, const float* a, const float* b, float* out, int count) {
     for (int k = 0; k < count; ++k) {
       const float qr = q[2 * k], qi = q[2 * k + 1], mr = mirrored[-2 * k], mi = mirrored[-2 * k + 1];

@@ -7,6 +7,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/geometry_parts.hpp"
 #include "railtab/tablegen/table_verification.hpp"
+#include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
@@ -74,13 +75,19 @@ std::filesystem::path part_file(const std::filesystem::path& file, int refinemen
 /// Shards of one process: as many as may be lost in a kill.
 constexpr int parts_of_a_table = 8;
 
+/// Whether somebody else's file has the name of a part, or a link: it is neither read nor replaced, and the part is not
+/// kept.
+bool is_taken(const std::filesystem::path& place) {
+  return std::filesystem::is_symlink(place) || (std::filesystem::exists(place) && !is_array_file(place));
+}
+
 /// A part that an earlier run has left, if it is one of this table.
 std::optional<GeometryTableData> earlier_part(const std::filesystem::path& file, const GeometryTableData& heading) {
-  if (!std::filesystem::exists(file)) return {};
+  if (!std::filesystem::exists(file) || is_taken(file)) return {};
   try {
     GeometryTableData part = read_geometry_table(file);
     if (part.shard == heading.shard && difference_of_parts(heading, part).empty()) return part;
-  } catch (const InputError&) {  // cut short, or of another version: made anew
+  } catch (const InputError&) {  // incomplete or of another version: generated again
   }
   return {};
 }
@@ -99,7 +106,7 @@ GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySwee
       found = sweep_geometry(search, own, [&](double share) {
         if (progress) progress((part - 1 + share) / count);
       });
-      write_geometry_table(place, *found);
+      if (!is_taken(place)) write_geometry_table(place, *found);
     }
     parts.push_back(std::move(*found));
   }
@@ -150,7 +157,10 @@ void generate_geometry_table_file(const ContactSearch& search, const GeometrySwe
   table.provenance = provenance;
   write_geometry_table(file, table);
   for (int refinement = 0; refinement <= refinements; ++refinement) {
-    for (int part = 1; part <= parts_of_a_table; ++part) std::filesystem::remove(part_file(file, refinement, part));
+    for (int part = 1; part <= parts_of_a_table; ++part) {
+      const std::filesystem::path place = part_file(file, refinement, part);
+      if (!is_taken(place)) std::filesystem::remove(place);
+    }
   }
 }
 

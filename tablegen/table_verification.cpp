@@ -234,7 +234,8 @@ VerificationOptions verification_options(const GeometryTableData& table) {
     for (const auto& [key, value] : table.statistics) {
       if (key == name) return value;
     }
-    throw input_error(fmt::format("geometry table: {}", name), "nothing", "the range that the table was made for");
+    throw input_error(fmt::format("geometry table: {}", name), "nothing",
+                      "the range for which the table was generated");
   };
   VerificationOptions options;
   options.lateral = {option("option.lateral_low"), option("option.lateral_high")};

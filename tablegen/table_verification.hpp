@@ -67,7 +67,7 @@ struct GeometryVerification {
                                                          const VerificationOptions& options,
                                                          const Progress& progress = {});
 
-/// The ranges and the tolerance that a table was made for, from its stored options.
+/// The ranges and the tolerance for which a table was generated, from its stored options.
 /// @throws InputError where the table does not state them.
 [[nodiscard]] VerificationOptions verification_options(const GeometryTableData& table);
 

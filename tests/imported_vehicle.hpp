@@ -17,7 +17,7 @@
 namespace railtab::testing {
 
 struct BodyRow {
-  std::string body;          ///< empty: an inner unknown
+  std::string body;          ///< empty: an inner degree of freedom
   int motion;                ///< x, y, z, roll, pitch, yaw
   Eigen::Vector3d position;  ///< [m]
 };
@@ -25,7 +25,7 @@ struct BodyRow {
 /// In railtab's axes and SI units.
 struct FreeCoach {
   Eigen::MatrixXd mass, damping, stiffness;
-  std::vector<BodyRow> rows;  ///< of the first rows; further ones are inner unknowns
+  std::vector<BodyRow> rows;  ///< of the first rows; further ones are inner degrees of freedom
 
   [[nodiscard]] int row(const std::string& body, int motion) const {
     for (std::size_t r = 0; r < rows.size(); ++r) {

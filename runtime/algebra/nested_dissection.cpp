@@ -4,25 +4,39 @@
 #include <cmath>
 #include <utility>
 
+#include "railtab/runtime/base/index.hpp"
+
 namespace railtab {
 
 namespace {
 
 constexpr std::size_t leaf_size = 48;  // unknowns that are not cut further
 
+// An unknown with this many times the neighbours of the mean is a hub: the node of a long beam element, which all
+// sleepers on the element hang on. Through hubs everything is near everything, and no level would cut: they are
+// eliminated last, and the cuts are those of the rest.
+constexpr std::size_t hub = 20;
+
 class Dissection {
  public:
   Dissection(std::span<const int> begin, std::span<const int> row)
       : begin_(begin), row_(row), part_(begin.size() - 1, 0), level_(begin.size() - 1, 0) {
     order_.reserve(part_.size());
-    std::vector<int> all(part_.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    std::vector<int> all, hubs;
+    all.reserve(part_.size());
+    for (std::size_t i = 0; i < part_.size(); ++i) {
+      const auto neighbours = static_cast<std::size_t>(begin_[i + 1] - begin_[i]);
+      const bool is_hub = neighbours * part_.size() > hub * row_.size();
+      if (is_hub) part_[i] = no_part;
+      (is_hub ? hubs : all).push_back(static_cast<int>(i));
+    }
     eliminate(all);
+    order_.insert(order_.end(), hubs.begin(), hubs.end());
   }
   [[nodiscard]] std::vector<int> order() && { return std::move(order_); }
 
  private:
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  static constexpr int no_part = -1;
 
   // The vertices of `part` that can be reached from `start`, level by level.
   std::vector<int> search(int start, int part) {

@@ -8,7 +8,8 @@ namespace railtab {
 
 /// Elimination order of a symmetric sparse pattern by nested dissection [George1973]: the middle level of a
 /// breadth-first search from one end cuts the graph in two; each half is cut again, and a cut is eliminated after its
-/// halves. Long and narrow structures, such as a track, get an elimination tree of logarithmic height.
+/// halves. Long and narrow structures, such as a track, get an elimination tree of logarithmic height. Unknowns with
+/// many times the neighbours of the others come last.
 /// @param begin, row compressed columns of the full pattern, n + 1 and begin[n] numbers
 /// @return the unknown that is eliminated k-th, for each k
 [[nodiscard]] std::vector<int> nested_dissection(std::span<const int> begin, std::span<const int> row);

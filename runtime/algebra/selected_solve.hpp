@@ -17,6 +17,8 @@ namespace railtab {
 class SelectedSolve {
  public:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+  /// Memory besides L [bytes].
+  static constexpr double bytes_per_row = 7.0 * sizeof(double) + sizeof(long) + sizeof(int);
 
   /// @param L strictly lower triangle of the unit lower factor, compressed or not; must live as long as this
   SelectedSolve(const Eigen::SparseMatrix<double>& L, Eigen::VectorXd D);

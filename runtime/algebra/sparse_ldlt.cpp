@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <string>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -34,8 +35,8 @@ bool worth_merging(const Columns& merged) {
   return zeros <= (merged.count() <= small ? small_share : share);
 }
 
-// Neighbouring columns that become one block: every column's structure, less its first row, lies in that of the column
-// which this first row names; where that is the next one, both can share their rows.
+// Neighbouring columns that become one block: every column's structure, less its first row, lies in that of the
+// column which this first row names; where that is the next one, both can share their rows.
 std::vector<Columns> supernodes(const Sparse& L) {
   const int* const begin = L.outerIndexPtr();
   std::vector<Columns> blocks;
@@ -89,8 +90,8 @@ constexpr int narrow = 8;
 // Where the rows below a narrow block's triangle begin.
 constexpr int triangle_room(int columns) { return (columns * (columns - 1) / 2 + 3) & ~3; }
 
-/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by row,
-/// then the rows below, four of every column at a time.
+/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by
+/// row, then the rows below, four of every column at a time.
 struct NarrowBlock {
   const double* value;
   const int* row;
@@ -153,6 +154,22 @@ void add_columns(const double* column, int height, int begin, const double* fact
   }
 }
 
+/// Numbers and rows of all blocks, see SparseLdlt::store().
+struct Room {
+  std::size_t values = 0, rows = 0;
+};
+
+Room room_of(const std::vector<Columns>& blocks) {
+  Room room;
+  for (const Columns& columns : blocks) {
+    const int n = columns.count(), below = in_fours(columns.below);
+    room.rows += static_cast<std::size_t>(below);
+    room.values +=
+        static_cast<std::size_t>(n > narrow ? in_fours(n + columns.below) * n : triangle_room(n) + below * n);
+  }
+  return room;
+}
+
 /// result <- columnsᵀ · vector, from row `begin` on.
 template <int number>
 void products(const double* column, int height, int begin, const double* vector, double* result) {
@@ -180,18 +197,23 @@ SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_
   inverse_D_ = simplicial.vectorD().cwiseInverse();
   const auto& order = simplicial.permutationP().indices();
   position_.assign(order.data(), order.data() + order.size());
-  Sparse L = simplicial.matrixL().nestedExpression();  // below the diagonal, rows ascending
-  L.makeCompressed();
+  const Sparse& L = simplicial.matrixL().nestedExpression();  // below the diagonal, compressed, rows ascending
+  assert(L.isCompressed());
+  entries_ = static_cast<std::size_t>(L.nonZeros());
 
   const std::vector<Columns> found = by_height(supernodes(L), L);
+  const Room room = room_of(found);  // growing by themselves, vectors are there twice
+  values_.reserve(room.values);
+  rows_.reserve(room.rows);
+  blocks_.reserve(found.size());
   block_of_.resize(position_.size());
   for (const Columns& columns : found) {
     Block block{columns.begin, columns.count(), columns.below, static_cast<int>(rows_.size()), values_.size(), -1};
     const int last = columns.end - 1;
     const int* const begin = L.innerIndexPtr() + L.outerIndexPtr()[last];
     rows_.insert(rows_.end(), begin, begin + columns.below);
-    // The triangle's inverse in its place, and the rows below times that: substituting in a block is a product with no
-    // column waiting for another.
+    // The triangle's inverse in its place, and the rows below times that: substituting in a block is a product with
+    // no column waiting for another.
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(block.columns + block.below, block.columns);
     for (int j = columns.begin; j < columns.end; ++j) {
       int place = 0;
@@ -247,6 +269,11 @@ void SparseLdlt::store(const Eigen::MatrixXd& dense, const Block& block) {
 
 std::size_t SparseLdlt::bytes() const noexcept {
   return values_.size() * sizeof(double) + rows_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
+}
+
+std::size_t SparseLdlt::stored_bytes() const noexcept {
+  return bytes() + (block_of_.size() + position_.size()) * sizeof(int) +
+         static_cast<std::size_t>(inverse_D_.size()) * sizeof(double);
 }
 
 void SparseLdlt::find_path(std::span<const int> unknowns, Path& path) const {

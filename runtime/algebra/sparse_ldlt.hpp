@@ -38,6 +38,10 @@ class SparseLdlt {
   [[nodiscard]] Eigen::Index room() const noexcept { return size() + 1; }
   /// What one half of a back-substitution reads [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// All that it keeps [bytes].
+  [[nodiscard]] std::size_t stored_bytes() const noexcept;
+  /// Entries of L below the diagonal, which are there in column form too while the factor is made.
+  [[nodiscard]] std::size_t entries() const noexcept { return entries_; }
 
   /// Blocks of unknowns and everything above them.
   using Path = TreePath;
@@ -91,6 +95,7 @@ class SparseLdlt {
   Vector inverse_D_;
   int first_ = 0;  // the unknown that the range begins with
   int most_height_ = 0;
+  std::size_t entries_ = 0;
 };
 
 }  // namespace railtab

@@ -1,121 +1,109 @@
 #include "railtab/runtime/base/column_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view text) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    cells.push_back(trimmed(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return cells;
-}
-
-/// In quotes, and no more than a message can take.
-std::string quoted(std::string_view cell) {
-  constexpr std::size_t longest = 40;
-  std::size_t end = std::min(cell.size(), longest);
-  while (end + 4 > longest && end < cell.size() && (static_cast<unsigned char>(cell[end]) & 0xC0U) == 0x80U)
-    --end;  // of UTF-8
-  return fmt::format("'{}{}'", cell.substr(0, end), end < cell.size() ? "…" : "");
-}
-
-/// Spreadsheets of many languages write semicolons.
-void refuse_other_separator(std::string_view header, const std::string& place) {
-  if (header.find(',') != std::string_view::npos) return;
-  for (const auto& [separator, name] : {std::pair{"];", "semicolons"}, {"]\t", "tabs"}}) {
-    if (header.find(separator) == std::string_view::npos) continue;
-    throw input_error(place, fmt::format("columns separated by {}", name), "columns separated by commas");
-  }
-}
-
-FileColumn header_column(const std::string& file, long line, std::string_view cell) {
+FileColumn header_column(const LineReader& reader, std::string_view cell) {
   const std::size_t bracket = cell.find('[');
   if (bracket == std::string_view::npos || bracket == 0 || cell.back() != ']') {
-    throw input_error(fmt::format("{}:{}", file, line), "header " + quoted(cell), "name[unit]");
+    throw reader.error("header " + quoted(cell), "name[unit]");
   }
   FileColumn column;
-  column.name = std::string(trimmed(cell.substr(0, bracket)));
-  column.unit = std::string(trimmed(cell.substr(bracket + 1, cell.size() - bracket - 2)));
-  column.file = file;
-  column.line.push_back(line);
+  column.name = std::string(stripped(cell.substr(0, bracket)));
+  column.unit = std::string(stripped(cell.substr(bracket + 1, cell.size() - bracket - 2)));
   return column;
 }
 
-void append_row(std::vector<FileColumn>& columns, const std::string& file, long line, std::string_view text) {
-  const std::vector<std::string_view> cells = cells_of(text);
-  if (cells.size() != columns.size()) {
-    throw input_error(fmt::format("{}:{}", file, line), fmt::format("{} columns", cells.size()),
-                      fmt::format("{}, as in the header", columns.size()));
-  }
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    FileColumn& column = columns[c];
-    column.line.push_back(line);
-    double value = 0.0;
-    const char* const end = cells[c].data() + cells[c].size();
-    const auto [stop, status] = std::from_chars(cells[c].data(), end, value);
-    if (status != std::errc{} || stop != end || !std::isfinite(value)) {
-      throw input_error(column.place(column.values.size() + 1), quoted(cells[c]), "a finite number");
+double number(std::string_view cell, const std::string& place) {
+  double value = 0.0;
+  if (!parse(cell, value)) throw input_error(place, quoted(cell), "a finite number");
+  return value;
+}
+
+std::string place_of(const std::string& row, std::string_view column) {
+  return fmt::format("{}: column {}", row, column);
+}
+
+void require_increase(const FileColumn& first) {
+  const std::size_t rows = first.values.size();
+  if (rows < 2 || first.values[rows - 1] > first.values[rows - 2]) return;
+  throw input_error(first.place(rows), fmt::format("{}", first.values[rows - 1]),
+                    fmt::format("more than {} of the row before", first.values[rows - 2]));
+}
+
+/// For each column of the file, the index of its name.
+std::vector<std::size_t> column_order(const ColumnRows& file, const std::vector<std::string>& names) {
+  const std::string expected = fmt::format("the columns {}, separated by commas", fmt::join(names, ","));
+  const std::vector<std::string>& header = file.header();
+  file.require_commas(expected);
+  std::vector<std::size_t> order;
+  for (const std::string& name : header) {
+    const auto known = std::find(names.begin(), names.end(), name);
+    if (known == names.end()) throw file.reader().error(fmt::format("column '{}'", name), expected);
+    const auto index = static_cast<std::size_t>(known - names.begin());
+    if (std::find(order.begin(), order.end(), index) != order.end()) {
+      throw file.reader().error(fmt::format("column '{}' twice", name), expected);
     }
-    column.values.push_back(value);
+    order.push_back(index);
   }
-  const std::vector<double>& first = columns.front().values;
-  if (first.size() > 1 && !(first.back() > first[first.size() - 2])) {
-    throw input_error(columns.front().place(first.size()), fmt::format("{}", first.back()),
-                      fmt::format("more than {} of the row before", first[first.size() - 2]));
+  if (!order.empty() && order.size() != names.size()) {
+    throw file.reader().error(fmt::format("{} columns", order.size()), expected);
   }
+  return order;
 }
 
 }  // namespace
 
-std::string FileColumn::place(std::size_t row) const { return fmt::format("{}:{}: column {}", file, line[row], name); }
+std::string FileColumn::place(std::size_t row) const { return place_of(fmt::format("{}:{}", file, line[row]), name); }
 
 std::vector<FileColumn> read_columns(const std::filesystem::path& file) {
-  constexpr std::string_view expected = "a text file with columns";
-  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), std::string(expected));
-  std::ifstream stream(file);
-  if (!stream) throw input_error(file.string(), "no readable file", std::string(expected));
+  ColumnRows rows(file, "a text file with columns");
+  rows.require_commas("columns separated by commas");
   std::vector<FileColumn> columns;
-  std::string text;
-  for (long line = 1; std::getline(stream, text); ++line) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // some spreadsheets begin a file with it
-    if (line == 1 && text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
-    const std::string_view content = trimmed(text);
-    if (content.empty() || content.front() == '#') continue;
-    if (columns.empty()) {
-      refuse_other_separator(content, fmt::format("{}:{}", file.string(), line));
-      for (const std::string_view cell : cells_of(content)) {
-        columns.push_back(header_column(file.string(), line, cell));
-      }
-    } else {
-      append_row(columns, file.string(), line, content);
-    }
+  for (const std::string& cell : rows.header()) {
+    columns.push_back(header_column(rows.reader(), cell));
+    columns.back().file = file.string();
+    columns.back().line.push_back(rows.header_line());
   }
-  if (stream.bad()) throw input_error(file.string(), "a read error", "a readable text file");
-  const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
-  if (rows < 2) throw input_error(file.string(), fmt::format("{} rows", rows), "a header row and at least 2 rows");
+  while (rows.next()) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      FileColumn& column = columns[c];
+      column.line.push_back(rows.reader().line_number());
+      column.values.push_back(number(rows.cells()[c], column.place(column.line.size() - 1)));
+    }
+    require_increase(columns.front());
+  }
+  const std::size_t count = columns.empty() ? 0 : columns.front().values.size();
+  if (count < 2) throw input_error(file.string(), fmt::format("{} rows", count), "a header row and at least 2 rows");
   return columns;
+}
+
+NumberRows read_number_rows(const std::filesystem::path& file, const std::vector<std::string>& columns) {
+  ColumnRows rows(file, "a CSV file");
+  const std::vector<std::size_t> order = column_order(rows, columns);
+  NumberRows table;
+  while (rows.next()) {
+    std::vector<double> row(columns.size());
+    for (std::size_t c = 0; c < order.size(); ++c) {
+      row[order[c]] = number(rows.cells()[c], place_of(rows.reader().place(), columns[order[c]]));
+    }
+    table.rows.push_back(std::move(row));
+    table.places.push_back(rows.reader().place());
+  }
+  if (table.rows.empty()) {
+    throw input_error(file.string(), "no row of numbers", fmt::format("rows of {}", fmt::join(columns, ",")));
+  }
+  return table;
 }
 
 double factor_to_si(const FileColumn& column, const std::vector<UnitFactor>& units) {

@@ -23,6 +23,16 @@ struct FileColumn {
 /// @throws InputError with file and line
 [[nodiscard]] std::vector<FileColumn> read_columns(const std::filesystem::path& file);
 
+/// Numbers under a header row of names, the columns in the order in which they were asked for.
+struct NumberRows {
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string> places;  ///< of the rows, "file:line"
+};
+
+/// Read a text file whose header row has exactly these names, in any order, and at least one row of as many finite
+/// numbers under them. @throws InputError with file and line
+[[nodiscard]] NumberRows read_number_rows(const std::filesystem::path& file, const std::vector<std::string>& columns);
+
 /// Factor from the column's unit to SI.
 struct UnitFactor {
   std::string_view unit;

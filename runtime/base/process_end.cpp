@@ -7,6 +7,7 @@
 #include <new>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/printable_text.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab {
@@ -15,11 +16,26 @@ namespace {
 
 constexpr int done = 0, failed = 1, wrong_input = 2;
 
+/// Without memory of its own, which may be what is missing.
+void write_printable(std::string_view text, std::FILE* stream) noexcept {
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = begin;
+    while (const std::size_t bytes = printable_bytes(text.substr(end))) end += bytes;
+    std::fwrite(text.data() + begin, 1, end - begin, stream);
+    if (end < text.size())
+      std::fprintf(stream, "\\x%02X", static_cast<unsigned>(static_cast<unsigned char>(text[end])));
+    begin = end + 1;
+  }
+}
+
 int caught(std::string_view program, const std::function<int()>& command) {
   // no formatting that could throw once more: memory or standard error may be what is missing
   const auto say = [program](const char* what, const char* detail = nullptr) {
-    std::fprintf(stderr, "%.*s: %s%s%s\n", static_cast<int>(program.size()), program.data(), what,
-                 detail == nullptr ? "" : ": ", detail == nullptr ? "" : detail);
+    for (const std::string_view part :
+         {program, std::string_view(": "), std::string_view(what), std::string_view(detail == nullptr ? "" : ": "),
+          std::string_view(detail == nullptr ? "" : detail), std::string_view("\n")}) {
+      print_message(part);
+    }
   };
   try {
     return command();
@@ -40,7 +56,9 @@ int caught(std::string_view program, const std::function<int()>& command) {
 
 }  // namespace
 
-void print_message(const std::string& text) noexcept { std::fputs(text.c_str(), stderr); }
+void print_message(std::string_view text) noexcept { write_printable(text, stderr); }
+
+void print_text(std::string_view text) noexcept { write_printable(text, stdout); }
 
 int run_process(std::string_view program, const std::function<int()>& command) {
   int code = caught(program, command);

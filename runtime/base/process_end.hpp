@@ -1,13 +1,16 @@
 #pragma once
 
 #include <functional>
-#include <string>
 #include <string_view>
 
 namespace railtab {
 
-/// Writes a message to standard error. That it cannot be written there (a full disk) changes nothing else.
-void print_message(const std::string& text) noexcept;
+/// Writes a message to standard error, bytes that are no printable characters as \xNN. That it cannot be written there
+/// (a full disk) changes nothing else.
+void print_message(std::string_view text) noexcept;
+
+/// The same to standard output. run_process() says where it could not be written.
+void print_text(std::string_view text) noexcept;
 
 /// Runs all of a command, `program` in its messages on standard error, and says how the process ends: what `command`
 /// returns; 2 for InputError and names that the system refuses; 1 for any other exception and where standard output

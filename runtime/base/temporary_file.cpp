@@ -1,75 +1,90 @@
 #include "railtab/runtime/base/temporary_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
-#include <atomic>
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <optional>
-#include <string>
+#include <cstring>
+#include <random>
 #include <string_view>
 #include <vector>
 
-#include "railtab/runtime/base/writer_lock.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 
 namespace {
 
-std::atomic<unsigned> names_given{0};
+constexpr std::string_view mark = ".part-";
+constexpr std::string_view alphabet = "abcdefghijklmnopqrstuvwxyz234567";
+constexpr std::size_t suffix_length = 12;
 
-/// What the names of this host's temporary files of `file` begin with.
-std::string beginning(const std::filesystem::path& file) {
-  constexpr std::size_t longest = 32;  // a file's name has a limit too
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
-  return fmt::format("{}.part-{}-", file.filename().string(), std::string_view(host.data()).substr(0, longest));
+std::string random_suffix() {
+  std::random_device random;
+  std::uniform_int_distribution<std::size_t> any(0, alphabet.size() - 1);
+  std::string suffix;
+  while (suffix.size() < suffix_length) suffix += alphabet[any(random)];
+  return suffix;
 }
 
-struct Owner {
-  pid_t process = 0;
-  unsigned number = 0;
-};
-
-/// "<process>-<n>" and nothing else.
-std::optional<Owner> owner(std::string_view text) {
-  Owner found;
-  const char* const end = text.data() + text.size();
-  const auto process = std::from_chars(text.data(), end, found.process);
-  if (process.ec != std::errc{} || found.process <= 0 || process.ptr == end || *process.ptr != '-') return {};
-  const auto number = std::from_chars(process.ptr + 1, end, found.number);
-  if (number.ec != std::errc{} || number.ptr != end) return {};
-  return found;
+/// The output whose temporary file has this name; empty where it is no such name.
+std::string output_of(std::string_view name) {
+  if (name.size() <= mark.size() + suffix_length) return {};
+  const std::string_view suffix = name.substr(name.size() - suffix_length);
+  name.remove_suffix(suffix_length);
+  const auto known = [](char c) { return alphabet.find(c) != std::string_view::npos; };
+  if (!name.ends_with(mark) || !std::all_of(suffix.begin(), suffix.end(), known)) return {};
+  return std::string(name.substr(0, name.size() - mark.size()));
 }
 
-bool is_gone(const Owner& owner) noexcept {
-  // a process of the same number before this one, as in containers, where numbers begin anew
-  if (owner.process == ::getpid()) return owner.number >= names_given;
-  return ::kill(owner.process, 0) != 0 && errno == ESRCH;
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, int error) {
+  if (error == ENOSPC || error == EDQUOT || error == EIO || error == EMFILE || error == ENFILE) {
+    throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(error)));
+  }
+  throw input_error(file.string(), fmt::format("a place that cannot be written ({})", std::strerror(error)),
+                    "a file name in an existing folder that can be written");
 }
 
 }  // namespace
 
-std::filesystem::path temporary_name(const std::filesystem::path& file) {
-  return file.parent_path() / fmt::format("{}{}-{}", beginning(file), ::getpid(), names_given++);
+TemporaryFile create_temporary(const std::filesystem::path& file) {
+  remove_abandoned(file);
+  constexpr int most_names = 1000;  // one that is taken, or that a remover takes away before it is locked, is rare
+  for (int i = 0; i < most_names; ++i) {
+    const std::filesystem::path name = fmt::format("{}{}{}", file.string(), mark, random_suffix());
+    constexpr int everybody = 0666;  // cut by the umask, as for every new file
+    const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, everybody);
+    if (descriptor < 0 && errno == EEXIST) continue;
+    if (descriptor < 0) refuse(file, errno);
+    WriterLock lock = WriterLock::of_descriptor(descriptor);
+    struct stat state {};
+    if (lock.held() && ::fstat(descriptor, &state) == 0 && state.st_nlink > 0) return {name, std::move(lock)};
+  }
+  throw ComputationError(fmt::format("{}: no name for a temporary file beside it", file.string()));
 }
 
 void remove_abandoned(const std::filesystem::path& file) {
-  const std::string begin = beginning(file);
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  remove_abandoned_in(folder_of(file),
+                      [output = file.filename().string()](const std::string& of) { return of == output; });
+}
+
+void remove_abandoned_in(const std::filesystem::path& folder,
+                         const std::function<bool(const std::string&)>& is_output) {
   std::error_code failed;
-  std::vector<std::filesystem::path> abandoned;
+  std::vector<std::filesystem::path> temporaries;
   for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(begin)) continue;
-    const std::optional<Owner> who = owner(std::string_view(name).substr(begin.size()));
-    if (who && is_gone(*who)) abandoned.push_back(entry->path());
+    const std::string output = output_of(entry->path().filename().string());
+    if (!output.empty() && is_output(output)) temporaries.push_back(entry->path());
   }
-  for (const std::filesystem::path& name : abandoned) {
+  for (const std::filesystem::path& name : temporaries) {
     const WriterLock lock = WriterLock::if_free(name);
     if (lock.held()) std::filesystem::remove(name, failed);
   }

@@ -1,14 +1,19 @@
 #include "railtab/runtime/base/text_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
+#include <string>
 #include <system_error>
 
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/printable_text.hpp"
+#include "railtab/runtime/base/temporary_file.hpp"
 
 namespace railtab {
 
@@ -43,50 +48,78 @@ bool is_wrong_name(const std::error_code& refused) noexcept {
          refused == std::errc::no_such_file_or_directory;
 }
 
-std::filesystem::path output_file(const std::filesystem::path& named) {
+std::filesystem::path output_file(const std::filesystem::path& file) {
   std::error_code failed;
-  std::filesystem::path file = named;
+  std::filesystem::path target = file;
   constexpr int most_links = 40;  // as Linux follows
-  for (int i = 0; std::filesystem::is_symlink(file, failed); ++i) {
-    if (i == most_links) throw input_error(named.string(), "links in a circle", "the name of a file");
-    file = file.parent_path() / std::filesystem::read_symlink(file, failed);
+  for (int i = 0; std::filesystem::is_symlink(target, failed); ++i) {
+    if (i == most_links) throw input_error(file.string(), "links in a circle", "the name of a file");
+    target = target.parent_path() / std::filesystem::read_symlink(target, failed);
   }
-  if (std::filesystem::exists(file, failed) && !std::filesystem::is_regular_file(file, failed)) {
-    throw input_error(named.string(), std::string(what_is_at(file)), "the name of a file");
+  if (std::filesystem::exists(target, failed) && !std::filesystem::is_regular_file(target, failed)) {
+    throw input_error(file.string(), std::string(what_is_at(target)), "the name of a file");
   }
-  return file;
+  return target;
 }
 
 namespace {
 
-/// Whether a file is there whose first bytes no text has: a table, results, any other binary file.
-bool is_binary(const std::filesystem::path& file) {
+/// The first bytes of a file, line ends as railtab writes them.
+std::string beginning(const std::filesystem::path& file, std::size_t bytes) {
   std::ifstream stream(file, std::ios::binary);
-  std::array<char, 512> head{};
-  stream.read(head.data(), head.size());
-  const auto end = head.begin() + stream.gcount();
-  return std::find(head.begin(), end, '\0') != end;
+  std::string head(2 * bytes, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  std::erase(head, '\r');
+  head.resize(std::min(head.size(), bytes));
+  return head;
+}
+
+std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
+
+void write_all(int descriptor, std::string_view text, const std::filesystem::path& file) {
+  const auto fail = [&] {
+    throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(errno)));
+  };
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno != EINTR) fail();
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  // some file systems find only here that they are full; others cannot do it
+  if (::fsync(descriptor) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT)) fail();
 }
 
 }  // namespace
 
-void write_text_file(const std::filesystem::path& named, std::string_view text) {
-  const std::filesystem::path file = output_file(named);
-  if (is_binary(file)) throw input_error(named.string(), "a table or results of railtab, or HDF5", "another name");
-  std::filesystem::path unfinished = file;
-  unfinished += ".part";
-  std::ofstream stream(unfinished, std::ios::binary);
-  if (!stream) {
-    throw input_error(file.string(), "a place that cannot be written", "a file name in an existing folder");
-  }
-  stream << text;
-  stream.close();
-  std::error_code failed(stream ? 0 : errno, std::generic_category());
-  if (stream) std::filesystem::rename(unfinished, file, failed);
-  if (!stream || failed) {
+void require_replaceable_text(const std::filesystem::path& file, std::string_view mark) {
+  const std::filesystem::path target = output_file(file);
+  std::error_code failed;
+  if (!is_file(target) || std::filesystem::file_size(target, failed) == 0) return;
+  constexpr std::size_t enough = 512;  // no text has a zero among them, tables and results have
+  const std::string head = beginning(target, std::max(mark.size(), enough));
+  if (head.starts_with(mark)) return;
+  const bool binary = head.find('\0') != std::string::npos;
+  const std::string found =
+      binary ? "a table or results of railtab, or HDF5" : "a file that begins with " + quoted(first_line(head));
+  throw input_error(file.string(), found,
+                    fmt::format("a new name, or an earlier output of this kind to replace, which begins with '{}'",
+                                printable(first_line(mark).substr(0, 140))));
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text, std::string_view mark) {
+  require_replaceable_text(file, mark.empty() ? text.substr(0, first_line(text).size() + 1) : mark);
+  const std::filesystem::path target = output_file(file);
+  const TemporaryFile temporary = create_temporary(target);
+  try {
+    write_all(temporary.lock.descriptor(), text, target);
+    std::error_code failed;
+    std::filesystem::rename(temporary.name, target, failed);
+    if (failed) throw ComputationError(fmt::format("{}: could not be written: {}", target.string(), failed.message()));
+  } catch (const ComputationError&) {
     std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), failed.message()));
+    std::filesystem::remove(temporary.name, ignored);
+    throw;
   }
 }
 

@@ -23,10 +23,15 @@ namespace railtab {
 /// @throws InputError where there is something other than a regular file: a folder, a device, a pipe, links in a circle
 [[nodiscard]] std::filesystem::path output_file(const std::filesystem::path& file);
 
-/// Write a text file whole or not at all: to a temporary name beside `file`, then renamed.
-/// @throws InputError where the folder cannot be written, and where `file` is an HDF5 file: no text is meant to replace
-/// a table or results. @throws ComputationError where the disk is full.
-void write_text_file(const std::filesystem::path& file, std::string_view text);
+/// A text output may replace an empty file and an earlier one of its own kind, which begins with the same `mark`: the
+/// header of a CSV, the first line of a page. Another file is somebody's. @throws InputError
+void require_replaceable_text(const std::filesystem::path& file, std::string_view mark);
+
+/// Write a text file whole or not at all: to a temporary file beside `file`, then renamed.
+/// @param mark what its kind begins with, see require_replaceable_text(); the first line of `text` where it is empty
+/// @throws InputError where the folder cannot be written, and where `file` is there and of another kind.
+/// @throws ComputationError where the disk is full.
+void write_text_file(const std::filesystem::path& file, std::string_view text, std::string_view mark = {});
 
 /// An output must not destroy what is read. @throws InputError where `output` is one of the files `inputs` (names that
 /// are no files do not count).

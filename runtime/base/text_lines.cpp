@@ -74,18 +74,6 @@ InputError LineReader::file_error(std::string_view found, std::string_view expec
   return input_error(file_.string(), found, expected);
 }
 
-bool TableRows::next(std::span<std::string_view> words) {
-  while (reader_.next()) {
-    const std::string_view text = stripped(reader_.line());
-    if (text.empty() || text.front() == '#') continue;
-    const bool as_expected = has_header_ ? split(text, words, ",") == words.size() : text == header_;
-    if (!as_expected) throw reader_.error(fmt::format("'{}'", text.substr(0, 80)), header_);
-    if (has_header_) return true;
-    has_header_ = true;
-  }
-  return false;
-}
-
 void require_possible_size(const LineReader& reader, long rows, long columns, long entries, int bytes_per_entry) {
   constexpr long most_rows = 20'000'000;  // ten times what a direct solver can factorise on a workstation
   if (rows < 1 || columns < 1 || rows > most_rows || columns > most_rows) {

@@ -66,21 +66,6 @@ class LineReader {
   long count_ = 0;
 };
 
-/// Rows of words between commas under a line of the columns' names; lines that begin with # are left out.
-class TableRows {
- public:
-  TableRows(LineReader& reader, std::string_view header) : reader_(reader), header_(header) {}
-  /// The words of the next row; false at the end. @throws InputError where they are not as many as there is room for,
-  /// or the first line is not the header
-  bool next(std::span<std::string_view> words);
-  [[nodiscard]] bool has_header() const noexcept { return has_header_; }
-
- private:
-  LineReader& reader_;
-  std::string_view header_;
-  bool has_header_ = false;
-};
-
 /// Sizes that no file of so many bytes can hold, or no memory, are refused before anything is allocated.
 /// @param bytes_per_entry at least, in the file
 void require_possible_size(const LineReader& reader, long rows, long columns, long entries, int bytes_per_entry);

@@ -39,6 +39,14 @@ WriterLock WriterLock::if_free(const std::filesystem::path& file) noexcept {
   return lock;
 }
 
+WriterLock WriterLock::of_descriptor(int descriptor) noexcept {
+  WriterLock lock;
+  lock.descriptor_ = descriptor;
+  const int error = lock_whole(descriptor);
+  if (error == EAGAIN || error == EACCES) ::close(std::exchange(lock.descriptor_, -1));
+  return lock;
+}
+
 WriterLock::WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 WriterLock& WriterLock::operator=(WriterLock&& other) noexcept {

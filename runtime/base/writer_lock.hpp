@@ -14,7 +14,12 @@ class WriterLock {
   explicit WriterLock(const std::filesystem::path& file);
   /// Not held where another writer holds the file, it cannot be opened for writing, or the file system has no locks.
   [[nodiscard]] static WriterLock if_free(const std::filesystem::path& file) noexcept;
+  /// Of an open file, whose descriptor it takes over. Not held where another writer holds the file; where the file
+  /// system has no locks, there is no protection.
+  [[nodiscard]] static WriterLock of_descriptor(int descriptor) noexcept;
   [[nodiscard]] bool held() const noexcept { return descriptor_ >= 0; }
+  /// Of the file, open for writing; -1 where the lock is not held.
+  [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
   WriterLock(WriterLock&& other) noexcept;
   WriterLock& operator=(WriterLock&& other) noexcept;
   ~WriterLock();

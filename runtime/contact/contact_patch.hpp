@@ -19,7 +19,7 @@ struct WheelsetPose {
   [[nodiscard]] constexpr WheelsetPose mirrored() const noexcept { return {-y, z, -roll, -yaw}; }
 };
 
-/// Which route gave a contact patch.
+/// The method that found a contact patch.
 enum class PatchSource : std::uint8_t {
   table,           ///< a branch of the geometry table, polished on the stored profiles
   online_convex,   ///< online search, common-normal Newton (Eqs. 1-4)
@@ -49,12 +49,12 @@ struct ContactPatch {
 /// The patches of one wheel, without heap allocation, in increasing y_rail.
 struct ContactPatches {
   static constexpr int capacity = 8;
-  ContactPatches() noexcept {}  // NOLINT(modernize-use-equals-default): the patches are not worth their zeros
+  ContactPatches() noexcept {}  // NOLINT(modernize-use-equals-default): the patches are not initialised
   union {
     std::array<ContactPatch, capacity> patch;  ///< the first `count`; the others are not initialised
   };
   int count = 0;
-  bool from_table = false;  ///< the geometry table answered, also where it answers that nothing touches
+  bool from_table = false;  ///< from the geometry table, also where nothing touches
   bool overflow = false;    ///< more than `capacity` candidates: the deepest were kept
 
   [[nodiscard]] const ContactPatch* begin() const noexcept { return patch.data(); }

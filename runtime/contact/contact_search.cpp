@@ -53,7 +53,7 @@ void insert(ContactPatches& patches, const ContactPatch& patch) noexcept {
 }
 
 // Start of Newton in a bracket: the slope's zero by the chord.
-std::pair<double, double> chord_zero(const GapBracket& b) noexcept {
+PairPosition chord_zero(const GapBracket& b) noexcept {
   const double t = b.left.slope / (b.left.slope - b.right.slope);
   return {b.left.s_wheel + t * (b.right.s_wheel - b.left.s_wheel),
           b.left.s_rail + t * (b.right.s_rail - b.left.s_rail)};
@@ -64,17 +64,26 @@ bool within(const GapBracket& b, double s_wheel) noexcept {
   return s_wheel >= b.left.s_wheel - reserve && s_wheel <= b.right.s_wheel + reserve;
 }
 
+// The online search of one wheel: its scan at a pose.
+struct PosedScan {
+  const WheelRailPair& pair;
+  const ContactScan& scan;
+  const WheelsetPose& pose;
+  const PoseTrigonometry& trig;
+  WheelsetCentre centre = wheelset_centre(pair, pose);
+};
+
 // Convex search first (Eqs. 1-4); where its Newton leaves the bracket, the safe search: the deepest of the nearest
 // distances, Eqs. 9-10 without their points.
-void add_patch(const WheelRailPair& pair, const WheelsetPose& pose, const PoseTrigonometry& trig, const GapWalk& walk,
-               const GapBracket& bracket, double near_miss, ContactPatches& patches) noexcept {
-  const auto [s_wheel, s_rail] = chord_zero(bracket);
-  const RefinedPair refined = refine_pair(pair, pose, trig, s_wheel, s_rail);
+void add_patch(const PosedScan& search, const GapWalk& walk, const GapBracket& bracket, double near_miss,
+               ContactPatches& patches) noexcept {
+  const auto& [pair, scan, pose, trig, centre] = search;
+  const RefinedPair refined = refine_pair(pair, pose, trig, chord_zero(bracket));
   ContactPatch patch = refined.patch;
   if (refined.status != PairStatus::converged || !within(bracket, patch.s_wheel)) {
     const GapSlope zero = walk.solve(bracket);
     if (!zero.exists) return;
-    patch = patch_of_pair(pair, pose, trig, zero.s_wheel, zero.s_rail);
+    patch = patch_of_pair(pair, pose, trig, {zero.s_wheel, zero.s_rail});
     patch.source = PatchSource::online_concave;
   }
   if (patch.penetration > -near_miss) insert(patches, patch);
@@ -84,12 +93,20 @@ struct ScanRange {
   int begin, end;  ///< intervals
 };
 
-// Calls found(bracket) for every minimum of the gap in the intervals of a range that `wanted(gaps, j)` names, of the
-// blocks that `near(block)` names; j counts in the block.
+// Which intervals of a scan are searched: those for which wanted(gaps, j) holds, j counting in the block, in the blocks
+// for which near(block) holds. The gaps are those of ContactScan::gaps() with this dilation [m].
+template <class Near, class Wanted>
+struct GapFilter {
+  double dilation;
+  Near near;
+  Wanted wanted;
+};
+
+// Calls found(bracket) for every minimum of the gap in the intervals of a range that the filter lets pass.
 template <class Near, class Wanted, class Found>
-void for_each_minimum(const ContactScan& scan, ScanRange range, const WheelsetCentre& centre,
-                      const PoseTrigonometry& trig, const GapWalk& walk, double dilation, Near near, Wanted wanted,
-                      Found found) noexcept {
+void for_each_minimum(const PosedScan& search, ScanRange range, const GapWalk& walk,
+                      const GapFilter<Near, Wanted>& filter, Found found) noexcept {
+  const ContactScan& scan = search.scan;
   ContactScan::BlockGaps gap;
   GapSlope last;
   int last_point = -1;
@@ -104,11 +121,11 @@ void for_each_minimum(const ContactScan& scan, ScanRange range, const WheelsetCe
   };
   constexpr int size = ContactScan::block_size;
   for (int block = range.begin / size; block * size < range.end; ++block) {
-    if (!near(block)) continue;
-    scan.gaps(block, centre, trig, dilation, gap);
+    if (!filter.near(block)) continue;
+    scan.gaps(block, search.centre, search.trig, filter.dilation, gap);
     const int first = block * size;
     for (int k = std::max(first, range.begin); k < std::min(first + size, range.end); ++k) {
-      if (!wanted(gap, k - first)) continue;
+      if (!filter.wanted(gap, k - first)) continue;
       const GapSlope left = slope_at(k);
       const GapSlope right = slope_at(k + 1);
       const GapBracket bracket = walk.bracket(left, right);
@@ -123,25 +140,25 @@ ContactSearch::ContactSearch(WheelRailPair pair, double spacing) : pair_(std::mo
 
 namespace {
 
-void add_patches(const WheelRailPair& pair, const ContactScan& scan, ScanRange range, const WheelsetPose& pose,
-                 const PoseTrigonometry& trig, double near_miss, ContactPatches& result) noexcept {
-  const WheelsetCentre centre = wheelset_centre(pair, pose);
+void add_patches(const PosedScan& search, ScanRange range, double near_miss, ContactPatches& result) noexcept {
+  const auto& [pair, scan, pose, trig, centre] = search;
   const GapWalk walk(pair, pose, trig, Opposite::nearest);
   // A minimum at zero distance stands at most half a spacing from a scan point; 75 degrees make four of the distance.
   const double margin = 2.0 * scan.spacing();
-  for_each_minimum(
-      scan, range, centre, trig, walk, near_miss,
-      [&](int block) { return scan.gap_bound(block, centre, trig, near_miss) < margin; },
-      [&](const ContactScan::BlockGaps& gap, int j) { return may_touch(gap, j, margin); },
-      [&](const GapBracket& bracket) { add_patch(pair, pose, trig, walk, bracket, near_miss, result); });
+  const GapFilter filter{
+      near_miss,
+      [&](int block) { return search.scan.gap_bound(block, search.centre, search.trig, near_miss) < margin; },
+      [&](const ContactScan::BlockGaps& gap, int j) { return may_touch(gap, j, margin); }};
+  for_each_minimum(search, range, walk, filter,
+                   [&](const GapBracket& bracket) { add_patch(search, walk, bracket, near_miss, result); });
 }
 
 }  // namespace
 
 ContactPatches ContactSearch::patches(const WheelsetPose& pose, double near_miss) const noexcept {
   ContactPatches result;
-  add_patches(pair_, scan_, {0, scan_.blocks() * ContactScan::block_size}, pose, PoseTrigonometry(pose), near_miss,
-              result);
+  const PoseTrigonometry trig(pose);
+  add_patches({pair_, scan_, pose, trig}, {0, scan_.blocks() * ContactScan::block_size}, near_miss, result);
   return result;
 }
 
@@ -151,7 +168,7 @@ void ContactSearch::add_patches_between(double s_low, double s_high, const Wheel
   const double most = static_cast<double>(scan_.blocks() * ContactScan::block_size);
   const auto point = [&](double s) { return std::clamp((s - scan_.s_wheel(0)) / scan_.spacing(), 0.0, most); };
   const ScanRange range{static_cast<int>(point(s_low)), static_cast<int>(std::ceil(point(s_high)))};
-  add_patches(pair_, scan_, range, pose, trig, near_miss, result);
+  add_patches({pair_, scan_, pose, trig}, range, near_miss, result);
 }
 
 namespace {
@@ -172,36 +189,35 @@ double lowest_possible(const ContactScan::BlockGaps& gap, int j) noexcept {
 
 // Calls found(TouchPoint) for every minimum of the vertical gap that can be less than `height` above the least.
 template <class Found>
-void for_each_touch(const WheelRailPair& pair, const ContactScan& scan, const WheelsetPose& pose,
-                    const PoseTrigonometry& trig, double height, Found found) noexcept {
-  const WheelsetCentre centre = wheelset_centre(pair, pose);
+void for_each_touch(const PosedScan& search, double height, Found found) noexcept {
+  const ContactScan& scan = search.scan;
   double least = infinity;
   ContactScan::BlockGaps gap;
   std::array<double, ContactScan::most_blocks> block_least;  // or a lower bound of it
   for (int block = 0; block < scan.blocks(); ++block) {
     double& bound = block_least[static_cast<std::size_t>(block)];
-    bound = scan.gap_bound(block, centre, trig, 0.0);
+    bound = scan.gap_bound(block, search.centre, search.trig, 0.0);
     if (bound >= least) continue;
-    scan.gaps(block, centre, trig, 0.0, gap);
+    scan.gaps(block, search.centre, search.trig, 0.0, gap);
     bound = *std::min_element(gap.begin(), gap.end());
     least = std::min(least, bound);
   }
   if (least == infinity) return;
-  const GapWalk walk(pair, pose, trig, Opposite::vertical);
-  for_each_minimum(
-      scan, {0, scan.blocks() * ContactScan::block_size}, centre, trig, walk, 0.0,
-      [&](int block) { return block_least[static_cast<std::size_t>(block)] < least + height + block_reserve; },
-      [&](const ContactScan::BlockGaps& g, int j) { return lowest_possible(g, j) < least + height; },
-      [&](const GapBracket& bracket) {
-        const auto [s_wheel, s_rail] = chord_zero(bracket);
-        const RefinedTouch refined = refine_touch(pair, pose, trig, s_wheel, s_rail);
-        if (refined.status == PairStatus::converged && within(bracket, refined.touch.s_wheel)) {
-          found(refined.touch);
-          return;
-        }
-        const GapSlope zero = walk.solve(bracket);
-        if (zero.exists) found(touch_of_pair(pair, pose, trig, zero.s_wheel, zero.s_rail));
-      });
+  const GapWalk walk(search.pair, search.pose, search.trig, Opposite::vertical);
+  const GapFilter filter{
+      0.0, [&](int block) { return block_least[static_cast<std::size_t>(block)] < least + height + block_reserve; },
+      [&](const ContactScan::BlockGaps& g, int j) { return lowest_possible(g, j) < least + height; }};
+  for_each_minimum(search, {0, scan.blocks() * ContactScan::block_size}, walk, filter, [&](const GapBracket& bracket) {
+    const RefinedTouch refined = refine_touch(search.pair, search.pose, search.trig, chord_zero(bracket));
+    if (refined.status == PairStatus::converged && within(bracket, refined.touch.s_wheel)) {
+      found(refined.touch);
+      return;
+    }
+    const GapSlope zero = walk.solve(bracket);
+    if (zero.exists) {
+      found(touch_of_pair(search.pair, search.pose, search.trig, {zero.s_wheel, zero.s_rail}));
+    }
+  });
 }
 
 void insert(TouchPoints& touches, const TouchPoint& touch) noexcept {
@@ -227,7 +243,8 @@ TouchPoints ContactSearch::touches(double y, double roll, double yaw, double hei
   const WheelsetPose pose{y, 0.0, roll, yaw};
   TouchPoints result;
   double least = infinity;
-  for_each_touch(pair_, scan_, pose, PoseTrigonometry(pose), height, [&](const TouchPoint& touch) {
+  const PoseTrigonometry trig(pose);
+  for_each_touch({pair_, scan_, pose, trig}, height, [&](const TouchPoint& touch) {
     least = std::min(least, touch.z_touch);
     insert(result, touch);
   });
@@ -242,7 +259,8 @@ TouchPoint ContactSearch::first_touch(double y, double roll, double yaw) const n
   const WheelsetPose pose{y, 0.0, roll, yaw};
   TouchPoint result;
   result.z_touch = std::numeric_limits<double>::quiet_NaN();
-  for_each_touch(pair_, scan_, pose, PoseTrigonometry(pose), 0.0, [&](const TouchPoint& touch) {
+  const PoseTrigonometry trig(pose);
+  for_each_touch({pair_, scan_, pose, trig}, 0.0, [&](const TouchPoint& touch) {
     if (!(touch.z_touch >= result.z_touch)) result = touch;
   });
   return result;

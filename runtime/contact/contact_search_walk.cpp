@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/contact/common_normal.hpp"
+
 namespace railtab {
 
 GapSlope GapWalk::at(const SilhouettePoint& S, double s_wheel, double s_rail) const noexcept {
@@ -13,33 +15,33 @@ GapSlope GapWalk::at(const SilhouettePoint& S, double s_wheel, double s_rail) co
   GapSlope result;
   result.s_wheel = s_wheel;
   if (!S.exists) return result;
+  const WheelTangent<double> wheel = wheel_tangent(S);
   for (int i = 0; i < most_steps; ++i) {
     const CurvePoint C = pair_.rail().at(s_rail);
-    const double ey = S.y - C.y;
-    const double ez = S.z - C.z;
-    const double length2 = C.dy * C.dy + C.dz * C.dz;
+    const RailTangent<double> rail = rail_tangent(C);
+    const PlaneVector<double> e{S.y - C.y, S.z - C.z};
     double residual;  // zero at the opposite point, falling along the rail at `fall`
     double fall;
     double residual_ds;  // along the wheel
     if (opposite_ == Opposite::nearest) {
-      residual = C.dy * ey + C.dz * ez;
+      const double length2 = dot(rail.tangent, rail.tangent);
+      residual = dot(rail.tangent, e);
       // Beyond the centre of curvature Newton would run from the nearest point.
-      fall = std::max(length2 - (C.ddy * ey + C.ddz * ez), 0.2 * length2);
-      residual_ds = C.dy * S.dy + C.dz * S.dz;
+      fall = std::max(length2 - dot(rail.bend, e), 0.2 * length2);
+      residual_ds = dot(rail.tangent, {S.dy, S.dz});
     } else {
-      residual = ey;
+      residual = e.y;
       fall = std::max(C.dy, 1e-3);
       residual_ds = S.dy;
     }
     const double step = std::clamp(residual / fall, -largest_step, largest_step);
     s_rail += step;
     if (!(std::abs(step) < last_step)) continue;
-    const double ty = C.dy + step * C.ddy;
-    const double tz = C.dz + step * C.ddz;
+    const PlaneVector<double> tangent{C.dy + step * C.ddy, C.dz + step * C.ddz};
     result.s_rail = s_rail;
     result.s_rail_ds = residual_ds / fall;
-    result.slope = S.ty * tz - S.tz * ty;
-    result.slope_ds = S.dty * tz - S.dtz * ty + (S.ty * C.ddz - S.tz * C.ddy) * result.s_rail_ds;
+    result.slope = cross(wheel.tangent, tangent);
+    result.slope_ds = cross(wheel.bend, tangent) + cross(wheel.tangent, rail.bend) * result.s_rail_ds;
     result.exists = pair_.rail().contains(s_rail) && S.speed > 0.0;
     return result;
   }

@@ -39,7 +39,7 @@ struct LinearCreep {
   std::optional<KalkerCoefficients> coefficients{};
 };
 
-/// Polach [Polach1999]: no moment is given by the method; that of linear theory, saturated, is returned.
+/// Polach [Polach1999]: the method has no moment; that of linear theory, saturated, is returned.
 struct PolachCreep {
   double nu = 0.28;
   double k_adhesion = 1.0;  ///< k_A, 0 < k_S <= k_A <= 1

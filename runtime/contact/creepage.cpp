@@ -13,12 +13,11 @@ PatchCreepage patch_creepage(const RelativeMotion& motion, const Eigen::Vector3d
   return {slip.x() / speed, slip.dot(axes.tangent) / speed, motion.angular_velocity.dot(axes.normal) / speed};
 }
 
-Creepage normalised_creepage(double upsilon_x, double upsilon_y, double phi, double a, double b, double G,
-                             double mu_Fn) noexcept {
+Creepage normalised_creepage(const PatchCreepage& creepage, double a, double b, double G, double mu_Fn) noexcept {
   assert(a > 0.0 && b > 0.0 && mu_Fn > 0.0);
   const double ab = a * b;
   const double scale = G * ab / mu_Fn;
-  return {upsilon_x * scale, upsilon_y * scale, phi * scale * std::sqrt(ab)};
+  return {creepage.x * scale, creepage.y * scale, creepage.spin * scale * std::sqrt(ab)};
 }
 
 PatchCreepForce dimensional_creep_force(const CreepForce& force, double a, double b, double mu_Fn) noexcept {

@@ -41,9 +41,9 @@ struct RelativeMotion {
                                            const ContactAxes& axes, double speed) noexcept;
 
 /// Creepages normalised by G ab/(μF_n), spin by G (ab)^{3/2}/(μF_n): what creep_force() takes.
-/// @param upsilon_x, upsilon_y creepages [-]; @param phi spin [1/m]; @param a, b semi-axes [m]
+/// @param a, b semi-axes [m]
 /// @param G combined shear modulus, 1/G = (1/G_w + 1/G_r)/2 [Pa]; @param mu_Fn friction bound μF_n > 0 [N]
-[[nodiscard]] Creepage normalised_creepage(double upsilon_x, double upsilon_y, double phi, double a, double b, double G,
+[[nodiscard]] Creepage normalised_creepage(const PatchCreepage& creepage, double a, double b, double G,
                                            double mu_Fn) noexcept;
 
 /// Creep force on the wheel in contact axes: F_x, F_y [N], M_z about the normal into the rail [N m].

@@ -118,9 +118,10 @@ std::optional<Wave> find_wave(const RadiusDifferenceCurve& curve, double amplitu
     double below = starts[i];
     double above = starts[i + 1];
     if (!(gain(below) < 0.0 && gain(above) >= 0.0)) continue;
-    for (;;) {
+    constexpr int most_halvings = 2200;  // of any interval of doubles down to one bit
+    for (int halving = 0; halving < most_halvings; ++halving) {
       const double middle = 0.5 * (below + above);
-      if (middle <= below || middle >= above) break;
+      if (!(middle > below && middle < above)) break;
       (gain(middle) < 0.0 ? below : above) = middle;
     }
     const Wave wave{above, end_of(above)};

@@ -4,41 +4,25 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/contact/common_normal.hpp"
+
 namespace railtab {
 
 namespace {
 
-/// Points side by side: of many, the processor works on all while one would have it wait for divisions and roots.
+/// Points side by side: divisions and roots of several points run in parallel.
 using Lanes = Eigen::Array<double, 8, 1>;
 using LanePieces = std::array<std::size_t, 8>;
 
-// The rail's foot point is found by Newton. A last step is not evaluated where its part in the penetration, counted to
-// second order, leaves rounding: up to `small_on_piece` on one cubic of the profile, of which the third order is below
-// 1e-11 m, and up to `small` across a joint, where curvature may jump.
+// Newton's method finds the foot point on the rail. Its last step is not evaluated again where the penetration, counted
+// to second order, is then exact to rounding: up to `small_on_piece` on one cubic of the profile, of which the third
+// order is below 1e-11 m, and up to `small` across a joint, where curvature may jump.
 constexpr int foot_iterations = 8;
 constexpr double small = 1e-8, small_on_piece = 1e-5;
 
-/// What a rail point r has to do with a point of the silhouette that is (ey, ez) away. Real: double or Lanes.
-template <class Real>
-struct Foot {
-  Real tangent2, along, change;
-
-  Foot(const auto& r, const Real& ey, const Real& ez)
-      : tangent2(r.dy * r.dy + r.dz * r.dz), along(r.dy * ey + r.dz * ez), change(tangent2 - r.ddy * ey - r.ddz * ez) {}
-
-  /// Towards the foot point, along the rail profile [m].
-  [[nodiscard]] Real step() const { return along / change; }
-  /// Of the silhouette's point below the foot point, to second order of the step that leads there.
-  [[nodiscard]] Real depth(const auto& r, const Real& ey, const Real& ez) const {
-    using std::sqrt;
-    const Real length = sqrt(tangent2);
-    const Real bend = (r.dy * r.ddz - r.dz * r.ddy) / (tangent2 * length);
-    return (r.dy * ez - r.dz * ey) / length - 0.5 * bend * along * along / change;
-  }
-};
-
+/// A curve at several points: position and derivatives by arc length.
 struct CurveLanes {
-  Lanes y, z, dy, dz, ddy, ddz;
+  PlaneVector<Lanes> at, tangent, bend;
 };
 
 CurveLanes on_pieces(const ProfileCurve& curve, const LanePieces& piece, const Lanes& s) {
@@ -46,12 +30,12 @@ CurveLanes on_pieces(const ProfileCurve& curve, const LanePieces& piece, const L
   for (std::size_t i = 0; i < piece.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const CurvePoint p = curve.on_piece(piece[i], s[k]);
-    lanes.y[k] = p.y;
-    lanes.z[k] = p.z;
-    lanes.dy[k] = p.dy;
-    lanes.dz[k] = p.dz;
-    lanes.ddy[k] = p.ddy;
-    lanes.ddz[k] = p.ddz;
+    lanes.at.y[k] = p.y;
+    lanes.at.z[k] = p.z;
+    lanes.tangent.y[k] = p.dy;
+    lanes.tangent.z[k] = p.dz;
+    lanes.bend.y[k] = p.ddy;
+    lanes.bend.z[k] = p.ddz;
   }
   return lanes;
 }
@@ -65,7 +49,8 @@ LanePieces pieces_of(const ProfileCurve& curve, const Lanes& s) {
 }  // namespace
 
 struct Overlap::PointLanes {
-  Lanes penetration, y, z;
+  Lanes penetration;
+  PlaneVector<Lanes> at;
 };
 
 OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
@@ -76,44 +61,40 @@ OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
   for (int i = 0;; ++i) {
     const std::size_t piece = rail.piece_of(s_rail);
     const CurvePoint r = rail.on_piece(piece, s_rail);
-    const double ey = w.y - r.y;
-    const double ez = w.z - r.z;
-    const Foot<double> foot(r, ey, ez);
+    const PlaneVector<double> e{w.y - r.y, w.z - r.z};
+    const PlaneVector<double> tangent{r.dy, r.dz};
+    const PlaneVector<double> bend{r.ddy, r.ddz};
+    const FootOfNormal<double> foot(tangent, bend, e);
     const double step = foot.step();
     s_rail += step;
     const double size = std::abs(step);
     if (!(size < small || (size < small_on_piece && rail.piece_contains(piece, s_rail))) && i < foot_iterations)
       continue;
     // Into the rail, turned to the foot point.
-    const double length = std::sqrt(foot.tangent2);
-    const double turn = step * (r.dy * r.ddz - r.dz * r.ddy) / foot.tangent2;
+    const double length = std::sqrt(foot.squared);
+    const double turn = step * cross(tangent, bend) / foot.squared;
     const double ny = (-r.dz - turn * r.dy) / length;
     const double nz = (r.dy - turn * r.dz) / length;
-    return {s_wheel, s_rail, foot.depth(r, ey, ez), ny * w.dy + nz * w.dz, w.y, w.z};
+    return {s_wheel, s_rail, foot.depth(tangent, bend, e), ny * w.dy + nz * w.dz, w.y, w.z};
   }
 }
 
 Overlap::PointLanes Overlap::at(const Eigen::Array<double, 8, 1>& s_wheel,
                                 Eigen::Array<double, 8, 1> s_rail) const noexcept {
-  // silhouette_point() and placed(), without the tangent.
   const CurveLanes wheel = on_pieces(pair_.wheel(), pieces_of(pair_.wheel(), s_wheel), s_wheel);
-  const PoseTrigonometry& t = trigonometry_;
-  const double t2 = t.tan_yaw * t.tan_yaw;
-  const Lanes radius = pair_.nominal_radius() + wheel.z;
-  const Lanes m = wheel.dz / wheel.dy;
-  const Lanes w2 = 1.0 - t2 * m * m;
-  const Lanes across = t.cos_yaw * (pair_.tape_circle_offset() + wheel.y - t2 * radius * m);
+  const Lanes radius = pair_.nominal_radius() + wheel.at.z;
+  const Lanes axial = pair_.tape_circle_offset() + wheel.at.y;
+  const Lanes slope = wheel.tangent.z / wheel.tangent.y;
+  const Lanes w2 = silhouette_cosine2(slope, trigonometry_);
   const Lanes below = radius * w2.max(0.0).sqrt();
   PointLanes point;
-  point.y = centre_.y + t.cos_roll * across - t.sin_roll * below;
-  point.z = centre_.z + t.sin_roll * across + t.cos_roll * below;
+  point.at = in_rail_head(silhouette_y(axial, radius, slope, trigonometry_), below, centre_, trigonometry_);
   const ProfileCurve& rail = pair_.rail();
   for (int i = 0;; ++i) {
     const LanePieces piece = pieces_of(rail, s_rail);
     const CurveLanes r = on_pieces(rail, piece, s_rail);
-    const Lanes ey = point.y - r.y;
-    const Lanes ez = point.z - r.z;
-    const Foot<Lanes> foot(r, ey, ez);
+    const PlaneVector<Lanes> e{point.at.y - r.at.y, point.at.z - r.at.z};
+    const FootOfNormal<Lanes> foot(r.tangent, r.bend, e);
     const Lanes step = foot.step();
     s_rail += step;
     const Lanes size = step.abs();
@@ -123,8 +104,8 @@ Overlap::PointLanes Overlap::at(const Eigen::Array<double, 8, 1>& s_wheel,
       found = size[lane] < small || rail.piece_contains(piece[k], s_rail[lane]);
     }
     if (!found && i < foot_iterations) continue;
-    const auto exists = wheel.dy > 0.0 && w2 > 0.0;
-    point.penetration = exists.select(foot.depth(r, ey, ez), -pair_.nominal_radius());
+    const auto exists = wheel.tangent.y > 0.0 && w2 > 0.0;
+    point.penetration = exists.select(foot.depth(r.tangent, r.bend, e), -pair_.nominal_radius());
     return point;
   }
 }
@@ -141,7 +122,8 @@ OverlapPoint Overlap::saddle(const ContactPatch& left, const ContactPatch& right
     middle = at(0.5 * (low + high), middle.s_rail);
     (middle.slope < 0.0 ? low : high) = middle.s_wheel;
     if (i + 1 == coarse) {
-      const RefinedPair pair = refine_pair(pair_, pose_, trigonometry_, 0.5 * (low + high), middle.s_rail, 8);
+      const RefinedPair pair =
+          refine_pair(pair_, pose_, trigonometry_, {0.5 * (low + high), middle.s_rail}, {.iterations = 8});
       if (pair.status == PairStatus::not_a_minimum && pair.patch.s_wheel > left.s_wheel &&
           pair.patch.s_wheel < right.s_wheel) {
         return at(pair.patch.s_wheel, pair.patch.s_rail);
@@ -233,14 +215,14 @@ OverlapArea Overlap::area(const ContactPatch& patch, double level, double s_low,
   const PointLanes point = at(patch.s_wheel + from_patch, patch.s_rail + from_patch);
   const Lanes part = weight * (point.penetration - level).max(0.0);
   // The silhouette's own speed along the wheel profile has steps where the curvature has.
-  const double chord =
-      std::hypot(point.y[last] - point.y[first], point.z[last] - point.z[first]) / (half * (node[last] - node[first]));
+  const double chord = std::hypot(point.at.y[last] - point.at.y[first], point.at.z[last] - point.at.z[first]) /
+                       (half * (node[last] - node[first]));
   return {half * chord * part.sum(), half * chord * (part * from_patch).sum()};
 }
 
 ContactPatch Overlap::pair_at(const ContactPatch& patch, double s_wheel) const noexcept {
   const OverlapPoint point = at(s_wheel, patch.s_rail + (s_wheel - patch.s_wheel));
-  ContactPatch pair = patch_of_pair(pair_, pose_, trigonometry_, point.s_wheel, point.s_rail);
+  ContactPatch pair = patch_of_pair(pair_, pose_, trigonometry_, {point.s_wheel, point.s_rail});
   pair.source = patch.source;
   return pair;
 }

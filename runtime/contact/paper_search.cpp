@@ -91,15 +91,14 @@ PaperSearch::PaperSearch(WheelRailPair pair, int points, PaperDistance distance)
 
 void PaperSearch::place(const WheelsetPose& pose, const PoseTrigonometry& trig, Outline& outline) const noexcept {
   const WheelsetCentre centre = wheelset_centre(pair_, pose);
-  const double t2 = trig.tan_yaw * trig.tan_yaw;
   std::size_t r = 0;
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     const WheelSample& w = wheel_[i];
-    const double w2 = 1.0 - t2 * w.slope * w.slope;
-    const double y0 = trig.cos_yaw * (w.axial - t2 * w.radius * w.slope);
-    const double z0 = w.radius * std::sqrt(std::max(w2, 0.0));
-    outline.y[i] = centre.y + trig.cos_roll * y0 - trig.sin_roll * z0;
-    outline.z[i] = w2 > 0.0 ? centre.z + trig.sin_roll * y0 + trig.cos_roll * z0 : -infinity;
+    const double w2 = silhouette_cosine2(w.slope, trig);
+    const PlaneVector<double> at = in_rail_head(silhouette_y(w.axial, w.radius, w.slope, trig),
+                                                w.radius * std::sqrt(std::max(w2, 0.0)), centre, trig);
+    outline.y[i] = at.y;
+    outline.z[i] = w2 > 0.0 ? at.z : -infinity;
     // Eq. 6: the rail's point straight below. The outline may step back where yaw folds it: the pointer follows.
     while (r + 2 < rail_.size() && rail_[r + 1].y < outline.y[i]) ++r;
     while (r > 0 && rail_[r].y > outline.y[i]) --r;
@@ -132,7 +131,7 @@ void PaperSearch::add_contact(const WheelsetPose& pose, const PoseTrigonometry& 
   const auto below = std::lower_bound(rail_.begin(), rail_.end(), wheel.y[start],
                                       [](const RailSample& r, double y) { return r.y < y; });
   const double s_rail = below == rail_.end() ? rail_.back().s : below->s;
-  const RefinedPair convex = refine_pair(pair_, pose, trig, wheel_[start].s, s_rail);
+  const RefinedPair convex = refine_pair(pair_, pose, trig, {wheel_[start].s, s_rail});
   const double s_first = wheel_[static_cast<std::size_t>(zone.first)].s;
   const double s_last = wheel_[static_cast<std::size_t>(zone.last)].s;
   const bool found = convex.status == PairStatus::converged && convex.patch.s_wheel >= s_first &&
@@ -207,7 +206,7 @@ void PaperSearch::add_overlap(const WheelsetPose& pose, const PoseTrigonometry& 
     rail_index = i;
   }
   if (deepest2 < 0.0) return;
-  ContactPatch patch = patch_of_pair(pair_, pose, trig, s_wheel, rail_[rail_index].s);
+  ContactPatch patch = patch_of_pair(pair_, pose, trig, {s_wheel, rail_[rail_index].s});
   patch.penetration = std::sqrt(deepest2);
   patch.source = PatchSource::online_concave;
   patches.patch[static_cast<std::size_t>(patches.count++)] = patch;

@@ -74,11 +74,18 @@ Side counted_side(const ProfileCurve& wheel, const ContactPatch& patch, int dire
   return {{&other, edge}, saddle.s_wheel, merged};
 }
 
+/// Both sides of a patch, and what it shares with its neighbours.
+struct Surroundings {
+  Neighbourhood left, right;
+  double shared = 0.0;  ///< w_i d_s^{3/2} of patch_loads(), the larger of both sides
+  double own = 1.0;     ///< share of the force that a patch does not yield to deeper neighbours
+};
+
 /// The deepest part of a patch's overlap.
 OverlapArea counted_area(const Overlap& overlap, const ProfileCurve& wheel, const ContactPatch& patch,
-                         const Neighbourhood& left, const Neighbourhood& right) {
-  const Side low = counted_side(wheel, patch, -1, left);
-  const Side high = counted_side(wheel, patch, 1, right);
+                         const Surroundings& around) {
+  const Side low = counted_side(wheel, patch, -1, around.left);
+  const Side high = counted_side(wheel, patch, 1, around.right);
   const OverlapEnds ends = overlap.ends(level_of(patch), low.flank, high.flank);
   const double low_end = low.merged > 0.0 ? low.saddle : ends.low;
   const double high_end = high.merged > 0.0 ? high.saddle : ends.high;
@@ -111,14 +118,13 @@ PatchLoad load(const NormalContactModel& model, const ContactPatch& patch, doubl
 
 /// The load of the true overlap, at its centre.
 PatchLoad overlap_load(const NormalContactModel& model, const Overlap& overlap, const ProfileCurve& wheel,
-                       const ContactPatch& patch, const Neighbourhood& left, const Neighbourhood& right,
-                       double shared) {
+                       const ContactPatch& patch, const Surroundings& around) {
   if (patch.penetration <= least_penetration) {
-    return load(model, patch, 0.5 * (patch.curv_wheel + patch.curv_rail), shared);
+    return load(model, patch, 0.5 * (patch.curv_wheel + patch.curv_rail), around.shared);
   }
-  const OverlapArea counted = counted_area(overlap, wheel, patch, left, right);
-  if (!(counted.area > 0.0)) return load(model, patch, model.curvature_floor, shared);
-  PatchLoad result = load(model, patch, overlap_curvature(patch.penetration, counted.area), shared);
+  const OverlapArea counted = counted_area(overlap, wheel, patch, around);
+  if (!(counted.area > 0.0)) return load(model, patch, model.curvature_floor, around.shared);
+  PatchLoad result = load(model, patch, overlap_curvature(patch.penetration, counted.area), around.shared);
   result.contact = overlap.pair_at(patch, patch.s_wheel + counted.moment / counted.area);
   return result;
 }
@@ -147,21 +153,20 @@ PatchLoads patch_loads(const NormalContactModel& model, const ContactGeometry& g
   PatchLoads loads(patches.count);
   for (std::size_t i = 0; i < count; ++i) {
     const ContactPatch& patch = patches.patch[i];
-    Neighbourhood left, right;
-    double shared = 0.0;  // w_i d_s^{3/2}, the larger of both sides
-    double own = 1.0;     // of the force, what a patch does not yield to deeper neighbours
+    Surroundings around;
     if (i > 0) {
-      left = {&junctions[i - 1], &patches.patch[i - 1]};
-      shared = left.junction->right_share * power_3_2(left.junction->saddle.penetration);
-      if (left.patch->penetration >= patch.penetration) own *= 1.0 - left.junction->merged;
+      const Neighbourhood& left = around.left = {&junctions[i - 1], &patches.patch[i - 1]};
+      around.shared = left.junction->right_share * power_3_2(left.junction->saddle.penetration);
+      if (left.patch->penetration >= patch.penetration) around.own *= 1.0 - left.junction->merged;
     }
     if (i + 1 < count) {
-      right = {&junctions[i], &patches.patch[i + 1]};
-      shared = std::max(shared, right.junction->left_share * power_3_2(right.junction->saddle.penetration));
-      if (right.patch->penetration > patch.penetration) own *= 1.0 - right.junction->merged;
+      const Neighbourhood& right = around.right = {&junctions[i], &patches.patch[i + 1]};
+      around.shared =
+          std::max(around.shared, right.junction->left_share * power_3_2(right.junction->saddle.penetration));
+      if (right.patch->penetration > patch.penetration) around.own *= 1.0 - right.junction->merged;
     }
-    loads[i] = overlap_load(model, overlap, pair.wheel(), patch, left, right, shared);
-    loads[i].elastic_force *= own;
+    loads[i] = overlap_load(model, overlap, pair.wheel(), patch, around);
+    loads[i].elastic_force *= around.own;
   }
   return loads;
 }

@@ -6,10 +6,10 @@ namespace polish {
 
 PairStatus take_more_steps(const WheelRailPair& pair, const WheelsetCentre& centre, const PoseTrigonometry& trig,
                            ContactPatch& patch) noexcept {
-  constexpr int most_steps = 3;  // starts that need more lead nowhere as a rule: a search is then the shorter way
+  constexpr int most_steps = 3;  // a start that needs more seldom leads to a pair, and a search is faster
   PairStatus status = PairStatus::not_converged;
   for (int n = 0; n < most_steps; ++n) {
-    if (take_step(pair, centre, trig, patch.s_wheel, patch.s_rail, patch, status) != Outcome::again) return status;
+    if (take_step(pair, centre, trig, {patch.s_wheel, patch.s_rail}, patch, status) != Outcome::again) return status;
   }
   return PairStatus::not_converged;
 }
@@ -17,8 +17,8 @@ PairStatus take_more_steps(const WheelRailPair& pair, const WheelsetCentre& cent
 }  // namespace polish
 
 PairStatus polish_pair(const WheelRailPair& pair, const WheelsetCentre& centre, const PoseTrigonometry& trig,
-                       double s_wheel, double s_rail, ContactPatch& patch) noexcept {
-  return polish::polished(pair, centre, trig, s_wheel, s_rail, patch);
+                       const PairPosition& start, ContactPatch& patch) noexcept {
+  return polish::polished(pair, centre, trig, start, patch);
 }
 
 }  // namespace railtab

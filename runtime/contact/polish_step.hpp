@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <cstring>
 
+#include "railtab/runtime/contact/common_normal.hpp"
 #include "railtab/runtime/contact/contact_pair.hpp"
 
 namespace railtab::polish {
 
-// The price of a look-up is what a processor can hold of it at once and the longest chain of dependent operations in
-// it: components stand in pairs in one register, quotients are taken apart so that roots and divisions run side by
-// side, and what the patch needs is known at the start before the Newton step is, so that the step only adds a few
-// terms to it. The kernel stands in a header so that the table's look-up runs into it without a detour by memory.
+// The longest chain of dependent operations decides the time of a look-up. Therefore two components share a register,
+// quotients are split so that roots and divisions run in parallel, and the patch is evaluated at the start pair, beside
+// the Newton step, which then adds a few terms to it. The kernel is in a header so that the table's look-up inlines it.
 
 /// (y, z) of a vector in the plane of contact, or a quantity of (wheel, rail): two doubles in one register.
 using Two = double __attribute__((vector_size(16)));
@@ -22,6 +22,7 @@ inline Two first_of(Two p, Two q) noexcept { return Two{p[0], q[0]}; }
 inline Two second_of(Two p, Two q) noexcept { return Two{p[1], q[1]}; }
 inline double dot(Two p, Two q) noexcept { return p[0] * q[0] + p[1] * q[1]; }
 inline double cross(Two p, Two q) noexcept { return p[0] * q[1] - p[1] * q[0]; }
+inline PlaneVector<double> components(Two value) noexcept { return {value[0], value[1]}; }
 inline void store(Two value, double& first) noexcept { std::memcpy(&first, &value, sizeof value); }
 
 /// From rail-head axes into those of the wheelset before roll.
@@ -31,9 +32,10 @@ inline Two unrolled(Two p, const PoseTrigonometry& trig) noexcept {
 
 /// A point of a profile with the Taylor series of its cubic: at + h (tangent + h (half_bend + h sixth)).
 struct ProfilePoint {
+  std::size_t piece;
   Two at, tangent, half_bend, sixth;
 
-  ProfilePoint(const ProfileCurve& curve, std::size_t piece, double s) noexcept {
+  ProfilePoint(const ProfileCurve& curve, double s) noexcept : piece(curve.piece_of(s)) {
     const double* const c = curve.piece_coefficients(piece);
     const auto row = [c](int n) {
       Two value;
@@ -52,11 +54,11 @@ struct ProfilePoint {
   }
 };
 
-/// The common-normal equations (Eqs. 1-4) at a pair, t_r·d_wr = 0 (f) and t_w × t_r = 0 (g), in the axes of the
-/// wheelset before roll, with their Newton step. As CommonNormal in contact_pair.cpp, with the tangent of the wheel's
-/// silhouette T = (u, dz/cos(yaw)), u² = dy² - tan²(yaw) dz².
+/// Newton's step on the common normal (common_normal.hpp) at a pair, in the axes of the wheelset before roll. The
+/// silhouette is that of wheel_silhouette.hpp with its tangent t_w = (u, dz/cos(yaw)), u² = dy² - tan²(yaw) dz², so
+/// that the root need not wait for a quotient.
 struct NewtonStep {
-  double depth;        ///< t_r × d_wr: penetration times the length of t_r [m]
+  double depth;        ///< t_r × e: penetration times the length of t_r [m]
   double g, g_w;       ///< and its derivative by s_wheel
   double speed;        ///< silhouette's derivative by s_wheel over its tangent
   double wheel, rail;  ///< the step [m]; not finite where the wheel has no silhouette
@@ -73,43 +75,41 @@ struct NewtonStep {
     const double inverse_u = u * (1.0 / u2);
     const double inverse_dy = 1.0 / dy;
     const double R_dy = (pair.nominal_radius() + W.at[1]) * inverse_dy;
-    const double T_z = dz * trig.inverse_cos_yaw;
-    const double half_dT_y = (dy * W.half_bend[0] - t2_dz * W.half_bend[1]) * inverse_u;
-    const double half_dT_z = W.half_bend[1] * trig.inverse_cos_yaw;
-    const double bend = 2.0 * t2 * cross(W.half_bend, W.tangent) * (R_dy * inverse_dy);
-    speed = trig.cos_yaw * (u * inverse_dy + bend * inverse_u);
+    const PlaneVector<double> tangent{u, dz * trig.inverse_cos_yaw};
+    const PlaneVector<double> bend{2.0 * (dy * W.half_bend[0] - t2_dz * W.half_bend[1]) * inverse_u,
+                                   2.0 * W.half_bend[1] * trig.inverse_cos_yaw};
+    const double curl = 2.0 * t2 * cross(W.half_bend, W.tangent) * (R_dy * inverse_dy);
+    speed = trig.cos_yaw * (u * inverse_dy + curl * inverse_u);
 
     Two rail_tangent = C.tangent;
-    Two rail_half_bend = C.half_bend;
+    Two rail_bend = C.half_bend + C.half_bend;
     Two rail_at = C.at - Two{centre.y, centre.z};
     if (trig.sin_roll != 0.0) {
       rail_tangent = unrolled(rail_tangent, trig);
-      rail_half_bend = unrolled(rail_half_bend, trig);
+      rail_bend = unrolled(rail_bend, trig);
       rail_at = unrolled(rail_at, trig);
     }
-    const double e_y = trig.cos_yaw * (pair.tape_circle_offset() + W.at[0] - t2_dz * R_dy) - rail_at[0];
-    const double e_z = R_dy * u - rail_at[1];
-    const double r_y = rail_tangent[0];
-    const double r_z = rail_tangent[1];
-    depth = r_y * e_z - r_z * e_y;
-    const double f = r_y * e_y + r_z * e_z;
-    g = u * r_z - T_z * r_y;
-    g_w = 2.0 * (half_dT_y * r_z - half_dT_z * r_y);
-    const double f_w = speed * (r_y * u + r_z * T_z);
-    const double f_r = 2.0 * (rail_half_bend[0] * e_y + rail_half_bend[1] * e_z) - dot(C.tangent, C.tangent);
-    const double g_r = 2.0 * (u * rail_half_bend[1] - T_z * rail_half_bend[0]);
-    const double det = f_w * g_r - f_r * g_w;
-    const double inverse_det = 1.0 / det;
-    wheel = (f_r * g - g_r * f) * inverse_det;
-    rail = (g_w * f - f_w * g) * inverse_det;
-    minimum = std::min(std::min(det, speed), std::min(-f_r, dy)) > 0.0;
+    const RailTangent<double> rail_point{
+        components(rail_tangent), components(rail_bend), {dot(C.tangent, C.tangent), 0.0}};
+    const PlaneVector<double> e{trig.cos_yaw * (pair.tape_circle_offset() + W.at[0] - t2_dz * R_dy) - rail_at[0],
+                                R_dy * u - rail_at[1]};
+    const PairEquations<double> equations = common_normal<double>({tangent, bend, speed, tangent}, rail_point, e);
+    depth = cross(rail_point.tangent, e);
+    g = equations.g;
+    g_w = equations.g_w;
+    const double determinant = equations.determinant();
+    const double inverse = 1.0 / determinant;
+    const PlaneVector<double> scaled = equations.scaled_step();
+    wheel = scaled.y * inverse;
+    rail = scaled.z * inverse;
+    minimum = std::min(std::min(determinant, speed), std::min(-equations.f_r, dy)) > 0.0;
   }
 };
 
 /// The patch at the end of a small step: the profiles' points exactly, the silhouette to the second order across the
 /// normal, along which alone its place matters, lengths of tangents and curvatures to the first.
 inline void set_patch(const WheelRailPair& pair, const PoseTrigonometry& trig, const ProfilePoint& W,
-                      const ProfilePoint& C, std::size_t rail_piece, const NewtonStep& step, ContactPatch& p) noexcept {
+                      const ProfilePoint& C, const NewtonStep& step, ContactPatch& p) noexcept {
   const double h_w = step.wheel;
   const double h_r = step.rail;
   const Two h{h_w, h_r};
@@ -133,7 +133,7 @@ inline void set_patch(const WheelRailPair& pair, const PoseTrigonometry& trig, c
   const double shallower =
       h_w * step.speed * (step.g + 0.5 * h_w * step.g_w) + h_r * h_r * (half_bend[1] + half_change[1] * (1.0 / 3));
   p.penetration = (step.depth - shallower) * inverse[1] * (1.0 + 0.5 * turn * turn);
-  p.angle = pair.rail().tangent_angle(rail_piece, C.tangent[0], C.tangent[1], inverse[1]) +
+  p.angle = pair.rail().tangent_angle(C.piece, C.tangent[0], C.tangent[1], inverse[1]) +
             turn * (1.0 - turn * turn * (1.0 / 3));
 
   static_assert(offsetof(ContactPatch, z_rail) == offsetof(ContactPatch, y_rail) + sizeof(double));
@@ -149,51 +149,50 @@ inline void set_patch(const WheelRailPair& pair, const PoseTrigonometry& trig, c
   p.source = PatchSource::online_convex;
 }
 
-enum class Outcome : std::uint8_t { accepted, refused, again };
+enum class Outcome : std::uint8_t { accepted, rejected, again };
 
-/// One Newton step from the pair of a patch, and the patch at its end where it is small and stays on the pieces of both
-/// profiles.
+/// One Newton step from the position of a patch, and the patch at its end where it is small and stays on the pieces of
+/// both profiles.
+/// @param status of the patch where the outcome is not `again`
 [[gnu::always_inline]] inline Outcome take_step(const WheelRailPair& pair, const WheelsetCentre& centre,
-                                                const PoseTrigonometry& trig, double s_wheel, double s_rail,
+                                                const PoseTrigonometry& trig, const PairPosition& start,
                                                 ContactPatch& patch, PairStatus& status) noexcept {
   constexpr double last_step = 20e-6;    // [m]
   constexpr double largest_step = 1e-3;  // [m] beyond it, to the pair of another branch
   const ProfileCurve& wheel = pair.wheel();
   const ProfileCurve& rail = pair.rail();
-  const std::size_t wheel_piece = wheel.piece_of(s_wheel);
-  const std::size_t rail_piece = rail.piece_of(s_rail);
-  const ProfilePoint W(wheel, wheel_piece, s_wheel);
-  const ProfilePoint C(rail, rail_piece, s_rail);
+  const ProfilePoint W(wheel, start.s_wheel);
+  const ProfilePoint C(rail, start.s_rail);
   const NewtonStep step(W, C, pair, centre, trig);
-  patch.s_wheel = s_wheel + step.wheel;
-  patch.s_rail = s_rail + step.rail;
+  patch.s_wheel = start.s_wheel + step.wheel;
+  patch.s_rail = start.s_rail + step.rail;
   const double size = std::abs(step.wheel) + std::abs(step.rail);
-  if (!(size <= last_step && wheel.piece_contains(wheel_piece, patch.s_wheel) &&
-        rail.piece_contains(rail_piece, patch.s_rail))) [[unlikely]] {
+  if (!(size <= last_step && wheel.piece_contains(W.piece, patch.s_wheel) &&
+        rail.piece_contains(C.piece, patch.s_rail))) [[unlikely]] {
     if (size <= largest_step) return Outcome::again;
     status = PairStatus::not_converged;
-    return Outcome::refused;
+    return Outcome::rejected;
   }
   if (!step.minimum) [[unlikely]] {
     status = PairStatus::not_a_minimum;
-    return Outcome::refused;
+    return Outcome::rejected;
   }
-  set_patch(pair, trig, W, C, rail_piece, step, patch);
+  set_patch(pair, trig, W, C, step, patch);
   status = PairStatus::converged;
   return Outcome::accepted;
 }
 
-/// The steps after the first, from where it led: rare, and apart from it, for a loop would have the first one's
-/// registers saved.
+/// The steps after the first, from the position of the patch: rare, and a function of its own, because a loop would
+/// have the registers of the first step saved.
 [[nodiscard]] PairStatus take_more_steps(const WheelRailPair& pair, const WheelsetCentre& centre,
                                          const PoseTrigonometry& trig, ContactPatch& patch) noexcept;
 
 /// polish_pair(), see there.
 [[gnu::always_inline]] inline PairStatus polished(const WheelRailPair& pair, const WheelsetCentre& centre,
-                                                  const PoseTrigonometry& trig, double s_wheel, double s_rail,
+                                                  const PoseTrigonometry& trig, const PairPosition& start,
                                                   ContactPatch& patch) noexcept {
   PairStatus status = PairStatus::not_converged;
-  if (take_step(pair, centre, trig, s_wheel, s_rail, patch, status) != Outcome::again) [[likely]]
+  if (take_step(pair, centre, trig, start, patch, status) != Outcome::again) [[likely]]
     return status;
   return take_more_steps(pair, centre, trig, patch);
 }

@@ -77,19 +77,19 @@ TableContact::TableContact(GeometryTable table)
 
 namespace {
 
-/// Starts that led to no pair of their own: 0.5 mm of the wheel profile about each is searched.
-struct Strays {
+/// Starts without a pair of their own: the search covers 0.5 mm of the wheel profile on both sides of each.
+struct UnmatchedStarts {
   std::array<double, GeometryTable::max_branches> s_wheel;
   int count = 0;
 };
 
-[[gnu::noinline, gnu::cold]] TableAnswer search_about(const Strays& strays, const ContactSearch& search,
+[[gnu::noinline, gnu::cold]] TableAnswer search_about(const UnmatchedStarts& unmatched, const ContactSearch& search,
                                                       const WheelsetPose& pose, double near_miss,
                                                       ContactPatches& result) noexcept {
   const PoseTrigonometry trig(pose);
-  for (int n = 0; n < strays.count; ++n) {
-    search.add_patches_between(strays.s_wheel[n] - capture_distance, strays.s_wheel[n] + capture_distance, pose, trig,
-                               near_miss, result);
+  for (int n = 0; n < unmatched.count; ++n) {
+    search.add_patches_between(unmatched.s_wheel[n] - capture_distance, unmatched.s_wheel[n] + capture_distance, pose,
+                               trig, near_miss, result);
   }
   for (int n = 0; n < result.count; ++n) result.patch[n].source = PatchSource::table;
   return result.overflow ? TableAnswer::none : TableAnswer::searched;
@@ -104,17 +104,17 @@ TableAnswer add_branch_patches(const ContactSearch& search, const GeometryLeaf& 
   const WheelsetCentre centre = wheelset_centre(pair, pose);
   const PoseTrigonometry trig(pose);
   double first_touch = std::numeric_limits<double>::infinity();
-  Strays strays;
+  UnmatchedStarts unmatched;
   for (int n = 0; n < leaf.count; ++n) {
     const BranchStart start = leaf.start(n, pose.z);
     first_touch = std::min(first_touch, start.z_touch);
     if (start.z_touch > height + height_margin) continue;
     ContactPatch& patch = result.patch[result.count];
-    bool own = polish::polished(pair, centre, trig, start.s_wheel, start.s_rail, patch) == PairStatus::converged &&
+    bool own = polish::polished(pair, centre, trig, {start.s_wheel, start.s_rail}, patch) == PairStatus::converged &&
                std::abs(patch.s_wheel - start.s_wheel) <= capture_distance;
     for (int m = 0; m < result.count && own; ++m) own = std::abs(result.patch[m].s_wheel - patch.s_wheel) >= same_pair;
     if (!own) [[unlikely]] {
-      strays.s_wheel[strays.count++] = start.s_wheel;
+      unmatched.s_wheel[unmatched.count++] = start.s_wheel;
       continue;
     }
     if (patch.penetration <= -near_miss) continue;
@@ -130,9 +130,9 @@ TableAnswer add_branch_patches(const ContactSearch& search, const GeometryLeaf& 
   if (!(trusted > 0 && height - first_touch <= trusted)) [[unlikely]]
     return TableAnswer::none;
   result.from_table = true;
-  if (strays.count == 0) [[likely]]
+  if (unmatched.count == 0) [[likely]]
     return TableAnswer::looked_up;
-  return search_about(strays, search, pose, near_miss, result);
+  return search_about(unmatched, search, pose, near_miss, result);
 }
 
 }  // namespace railtab

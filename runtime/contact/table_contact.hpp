@@ -5,11 +5,11 @@
 
 namespace railtab {
 
-/// How a table answered a query.
+/// The result of a look-up.
 enum class TableAnswer : std::uint8_t {
-  none,       ///< not: outside, or lowered further than the cell is trusted
-  looked_up,  ///< every start led to its pair
-  searched,   ///< a start led to no pair of its own, and the online search looked about it
+  none,       ///< outside the table, or lowered further than the cell is trusted
+  looked_up,  ///< every start has its pair
+  searched,   ///< a start has no pair of its own; the online search covered its surroundings
 };
 
 /// Contact patches of a wheel from a geometry table: the table names the branches and gives each a starting pair, the

@@ -65,8 +65,7 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
     const auto [a, b] =
         model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
     const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, axes, model.speed / model.creepage_share);
-    const Creepage creepage =
-        normalised_creepage(slip.x, slip.y, slip.spin, a, b, model.normal.material.shear_modulus(), bound);
+    const Creepage creepage = normalised_creepage(slip, a, b, model.normal.material.shear_modulus(), bound);
     const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
     force += creep.x * Vector3::UnitX() + creep.y * axes.tangent;
     moment = creep.moment * axes.normal;
@@ -145,7 +144,7 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
     const ContactPatch& p = patches.patch[static_cast<std::size_t>(i)];
     ContactPatch& q = moved.patch[static_cast<std::size_t>(i)];
     if (!geometry.is_paper() || p.source == PatchSource::online_convex) {
-      const RefinedPair refined = refine_pair(pair, to, trig, p.s_wheel, p.s_rail, 4);
+      const RefinedPair refined = refine_pair(pair, to, trig, {p.s_wheel, p.s_rail}, {.iterations = 4});
       if (refined.status == PairStatus::converged) {
         q = refined.patch;
         continue;
@@ -172,8 +171,8 @@ PatchLoads moved_loads(const PatchLoads& loads, const ContactMemory& from, const
 
 namespace {
 
-// A step of a difference, held so small that it changes the creepage by far less than what makes a wheel slide: at
-// walking pace that is less than the geometry asks for.
+// A step of a difference, so small that the creepage changes by far less than the creepage of sliding. At walking pace
+// this bound lies below that of the geometry.
 double difference_step(double step, double velocity_rate, double speed) {
   constexpr double creepage = 4e-6;
   return step * velocity_rate > creepage * speed ? creepage * speed / velocity_rate : step;
@@ -203,8 +202,8 @@ void add_change(const PatchLoad& from, const PatchLoad& to, double share, PatchL
 }
 
 // Loads at a pose near by, to first order from those at poses moved in y, z and roll: only relative motion counts, so a
-// rail that rolls asks for no overlap of its own. None where an ellipse changes by more than first order can say: at
-// the edge of an overlap.
+// rail that rolls needs no overlap of its own. None where an ellipse changes beyond first order: at the edge of an
+// overlap.
 std::optional<PatchLoads> combined_loads(const PatchLoads& here, const WheelsetPose& from, const Neighbour& y,
                                          const Neighbour& z, const Neighbour& roll, const WheelsetPose& to) {
   const Eigen::Vector2d by_y(y.pose.y - from.y, y.pose.z - from.z);
@@ -228,14 +227,14 @@ std::optional<PatchLoads> combined_loads(const PatchLoads& here, const WheelsetP
 }  // namespace
 
 Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                            const RailHeadMotion& rail, const ContactPatches& patches, const Vector6& velocity_rate,
-                            double rail_velocity_rate, const ContactMemory* start) noexcept {
+                            const RailHeadMotion& rail, const ContactPatches& patches,
+                            const StepRates& rates) noexcept {
   Matrix9 tangent = Matrix9::Zero();
-  if (patches.count == 0 && (!start || start->count == 0)) return tangent;
+  if (patches.count == 0 && (!rates.start || rates.start->count == 0)) return tangent;
   const WheelRailPair& pair = model.geometry->pair();
   const WheelsetPose pose = relative_pose(pair, side, wheelset, rail);
   const auto total = [&](const WheelsetPose& at, const ContactPatches& p, const WheelForce& f) -> Vector9 {
-    if (start) return mean_force(pair, *start, at, p, f);
+    if (rates.start) return mean_force(pair, *rates.start, at, p, f);
     Vector9 sum;
     sum << f.wheelset, f.rail;
     return sum;
@@ -251,10 +250,10 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   std::array<Neighbour, 6> neighbour;
   for (std::size_t j = 0; j < 6; ++j) {
     const auto dof = static_cast<Eigen::Index>(j);
-    const double step = difference_step(steps[j], velocity_rate[dof], model.speed);
+    const double step = difference_step(steps[j], rates.wheelset[dof], model.speed);
     WheelsetMotion perturbed = wheelset;
     perturbed.displacement[dof] += step;
-    perturbed.velocity[dof] += velocity_rate[dof] * step;
+    perturbed.velocity[dof] += rates.wheelset[dof] * step;
     if (j == 0 || j == 4) {  // x and pitch leave the profiles where they are
       tangent.col(dof) = difference(perturbed, rail, pose, patches, loads, step);
       continue;
@@ -268,10 +267,10 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   // Moving the rail is moving the wheelset the other way; rolling it is a motion of its own about the rail head.
   tangent.col(6) = -tangent.col(1);
   tangent.col(7) = -tangent.col(2);
-  const double roll_step = difference_step(1e-7, rail_velocity_rate, model.speed);
+  const double roll_step = difference_step(1e-7, rates.rail, model.speed);
   RailHeadMotion rolled = rail;
   rolled.displacement[2] += roll_step;
-  rolled.velocity[2] += rail_velocity_rate * roll_step;
+  rolled.velocity[2] += rates.rail * roll_step;
   const WheelsetPose to = relative_pose(pair, side, wheelset, rolled);
   const ContactPatches moved = moved_patches(*model.geometry, patches, pose, to);
   const std::optional<PatchLoads> combined = combined_loads(loads, pose, neighbour[1], neighbour[2], neighbour[3], to);

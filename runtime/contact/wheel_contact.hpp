@@ -67,9 +67,10 @@ struct WheelForce {
 
 enum class WheelSide { left, right };
 
-/// Forces of given patches. The patches are those of the pose that relative_pose() returns.
+/// Forces of patches at the pose that relative_pose() returns.
 /// Normal forces are those of patch_loads() (Eq. 11), creep forces come by the model's law from the relative velocity
-/// of the wheel's and the rail's particles where each patch's force acts. Never pulls.
+/// of the wheel's and the rail's particles where each patch's force acts. Negative contact forces (tension) do not
+/// occur.
 [[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                      const RailHeadMotion& rail, const ContactPatches& patches) noexcept;
 
@@ -94,14 +95,19 @@ struct ContactMemory;
 [[nodiscard]] PatchLoads moved_loads(const PatchLoads& loads, const ContactMemory& from,
                                      const WheelsetPose& to) noexcept;
 
-/// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3), where
-/// velocities follow displacements with dv/da: `velocity_rate` per wheelset dof and `rail_velocity_rate` [1/s]
-/// (gamma/(beta dt) in a time step). By differences of the force itself along the wheelset's motions and the rail's
-/// roll; the rail's translations follow, since only relative motion matters, and so do the loads when the rail rolls.
-/// @param start with the contact at the start of a time step, the derivative is that of mean_force()
+/// What a time step does with a displacement: velocities follow it, and the force counts as that of an instant or as
+/// the mean over the step.
+struct StepRates {
+  Vector6 wheelset;                      ///< dv/da per wheelset dof, gamma/(beta dt) [1/s]
+  double rail;                           ///< likewise of the rail [1/s]
+  const ContactMemory* start = nullptr;  ///< the contact at the start of the step: the force is mean_force()
+};
+
+/// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3) in a
+/// time step. By differences of the force itself along the wheelset's motions and the rail's roll; the rail's
+/// translations follow, since only relative motion matters, and so do the loads when the rail rolls.
 [[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
-                                          const ContactPatches& patches, const Vector6& velocity_rate,
-                                          double rail_velocity_rate, const ContactMemory* start = nullptr) noexcept;
+                                          const ContactPatches& patches, const StepRates& rates) noexcept;
 
 }  // namespace railtab

@@ -30,23 +30,23 @@ const UnitSystem& unit_system(const FeFrame& frame, const std::string& section) 
 
 /// Rows: railtab's x, y, z in the model's axes.
 Eigen::Matrix3d rotation(const FeFrame& frame, const std::string& section) {
-  const auto refuse = [&](std::string_view found) {
+  const auto rejection = [&](std::string_view found) {
     return input_error(section + ".axes", fmt::format("\"{}\"{}", frame.axes, found),
                        "the model's directions forward, right and down, right-handed, like \"x -y -z\"");
   };
   std::array<std::string_view, 3> words;
-  if (split(frame.axes, words) != 3) throw refuse("");
+  if (split(frame.axes, words) != 3) throw rejection("");
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {
     std::string_view word = words[static_cast<std::size_t>(i)];
     const double sign = word.starts_with('-') ? -1.0 : 1.0;
     if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
-    if (word.size() != 1 || word[0] < 'x' || word[0] > 'z') throw refuse("");
+    if (word.size() != 1 || word[0] < 'x' || word[0] > 'z') throw rejection("");
     P(i, word[0] - 'x') = sign;
   }
   const double determinant = P.determinant();
-  if (determinant == 0.0) throw refuse(", an axis twice");
-  if (determinant < 0.0) throw refuse(", left-handed");
+  if (determinant == 0.0) throw rejection(", an axis twice");
+  if (determinant < 0.0) throw rejection(", left-handed");
   return P;
 }
 

@@ -35,7 +35,7 @@ class FrameConversion {
   };
   /// Of a row that is the motion 0..5 along or about the model's x, y, z: A becomes to_model·A·to_model.
   [[nodiscard]] Row row(int motion_of_model) const;
-  /// The same factor for an unknown that keeps its own unit.
+  /// The same factor for a degree of freedom that keeps its own unit.
   [[nodiscard]] double inner_to_model() const;
 
  private:

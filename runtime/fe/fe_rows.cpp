@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <span>
 #include <utility>
 
-#include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
 
 namespace railtab {
@@ -17,7 +18,7 @@ constexpr std::array<std::string_view, 6> motions{"X", "Y", "Z", "ROTX", "ROTY",
 
 using NumberedRow = std::pair<int, FeRow>;  // row of the matrices, from 1
 
-NumberedRow numbered_row(const LineReader& reader, const std::array<std::string_view, 3>& words,
+NumberedRow numbered_row(const LineReader& reader, std::span<const std::string_view> words,
                          const std::array<std::string_view, 6>& names) {
   const int number = reader.number<int>(words[0], "the number of a row");
   FeRow row;
@@ -72,16 +73,15 @@ std::vector<FeRow> read_ansys_rows(const std::filesystem::path& file) {
 }
 
 std::vector<FeRow> read_row_table(const std::filesystem::path& file) {
-  LineReader reader(file, "a table of rows");
+  ColumnRows table(file, "a table of rows", "row,node,motion");
+  const LineReader& reader = table.reader();
   std::vector<NumberedRow> rows;
   std::set<std::pair<int, int>> named;
-  TableRows table(reader, "row,node,motion");
-  std::array<std::string_view, 3> words;
-  while (table.next(words)) {
-    rows.push_back(numbered_row(reader, words, motions));
+  while (table.next()) {
+    rows.push_back(numbered_row(reader, table.cells(), motions));
     const FeRow& row = rows.back().second;
     if (!named.emplace(row.node, row.motion).second) {
-      throw reader.error(fmt::format("{} of node {} again", words[2], row.node), "each motion of a node once");
+      throw reader.error(fmt::format("{} of node {} again", table.cells()[2], row.node), "each motion of a node once");
     }
   }
   return in_order(reader, rows);

@@ -21,10 +21,10 @@ FieldFormat field_format(const LineReader& reader, std::string_view card, std::s
   for (char c : card) {
     if (c != ' ') text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   }
-  const auto refuse = [&] {
+  const auto rejection = [&] {
     return reader.error(fmt::format("format '{}'", stripped(card)), fmt::format("one like (5{}16)", letters.front()));
   };
-  if (text.size() < 4 || text.front() != '(' || text.back() != ')') throw refuse();
+  if (text.size() < 4 || text.front() != '(' || text.back() != ')') throw rejection();
   std::string_view inside = std::string_view(text).substr(1, text.size() - 2);
   // A scale factor changes nothing where numbers have exponents.
   if (const std::size_t p = inside.find('P'); p != std::string_view::npos && letters.front() != 'I') {
@@ -32,13 +32,13 @@ FieldFormat field_format(const LineReader& reader, std::string_view card, std::s
     if (inside.starts_with(',')) inside.remove_prefix(1);
   }
   const std::size_t letter = inside.find_first_of(letters);
-  if (letter == std::string_view::npos) throw refuse();
+  if (letter == std::string_view::npos) throw rejection();
   FieldFormat format{1, 0};
-  if (letter > 0 && !parse(inside.substr(0, letter), format.per_line)) throw refuse();
+  if (letter > 0 && !parse(inside.substr(0, letter), format.per_line)) throw rejection();
   const std::string_view width = inside.substr(letter + 1, inside.find('.', letter) - letter - 1);
   if (!parse(width, format.width) || format.width < 1 || format.width > 80 || format.per_line < 1 ||
       format.per_line > 1000) {
-    throw refuse();
+    throw rejection();
   }
   return format;
 }

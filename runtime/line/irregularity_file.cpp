@@ -13,7 +13,7 @@ namespace railtab {
 namespace {
 
 // Points so uneven that their spline has little to do with them.
-void refuse_swings(const Irregularity& irregularity, const std::vector<FileColumn>& columns) {
+void reject_swings(const Irregularity& irregularity, const std::vector<FileColumn>& columns) {
   const Irregularity::Extreme swing = irregularity.farthest_out();
   if (swing.beyond <= 1.0) return;
   const FileColumn& column = columns[swing.column + 1];
@@ -47,7 +47,7 @@ Irregularity read_irregularity(const std::filesystem::path& file) {
   }
   Irregularity irregularity(std::move(columns[0].values), std::move(columns[1].values), std::move(columns[2].values),
                             std::move(columns[3].values), std::move(columns[4].values));
-  refuse_swings(irregularity, columns);
+  reject_swings(irregularity, columns);
   return irregularity;
 }
 

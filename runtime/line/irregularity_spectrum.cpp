@@ -100,7 +100,7 @@ Irregularity random_irregularity(const SpectrumParameters& parameters, double fr
   const int bands = std::max(1, static_cast<int>(std::ceil((high - low) / band)));
   const double width = (high - low) / bands;
   const double spacing = parameters.shortest / points_per_wave;
-  constexpr double most = 5e7;  // points: 13 GB while they are made
+  constexpr double most = 5e7;  // points: 13 GB while they are computed
   if (!(std::abs(to - from) / spacing <= most)) {
     throw input_error(
         "scene: irregularity.spectrum",

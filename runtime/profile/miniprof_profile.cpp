@@ -15,7 +15,7 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-/// What the header says that matters here.
+/// The entries of the header that are used.
 struct MiniprofHeader {
   std::size_t columns = 0;  ///< per line; 0: not stated
   std::size_t x = 0, y = 1;

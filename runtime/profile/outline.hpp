@@ -11,13 +11,13 @@ struct OutlinePoint {
   int line;
 };
 
-/// The points of a profile file in m, and what was said and done about them: for the user.
+/// The points of a profile file in m, with notes for the user on repairs.
 struct ProfilePoints {
   std::vector<OutlinePoint> points;
   std::vector<std::string> notes;
 };
 
-/// Refuses points that are no outline of a body, naming file and line: fewer than 4 points, an extent that is no
+/// Rejects points that are no outline of a body, naming file and line: fewer than 4 points, an extent that is no
 /// wheel's or rail's, points that turn back by more than 120 degrees (wrong order), and an outline that crosses or
 /// touches itself. Points that follow each other lie apart.
 /// @throws InputError

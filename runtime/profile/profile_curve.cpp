@@ -80,17 +80,20 @@ void ProfileCurve::fill_buckets() {
 
 namespace {
 
+constexpr int most_halvings = 2200;  // of any interval of doubles down to one bit
+
 /// Root of f in [a, b], where its signs differ or one end is the root, by bisection to the last bit of s.
 template <class F>
 double bisect(F f, double a, double b) {
   if (f(a) == 0.0) return a;
   if (f(b) == 0.0) return b;
   const bool positive_at_a = f(a) > 0;
-  for (;;) {
-    const double middle = 0.5 * (a + b);
-    if (middle <= a || middle >= b) return middle;
+  double middle = 0.5 * (a + b);
+  for (int i = 0; i < most_halvings && middle > a && middle < b; ++i) {
     ((f(middle) > 0) == positive_at_a ? a : b) = middle;
+    middle = 0.5 * (a + b);
   }
+  return middle;
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct CurvePoint {
   }
 };
 
-/// A profile as a piecewise cubic curve in arc length, made for fast evaluation.
+/// A profile as a piecewise cubic curve in arc length, for fast evaluation.
 ///
 /// Invariant: at least two knots, arc length strictly increasing, all values finite.
 /// Evaluation is const, allocation-free and thread-safe.

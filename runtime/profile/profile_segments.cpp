@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/cubic_spline.hpp"
 
 namespace railtab {
@@ -139,14 +140,13 @@ SplinedSegment spline_to_tolerance(const ProfileSegment& segment, const SegmentE
   for (int i = 0; i < panels; ++i) {
     length += arc_length(segment, static_cast<double>(i) / panels, static_cast<double>(i + 1) / panels);
   }
-  double spacing = widest_spacing;
-  for (;;) {
+  constexpr double narrowest_spacing = 1e-7;  // m
+  for (double spacing = widest_spacing; spacing > narrowest_spacing; spacing *= spacing_ratio) {
     const auto n = static_cast<std::size_t>(std::ceil(length / spacing));
     SplinedSegment spline = spline_segment(segment, ends, length, n);
     if (follows(spline, segment)) return spline;
-    spacing *= spacing_ratio;
-    assert(spacing > 1e-7 && "segment definition is not smooth");
   }
+  throw ComputationError("profile: a segment's definition is not smooth, no spline follows it to the tolerance");
 }
 
 /// One point and tangent for two segment ends that agree up to the rounding of their published constants.

@@ -39,7 +39,7 @@ struct Entry {
   std::string_view name;   ///< the name that is written to tables
   std::string_view alias;  ///< second name, or empty
   std::vector<ProfileSegment> (*segments)(double rail_inclination);
-  bool for_pairs = true;  ///< false: for tests of curves, since the contact search refuses it as too narrow
+  bool for_pairs = true;  ///< false: for tests of curves, since the contact search rejects it as too narrow
 };
 
 constexpr std::array<Entry, 9> entries{{

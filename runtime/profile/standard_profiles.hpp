@@ -12,7 +12,7 @@ namespace railtab {
 /// enough for the rounding of a position (1e-17 m) to leave its curvature alone.
 inline constexpr double knife_edge_radius = 1e-4;
 
-/// Names of the built-in profiles of one kind that pairs can be made of, for messages and --help.
+/// Names of the built-in profiles of one kind that can form a pair, for messages and --help.
 [[nodiscard]] std::vector<std::string> standard_profile_names(ProfileKind kind);
 
 /// A built-in profile by name (case is ignored): wheels "S1002", "LMA-type", "cone-1:20", "cone-1:40",

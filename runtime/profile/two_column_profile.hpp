@@ -13,7 +13,7 @@ namespace railtab {
 /// @throws InputError with file and line
 [[nodiscard]] ProfilePoints read_two_columns(std::istream& in, const std::string& file);
 
-/// Scales points by the unit, mm or m, in which they are as wide as a profile, and says so.
+/// Scales points by the unit, mm or m, in which they are as wide as a profile, and notes it.
 /// @throws InputError with file where neither fits
 void infer_units(const std::string& file, ProfilePoints& outline);
 

@@ -37,11 +37,13 @@ void require_origin(const ProfileCurve& wheel) {
 
 /// Arc length at which z passes `level` between a point below it and a point above it, by bisection.
 double s_at_level(const ProfileCurve& rail, double level, double s_below, double s_above) {
-  for (;;) {
-    const double middle = 0.5 * (s_below + s_above);
-    if (middle <= s_below || middle >= s_above) return middle;
+  constexpr int most_halvings = 2200;  // of any interval of doubles down to one bit
+  double middle = 0.5 * (s_below + s_above);
+  for (int i = 0; i < most_halvings && middle > s_below && middle < s_above; ++i) {
     (rail.at(middle).z >= level ? s_below : s_above) = middle;
+    middle = 0.5 * (s_below + s_above);
   }
+  return middle;
 }
 
 /// y of the gauge point: the point of the gauge face nearest to the track centre, between the highest point and

@@ -18,7 +18,7 @@ struct PairDimensions {
   void validate() const;
 };
 
-/// A right wheel on a right rail: what contact search and tables are made for. The left side is its mirror image.
+/// A right wheel on a right rail: the pair of contact search and tables. The left side is its mirror image.
 class WheelRailPair {
  public:
   /// @throws InputError where a dimension is out of range, a profile has the wrong kind, or the rail has no

@@ -5,9 +5,15 @@
 
 namespace railtab::report {
 
+/// The first line of a page, which names railtab as its generator and tells one kind of page from another.
+/// @param kind plain text, "run report"
+[[nodiscard]] std::string html_first_line(std::string_view kind);
+
 /// A whole HTML page with style and read-out script inside: one file that loads nothing.
-/// @param title plain text; @param body HTML; @param version of the program, for the foot of the page
-[[nodiscard]] std::string html_page(std::string_view title, std::string_view body, std::string_view version);
+/// @param kind see html_first_line(); @param title plain text; @param body HTML
+/// @param version of the program, for the foot of the page
+[[nodiscard]] std::string html_page(std::string_view kind, std::string_view title, std::string_view body,
+                                    std::string_view version);
 
 /// A section with its heading; empty where `content` is.
 [[nodiscard]] std::string html_section(std::string_view title, const std::string& content);

@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/printable_text.hpp"
+
 namespace railtab::report {
 
 std::string escaped(std::string_view text) {
   std::string result;
   result.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = text[i] == '\t' ? 1 : printable_bytes(text.substr(i));
+    switch (bytes == 1 ? text[i] : '\0') {
       case '&':
         result += "&amp;";
         break;
@@ -28,8 +31,9 @@ std::string escaped(std::string_view text) {
         result += "&#39;";
         break;
       default:
-        result += c;
+        result += bytes > 0 ? std::string(text.substr(i, bytes)) : printable(text.substr(i, 1));
     }
+    i += std::max<std::size_t>(bytes, 1);
   }
   return result;
 }

@@ -70,24 +70,34 @@ inline constexpr std::array header_texts{
 
 struct HeaderTexts {
   const char* path;
+  const char* dimension;  ///< name of the extent: datasets that share it have equal lengths
   const char* description;
   std::vector<std::string> ResultHeader::*values;
 };
 inline constexpr std::array header_text_lists{
-    HeaderTexts{"header/input_files", "files that the scene names", &ResultHeader::input_files},
-    HeaderTexts{"header/input_checksums", "of their contents when the run began", &ResultHeader::input_checksums}};
+    HeaderTexts{"header/input_files", "files", "files that the scene names", &ResultHeader::input_files},
+    HeaderTexts{"header/input_checksums", "files", "of their contents when the run began",
+                &ResultHeader::input_checksums}};
 
-using HeaderColumn = Column<ResultHeader, std::vector<double>>;
+struct HeaderColumn {
+  const char* path;
+  const char* dimension;
+  const char* unit;
+  const char* description;
+  std::vector<double> ResultHeader::*values;
+};
 inline constexpr std::array header{
-    HeaderColumn{"header/wheel_x", "m", "offset of each wheel behind the first wheelset; left, right, front first",
-                 &ResultHeader::wheel_x},
-    HeaderColumn{"header/static_wheel_load", "N", "vertical force of each wheel at rest",
+    HeaderColumn{"header/wheel_x", "wheels", "m",
+                 "offset of each wheel behind the first wheelset; left, right, front first", &ResultHeader::wheel_x},
+    HeaderColumn{"header/static_wheel_load", "wheels", "N", "vertical force of each wheel at rest",
                  &ResultHeader::static_wheel_load},
-    HeaderColumn{"header/node_x", "m", "position of the nodes along the track", &ResultHeader::node_x},
-    HeaderColumn{"header/wheel_y", "m", "outline of the wheel, lateral, to the field side", &ResultHeader::wheel_y},
-    HeaderColumn{"header/wheel_z", "m", "outline of the wheel, down", &ResultHeader::wheel_z},
-    HeaderColumn{"header/rail_y", "m", "outline of the rail, lateral, to the field side", &ResultHeader::rail_y},
-    HeaderColumn{"header/rail_z", "m", "outline of the rail, down", &ResultHeader::rail_z}};
+    HeaderColumn{"header/node_x", "nodes", "m", "position of the nodes along the track", &ResultHeader::node_x},
+    HeaderColumn{"header/wheel_y", "wheel points", "m", "outline of the wheel, lateral, to the field side",
+                 &ResultHeader::wheel_y},
+    HeaderColumn{"header/wheel_z", "wheel points", "m", "outline of the wheel, down", &ResultHeader::wheel_z},
+    HeaderColumn{"header/rail_y", "rail points", "m", "outline of the rail, lateral, to the field side",
+                 &ResultHeader::rail_y},
+    HeaderColumn{"header/rail_z", "rail points", "m", "outline of the rail, down", &ResultHeader::rail_z}};
 
 template <typename Value>
 struct SummaryEntry {

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <exception>
 #include <map>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/results/checkpoint_slot.hpp"
 #include "railtab/runtime/results/result_columns.hpp"
 #include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/file_fields.hpp"
 
 namespace railtab {
 
@@ -31,24 +35,52 @@ std::vector<CheckpointSlot> whole_checkpoints(const ArrayFileReader& in) {
   return whole;
 }
 
-std::string motion_path(const columns::MotionGroup& group, const columns::MotionColumn& column) {
-  return fmt::format("{}/{}", group.name, column.path);
+template <typename Column>
+Field field_of(const Column& column, std::vector<std::string> shape) {
+  return {column.path, std::move(shape), column.unit, column.description};
+}
+
+Field field_of(const columns::StepColumn& column) {
+  Field field = field_of(column, {"records"});
+  if (column.value == &StepRecord::time) field.values = Field::Values::increasing;
+  return field;
+}
+
+const Field iterations_field = field_of(columns::newton_iterations, {"records"});
+const Field patches_field = field_of(columns::patches, {"records", "wheels"});
+const Field speed_field{"header/speed", {}, "m/s", "speed of the train"};
+const Field scene_field{"header/scene_text", {"1"}, "text", "the scene that was run, TOML"};
+
+Field field_of(const columns::WheelColumn& column) { return field_of(column, {"records", "wheels"}); }
+Field field_of(const columns::HeaderColumn& column) { return field_of(column, {column.dimension}); }
+Field field_of(const columns::HeaderTexts& texts) { return {texts.path, {texts.dimension}, "text", texts.description}; }
+Field field_of(const columns::MotionGroup& group) {
+  return {fmt::format("{}/names", group.name), {group.name}, "text", group.description};
+}
+Field field_of(const columns::MotionGroup& group, const columns::MotionColumn& column) {
+  return {fmt::format("{}/{}", group.name, column.path), {"records", group.name, "6"}, column.unit, column.description};
 }
 
 ArrayFileReader open_results(const std::filesystem::path& file) {
   return ArrayFileReader(file, results_filetype, columns::format_version);
 }
 
-ResultHeader read_header(const ArrayFileReader& in) {
+ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
   ResultHeader header;
   for (const columns::HeaderText& text : columns::header_texts) header.*text.value = in.text("header", text.name);
-  const std::vector<std::string> scene = in.read_strings("header/scene_text");
-  if (!scene.empty()) header.scene_text = scene.front();
-  for (const columns::HeaderTexts& list : columns::header_text_lists) header.*list.values = in.read_strings(list.path);
-  header.speed = in.read("header/speed", {}).front();
-  for (const columns::HeaderColumn& column : columns::header) header.*column.value = in.read(column.path, {-1});
+  header.scene_text = fields.texts(scene_field).front();
+  for (const columns::HeaderTexts& list : columns::header_text_lists) {
+    header.*list.values = fields.texts(field_of(list));
+  }
+  header.speed = fields.numbers(speed_field).front();
+  for (const columns::HeaderColumn& column : columns::header) header.*column.values = fields.numbers(field_of(column));
   for (const columns::MotionGroup& group : columns::motion_groups) {
-    header.*group.names = in.read_strings(fmt::format("{}/names", group.name));
+    header.*group.names = fields.texts(field_of(group));
+  }
+  if (header.wheel_x.size() % 2 != 0) {
+    throw input_error(fmt::format("{}: header/wheel_x", in.file().string()),
+                      fmt::format("{} wheels", header.wheel_x.size()),
+                      "an even number: left and right of each wheelset");
   }
   return header;
 }
@@ -58,34 +90,35 @@ constexpr std::int64_t most_count = 1'000'000'000'000'000;  // of anything in a 
 std::string time_of(const columns::WheelExtremeEntry& entry) { return fmt::format("{}_time", entry.name); }
 std::string wheel_of(const columns::WheelExtremeEntry& entry) { return fmt::format("{}_wheel", entry.name); }
 
-RunSummary read_summary(const ArrayFileReader& in) {
+RunSummary read_summary(const ArrayFileReader& in, std::size_t wheels) {
+  const FieldReader fields(in);
   RunSummary summary;
   summary.message = in.text(columns::summary_group, "message");
   summary.contact_mode = in.text(columns::summary_group, "contact_mode");
-  summary.complete = in.number(columns::summary_group, "complete") != 0.0;
+  summary.complete = in.whole_number(columns::summary_group, "complete", 0, 1) != 0;
   const std::vector<std::string> names = in.attribute_names(columns::summary_group);
   for (const auto& entry : columns::summary_counts) {
     if (!entry.in_all_files && std::find(names.begin(), names.end(), entry.name) == names.end()) continue;
     summary.*entry.value = in.whole_number(columns::summary_group, entry.name, 0, most_count);
   }
   for (const auto& entry : columns::summary_seconds) {
-    summary.*entry.value = in.number(columns::summary_group, entry.name);
+    summary.*entry.value = fields.number(columns::summary_group, entry.name);
   }
   const long impacts = in.whole_number(columns::summary_group, columns::contact_energy_impacts, -1, most_count);
   if (impacts >= 0) {
     ContactEnergy& energy = summary.contact_energy.emplace();
     energy.impacts = impacts;
     for (const auto& entry : columns::summary_contact_energy) {
-      energy.*entry.value = in.number(columns::summary_group, entry.name);
+      energy.*entry.value = fields.number(columns::summary_group, entry.name);
     }
   }
-  const auto wheels = static_cast<std::int64_t>(in.read("header/static_wheel_load", {-1}).size());
+  const std::int64_t last_wheel = static_cast<std::int64_t>(wheels) - 1;
   for (const auto& entry : columns::summary_wheel_extremes) {
     if (!std::ranges::count(names, wheel_of(entry))) continue;
     WheelExtreme& extreme = summary.wheel_extremes.*entry.value;
-    extreme.value = in.number(columns::summary_group, entry.name);
-    extreme.time = in.number(columns::summary_group, time_of(entry));
-    extreme.wheel = static_cast<int>(in.whole_number(columns::summary_group, wheel_of(entry), -1, wheels - 1));
+    extreme.value = fields.number(columns::summary_group, entry.name);
+    extreme.time = fields.number(columns::summary_group, time_of(entry));
+    extreme.wheel = static_cast<int>(in.whole_number(columns::summary_group, wheel_of(entry), -1, last_wheel));
   }
   return summary;
 }
@@ -96,39 +129,28 @@ void write_header(ArrayFileWriter& out, const ResultHeader& header) {
       "Time histories of a train-track-bridge run. SI units; x forward, y right, z down; first index: record. "
       "Layout: docs/file_formats/results.md");
   for (const columns::HeaderText& text : columns::header_texts) out.attribute("header", text.name, header.*text.value);
-  out.write("header/scene_text", std::vector<std::string>{header.scene_text}, "the scene that was run, TOML");
-  for (const columns::HeaderTexts& list : columns::header_text_lists) {
-    out.write(list.path, header.*list.values, list.description);
-  }
-  out.write("header/speed", {&header.speed, 1}, {}, "m/s", "speed of the train");
-  for (const columns::HeaderColumn& column : columns::header) {
-    const std::vector<double>& values = header.*column.value;
-    out.write(column.path, values, {values.size()}, column.unit, column.description);
-  }
-  for (const columns::MotionGroup& group : columns::motion_groups) {
-    out.write(fmt::format("{}/names", group.name), header.*group.names, group.description);
-  }
+  FieldWriter fields(out);
+  fields.write(scene_field, std::vector<std::string>{header.scene_text});
+  for (const columns::HeaderTexts& list : columns::header_text_lists) fields.write(field_of(list), header.*list.values);
+  fields.write(speed_field, std::array{header.speed});
+  for (const columns::HeaderColumn& column : columns::header) fields.write(field_of(column), header.*column.values);
+  for (const columns::MotionGroup& group : columns::motion_groups) fields.write(field_of(group), header.*group.names);
 }
 
 void create_histories(ArrayFileWriter& out, const ResultHeader& header) {
-  for (const columns::StepColumn& column : columns::step) {
-    out.create_growing(column.path, {}, column.unit, column.description);
-  }
-  const auto& iterations = columns::newton_iterations;
-  out.create_growing(iterations.path, {}, iterations.unit, iterations.description);
-  const std::size_t wheels = header.wheel_x.size();
-  if (wheels > 0) {
-    for (const columns::WheelColumn& column : columns::wheel) {
-      out.create_growing(column.path, {wheels}, column.unit, column.description);
-    }
-    out.create_growing(columns::patches.path, {wheels}, columns::patches.unit, columns::patches.description);
+  FieldWriter fields(out);
+  fields.set("wheels", header.wheel_x.size());
+  for (const columns::StepColumn& column : columns::step) fields.create_growing(field_of(column));
+  fields.create_growing(iterations_field);
+  if (!header.wheel_x.empty()) {
+    for (const columns::WheelColumn& column : columns::wheel) fields.create_growing(field_of(column));
+    fields.create_growing(patches_field);
   }
   for (const columns::MotionGroup& group : columns::motion_groups) {
     const std::size_t members = (header.*group.names).size();
     if (members == 0) continue;
-    for (const columns::MotionColumn& column : columns::motion) {
-      out.create_growing(motion_path(group, column), {members, 6}, column.unit, column.description);
-    }
+    fields.set(group.name, members);
+    for (const columns::MotionColumn& column : columns::motion) fields.create_growing(field_of(group, column));
   }
 }
 
@@ -216,7 +238,8 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
   long checkpoints = 0;
   {
     const ArrayFileReader in = open_results(file);
-    header = read_header(in);
+    FieldReader fields(in);
+    header = read_header(in, fields);
     header.contact_mode = in.text(columns::summary_group, "contact_mode");
     for (const CheckpointSlot& slot : whole_checkpoints(in)) checkpoints = std::max(checkpoints, slot.sequence);
   }
@@ -237,7 +260,7 @@ ResultWriter::~ResultWriter() {
   try {
     impl_->flush();
     impl_->out.close();
-  } catch (const ComputationError&) {
+  } catch (const std::exception&) {
     // The file keeps what was flushed before, and says that it is incomplete.
   }
 }
@@ -260,7 +283,7 @@ void ResultWriter::append(const StepRecord& record) {
   for (const columns::MotionGroup& group : columns::motion_groups) {
     if ((record.*group.motions).empty()) continue;
     for (const columns::MotionColumn& column : columns::motion) {
-      std::vector<double>& values = rows[motion_path(group, column)];
+      std::vector<double>& values = rows[field_of(group, column).path];
       for (const MotionRecord& motion : record.*group.motions) {
         const auto& components = motion.*column.value;
         values.insert(values.end(), std::begin(components), std::end(components));
@@ -300,33 +323,33 @@ void ResultWriter::finish(const RunSummary& summary) {
 namespace {
 
 /// Counts are stored as numbers like all others.
-int small_count(double value, std::string_view path) {
+std::vector<double> read_counts(const ArrayFileReader& in, FieldReader& fields, const Field& field) {
   constexpr double most = 1e9;
-  if (!(value >= 0.0 && value <= most)) throw input_error(path, fmt::format("{}", value), "a count");
-  return static_cast<int>(value);
+  std::vector<double> values = fields.numbers(field);
+  for (const double value : values) {
+    if (value >= 0.0 && value <= most && value == std::floor(value)) continue;
+    throw input_error(fmt::format("{}: {}", in.file().string(), field.path), fmt::format("{}", value), "a count");
+  }
+  return values;
 }
 
-void read_wheels(const ArrayFileReader& in, long wheels, std::vector<StepRecord>& steps) {
-  const std::vector<long> shape{static_cast<long>(steps.size()), wheels};
-  const std::size_t count = static_cast<std::size_t>(wheels);
-  for (StepRecord& step : steps) step.wheels.resize(count);
+void read_wheels(const ArrayFileReader& in, FieldReader& fields, std::size_t count, std::vector<StepRecord>& steps) {
+  const std::vector<double> patches = read_counts(in, fields, patches_field);
+  for (StepRecord& step : steps) step.wheels.resize(count);  // only now is it sure that the file has so many
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    steps[i / count].wheels[i % count].patches = static_cast<int>(patches[i]);
+  }
   for (const columns::WheelColumn& column : columns::wheel) {
-    const std::vector<double> values = in.read(column.path, shape);
+    const std::vector<double> values = fields.numbers(field_of(column));
     for (std::size_t i = 0; i < values.size(); ++i) steps[i / count].wheels[i % count].*column.value = values[i];
   }
-  const std::vector<double> patches = in.read(columns::patches.path, shape);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    steps[i / count].wheels[i % count].patches = small_count(patches[i], columns::patches.path);
-  }
 }
 
-void read_motions(const ArrayFileReader& in, const columns::MotionGroup& group, long members,
+void read_motions(FieldReader& fields, const columns::MotionGroup& group, std::size_t count,
                   std::vector<StepRecord>& steps) {
-  const std::size_t count = static_cast<std::size_t>(members);
-  for (StepRecord& step : steps) (step.*group.motions).resize(count);
   for (const columns::MotionColumn& column : columns::motion) {
-    const std::vector<double> values =
-        in.read(motion_path(group, column), {static_cast<long>(steps.size()), members, 6});
+    const std::vector<double> values = fields.numbers(field_of(group, column));
+    for (StepRecord& step : steps) (step.*group.motions).resize(count);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const std::size_t member = i / 6;
       ((steps[member / count].*group.motions)[member % count].*column.value)[i % 6] = values[i];
@@ -336,27 +359,37 @@ void read_motions(const ArrayFileReader& in, const columns::MotionGroup& group, 
 
 }  // namespace
 
-ResultHeader read_result_header(const std::filesystem::path& file) { return read_header(open_results(file)); }
+ResultHeader read_result_header(const std::filesystem::path& file) {
+  const ArrayFileReader in = open_results(file);
+  FieldReader fields(in);
+  return read_header(in, fields);
+}
 
-RunSummary read_run_summary(const std::filesystem::path& file) { return read_summary(open_results(file)); }
+RunSummary read_run_summary(const std::filesystem::path& file) {
+  const ArrayFileReader in = open_results(file);
+  FieldReader fields(in);
+  return read_summary(in, read_header(in, fields).wheel_x.size());
+}
 
 RunResults read_results(const std::filesystem::path& file) {
   const ArrayFileReader in = open_results(file);
-  RunResults results{read_header(in), read_summary(in), std::vector<StepRecord>(in.records())};
+  FieldReader fields(in);
+  fields.set("records", in.records(), "");
+  RunResults results;
+  results.header = read_header(in, fields);
+  results.summary = read_summary(in, results.header.wheel_x.size());
   std::vector<StepRecord>& steps = results.steps;
-  const std::vector<long> scalar_shape{static_cast<long>(steps.size())};
   for (const columns::StepColumn& column : columns::step) {
-    const std::vector<double> values = in.read(column.path, scalar_shape);
+    const std::vector<double> values = fields.numbers(field_of(column));
+    steps.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) steps[i].*column.value = values[i];
   }
-  const std::vector<double> iterations = in.read(columns::newton_iterations.path, scalar_shape);
-  for (std::size_t i = 0; i < iterations.size(); ++i) {
-    steps[i].newton_iterations = small_count(iterations[i], columns::newton_iterations.path);
-  }
-  if (!results.header.wheel_x.empty()) read_wheels(in, static_cast<long>(results.header.wheel_x.size()), steps);
+  const std::vector<double> iterations = read_counts(in, fields, iterations_field);
+  for (std::size_t i = 0; i < iterations.size(); ++i) steps[i].newton_iterations = static_cast<int>(iterations[i]);
+  if (!results.header.wheel_x.empty()) read_wheels(in, fields, results.header.wheel_x.size(), steps);
   for (const columns::MotionGroup& group : columns::motion_groups) {
     const std::vector<std::string>& names = results.header.*group.names;
-    if (!names.empty()) read_motions(in, group, static_cast<long>(names.size()), steps);
+    if (!names.empty()) read_motions(fields, group, names.size(), steps);
   }
   return results;
 }

@@ -6,105 +6,136 @@ namespace {
 
 ImportParameters& import_of(SceneDraft& draft) { return draft.parameters.structure; }
 
-std::vector<KeyBinding> file_keys() {
+// Points of the model in its own unit of length; offsets along the track in m.
+constexpr Range model_position{-1e9, 1e9}, model_length{0.0, 1e6}, track_position{-1e6, 1e6};
+
+ChoiceKey formats() {
+  return choice<FeFormat>(
+      [](SceneDraft& d) -> FeFormat& { return import_of(d).files.format; },
+      {{"matrix-market", FeFormat::matrix_market}, {"calculix", FeFormat::calculix}, {"ansys", FeFormat::ansys}});
+}
+
+std::vector<KeyRow> matrix_keys() {
   return {
-      {"structure.format", "", "whose files these are", FileFormatKey{}},
-      {"structure.mass", "", "mass matrix",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.mass; }}},
-      {"structure.damping", "", "damping matrix",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.damping; }}},
+      {"structure.mass",
+       "",
+       "mass matrix",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.mass; }},
+       {},
+       {&structure_unlike_a_bridge}},
       {"structure.stiffness", "", "stiffness matrix",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.stiffness; }}},
-      {"structure.dofs", "", "what the rows of the matrices are",
-       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.dofs; }}},
       {"structure.nodes", "", "positions of the nodes",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.nodes; }}},
-      {"structure.units", "", "of the model, with the second",
+  };
+}
+
+std::vector<KeyRow> row_keys() {
+  return {
+      {"structure.damping", "", "damping matrix",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.damping; }}},
+      {"structure.dofs", "", "node and direction of each row of the matrices",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.dofs; }}},
+  };
+}
+
+std::vector<KeyRow> model_keys() {
+  return {
+      {"structure.format", "", "program that wrote the files", formats()},
+      {"structure.units", "", "units of length, force and mass of the model; its unit of time is the second",
        TextKey{[](SceneDraft& d) -> std::string& { return import_of(d).frame.units; }, fe_unit_systems}},
-      {"structure.axes", "", "the model's directions forward, right and down",
+      {"structure.axes", "", "directions of the model that point forward, right and down",
        TextKey{[](SceneDraft& d) -> std::string& { return import_of(d).frame.axes; }, nullptr}},
-      {"structure.origin", "", "the model's point at x = 0, in the track's centre, at the height of the rail-head tops",
-       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return import_of(d).frame.origin; }}},
-      {"structure.report", "m", "positions along the track at which the deck is reported (its middle where absent)",
-       NumberListKey{[](SceneDraft& d) -> std::vector<double>& { return import_of(d).report; }}},
+      {"structure.origin", "",
+       "point of the model at x = 0, in the track's centre, at the height of the rail-head tops, in its axes and unit",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return import_of(d).frame.origin; }, model_position}},
+      {"structure.report",
+       "m",
+       "positions along the track at which the deck is reported; absent: its middle",
+       NumberListKey{[](SceneDraft& d) -> std::vector<double>& { return import_of(d).report; }, track_position},
+       {&with_deck_nodes}},
   };
 }
 
 template <NodeSelection ImportParameters::*selection>
-std::vector<KeyBinding> selection_keys(const std::array<std::string_view, 4>& paths, std::string_view meaning) {
+std::vector<KeyRow> selection_keys(const std::array<std::string_view, 4>& paths, std::string_view meaning) {
   return {
       {paths[0], "", meaning,
        TextKey{[](SceneDraft& d) -> std::string& { return (import_of(d).*selection).set; }, nullptr}},
-      {paths[1], "", "or one corner of a box, in the model's axes and unit",
-       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return (import_of(d).*selection).from; }}},
-      {paths[2], "", "and the other",
-       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return (import_of(d).*selection).to; }}},
-      {paths[3], "", "by which the box is widened on all sides, in the model's unit",
-       NumberKey{[](SceneDraft& d) -> double& { return (import_of(d).*selection).tolerance; }, not_negative}},
+      {paths[1], "", "first corner of a box, in place of a set, in the model's axes and unit",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return (import_of(d).*selection).from; }, model_position}},
+      {paths[2], "", "opposite corner of the box",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return (import_of(d).*selection).to; }, model_position}},
+      {paths[3], "", "margin of the box on all sides, in the model's unit",
+       NumberKey{[](SceneDraft& d) -> double& { return (import_of(d).*selection).tolerance; }, model_length}},
   };
 }
 
-std::vector<KeyBinding> damping_keys() {
+std::vector<KeyRow> damping_keys() {
   return {
-      {"structure.mass_damping", "1/s", "Rayleigh damping, times the mass",
+      {"structure.mass_damping", "1/s", "coefficient of the mass in Rayleigh damping",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.mass_factor; },
                          {0.0, 1e4}}},
-      {"structure.stiffness_damping", "s", "Rayleigh damping, times the stiffness",
+      {"structure.stiffness_damping", "s", "coefficient of the stiffness in Rayleigh damping",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.stiffness_factor; },
                          {0.0, 10.0}}},
-      {"structure.damping_ratio", "1", "of critical, at two frequencies",
+      {"structure.damping_ratio", "1", "fraction of critical damping at two frequencies",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.ratio; },
                          {0.0, 0.5}}},
-      {"structure.damping_type", "", "the damping_ratio that EN 1991-2, Table 6.6, has as lower bound for damping_span",
+      {"structure.damping_type", "", "type of bridge, for the lower bound of the damping ratio of EN 1991-2, Table 6.6",
        TextKey{[](SceneDraft& d) -> std::string& { return import_of(d).damping.type; }, bridge_damping_types}},
-      {"structure.damping_span", "m", "span for damping_type",
-       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.span; }, {0.0, 1e4, true}}},
-      {"structure.damping_frequency_low", "Hz", "at which the ratio holds; 0: the first natural frequency",
-       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[0]; }, {0.0, 1e4}}},
-      {"structure.damping_frequency_high", "Hz", "at which the ratio holds; 0: the third natural frequency",
-       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[1]; }, {0.0, 1e4}}},
+      {"structure.damping_span", "m", "span of the bridge, for damping_type",
+       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.span; }, {0.5, 1e4}}},
+      {"structure.damping_frequency_low", "Hz",
+       "lower frequency at which the ratio holds; 0: the first natural frequency",
+       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[0]; }, {1e-3, 1e4, true}}},
+      {"structure.damping_frequency_high", "Hz",
+       "upper frequency at which the ratio holds; 0: the third natural frequency",
+       NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[1]; }, {1e-3, 1e4, true}}},
   };
 }
 
-std::vector<KeyBinding> held_node_keys() {
+std::vector<KeyRow> support_keys() {
   return {
-      {"support.set", "", "set of nodes that the ground holds and moves alike",
+      {"support.set", "", "set of the nodes of one support",
        TextKey{[](SceneDraft& d) -> std::string& { return d.support.nodes.set; }, nullptr}},
-      {"support.from", "", "or one corner of a box, in the model's axes and unit",
-       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.support.nodes.from; }}},
-      {"support.to", "", "and the other",
-       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.support.nodes.to; }}},
-      {"support.tolerance", "", "by which the box is widened on all sides, in the model's unit",
-       NumberKey{[](SceneDraft& d) -> double& { return d.support.nodes.tolerance; }, not_negative}},
-      {"support.holds", "", "motions that are held, in railtab's axes: x, y, z, roll, pitch, yaw",
+      {"support.from", "", "first corner of a box, in place of a set, in the model's axes and unit",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.support.nodes.from; }, model_position}},
+      {"support.to", "", "opposite corner of the box",
+       PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.support.nodes.to; }, model_position}},
+      {"support.tolerance", "", "margin of the box on all sides, in the model's unit",
+       NumberKey{[](SceneDraft& d) -> double& { return d.support.nodes.tolerance; }, model_length}},
+      {"support.holds", "", "fixed directions, in railtab's axes: x, y, z, roll, pitch, yaw",
        TextListKey{[](SceneDraft& d) -> std::vector<std::string>& { return d.support.holds; }}},
-      {"support.x", "m", "place along the track whose ground motion it has (the mean of its nodes where absent)",
-       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.support.x; }, {-1e6, 1e6}}},
+      {"support.x", "m", "position along the track whose ground motion the support has; absent: the mean of its nodes",
+       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.support.x; }, track_position}},
   };
 }
 
 }  // namespace
 
-const std::vector<KeyBinding>& import_keys() {
-  static const std::vector<KeyBinding> keys = [] {
-    std::vector<KeyBinding> all = file_keys();
-    for (const auto& part :
-         {damping_keys(),
-          selection_keys<&ImportParameters::deck>(
-              {"structure.deck.set", "structure.deck.from", "structure.deck.to", "structure.deck.tolerance"},
-              "set of the nodes that carry the track"),
-          selection_keys<&ImportParameters::rail_left>({"structure.rail_left.set", "structure.rail_left.from",
-                                                        "structure.rail_left.to", "structure.rail_left.tolerance"},
-                                                       "set of the nodes of the left rail"),
-          selection_keys<&ImportParameters::rail_right>({"structure.rail_right.set", "structure.rail_right.from",
-                                                         "structure.rail_right.to", "structure.rail_right.tolerance"},
-                                                        "set of the nodes of the right rail"),
-          held_node_keys()}) {
-      all.insert(all.end(), part.begin(), part.end());
-    }
-    return all;
-  }();
-  return keys;
+std::vector<KeyRow> import_keys() {
+  const auto deck = selection_keys<&ImportParameters::deck>(
+      {"structure.deck.set", "structure.deck.from", "structure.deck.to", "structure.deck.tolerance"},
+      "set of the nodes that carry the track");
+  const auto left =
+      selection_keys<&ImportParameters::rail_left>({"structure.rail_left.set", "structure.rail_left.from",
+                                                    "structure.rail_left.to", "structure.rail_left.tolerance"},
+                                                   "set of the nodes of the left rail");
+  const auto right =
+      selection_keys<&ImportParameters::rail_right>({"structure.rail_right.set", "structure.rail_right.from",
+                                                     "structure.rail_right.to", "structure.rail_right.tolerance"},
+                                                    "set of the nodes of the right rail");
+  return applying(
+      with_any_structure,
+      all_of({matrix_keys(), applying(with_imported_structure, row_keys()),
+              applying(with_imported_structure, applying(with_structure_nodes, all_of({model_keys(), damping_keys()}))),
+              applying(with_structure_nodes, applying(with_use_of_deck, deck)),
+              applying(with_structure_nodes, applying(with_imported_rails, all_of({left, right})))}));
+}
+
+std::vector<KeyRow> held_node_keys() {
+  return applying(with_any_structure, applying(with_model_nodes, support_keys()));
 }
 
 }  // namespace railtab::scene

@@ -5,19 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/runtime/scene/scene_keys.hpp"
 
 namespace railtab::scene {
 namespace {
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 /// Edit distance of Levenshtein: insertions, deletions and substitutions.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -41,43 +34,48 @@ std::string_view leaf(std::string_view path) {
 }
 
 /// Six digits are what a reader of the guide wants to see; the members themselves keep full precision.
-std::string standard_number(double value) { return fmt::format("{:.6g}", value); }
+std::string rounded(double value) { return fmt::format("{:.6g}", value); }
 
-SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
-  SceneKey result{std::string(key.path), "", std::string(key.unit), "", "", std::string(key.meaning)};
+SceneKey describe(const KeyRow& key, SceneDraft& draft) {
+  SceneKey result{std::string(key.path), "", std::string(key.unit), {}, "", "", std::string(key.meaning), {}, {}};
+  for (const Condition* condition : key.applies) result.applies.emplace_back(condition->text);
+  for (const Warning* warning : key.warns) result.warns.emplace_back(warning->when);
   const auto set = [&](std::string type, std::string range, std::string value) {
     result.type = std::move(type);
     result.range = std::move(range);
-    result.standard = std::move(value);
+    result.default_value = std::move(value);
+  };
+  const auto set_number = [&](std::string type, const Range& range, std::string value) {
+    result.bounds = range;
+    set(std::move(type), range.text(), std::move(value));
   };
   std::visit(Overloaded{
-                 [&](const NumberKey& k) { set("number", k.range.text(), standard_number(k.member(standard))); },
-                 [&](const OptionalNumberKey& k) { set("number", k.range.text(), ""); },
-                 [&](const RatioKey& k) { set("ratio", k.range.text(), standard_number(k.member(standard))); },
+                 [&](const NumberKey& k) { set_number("number", k.range, rounded(k.member(draft))); },
+                 [&](const OptionalNumberKey& k) { set_number("number", k.range, ""); },
+                 [&](const RatioKey& k) { set_number("ratio", k.range, rounded(k.member(draft))); },
                  [&](const IntegerKey& k) {
-                   set("integer", fmt::format("{} to {}", k.low, k.high), std::to_string(k.member(standard)));
+                   set_number("integer", {double(k.low), double(k.high)}, std::to_string(k.member(draft)));
+                   result.range = fmt::format("{} to {}", k.low, k.high);
                  },
-                 [&](const TextKey& k) { set("text", k.names ? joined(k.names()) : "any", k.member(standard)); },
+                 [&](const TextKey& k) {
+                   set(k.names ? "choice" : "text", k.names ? joined(k.names()) : "any", k.member(draft));
+                 },
                  [&](const FileKey&) { set("file", "an existing file", ""); },
                  [&](const ProfileKey& k) {
-                   set("profile", joined(standard_profile_names(k.kind)) + " or a profile file", k.member(standard));
+                   set("profile", joined(standard_profile_names(k.kind)) + " or a profile file", k.member(draft));
                  },
-                 [&](const ContactModeKey&) { set("choice", "table, online, paper", "table"); },
-                 [&](const TrackKindKey&) { set("choice", "rigid, flexible, imported", "flexible"); },
-                 [&](const NormalContactKey&) { set("choice", "hertz, rigid", "hertz"); },
+                 [&](const ChoiceKey& k) { set("choice", joined(k.names), k.names[k.get(draft)]); },
                  [&](const ReductionKey&) { set("choice", "none, window", "none"); },
                  [&](const TextListKey& k) {
-                   const std::vector<std::string>& list = k.member(standard);
+                   const std::vector<std::string>& list = k.member(draft);
                    set("list of texts", "any", list.empty() ? "" : fmt::format("[\"{}\"]", fmt::join(list, "\", \"")));
                  },
-                 [&](const SwitchKey& k) { set("choice", "true, false", k.member(standard) ? "true" : "false"); },
+                 [&](const SwitchKey& k) { set("choice", "true, false", k.member(draft) ? "true" : "false"); },
                  [&](const PointKey& k) {
-                   const std::optional<Point>& point = k.member(standard);
-                   set("point", "any", point ? fmt::format("{}", fmt::join(*point, ", ")) : "");
+                   const std::optional<Point>& point = k.member(draft);
+                   set("point", k.range.text(), point ? fmt::format("{}", fmt::join(*point, ", ")) : "");
                  },
-                 [&](const NumberListKey&) { set("numbers", "any", ""); },
-                 [&](const FileFormatKey&) { set("choice", "matrix-market, calculix, ansys", "matrix-market"); },
-                 [&](const ContactForceKey&) { set("choice", "automatic, endpoint, energy", "automatic"); },
+                 [&](const NumberListKey& k) { set("numbers", k.range.text(), ""); },
              },
              key.value);
   return result;
@@ -85,44 +83,48 @@ SceneKey describe(const KeyBinding& key, SceneDraft& standard) {
 
 }  // namespace
 
-bool Range::accepts(double value) const noexcept {
-  return std::isfinite(value) && (open_low ? value > low : value >= low) && value <= high;
+std::vector<KeyRow> applying(const Condition& condition, std::vector<KeyRow> rows) {
+  for (KeyRow& row : rows) row.applies.insert(row.applies.begin(), &condition);
+  return rows;
 }
 
-std::string Range::text() const {
-  const bool bounded_low = std::isfinite(low), bounded_high = std::isfinite(high);
-  if (!bounded_low && !bounded_high) return "any";
-  if (!bounded_high) return fmt::format("{} {:.6g}", open_low ? ">" : ">=", low);
-  if (!bounded_low) return fmt::format("<= {:.6g}", high);
-  return open_low ? fmt::format("> {:.6g}, <= {:.6g}", low, high) : fmt::format("{:.6g} to {:.6g}", low, high);
+std::vector<KeyRow> all_of(std::initializer_list<std::vector<KeyRow>> parts) {
+  std::vector<KeyRow> all;
+  for (const std::vector<KeyRow>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
-const std::vector<KeyBinding>& all_keys() {
-  static const std::vector<KeyBinding> keys = [] {
-    std::vector<KeyBinding> all = run_keys();
-    const auto contact =
-        std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "contact.mode"; });
-    all.insert(contact, vehicle_keys().begin(), vehicle_keys().end());
-    // the guide goes from the train down to the bridge, then to the numerics
-    const auto numerics =
-        std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "irregularity.file"; });
-    all.insert(numerics, structure_keys().begin(), structure_keys().end());
-    const auto integration =
-        std::find_if(all.begin(), all.end(), [](const KeyBinding& k) { return k.path == "integration.time_step"; });
-    all.insert(integration, load_keys().begin(), load_keys().end());
-    return all;
-  }();
+const std::vector<KeyRow>& all_keys() {
+  // the guide goes from the train down to the bridge, then to the numerics
+  static const std::vector<KeyRow> keys =
+      all_of({train_keys(), vehicle_keys(), contact_keys(), track_keys(), bridge_keys(), import_keys(),
+              reduction_keys(), held_node_keys(), irregularity_keys(), load_keys(), integration_keys()});
   return keys;
 }
 
+const KeyRow* find_key(std::string_view path) {
+  static const auto rows = [] {
+    std::map<std::string_view, const KeyRow*> map;
+    for (const KeyRow& row : all_keys()) map.emplace(row.path, &row);
+    return map;
+  }();
+  const auto found = rows.find(path);
+  return found == rows.end() ? nullptr : found->second;
+}
+
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+std::string expected_number(const Range& range, std::string_view unit) {
+  const bool plain = unit.empty() || unit == "1";
+  return fmt::format("a number, {}{}{}", range.text(), plain ? "" : " ", plain ? "" : unit);
+}
 
 std::string nearest_key(std::string_view path) {
   // in hundredths of an edit, so that the heading decides between equal names
   constexpr std::size_t one = 100;
   std::string_view best;
   std::size_t best_distance = one * (std::max<std::size_t>(2, path.size() / 3) + 1);
-  for (const KeyBinding& key : all_keys()) {
+  for (const KeyRow& key : all_keys()) {
     const std::size_t edits = edit_distance(path, key.path);
     // a key that stands under the wrong heading is nearer than any misspelling
     const std::size_t distance = leaf(key.path) == leaf(path) ? one + edits : one * edits;
@@ -138,10 +140,20 @@ std::string nearest_key(std::string_view path) {
 
 namespace railtab {
 
+bool KeyRange::accepts(double value) const noexcept {
+  if (zero && value == 0.0) return true;
+  const double bounded = either_sign ? std::abs(value) : value;
+  return bounded >= low && bounded <= high;
+}
+
+std::string KeyRange::text() const {
+  return fmt::format("{}{:.6g} to {:.6g}{}", zero ? "0 or " : "", low, high, either_sign ? " of either sign" : "");
+}
+
 std::vector<SceneKey> scene_keys() {
-  scene::SceneDraft standard;
+  scene::SceneDraft draft;
   std::vector<SceneKey> result;
-  for (const scene::KeyBinding& key : scene::all_keys()) result.push_back(scene::describe(key, standard));
+  for (const scene::KeyRow& key : scene::all_keys()) result.push_back(scene::describe(key, draft));
   return result;
 }
 

@@ -1,35 +1,72 @@
 #include "railtab/runtime/scene/plan_memory.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "railtab/runtime/base/process_memory.hpp"
+#include "railtab/runtime/results/result_size.hpp"
+#include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
 
 namespace railtab {
 
 namespace {
 
-constexpr double low_factor = 3.0;  // the factor for compliances, of the one for the steps
+constexpr double number = sizeof(double);
 
-template <class Matrix>
-double bytes_of(const Matrix& matrix) {
-  return static_cast<double>(matrix.nonZeros()) * (sizeof(double) + sizeof(int)) +
-         static_cast<double>(matrix.outerSize()) * sizeof(int);
+// Vectors of all degrees of freedom of the structure.
+constexpr double state_vectors = 5.0;                        // LinearMotion
+constexpr double start_vectors = 6.0 * state_vectors + 8.0;  // states of steady_start(), loads and solutions
+constexpr double step_vectors = 2.0 * state_vectors + 14.0;  // StepWorkspace, and the state that the run begins with
+constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
+constexpr double small = 1 << 20;   // bytes: vectors that the allocator keeps when they are freed, in pieces
+constexpr double allocator = 1.03;  // of what is asked of it: ends of pages and pieces
+
+/// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
+double train_bytes(const VsiModel& model) {
+  const double wheels = 2.0 * model.wheelsets(), n = model.vehicle.dofs();
+  const double rest = wheels * wheels * (sizeof(RailCoupling) + 2.0 * 9.0 * number);
+  constexpr double vehicle_matrices = 8.0;
+  return (model.structure ? rest : 0.0) + vehicle_matrices * number * n * n;
 }
 
 }  // namespace
 
-double step_memory(const VsiModel& model, double time_step, double alpha) {
-  constexpr double vehicle_matrices = 6.0;  // M, C, K, gyroscopic, and for the step C with it and the inverse
-  const double n = model.vehicle.dofs();
-  double bytes = vehicle_matrices * n * n * sizeof(double);
-  if (!model.structure) return bytes;
+PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration) {
+  const double built = resident_memory(), peak = peak_resident_memory();
+  PlannedMemory plan;
+  const IntegrationParameters& integration = scene.integration;
+  const double steps = duration / integration.time_step;
+  const OutputSelection selection(scene.output, model_header(model));
+  const bool checkpoints = steps >= static_cast<double>(integration.reinitialise_every);
+  const double state = checkpoints ? static_cast<double>(packed(VsiState(model)).size()) : 0.0;
+  const ResultSize results =
+      result_size(selection.of(result_header(scene, model)), std::floor(steps / scene.output.every) + 2.0, state);
+  plan.results = results.file;
+  const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);
+  plan.undivided = allocator * std::max(peak, built + train + operators + results.memory);
+  plan.most = plan.undivided + allocator * (most_operators - 1) * operators;
+  if (!model.structure) return plan;
+
   const StructureModel& s = *model.structure;
-  for (const auto* matrix : {&s.mass, &s.damping, &s.stiffness}) bytes += bytes_of(*matrix);
-  for (const auto* columns : {&s.supports.mass, &s.supports.damping, &s.supports.stiffness, &s.supports.carried})
-    bytes += bytes_of(*columns);
-  const StructureResponse response(s, HhtScheme{.alpha = alpha, .time_step = time_step});
-  bytes += (1.0 + low_factor) * static_cast<double>(response.factor().bytes());
-  return bytes + static_cast<double>(response.load_bytes());
+  const double n = static_cast<double>(s.dofs());
+  const StructureResponse response(s, HhtScheme{.alpha = integration.alpha, .time_step = integration.time_step});
+  const StructureResponse::Memory m = response.memory();
+  const double table = StepOperators::largest_table(model, duration, integration.time_step);
+  const double one = m.kept + m.low + table;
+  const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
+  const double start = number * n * start_vectors + m.kept + std::max(m.setup, m.low + m.low_setup);
+  const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
+  const double pieces = number * n < small ? number * n * start_vectors : 0.0;  // what the start has left
+  const double common = built + train;
+  plan.undivided = std::max({peak, common + start, common + vectors + operators + while_made});
+  plan.most =
+      std::max(plan.undivided, common + vectors + most_operators * operators + (most_operators - 1) * one + while_made);
+  plan.step_reads = 2.0 * static_cast<double>(response.factor().bytes()) + static_cast<double>(response.load_bytes());
+  plan.entries_per_dof = m.low_entries / n;
+  return plan;
 }
 
 }  // namespace railtab

@@ -1,12 +1,22 @@
 #pragma once
 
+#include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
 
-/// Memory of what a run's steps work on [bytes]: matrices of the vehicles and the structure, the structure's factor,
-/// made for this time step, and the factor that rail compliances come from, by its usual size. Without tables of
-/// contact geometry and creep, records and the program itself.
-[[nodiscard]] double step_memory(const VsiModel& model, double time_step, double alpha);
+/// Memory and results of a run [bytes].
+struct PlannedMemory {
+  double undivided = 0.0;        ///< most that the process occupies while no step is divided
+  double most = 0.0;             ///< where steps are divided: most_operators at once
+  double results = 0.0;          ///< of the results file
+  double step_reads = 0.0;       ///< what one step reads of the structure's factor and matrices
+  double entries_per_dof = 0.0;  ///< of the factor that rail compliances come from
+};
+
+/// An upper bound of what a run occupies. What there is when the model is built (program, libraries, tables, matrices)
+/// is what this process occupies; what start and steps add is counted from the factors' patterns.
+/// @param model  built in this process; `duration` of the run [s]
+[[nodiscard]] PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration);
 
 }  // namespace railtab

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/plan_memory.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
@@ -25,7 +26,7 @@ std::string reduction_text(const ReductionParameters& reduction) {
 
 void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
   plan.built.push_back(
-      fmt::format("{} x {}, {} unknowns each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+      fmt::format("{} x {}, {} degrees of freedom each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
   if (scene.train.vehicle != imported_vehicle) return;
   constexpr int modes = 6;
   VehicleSummary vehicle = summarise(model.vehicle, modes);
@@ -43,16 +44,12 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPl
                                      model.geometry->pair().wheel().knots().name,
                                      model.geometry->pair().rail().knots().name));
     plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
-    if (scene.contact.mode != ContactMode::table) {
-      plan.left_out.emplace_back("geometry table look-up: contact is searched in every iteration");
-    }
     return;
   }
   plan.built.emplace_back("wheels that follow the rails rigidly, vertical motion only");
-  plan.left_out.emplace_back("contact geometry, creep forces, loss of contact: contact.normal is \"rigid\"");
-  plan.left_out.emplace_back("lateral, roll and yaw unknowns of the vehicles: nothing moves them");
+  plan.left_out.emplace_back("lateral, roll and yaw degrees of freedom of the vehicles: nothing moves them");
   if (model.structure && structure_plane(scene) == MotionPlane::vertical && scene.track_kind == TrackKind::flexible) {
-    plan.left_out.emplace_back("lateral, roll and yaw unknowns of track and bridge: nothing loads them");
+    plan.left_out.emplace_back("lateral, roll and yaw degrees of freedom of track and bridge: nothing loads them");
   }
 }
 
@@ -62,13 +59,9 @@ void describe_structure(const SceneParameters& scene, const VsiModel& model, Run
                                      scene.track_kind == TrackKind::imported ? "imported" : "flexible",
                                      2 * model.structure->rail[0].x.size(), scene.spans.size()));
     if (scene.reduction.kind != Reduction::none) plan.built.push_back(reduction_text(scene.reduction));
-  } else {
-    plan.left_out.emplace_back("structure unknowns and their factorisation: the track is rigid");
   }
   if (track_on_import(scene)) {
     plan.built.push_back(fmt::format("bridge of {}", scene.structure.files.stiffness.filename().string()));
-  } else if (scene.spans.empty() && scene.track_kind != TrackKind::imported) {
-    plan.left_out.emplace_back("bridge: the scene names none");
   }
 }
 
@@ -79,10 +72,10 @@ void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan
     plan.built.push_back(fmt::format("irregularity of {}, measured at x = {:.6g} to {:.6g} m",
                                      scene.irregularity->filename().string(), model.irregularity.begin(),
                                      model.irregularity.end()));
-  } else {
-    plan.left_out.emplace_back("irregularity: the scene names none");
   }
 }
+
+constexpr double wide = 1000.0;  // entries per degree of freedom: tracks have 100, narrow solid bridges 500
 
 }  // namespace
 
@@ -98,13 +91,24 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   plan.duration = static_cast<double>(plan.steps) * scene.integration.time_step;
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
   plan.warnings = scene_warnings(scene, model);
+  for (const scene::KeyRow& row : scene::all_keys()) {
+    std::string part = row.left_out ? row.left_out(scene) : "";
+    if (!part.empty()) plan.left_out.push_back(std::move(part));
+  }
   describe_vehicle(scene, model, plan);
   describe_contact(scene, model, plan);
   describe_structure(scene, model, plan);
   describe_track(scene, model, plan);
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
   if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
-  plan.memory = step_memory(model, scene.integration.time_step, scene.integration.alpha);
+  plan.memory = planned_memory(scene, model, plan.duration);
+  if (plan.memory.entries_per_dof > wide) {
+    plan.warnings.push_back(fmt::format(
+        "the structure is coupled widely: its factor has {:.0f} entries per degree of freedom, and every step and the "
+        "set-up take accordingly long; long beam elements under many sleepers (bridge.elements) and solid models that "
+        "are wide and high do that",
+        plan.memory.entries_per_dof));
+  }
   return plan;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "railtab/runtime/scene/plan_memory.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 
 namespace railtab {
@@ -15,7 +16,7 @@ struct RunPlan {
   int wheels = 0;
   long steps = 0;
   double time_step = 0, duration = 0;  ///< [s]
-  double memory = 0;                   ///< of what the steps work on [bytes]
+  PlannedMemory memory;
   std::vector<std::string> built, left_out;
   std::vector<std::string> warnings;  ///< as RunObserver::warning
 };

@@ -89,7 +89,7 @@ void add_contact(const ContactParameters& contact, VsiModel& model) {
   }
 }
 
-// A random track as far as the train comes, its run-in included.
+// A random track as far as the train runs, its pre-roll included.
 Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
   constexpr double margin = 50.0;  // m
   const double end = run_duration(scene, model);
@@ -131,7 +131,7 @@ VsiModel build_model(const SceneParameters& scene) {
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
   if (scene.track_kind != TrackKind::rigid) {
     model.structure = build_structure(scene);
-    model.structure_doubts = model.structure->doubts;
+    model.structure_warnings = model.structure->warnings;
   }
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   add_loads(scene, model);

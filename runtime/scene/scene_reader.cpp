@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/runtime/scene/idle_keys.hpp"
 #include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/toml_leaves.hpp"
+#include "railtab/runtime/scene/unused_keys.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 
 namespace railtab::scene {
@@ -39,8 +38,8 @@ struct Assign {
   void operator()(const FileKey& key) const {
     const std::filesystem::path named = file.parent_path() / text("a file name");
     if (!is_file(named)) {
-      std::error_code refused;
-      const bool none = !std::filesystem::exists(named, refused);
+      std::error_code unreadable;
+      const bool none = !std::filesystem::exists(named, unreadable);
       throw leaf_error(file, leaf, fmt::format("{} {}", none ? "no file" : what_is_at(named), named.string()),
                        "an existing file, relative to the scene");
     }
@@ -48,17 +47,9 @@ struct Assign {
     key.member(draft) = named;
   }
   void operator()(const ProfileKey& key) const { key.member(draft) = profile(key.kind); }
-  void operator()(const ContactModeKey&) const {
-    const std::string name = one_of({"table", "online", "paper"});
-    draft.parameters.contact.mode = name == "table"    ? ContactMode::table
-                                    : name == "online" ? ContactMode::online
-                                                       : ContactMode::paper;
-  }
-  void operator()(const TrackKindKey&) const {
-    const std::string name = one_of({"rigid", "flexible", "imported"});
-    draft.parameters.track_kind = name == "rigid"      ? TrackKind::rigid
-                                  : name == "flexible" ? TrackKind::flexible
-                                                       : TrackKind::imported;
+  void operator()(const ChoiceKey& key) const {
+    const std::string name = one_of(key.names);
+    key.set(draft, static_cast<std::size_t>(std::find(key.names.begin(), key.names.end(), name) - key.names.begin()));
   }
   void operator()(const ReductionKey&) const {
     // Scenes written for earlier versions may name a reduction that no longer exists.
@@ -90,29 +81,15 @@ struct Assign {
     if (!value) throw error("true or false");
     key.member(draft) = value->get();
   }
-  void operator()(const ContactForceKey&) const {
-    const std::string name = one_of({"automatic", "endpoint", "energy"});
-    std::optional<ContactForceRule>& rule = draft.parameters.integration.contact_force;
-    if (name == "automatic") rule.reset();
-    if (name == "endpoint") rule = ContactForceRule::endpoint;
-    if (name == "energy") rule = ContactForceRule::energy;
-  }
-  void operator()(const NormalContactKey&) const {
-    draft.parameters.contact.normal =
-        one_of({"hertz", "rigid"}) == "rigid" ? NormalContact::rigid : NormalContact::hertz;
-  }
-  void operator()(const FileFormatKey&) const {
-    const std::string name = one_of({"matrix-market", "calculix", "ansys"});
-    draft.parameters.structure.files.format = name == "calculix" ? FeFormat::calculix
-                                              : name == "ansys"  ? FeFormat::ansys
-                                                                 : FeFormat::matrix_market;
-  }
   void operator()(const PointKey& key) const {
-    const std::vector<double> values = numbers("three numbers, [x, y, z]");
-    if (values.size() != 3) throw error("three numbers, [x, y, z]");
+    const std::string expected = fmt::format("three numbers, [x, y, z], each {}", key.range.text());
+    const std::vector<double> values = numbers(expected, key.range);
+    if (values.size() != 3) throw error(expected);
     key.member(draft) = Point{values[0], values[1], values[2]};
   }
-  void operator()(const NumberListKey& key) const { key.member(draft) = numbers("numbers, [a, b, …]"); }
+  void operator()(const NumberListKey& key) const {
+    key.member(draft) = numbers(fmt::format("numbers, [a, b, …], each {} {}", key.range.text(), unit), key.range);
+  }
 
  private:
   [[nodiscard]] InputError error(std::string_view expected) const {
@@ -122,18 +99,18 @@ struct Assign {
   [[nodiscard]] double number_in(const Range& range) const {
     const std::optional<double> value = leaf.node->value<double>();
     if (!leaf.node->is_number() || !value || !range.accepts(*value)) {
-      throw error(fmt::format("a number, {}{}{}", range.text(), unit == "1" ? "" : " ", unit == "1" ? "" : unit));
+      throw error(expected_number(range, unit));
     }
     return *value;
   }
 
-  [[nodiscard]] std::vector<double> numbers(std::string_view expected) const {
+  [[nodiscard]] std::vector<double> numbers(std::string_view expected, const Range& range) const {
     const toml::array* list = leaf.node->as_array();
     if (!list) throw error(expected);
     std::vector<double> values;
     for (const toml::node& entry : *list) {
       const std::optional<double> value = entry.value<double>();
-      if (!entry.is_number() || !value || !std::isfinite(*value)) {
+      if (!entry.is_number() || !value || !range.accepts(*value)) {
         throw leaf_error(file, leaf, found_text(entry) + " in the list", expected);
       }
       values.push_back(*value);
@@ -200,7 +177,7 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
 bool is_section(std::string_view path) {
   const std::string prefix = std::string(path) + ".";
   return std::any_of(all_keys().begin(), all_keys().end(),
-                     [&](const KeyBinding& key) { return key.path.starts_with(prefix); });
+                     [&](const KeyRow& key) { return key.path.starts_with(prefix); });
 }
 
 /// What was just read of a [[bridge]], [[support]], [[load]] or [[ground_motion]] goes into the scene; its end is the
@@ -231,9 +208,7 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
       heading = &leaf;
       continue;
     }
-    const auto key = std::find_if(all_keys().begin(), all_keys().end(),
-                                  [&](const KeyBinding& candidate) { return candidate.path == leaf.path; });
-    if (key != all_keys().end()) {
+    if (const KeyRow* key = find_key(leaf.path)) {
       std::visit(Assign{draft, file, leaf, key->unit}, key->value);
     } else if (!is_section(leaf.path)) {
       throw unknown_key(file, leaf);
@@ -262,46 +237,30 @@ std::string line_of(std::string_view message, const std::vector<Leaf>& leaves) {
   return first == leaves.end() || first->entry >= 0 ? "" : fmt::format(":{}", first->line);
 }
 
-/// [span_deviation] has choices and numbers.
-void settle_deviation(SceneDraft& draft) {
-  if (draft.deviation_shape == "none") return;
-  draft.deviation.shape =
-      draft.deviation_shape == "bending" ? SpanDeviationShape::bending : SpanDeviationShape::parallel_shift;
-  draft.deviation.direction =
-      draft.deviation_direction == "vertical" ? SpanDeviationDirection::vertical : SpanDeviationDirection::lateral;
-  draft.parameters.span_deviation = draft.deviation;
-}
-
 /// What the order of the keys must not decide: two ways to say one thing, and rules over several keys.
 SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
   const auto named = [&](std::string_view key) {
     return std::any_of(leaves.begin(), leaves.end(), [&](const Leaf& leaf) { return leaf.path.starts_with(key); });
   };
   if (named("vehicle.") && !named("train.vehicle")) draft.parameters.train.vehicle = imported_vehicle;
-  refuse_idle_keys(draft, file, leaves);
   if (draft.speed_kmh) draft.parameters.train.speed = *draft.speed_kmh / 3.6;
-  settle_deviation(draft);
+  if (draft.deviation_shape) {
+    draft.parameters.span_deviation = draft.deviation;
+    draft.parameters.span_deviation->shape = *draft.deviation_shape;
+  }
   if (!draft.spectrum_name.empty()) {
     draft.parameters.spectrum = draft.spectrum;
     draft.parameters.spectrum->name = draft.spectrum_name;
   }
   if (!draft.irregularity.empty()) draft.parameters.irregularity = draft.irregularity;
   if (draft.parameters.name.empty()) draft.parameters.name = file.stem().string();
+  reject_unused_keys(draft.parameters, file, leaves);
   try {
     draft.parameters.validate();
   } catch (const InputError& wrong) {
     throw InputError(fmt::format("{}{}: {}", file.string(), line_of(wrong.what(), leaves), wrong.what()));
   }
   return std::move(draft.parameters);
-}
-
-std::string whole_file(const std::filesystem::path& file) {
-  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "a TOML scene");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (!stream) throw input_error(file.string(), "a file that cannot be read", "a TOML scene");
-  return content.str();
 }
 
 }  // namespace
@@ -311,7 +270,7 @@ namespace railtab {
 
 SceneParameters read_scene(const std::filesystem::path& file) {
   scene::SceneDraft draft;
-  draft.parameters.text = scene::whole_file(file);
+  draft.parameters.text = read_toml_text(file, "a TOML scene");
   try {
     const toml::table root = toml::parse(draft.parameters.text, file.string());
     const std::vector<scene::Leaf> leaves = scene::leaves_of(root, file);

@@ -19,10 +19,10 @@ namespace railtab {
 
 namespace {
 
-// Time that a train runs before its scene begins, so that what the steady start leaves out, the rhythm of the sleepers,
-// is there: as long as the modelled track reaches back, for where the rails are rigid there is none. The published
-// method has its own state to settle to.
-long run_in_steps(const SceneParameters& scene, const VsiModel& model) {
+// Steps of the pre-roll: the train runs before its scene begins, so that the excitation by the sleepers, which the
+// steady start leaves out, is present at t = 0. The modelled track limits its length; rigid rails need none. The
+// published search has a steady state of its own to settle to.
+long pre_roll_steps(const SceneParameters& scene, const VsiModel& model) {
   constexpr double enough = 0.2;  // s: the wheelsets' bouncing on the track has decayed to less than 1e-3
   const auto steps = [&](double time) {
     return time > 0.0 ? static_cast<long>(time / scene.integration.time_step) : 0L;
@@ -33,8 +33,8 @@ long run_in_steps(const SceneParameters& scene, const VsiModel& model) {
   return steps(std::min(enough, 0.8 * track / model.speed(0.0)));
 }
 
-// The published search's pairs jump as a wheel moves, and at rest there is no inertia to hold it meanwhile: rest is
-// sought with the online search, and the run-in does the difference.
+// The contact points of the published search jump as a wheel moves, and a static equilibrium has no inertia to hold the
+// wheel meanwhile: it is sought with the online search, and the pre-roll removes the remaining transient.
 std::optional<VsiModel> other_model_at_rest(const SceneParameters& scene, const VsiModel& model) {
   if (!model.geometry || !model.geometry->is_paper()) return std::nullopt;
   VsiModel rest = model;
@@ -44,38 +44,38 @@ std::optional<VsiModel> other_model_at_rest(const SceneParameters& scene, const 
   return rest;
 }
 
-// What Newton leaves of the first steps' creep forces decays within tenths of a second only, the slower the train: 100
-// N of Y after the run-in at 40 km/h with the default tolerance. Its few steps bear a tighter one.
-IntegrationParameters run_in_parameters(const IntegrationParameters& integration) {
+// The residual of the creep forces in the first steps decays within tenths of a second only, the slower the train: 100
+// N of Y after the pre-roll at 40 km/h with the default tolerance. Its few steps take a tighter one.
+IntegrationParameters pre_roll_parameters(const IntegrationParameters& integration) {
   constexpr double tight = 1e-7;
   IntegrationParameters parameters = integration;
   parameters.tolerance = std::min(tight, parameters.tolerance);
   return parameters;
 }
 
-// State at t = 0: steady, and run in where there is track for it. A run-in that fails is left out. Returns why there is
-// none, or nothing.
+// State at t = 0: steady, after a pre-roll where there is track for it. A pre-roll that fails is left out. Returns why
+// there is no such state, or nothing.
 template <class Warn>
 std::string start(const SceneParameters& scene, const VsiModel& model, const Warn& warn, VsiState& state) {
   const std::optional<VsiModel> other = other_model_at_rest(scene, model);
   const VsiModel& at_rest = other ? *other : model;
-  const long before = run_in_steps(scene, model);
+  const long before = pre_roll_steps(scene, model);
   if (before > 0) {
     // pairs that jump have no solution to such a tolerance
     const bool jumps = model.geometry && model.geometry->is_paper();
-    const IntegrationParameters run_in = jumps ? scene.integration : run_in_parameters(scene.integration);
+    const IntegrationParameters pre_roll = jumps ? scene.integration : pre_roll_parameters(scene.integration);
     VsiState early(model);
     early.time = -static_cast<double>(before) * scene.integration.time_step;
     const EquilibriumReport rest = steady_start(at_rest, early);
-    if (rest.converged && simulate(model, run_in, 0.0, 1, early, {}, -before).complete) {
-      warn(start_warning(rest));
+    if (rest.converged && simulate(model, pre_roll, 0.0, 1, early, {}, -before).complete) {
+      warn(steady_start_warning(rest));
       state = std::move(early);
       return {};
     }
   }
   const EquilibriumReport rest = steady_start(at_rest, state);
-  if (!rest.converged) return no_rest_message(at_rest, rest, state.time);
-  warn(start_warning(rest));
+  if (!rest.converged) return no_equilibrium_message(at_rest, rest, state.time);
+  warn(steady_start_warning(rest));
   return {};
 }
 
@@ -126,11 +126,11 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   if (resume) {
     unpack(resume->state, state);
   } else {
-    setup("state of rest");
+    setup("static equilibrium");
     no_rest = start(scene, model, warn, state);
     if (no_rest.empty()) {
       displace(scene, model, state);
-      warn(displacement_warning(scene, model, state));
+      for (const std::string& warning : start_warnings(scene, model, state)) warn(warning);
     }
   }
   if (observer.start) observer.start(selection.of(header));

@@ -13,7 +13,7 @@ namespace railtab {
 
 namespace {
 
-bool has_rest(const VsiModel& model, double time) {
+bool has_equilibrium(const VsiModel& model, double time) {
   VsiState state(model);
   state.time = time;
   return static_equilibrium(model, state).converged;
@@ -35,14 +35,14 @@ VsiModel with_steel(const VsiModel& model) {
   return steel;
 }
 
-/// How far the rails under the train are out of place, where that alone holds it from rest.
-std::optional<std::string> no_rest_for_deviations(const VsiModel& model, double share, double time) {
+/// The deviations of the rails under the train, where they alone prevent its equilibrium.
+std::optional<std::string> too_large_deviations(const VsiModel& model, double share, double time) {
   if (model.irregularity.empty() && !model.span_deviation) return std::nullopt;
   if (share == 0.0) {
     VsiModel smooth = model;
     smooth.irregularity = {};
     smooth.span_deviation.reset();
-    if (!has_rest(smooth, time)) return std::nullopt;
+    if (!has_equilibrium(smooth, time)) return std::nullopt;
   }
   double y = 0.0, z = 0.0;
   for (int w = 0; w < model.wheelsets(); ++w) {
@@ -52,53 +52,55 @@ std::optional<std::string> no_rest_for_deviations(const VsiModel& model, double 
       z = std::max(z, std::abs(d.z));
     }
   }
-  const std::string until =
-      share > 0.0 ? fmt::format("up to {:.0f} % of", 100.0 * share) : "on the smooth track, but hardly with any of";
+  const std::string share_text =
+      share > 0.0 ? fmt::format("{:.0f} % of the", 100.0 * share) : "the smooth track, but with hardly any of the";
   return fmt::format(
-      "no state of rest where the train stands: there is one {} the deviations of the rails under it ({:.3g} m along "
-      "y, "
-      "{:.3g} m along z), beyond that a wheelset leaves its rails; begin elsewhere (train.start) or with less of them",
-      until, y, z);
+      "no static equilibrium at the start: the train has one on {} deviations of the rails under it ({:.3g} m along y, "
+      "{:.3g} m along z), with larger ones a wheelset leaves its rails; begin elsewhere (train.start), or reduce the "
+      "deviations",
+      share_text, y, z);
 }
 
 }  // namespace
 
-std::string no_rest_message(const VsiModel& model, const EquilibriumReport& rest, double time) {
-  if (auto deviations = no_rest_for_deviations(model, rest.deviation_share, time)) return *deviations;
+std::string no_equilibrium_message(const VsiModel& model, const EquilibriumReport& rest, double time) {
+  if (auto deviations = too_large_deviations(model, rest.deviation_share, time)) return *deviations;
   const std::string what =
-      fmt::format("no state of rest, also on the smooth track, after {} iterations", rest.iterations);
+      fmt::format("no static equilibrium after {} iterations, also not on the smooth track", rest.iterations);
   const double acceleration = model.acceleration(time);
   const bool loads = !model.loads.empty();
-  if (acceleration != 0.0 && has_rest(without_loads(model, time, false), time)) {
-    const bool alone = !loads || !has_rest(without_loads(model, time, true), time);
+  if (acceleration != 0.0 && has_equilibrium(without_loads(model, time, false), time)) {
+    const bool alone = !loads || !has_equilibrium(without_loads(model, time, true), time);
     return fmt::format(
-        "{}; there is one without {}: the train cannot bear {:.3g} m/s² at t = {:.3g} s, let train.speed_file begin "
-        "with less",
+        "{}; there is one without {}: {:.3g} m/s² at t = {:.3g} s is too much, let train.speed_file "
+        "begin with less",
         what, alone ? "the acceleration" : "acceleration and loads together", acceleration, time);
   }
-  if (loads && has_rest(without_loads(model, time, true), time)) {
-    return fmt::format("{}; there is one without the loads that act at t = {:.3g} s: let them begin later or be less",
-                       what, time);
+  if (loads && has_equilibrium(without_loads(model, time, true), time)) {
+    return fmt::format(
+        "{}; there is one without the loads that act at t = {:.3g} s: reduce them, or let them begin "
+        "later",
+        what, time);
   }
   if (!model.geometry) return what;
-  if (has_rest(with_steel(model), time)) {
-    return fmt::format("{}; there is one with wheels and rails of steel, not with contact.material.E = {:.3g} Pa", what,
-                       model.contact.normal.material.E);
+  if (has_equilibrium(with_steel(model), time)) {
+    return fmt::format("{}; there is one with wheels and rails of steel, but not with contact.material.E = {:.3g} Pa",
+                       what, model.contact.normal.material.E);
   }
   const WheelRailPair& pair = model.geometry->pair();
   return fmt::format(
-      "{}, {}: do the wheels fit on the rails ({} on {}, track gauge {} m, flange backs {} m apart, origins of profile "
-      "files)?",
-      what, loads || acceleration != 0.0 ? "nor is there one without the loads at t = 0" : "under its weight alone",
+      "{}, {}; check that the wheels fit the rails: {} on {}, track gauge {} m, flange backs {} m apart, and the "
+      "origins of the profile files",
+      what, loads || acceleration != 0.0 ? "nor without the loads at t = 0" : "under its weight alone",
       pair.wheel().knots().name, pair.rail().knots().name, pair.dimensions().track_gauge,
       pair.dimensions().flange_back);
 }
 
-std::string start_warning(const EquilibriumReport& start) {
+std::string steady_start_warning(const EquilibriumReport& start) {
   if (start.steady) return {};
-  return "the deflection that travels with the train is far from that at rest (a track so soft that its dampers bear "
-         "more than its springs, or a train near the track's critical speed): the run begins with the one at rest, and "
-         "the first seconds are not those of a train that has long been running";
+  return "the track's deflection under the moving train is far from the static one (a track so soft that its dampers "
+         "carry more than its springs, or a train near the track's critical speed): the run begins with the static "
+         "deflection, and its first seconds are a transient";
 }
 
 std::string displacement_warning(const SceneParameters& scene, const VsiModel& model, const VsiState& state) {
@@ -125,8 +127,9 @@ std::string displacement_warning(const SceneParameters& scene, const VsiModel& m
   constexpr double highest = 5e-3;  // m: treads stay within 1 mm; on the tips of flanges nothing is steep
   if (largest <= steepest * load && lift <= highest) return {};
   return fmt::format(
-      "the train begins {:.3g} mm aside with a yaw of {:.3g} mrad, where flanges carry wheels, up to {:.2g} mm above "
-      "their place, and push their rails by {:.3g} kN (static wheel load {:.3g} kN): the run begins with an impact",
+      "the train begins {:.3g} mm aside with a yaw of {:.3g} mrad, where flanges carry wheels, lifted by up to {:.2g} "
+      "mm, "
+      "and push against their rails with {:.3g} kN (static wheel load {:.3g} kN): the run begins with an impact",
       1e3 * scene.train.initial_lateral_shift, 1e3 * scene.train.initial_yaw, 1e3 * std::max(lift, 0.0), 1e-3 * largest,
       1e-3 * load);
 }

@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "railtab/runtime/scene/key_table.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 
 namespace railtab::scene {
@@ -18,66 +19,86 @@ auto& of_span(SceneDraft& draft) {
   return draft.span.*member;
 }
 
-std::vector<KeyBinding> track_keys() {
+std::string structure_left_out(const SceneParameters& scene) {
+  if (scene.track_kind != TrackKind::rigid) return {};
+  return "degrees of freedom of a structure and their factorisation: the track is rigid";
+}
+std::string bridge_left_out(const SceneParameters& scene) {
+  const bool bridge = track_on_import(scene) || !scene.spans.empty() || scene.track_kind == TrackKind::imported;
+  return bridge ? "" : "bridge: the scene has none";
+}
+
+KeyRow track_kind_key() {
+  return {"track.kind",
+          "",
+          "rigid: rails that do not move; flexible: rails, sleepers and ballast; imported: rails of an imported "
+          "structure",
+          choice<TrackKind>(
+              [](SceneDraft& d) -> TrackKind& { return d.parameters.track_kind; },
+              {{"rigid", TrackKind::rigid}, {"flexible", TrackKind::flexible}, {"imported", TrackKind::imported}}),
+          {},
+          {},
+          structure_left_out};
+}
+
+std::vector<KeyRow> layout_keys() {
   return {
-      {"track.kind", "",
-       "rigid: the lean alternative without structure unknowns; imported: rails of an imported structure",
-       TrackKindKey{}},
-      {"track.sleeper_spacing", "m", "distance of the sleepers",
+      {"track.sleeper_spacing", "m", "sleeper spacing",
        NumberKey{of_track<&TrackParameters::sleeper_spacing>, {0.2, 5.0}}},
-      {"track.half_rail_distance", "m", "track centre to rail-head centre",
+      {"track.half_rail_distance", "m", "distance of the rail-head centres from the track centre",
        NumberKey{of_track<&TrackParameters::half_rail_distance>, {0.25, 1.1}}},
       {"track.elements_per_bay", "1", "rail elements between sleepers",
        IntegerKey{of_track<&TrackParameters::elements_per_bay>, 1, 20}},
       {"track.length_before", "m", "track before x = 0, rounded up to whole bays",
-       NumberKey{of_track<&TrackParameters::length_before>, {0.0, 1e4, true}}},
-      {"track.length_after", "m", "track after the last span, or after x = 0 where there is none",
-       NumberKey{of_track<&TrackParameters::length_after>, {0.0, 1e4, true}}},
-      {"track.pad_roll_stiffness", "N m/rad", "of one pad about x",
+       NumberKey{of_track<&TrackParameters::length_before>, {0.1, 1e4}}},
+      {"track.length_after", "m", "track after the last span, or after x = 0 without a bridge",
+       NumberKey{of_track<&TrackParameters::length_after>, {0.1, 1e4}}},
+      {"track.pad_roll_stiffness", "N m/rad", "rotational stiffness of one pad about x",
        NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, {1.0, 1e12}}},
-      {"track.pad_roll_damping", "N m s/rad", "of one pad about x",
+      {"track.pad_roll_damping", "N m s/rad", "rotational damping of one pad about x",
        NumberKey{of_track<&TrackParameters::pad_roll_damping>, {0.0, 1e9}}},
-      {"track.half_ballast_distance", "m", "track centre to the ballast spring under each sleeper half",
+      {"track.half_ballast_distance", "m",
+       "distance of the ballast springs under the sleeper halves from the track centre",
        NumberKey{of_track<&TrackParameters::half_ballast_distance>, {0.1, 3.0}}},
   };
 }
 
-std::vector<KeyBinding> rail_keys() {
+std::vector<KeyRow> rail_keys() {
   return {
       {"track.rail.E", "Pa", "Young's modulus",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::E>, {1e10, 1e13}}},
-      {"track.rail.A", "m²", "cross-section",
+      {"track.rail.A", "m²", "cross-sectional area",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::A>, {1e-4, 1.0}}},
-      {"track.rail.Iy", "m⁴", "second moment, vertical bending",
+      {"track.rail.Iy", "m⁴", "second moment of area, vertical bending",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iy>, {1e-8, 0.1}}},
-      {"track.rail.Iz", "m⁴", "second moment, lateral bending",
+      {"track.rail.Iz", "m⁴", "second moment of area, lateral bending",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iz>, {1e-8, 0.1}}},
       {"track.rail.GJ", "N m²", "torsional stiffness",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::GJ>, {100.0, 1e12}}},
       {"track.rail.mass", "kg/m", "mass per length",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass>, {1.0, 1e4}}},
-      {"track.rail.rotary_inertia", "kg m²/m", "about x, per length",
+      {"track.rail.rotary_inertia", "kg m²/m", "rotary inertia about x, per length",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::rotary_inertia>, {1e-4, 1e3}}},
-      {"track.rail.height", "m", "rail-head top to rail foot",
+      {"track.rail.height", "m", "height from rail foot to rail-head top",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::height>, {0.01, 1.0}}},
-      {"track.rail.head_height", "m", "rail-head top above the centroid, at most track.rail.height",
+      {"track.rail.head_height", "m", "height of the rail-head top above the centroid, at most track.rail.height",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::head_height>, {0.001, 1.0}}},
-      {"track.rail.mass_damping", "1/s", "Rayleigh damping, times the mass",
+      {"track.rail.mass_damping", "1/s", "coefficient of the mass in Rayleigh damping",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass_damping>, {0.0, 1e4}}},
-      {"track.rail.stiffness_damping", "s", "Rayleigh damping, times the stiffness",
+      {"track.rail.stiffness_damping", "s", "coefficient of the stiffness in Rayleigh damping",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::stiffness_damping>, {0.0, 1.0}}},
   };
 }
 
-std::vector<KeyBinding> sleeper_keys() {
+std::vector<KeyRow> sleeper_keys() {
   return {
       {"track.sleeper.mass", "kg", "mass of a sleeper",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::mass>, {1.0, 1e5}}},
-      {"track.sleeper.Jx", "kg m²", "inertia about x",
+      {"track.sleeper.Jx", "kg m²", "moment of inertia about x",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jx>, {0.01, 1e5}}},
-      {"track.sleeper.Jy", "kg m²", "inertia about y",
+      {"track.sleeper.Jy", "kg m²", "moment of inertia about y",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jy>, {0.01, 1e5}}},
-      {"track.sleeper.Jz", "kg m²", "inertia about z",
+      {"track.sleeper.Jz", "kg m²", "moment of inertia about z",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jz>, {0.01, 1e5}}},
       {"track.sleeper.height", "m", "height of a sleeper",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::height>, {0.01, 2.0}}},
@@ -89,7 +110,7 @@ constexpr Range spring{1e5, 1e13}, damper{0.0, 1e9};
 
 /// Six keys of one layer of springs and dampers.
 template <SupportParameters TrackParameters::*layer>
-std::vector<KeyBinding> support_keys(const std::array<std::string_view, 6>& paths) {
+std::vector<KeyRow> support_keys(const std::array<std::string_view, 6>& paths) {
   return {
       {paths[0], "N/m", "longitudinal stiffness", NumberKey{of_track<layer, &SupportParameters::kx>, spring}},
       {paths[1], "N/m", "lateral stiffness", NumberKey{of_track<layer, &SupportParameters::ky>, spring}},
@@ -100,35 +121,46 @@ std::vector<KeyBinding> support_keys(const std::array<std::string_view, 6>& path
   };
 }
 
-std::vector<KeyBinding> span_keys() {
+std::vector<KeyRow> span_keys() {
   return {
-      {"bridge.count", "1", "equal spans that this [[bridge]] stands for",
+      {"bridge.count", "1", "number of equal spans that this [[bridge]] stands for",
        IntegerKey{[](SceneDraft& d) -> int& { return d.span_count; }, 1, 1000}},
-      {"bridge.length", "m", "span", NumberKey{of_span<&BridgeParameters::length>, {0.5, 1e3}}},
+      {"bridge.length",
+       "m",
+       "length of the span",
+       NumberKey{of_span<&BridgeParameters::length>, {0.5, 1e3}},
+       {},
+       {},
+       bridge_left_out},
       {"bridge.E", "Pa", "Young's modulus", NumberKey{of_span<&BridgeParameters::E>, {1e9, 1e13}}},
       {"bridge.G", "Pa", "shear modulus", NumberKey{of_span<&BridgeParameters::G>, {1e8, 1e13}}},
-      {"bridge.A", "m²", "cross-section", NumberKey{of_span<&BridgeParameters::A>, {1e-3, 1e4}}},
-      {"bridge.Iy", "m⁴", "second moment, vertical bending", NumberKey{of_span<&BridgeParameters::Iy>, {1e-6, 1e5}}},
-      {"bridge.Iz", "m⁴", "second moment, lateral bending", NumberKey{of_span<&BridgeParameters::Iz>, {1e-6, 1e5}}},
+      {"bridge.A", "m²", "cross-sectional area", NumberKey{of_span<&BridgeParameters::A>, {1e-3, 1e4}}},
+      {"bridge.Iy", "m⁴", "second moment of area, vertical bending",
+       NumberKey{of_span<&BridgeParameters::Iy>, {1e-6, 1e5}}},
+      {"bridge.Iz", "m⁴", "second moment of area, lateral bending",
+       NumberKey{of_span<&BridgeParameters::Iz>, {1e-6, 1e5}}},
       {"bridge.J", "m⁴", "torsion constant", NumberKey{of_span<&BridgeParameters::J>, {1e-8, 1e5}}},
-      {"bridge.mass", "kg/m", "with ballast and superimposed load, without rails and sleepers",
+      {"bridge.mass", "kg/m", "mass per length with ballast and superimposed load, without rails and sleepers",
        NumberKey{of_span<&BridgeParameters::mass>, {100.0, 1e7}}},
-      {"bridge.rotary_inertia", "kg m²/m", "about x, per length",
+      {"bridge.rotary_inertia", "kg m²/m", "rotary inertia about x, per length",
        NumberKey{of_span<&BridgeParameters::rotary_inertia>, {0.1, 1e9}}},
-      {"bridge.damping_ratio", "1", "of critical, at the first two vertical bending frequencies",
-       NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}}},
-      {"bridge.damping_type", "", "the damping_ratio that EN 1991-2, Table 6.6, has as lower bound for the span",
+      {"bridge.damping_ratio",
+       "1",
+       "fraction of critical damping at the first two vertical bending frequencies",
+       NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}},
+       {&without_damping_type}},
+      {"bridge.damping_type", "", "type of bridge, for the lower bound of the damping ratio of EN 1991-2, Table 6.6",
        TextKey{[](SceneDraft& d) -> std::string& { return d.span_damping_type; }, bridge_damping_types}},
-      {"bridge.elements", "1", "beam elements of the span, even",
+      {"bridge.elements", "1", "beam elements of the span, an even number",
        IntegerKey{of_span<&BridgeParameters::elements>, 2, 1000}},
-      {"bridge.axis_depth", "m", "rail-head top down to the beam axis, negative where the axis is above",
+      {"bridge.axis_depth", "m", "depth of the beam axis below the rail-head tops, negative where it is above",
        NumberKey{of_span<&BridgeParameters::axis_depth>, {-100.0, 100.0}}},
-      {"bridge.track_offset", "m", "track centre right of the beam axis",
+      {"bridge.track_offset", "m", "distance of the track centre from the beam axis, to the right",
        NumberKey{of_span<&BridgeParameters::track_offset>, {-100.0, 100.0}}},
   };
 }
 
-std::vector<KeyBinding> reduction_keys() {
+std::vector<KeyRow> reduction_rows() {
   return {
       {"structure.reduction", "", "how the structure is made smaller for the steps", ReductionKey{}},
       {"structure.window_ahead", "m", "window: track that takes part before the first wheelset",
@@ -140,24 +172,29 @@ std::vector<KeyBinding> reduction_keys() {
 
 }  // namespace
 
-const std::vector<KeyBinding>& structure_keys() {
-  static const std::vector<KeyBinding> keys = [] {
-    std::vector<KeyBinding> all = track_keys();
-    for (const auto& part : {rail_keys(), sleeper_keys(),
-                             support_keys<&TrackParameters::pad>({"track.pad.kx", "track.pad.ky", "track.pad.kz",
-                                                                  "track.pad.cx", "track.pad.cy", "track.pad.cz"}),
-                             support_keys<&TrackParameters::ballast_ground>(
-                                 {"track.ballast_ground.kx", "track.ballast_ground.ky", "track.ballast_ground.kz",
-                                  "track.ballast_ground.cx", "track.ballast_ground.cy", "track.ballast_ground.cz"}),
-                             support_keys<&TrackParameters::ballast_deck>(
-                                 {"track.ballast_deck.kx", "track.ballast_deck.ky", "track.ballast_deck.kz",
-                                  "track.ballast_deck.cx", "track.ballast_deck.cy", "track.ballast_deck.cz"}),
-                             span_keys(), import_keys(), reduction_keys()}) {
-      all.insert(all.end(), part.begin(), part.end());
-    }
-    return all;
-  }();
-  return keys;
+std::vector<KeyRow> track_keys() {
+  std::vector<KeyRow> rows =
+      all_of({layout_keys(), rail_keys(), sleeper_keys(),
+              support_keys<&TrackParameters::pad>(
+                  {"track.pad.kx", "track.pad.ky", "track.pad.kz", "track.pad.cx", "track.pad.cy", "track.pad.cz"}),
+              support_keys<&TrackParameters::ballast_ground>({"track.ballast_ground.kx", "track.ballast_ground.ky",
+                                                              "track.ballast_ground.kz", "track.ballast_ground.cx",
+                                                              "track.ballast_ground.cy", "track.ballast_ground.cz"}),
+              applying(with_ballast_on_deck,
+                       support_keys<&TrackParameters::ballast_deck>(
+                           {"track.ballast_deck.kx", "track.ballast_deck.ky", "track.ballast_deck.kz",
+                            "track.ballast_deck.cx", "track.ballast_deck.cy", "track.ballast_deck.cz"}))});
+  return all_of({{track_kind_key()}, applying(with_flexible_track, std::move(rows))});
+}
+
+std::vector<KeyRow> bridge_keys() { return span_keys(); }
+
+std::vector<KeyRow> reduction_keys() {
+  std::vector<KeyRow> rows = reduction_rows();
+  for (KeyRow& row : rows) {
+    row.applies.push_back(row.path == "structure.reduction" ? &with_structure_to_reduce : &with_window);
+  }
+  return rows;
 }
 
 }  // namespace railtab::scene

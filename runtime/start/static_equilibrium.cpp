@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
@@ -18,6 +19,7 @@ namespace {
 constexpr double regularisation = 0.05;  // eps [1/s²]: far below the square of any suspended mode (2π·0.5 Hz)² = 10
 constexpr double travel_between = 0.025;  // m: between the equilibria that velocity and acceleration are taken from
 constexpr int max_iterations = 60;
+constexpr int most_solves = 200;             // of a detour; those that lead anywhere take less than 80
 constexpr double newton_tolerance = 1e-12;   // m, rad
 constexpr double contact_tolerance = 1e-10;  // m, rad: of the contact unknowns
 // Of the dofs: what rounding leaves of the wheel loads, over the weak eps M, moves them by some nm.
@@ -28,8 +30,6 @@ constexpr double contact_rounding = 2e-9, dof_rounding = 2e-6;  // m, rad
 constexpr double out_of_balance = 1e-3;                         // of the static wheel load
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // The linear parts at rest, made once.
 struct RestOperators {
@@ -262,7 +262,7 @@ EquilibriumReport by_growing_deviations(const VsiModel& model, const RestOperato
   EquilibriumReport report = equilibrium_at({.deviation = 0.0}, model, rest, structure_load, reached);
   int iterations = 0;
   double share = 0.0, growth = first_growth;
-  while (report.converged && share < 1.0) {
+  for (int solve = 0; solve < most_solves && report.converged && share < 1.0; ++solve) {
     state = reached;
     iterations += report.iterations;
     const double next = std::min(1.0, share + growth);
@@ -275,6 +275,7 @@ EquilibriumReport by_growing_deviations(const VsiModel& model, const RestOperato
       report.converged = true;  // with the share before
     }
   }
+  report.converged = report.converged && share == 1.0;
   report.iterations += iterations;
   report.deviation_share = share;
   return report;
@@ -291,7 +292,7 @@ EquilibriumReport by_growing_stiffness(const VsiModel& model, const RestOperator
   double share = steel / full, ratio = largest_ratio;
   EquilibriumReport report = equilibrium_at({.E = share}, model, rest, structure_load, state);
   int iterations = 0;
-  while (report.converged && share < 1.0) {
+  for (int solve = 0; solve < most_solves && report.converged && share < 1.0; ++solve) {
     iterations += report.iterations;
     const VsiState reached = state;
     const double next = std::min(1.0, share * ratio);
@@ -305,6 +306,7 @@ EquilibriumReport by_growing_stiffness(const VsiModel& model, const RestOperator
       report.converged = true;  // with the share before
     }
   }
+  report.converged = report.converged && share == 1.0;
   report.iterations += iterations;
   report.deviation_share = report.converged ? 1.0 : 0.0;
   return report;

@@ -4,14 +4,13 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Heights of wheels against their rails [m]: the tips of flanges lift them by 28 mm.
 constexpr double highest = 0.04, deepest = 0.02;
@@ -57,16 +56,20 @@ class WheelsetPlacement {
       return vertical_force(model_, contact_, problem_, displacement_, w_, side) > load_[index(side)];
     };
     double high = on_rail - highest, low = high;
-    while (true) {
-      z_ = low = high + first_look;
-      if (carries()) break;
+    // Counted: where rails are displaced by 1e20 m, a look farther down is the same height again.
+    constexpr int most_looks = static_cast<int>((highest + deepest) / first_look) + 2;
+    bool found = false;
+    for (int look = 0; look < most_looks && !found && !(low > on_rail + deepest); ++look) {
       high = low;
-      if (low > on_rail + deepest) {
-        near_rails_ = false;
-        return z_;
-      }
+      z_ = low = high + first_look;
+      found = carries();
     }
-    while (low - high > level_accuracy) {
+    if (!found) {
+      near_rails_ = false;
+      return z_;
+    }
+    constexpr int most_halvings = 64;
+    for (int i = 0; i < most_halvings && low - high > level_accuracy; ++i) {
       z_ = 0.5 * (low + high);
       (carries() ? low : high) = z_;
     }
@@ -99,13 +102,14 @@ class WheelsetPlacement {
     };
     double from = begin, to = begin, at_from = difference(begin), at_to = at_from;
     for (double step = at_from / (2.0 * half_distance_); std::signbit(at_from) == std::signbit(at_to); step *= 2.0) {
-      if (std::abs(to - begin) > most_roll) return false;
+      if (!(std::abs(to - begin) <= most_roll) || !std::isfinite(at_to)) return false;
       if (std::abs(at_to) <= level_accuracy) return near_rails();
       from = to;
       at_from = at_to;
       to += step;
       at_to = difference(to);
     }
+    if (!std::isfinite(at_from) || !std::isfinite(at_to)) return false;
     if (from > to) {
       std::swap(from, to);
       std::swap(at_from, at_to);

@@ -21,11 +21,11 @@ struct DeckAttachment {
 /// A bridge without its track, in railtab's axes and SI units; x = 0 and the track's centre are those of the track.
 struct Bridge {
   MatrixAssembly matrices;
-  std::vector<double> dof_x;                 // position along the track of each unknown [m]
+  std::vector<double> dof_x;                 // position along the track of each dof [m]
   std::vector<std::array<double, 2>> spans;  // from and to [m]
   std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
   std::string beyond_supports;               // StructureSupports::beyond
-  std::vector<std::string> doubts;           // on what was imported
+  std::vector<std::string> warnings;         // on what was imported
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
   /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "railtab/runtime/base/input_error.hpp"
-
 namespace railtab {
 
 namespace {
@@ -40,12 +38,6 @@ Columns node_rows(const std::vector<StructureNode>& nodes, const Columns& carrie
 
 }  // namespace
 
-void factorise(const Sparse& stiffness, StiffnessFactor& factor) {
-  factor.compute(stiffness);
-  if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 0.0) return;
-  throw ComputationError("the structure's stiffness is not positive definite: check supports and stiffnesses");
-}
-
 // Some columns at a time. A support under one sleeper carries a few metres of track: what is zero but for rounding is
 // not kept.
 Sparse carried_by_supports(const StiffnessFactor& factor, const Columns& of_supports) {
@@ -69,9 +61,7 @@ Sparse carried_by_supports(const StiffnessFactor& factor, const Columns& of_supp
 }
 
 Sparse carried_by_supports(const Sparse& stiffness, const Columns& of_supports) {
-  StiffnessFactor factor;
-  factorise(stiffness, factor);
-  return carried_by_supports(factor, of_supports);
+  return carried_by_supports(positive_definite_factor(stiffness), of_supports);
 }
 
 StructureModel relative_to_supports(StructureModel structure) {

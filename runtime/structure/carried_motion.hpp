@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
-
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 
 namespace railtab {
@@ -15,11 +14,7 @@ namespace railtab {
 /// are left out. @pre supports are known and K is positive definite @throws ComputationError where it is not
 [[nodiscard]] StructureModel relative_to_supports(StructureModel structure);
 
-using StiffnessFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
-/// @throws ComputationError where K is not positive definite
-void factorise(const Eigen::SparseMatrix<double>& stiffness, StiffnessFactor& factor);
-
-/// ι = −K⁻¹ K_s, unknowns × 2 per support. @throws ComputationError where K is not positive definite
+/// ι = −K⁻¹ K_s, dofs × 2 per support. @throws ComputationError where K is not positive definite
 [[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const StiffnessFactor& factor,
                                                               const StructureSupports::Columns& of_supports);
 [[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const Eigen::SparseMatrix<double>& stiffness,

@@ -11,6 +11,7 @@
 #include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/fe/fe_frame.hpp"
 #include "railtab/runtime/fe/fe_matrix.hpp"
+#include "railtab/runtime/fe/matrix_scales.hpp"
 
 namespace railtab {
 
@@ -42,10 +43,22 @@ std::vector<FeRow> read_rows(const FeFiles& files) {
   return read_row_table(files.dofs);
 }
 
-std::string place_of_row(const std::filesystem::path& file, const FeStructure& structure, Eigen::Index row) {
+std::string row_text(const FeStructure& structure, Eigen::Index row) {
   const auto r = static_cast<std::size_t>(row);
-  return fmt::format("{}: row {} (node {}, railtab's {})", file.string(), row + 1, structure.node_of_row[r],
+  return fmt::format("row {} (node {}, railtab's {})", row + 1, structure.node_of_row[r],
                      motion_names[static_cast<std::size_t>(structure.motion[r])]);
+}
+
+std::string place_of_row(const std::filesystem::path& file, const FeStructure& structure, Eigen::Index row) {
+  return fmt::format("{}: {}", file.string(), row_text(structure, row));
+}
+
+void check_numbers(const FeFiles& files, const FeStructure& structure) {
+  const auto row = [&](Eigen::Index r) { return row_text(structure, r); };
+  const FileMatrix mass{structure.mass, files.mass}, stiffness{structure.stiffness, files.stiffness};
+  check_scales(mass, {structure.damping, files.damping}, stiffness, structure_scales, row);
+  check_off_diagonals(mass, "mass", row);
+  check_off_diagonals(stiffness, "stiffness", row);
 }
 
 void check_diagonals(const FeFiles& files, const FeStructure& structure) {
@@ -103,6 +116,7 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
     matrix->makeCompressed();
   }
   check_diagonals(files, s);
+  check_numbers(files, s);
   require_other_numbers("structure.mass", files.mass, s.mass, files.stiffness, s.stiffness);
   if (s.damping.rows() > 0) {
     require_other_numbers("structure.damping", files.damping, s.damping, files.stiffness, s.stiffness);

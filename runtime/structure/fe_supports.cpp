@@ -42,7 +42,7 @@ std::array<bool, 6> held_motions(const FeSupport& support, const std::string& pl
   return holds;
 }
 
-/// Says of every row that a support holds what becomes of it; returns the support's place along the track [m].
+/// Sets the role of every row that a support holds; returns the support's place along the track [m].
 double hold(FeStructure& structure, const FeSupport& support, std::size_t number, const std::string& place,
             std::vector<int>& column_of_row) {
   const std::array<bool, 6> holds = held_motions(support, place);
@@ -59,7 +59,7 @@ double hold(FeStructure& structure, const FeSupport& support, std::size_t number
       if (moves) node.support[k - lateral] = to;
       for (int row : node.rows[k]) {
         int& column = column_of_row[static_cast<std::size_t>(row)];
-        if (column != RowSplit::unknown) {
+        if (column != RowSplit::dof) {
           throw input_error(place, fmt::format("{} of node {} again", motion_names[k], name),
                             "each in one [[support]]");
         }
@@ -137,15 +137,14 @@ struct Resistances {
   Eigen::MatrixXd strained, braked;
 };
 
-/// Takes rounding, and damping in proportion to the mass, out of what resists a translation; says what is left.
+/// Takes rounding, and damping in proportion to the mass, out of what resists a translation; returns the remainder.
 std::string settle_declared_supports(const FeMatrices& m, const Eigen::MatrixXd& translation, const RowName& name,
                                      StructureSupports& s, Resistances& resistances) {
   constexpr double rigid = 1e-4;     // of the supports' translation
   constexpr double undamped = 1e-6;  // [m per m/s]: 1e-4 of the translation at 100 rad/s
   constexpr double rounding = 1e-9;  // of what the damping's entries add up to
   std::string beyond;
-  StiffnessFactor factor;
-  factorise(m.stiffness, factor);
+  const StiffnessFactor factor = positive_definite_factor(m.stiffness);
   auto& [missing, braking] = resistances;
   const LeftBehind strained = left_behind(factor, missing, translation);
   if (strained.size <= rigid) {
@@ -178,7 +177,7 @@ std::string settle_declared_supports(const FeMatrices& m, const Eigen::MatrixXd&
 }  // namespace
 
 RowSplit::RowSplit(std::vector<int> column_of_row) : column_(std::move(column_of_row)) {
-  for (int column : column_) number_.push_back(column == unknown ? unknowns_++ : held);
+  for (int column : column_) number_.push_back(column == dof ? dofs_++ : held);
 }
 
 Columns RowSplit::split(Sparse& matrix, int columns) const {
@@ -190,23 +189,23 @@ Columns RowSplit::split(Sparse& matrix, int columns) const {
     for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
       const int row = number_[static_cast<std::size_t>(entry.row())];
       if (row == held) continue;
-      if (column == unknown) {
+      if (column == dof) {
         inner.emplace_back(row, number_[static_cast<std::size_t>(j)], entry.value());
       } else {
         outer.emplace_back(row, column, entry.value());
       }
     }
   }
-  matrix.resize(unknowns_, unknowns_);
+  matrix.resize(dofs_, dofs_);
   matrix.setFromTriplets(inner.begin(), inner.end());
-  Columns of_supports(unknowns_, columns);
+  Columns of_supports(dofs_, columns);
   of_supports.setFromTriplets(outer.begin(), outer.end());
   return of_supports;
 }
 
 FeStructure on_supports(FeStructure s, const std::vector<FeSupport>& supports) {
   if (supports.empty()) return s;
-  std::vector<int> column_of_row(static_cast<std::size_t>(s.dofs()), RowSplit::unknown);
+  std::vector<int> column_of_row(static_cast<std::size_t>(s.dofs()), RowSplit::dof);
   for (std::size_t i = 0; i < supports.size(); ++i) {
     s.supports.x.push_back(hold(s, supports[i], i, place_of(i, supports.size()), column_of_row));
   }
@@ -216,7 +215,7 @@ FeStructure on_supports(FeStructure s, const std::vector<FeSupport>& supports) {
   if (s.damping.rows() > 0) s.supports.damping = rows.split(s.damping, s.supports.columns());
   std::vector<int> motion, node_of_row;
   for (std::size_t r = 0; r < column_of_row.size(); ++r) {
-    if (column_of_row[r] != RowSplit::unknown) continue;
+    if (column_of_row[r] != RowSplit::dof) continue;
     motion.push_back(s.motion[r]);
     node_of_row.push_back(s.node_of_row[r]);
   }

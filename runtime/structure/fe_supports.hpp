@@ -9,32 +9,32 @@
 
 namespace railtab {
 
-/// What becomes of rows of M, C and K: unknowns, motions that rest, or columns of supports (numbers from 0).
+/// The role of the rows of M, C and K: degrees of freedom, motions at rest, or columns of supports (numbers from 0).
 class RowSplit {
  public:
-  static constexpr int unknown = -1, resting = -2;
+  static constexpr int dof = -1, resting = -2;
   explicit RowSplit(std::vector<int> column_of_row);
 
-  /// Takes the rows and columns of what is no unknown out of a symmetric matrix; returns what the supports'
-  /// translations have on the unknowns, `columns` wide.
+  /// Removes the rows and columns of what is no degree of freedom from a symmetric matrix; returns what the supports'
+  /// translations have on the degrees of freedom, `columns` wide.
   StructureSupports::Columns split(Eigen::SparseMatrix<double>& matrix, int columns) const;
-  /// New number of a row; held where it is no unknown.
+  /// New number of a row; held where it is no degree of freedom.
   [[nodiscard]] int operator[](int row) const { return number_[static_cast<std::size_t>(row)]; }
-  [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
+  [[nodiscard]] int dofs() const noexcept { return dofs_; }
 
  private:
   std::vector<int> column_, number_;
-  int unknowns_ = 0;
+  int dofs_ = 0;
 };
 
 /// Takes the motions out of a structure that supports hold; FeStructure::supports has what they do to the rest.
 /// @throws InputError naming the [[support]]: no such node, nothing to hold, a node in two of them
 [[nodiscard]] FeStructure on_supports(FeStructure structure, const std::vector<FeSupport>& supports);
 
-/// Unit translation of all unknowns along y (first column) and z.
+/// Unit translation of all degrees of freedom along y (first column) and z.
 [[nodiscard]] Eigen::MatrixXd translations(const FeStructure& structure);
 
-/// M, C and K of the unknowns.
+/// M, C and K of the degrees of freedom.
 struct FeMatrices {
   const Eigen::SparseMatrix<double>&mass, &damping, &stiffness;
 };
@@ -51,7 +51,7 @@ using RowName = std::function<std::string(Eigen::Index)>;
 /// translation of all supports at rest, |K⁻¹ (K r + K_s 1)| = |r − ι 1|, or by more than 1e-6 m while they move at
 /// 1 m/s, |K⁻¹ (C r + C_s 1)|. Less is taken for the rounding with which the matrices were written: single rows cannot
 /// tell, for an entry that is zero but for rounding adds up with others like it to nothing but rounding.
-/// @param translation r, unknowns × 2 @throws ComputationError where K is not positive definite
+/// @param translation r, dofs × 2 @throws ComputationError where K is not positive definite
 void settle_supports(const FeMatrices& matrices, const Eigen::MatrixXd& translation, const RowName& name,
                      StructureSupports& supports);
 

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -12,8 +11,10 @@
 #include <random>
 #include <set>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 
 namespace railtab {
 
@@ -105,19 +106,19 @@ bool is_free(const Sparse& stiffness, const Eigen::VectorXd& v) {
 /// Combinations of the rigid motions, as columns, that strain nothing.
 Matrix free_combinations(const Sparse& stiffness, const Matrix& motions) {
   // motions that the part does not have, or not apart from each other, are no motions: those with length only
-  const Eigen::SelfAdjointEigenSolver<Matrix> gram(motions.transpose() * motions);
+  const SymmetricSpectrum gram = symmetric_spectrum(motions.transpose() * motions);
   constexpr double least = 1e-10;
   Matrix basis(motions.cols(), 0);
   for (Eigen::Index k = 0; k < motions.cols(); ++k) {
-    if (gram.eigenvalues()[k] <= least * gram.eigenvalues().tail(1)[0]) continue;
+    if (gram.values[k] <= least * gram.values.tail(1)[0]) continue;
     basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
-    basis.rightCols(1) = gram.eigenvectors().col(k) / std::sqrt(gram.eigenvalues()[k]);
+    basis.rightCols(1) = gram.vectors.col(k) / std::sqrt(gram.values[k]);
   }
   const Matrix shapes = motions * basis;
-  const Eigen::SelfAdjointEigenSolver<Matrix> energy(shapes.transpose() * (stiffness * shapes));
+  const SymmetricSpectrum energy = symmetric_spectrum(shapes.transpose() * (stiffness * shapes));
   Matrix found(motions.cols(), 0);
   for (Eigen::Index k = 0; k < basis.cols(); ++k) {
-    const Eigen::VectorXd combination = basis * energy.eigenvectors().col(k);
+    const Eigen::VectorXd combination = basis * energy.vectors.col(k);
     if (!is_free(stiffness, motions * combination)) break;  // the others strain more
     found.conservativeResize(Eigen::NoChange, found.cols() + 1);
     found.rightCols(1) = combination;
@@ -142,10 +143,9 @@ std::vector<FreeMotion> in_words(const Matrix& free, const RigidPart& rigid, con
   constexpr double tolerance = 1e-6;
   std::vector<FreeMotion> result;
   if (free.cols() == 0) return result;
-  const Eigen::CompleteOrthogonalDecomposition<Matrix> combine(free);
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(free.rows(), k);
-    if ((free * combine.solve(unit) - unit).norm() > tolerance) continue;
+    if ((free * least_norm_solution(free, unit) - unit).norm() > tolerance) continue;
     const std::string name(motion_names[static_cast<std::size_t>(k)]);
     result.push_back({fmt::format("moves along {}{}", name, of_part), name + " of a support"});
   }
@@ -155,7 +155,7 @@ std::vector<FreeMotion> in_words(const Matrix& free, const RigidPart& rigid, con
     const Matrix turning = free.bottomRows(3);
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
     const Eigen::VectorXd wanted = axis;
-    const Eigen::VectorXd share = turning.completeOrthogonalDecomposition().solve(wanted);
+    const Eigen::VectorXd share = least_norm_solution(turning, wanted);
     if ((turning * share - wanted).norm() > tolerance) continue;
     const Eigen::Vector3d shift = rigid.length * (free.topRows(3) * share);
     const auto i = static_cast<std::size_t>(k);
@@ -205,7 +205,7 @@ std::optional<Eigen::VectorXd> motion_without_stiffness(const Sparse& stiffness)
   Sparse shifted(stiffness.rows(), stiffness.cols());
   shifted.setIdentity();
   shifted = stiffness + Sparse(shift * weight.asDiagonal() * shifted);
-  const Eigen::SimplicialLDLT<Sparse> factor(shifted);
+  const StiffnessFactor factor(shifted);
   std::mt19937_64 generator(1);
   Eigen::VectorXd v(diagonal.size());
   for (double& value : v) value = std::uniform_real_distribution<double>(-1.0, 1.0)(generator);

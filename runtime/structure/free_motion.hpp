@@ -20,7 +20,7 @@ struct FreeMotion {
 [[nodiscard]] std::vector<FreeMotion> free_motions(const FeStructure& structure);
 
 /// The motion that strains least [largest 1], where that is none but for rounding. Rigid or not, known positions or
-/// not, at the price of a factorisation.
+/// not, at the cost of a factorisation.
 [[nodiscard]] std::optional<Eigen::VectorXd> motion_without_stiffness(const Eigen::SparseMatrix<double>& stiffness);
 
 /// @throws InputError naming the motions that nothing holds and what would hold them

@@ -114,7 +114,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   append(structure.stiffness, bridge.matrices.stiffness);
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   append(damping.of_unknowns, bridge.matrices.damping);
-  bridge.doubts = doubts_about(mass_per_length(structure), damping.first_frequency);
+  bridge.warnings = plausibility_warnings(mass_per_length(structure), damping.first_frequency);
   StructureSupports supports = settled_supports(structure, std::move(damping));
   stand_on_ground(deck, structure, supports);
   bridge.attach = deck_function(structure, deck);
@@ -249,23 +249,23 @@ double mass_per_length(const FeStructure& structure) {
   return high > low ? heave.dot(structure.mass * heave) / (high - low) : 0.0;
 }
 
-std::vector<std::string> doubts_about(double mass_per_length, double first_frequency) {
+std::vector<std::string> plausibility_warnings(double mass_per_length, double first_frequency) {
   constexpr double lightest = 100.0, heaviest = 1e6;  // [kg/m]: rails alone have 120
   constexpr double slowest = 0.01, fastest = 1e3;     // [Hz]: the longest suspension bridges swing at 0.04
-  std::vector<std::string> doubts;
+  std::vector<std::string> warnings;
   if (mass_per_length > 0.0 && !(mass_per_length >= lightest && mass_per_length <= heaviest)) {
-    doubts.push_back(
+    warnings.push_back(
         fmt::format("[structure] has {:.4g} kg per metre of its length, a bridge {:g} to {:g}: see "
                     "structure.units, and structure.mass",
                     mass_per_length, lightest, heaviest));
   }
   if (first_frequency > 0.0 && !(first_frequency >= slowest && first_frequency <= fastest)) {
-    doubts.push_back(
+    warnings.push_back(
         fmt::format("[structure] has its first natural frequency at {:.4g} Hz, a bridge at {:g} to {:g} Hz: "
                     "see structure.units, structure.mass and structure.stiffness",
                     first_frequency, slowest, fastest));
   }
-  return doubts;
+  return warnings;
 }
 
 StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
@@ -284,7 +284,7 @@ StructureModel import_with_rails(const ImportParameters& parameters) {
   model.stiffness = structure.stiffness;
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   model.damping = damping.of_unknowns;
-  model.doubts = doubts_about(mass_per_length(structure), damping.first_frequency);
+  model.warnings = plausibility_warnings(mass_per_length(structure), damping.first_frequency);
   model.supports = settled_supports(structure, std::move(damping));
   model.rail[0] = rail_line(structure, parameters.rail_left, "structure.rail_left");
   model.rail[1] = rail_line(structure, parameters.rail_right, "structure.rail_right");

@@ -49,7 +49,7 @@ struct ImportParameters {
 /// The model on its supports. @throws InputError with file and line, row, or key
 [[nodiscard]] FeStructure read_on_supports(const ImportParameters& parameters);
 
-/// Damping of an imported structure, of its unknowns and from the rows that are supports'.
+/// Damping of an imported structure, of its degrees of freedom and from the rows that are supports'.
 struct FeDampingMatrix {
   Eigen::SparseMatrix<double> of_unknowns;
   StructureSupports::Columns of_supports;
@@ -63,6 +63,6 @@ struct FeDampingMatrix {
 
 /// Sentences on a mass per length [kg/m] and a first frequency [Hz] (0: not known) that no railway bridge has: units,
 /// densities or supports may be wrong.
-[[nodiscard]] std::vector<std::string> doubts_about(double mass_per_length, double first_frequency);
+[[nodiscard]] std::vector<std::string> plausibility_warnings(double mass_per_length, double first_frequency);
 
 }  // namespace railtab

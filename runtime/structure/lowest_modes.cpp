@@ -1,11 +1,14 @@
 #include "railtab/runtime/structure/lowest_modes.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 
@@ -47,12 +50,17 @@ class BlockLanczos {
   bool ritz(Eigen::Index modes, double tolerance, ModalBasis& basis) const {
     const Eigen::Index known = size_ - added_;  // columns of the projection that are complete
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(projection_.topLeftCorner(known, known));
-    const Eigen::Index count = std::min(modes, known);
+    if (known == 0 || eigen.info() != Eigen::Success) return false;
+    const Eigen::Index positive = (eigen.eigenvalues().array() > 0.0).count();  // others are rounding of no mass
+    const Eigen::Index count = std::min(modes, positive);
+    if (count == 0) return false;
     const Matrix vectors = eigen.eigenvectors().rightCols(count).rowwise().reverse();
     const Eigen::VectorXd theta = eigen.eigenvalues().tail(count).reverse();
     const Matrix residual = projection_.block(known, 0, added_, known) * vectors;
     for (Eigen::Index k = 0; k < count; ++k) {
-      if (!(residual.col(k).norm() <= tolerance * theta[k])) return false;
+      if (!(std::isfinite(1.0 / theta[k]) && residual.col(k).norm() <= tolerance * theta[k])) {
+        return false;
+      }
     }
     basis.shape = basis_.leftCols(known) * vectors;
     basis.omega2 = theta.cwiseInverse();
@@ -119,15 +127,21 @@ class BlockLanczos {
 ModalBasis lowest_modes(const Sparse& stiffness, const Sparse& mass, int modes, double tolerance) {
   const Eigen::Index wanted = std::min<Eigen::Index>(modes, mass.rows());
   BlockLanczos lanczos(stiffness, mass, std::min<Eigen::Index>(8, wanted));
+  // A space of some twice the modes has them. One that grows far beyond that never will.
+  const Eigen::Index most = 20 * wanted + 200;
   ModalBasis basis;
   Eigen::Index next_look = wanted + wanted / 2 + 24;
-  while (lanczos.extend()) {
+  while (lanczos.size() <= most && lanczos.extend()) {
     if (lanczos.size() < next_look) continue;
     if (lanczos.ritz(wanted, tolerance, basis)) return basis;
     next_look = lanczos.size() + lanczos.size() / 4;
   }
-  lanczos.ritz(wanted, std::numeric_limits<double>::infinity(), basis);
-  return basis;
+  // The whole space, or one in which nothing new is found: it has all modes that there are.
+  if (lanczos.ritz(wanted, tolerance, basis)) return basis;
+  throw ComputationError(fmt::format(
+      "natural modes: the lowest {} of {} degrees of freedom were not found in a Krylov space of {} vectors; "
+      "check the scales of mass and stiffness",
+      wanted, mass.rows(), lanczos.size()));
 }
 
 }  // namespace railtab

@@ -13,7 +13,8 @@ struct ModalBasis {
 /// [GrimesLewisSimon1994]; fewer where the matrices have fewer. Starts from fixed pseudo-random numbers: the same call
 /// gives the same modes.
 /// @param tolerance residual of K⁻¹ M φ − φ/ω² relative to 1/ω²
-/// @throws ComputationError where K is not positive definite
+/// @return modes that have converged, at least one
+/// @throws ComputationError where K is not positive definite, and where modes do not converge
 [[nodiscard]] ModalBasis lowest_modes(const Eigen::SparseMatrix<double>& stiffness,
                                       const Eigen::SparseMatrix<double>& mass, int modes, double tolerance = 1e-8);
 

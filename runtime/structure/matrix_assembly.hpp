@@ -50,7 +50,8 @@ inline void add_beam(MatrixAssembly& assembly, const std::vector<double>& x, con
 [[nodiscard]] constexpr int support_dof(int column) noexcept { return -2 - column; }
 [[nodiscard]] constexpr int support_column(int dof) noexcept { return -2 - dof; }
 
-/// Splits the entries of one matrix into those between unknowns and those that the supports' translations have on them.
+/// Splits the entries of one matrix into those between degrees of freedom and those that the supports' translations
+/// have on them.
 inline void split_matrix(const std::vector<Eigen::Triplet<double>>& entries, int dofs, int support_columns,
                          Eigen::SparseMatrix<double>& matrix, StructureSupports::Columns& of_supports) {
   std::vector<Eigen::Triplet<double>> inner, outer;

@@ -11,9 +11,8 @@ enum class Reduction { none, window };
 /// How the number of active degrees of freedom of a structure is reduced.
 struct ReductionParameters {
   Reduction kind = Reduction::none;
-  double ahead = 20.0;    ///< window: track before the first wheelset and its span [m]
-  double behind = 20.0;   ///< window: track behind the last wheelset and its span [m]
-  void validate() const;  ///< @throws InputError
+  double ahead = 20.0;   ///< window: track before the first wheelset and its span [m]
+  double behind = 20.0;  ///< window: track behind the last wheelset and its span [m]
 };
 
 }  // namespace railtab

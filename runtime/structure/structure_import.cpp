@@ -1,5 +1,4 @@
 #include "railtab/runtime/structure/structure_import.hpp"
-#include "railtab/runtime/fe/fe_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +9,11 @@
 #include <string>
 #include <string_view>
 
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/fe/fe_matrix.hpp"
+#include "railtab/runtime/fe/matrix_scales.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
 #include "railtab/runtime/structure/fe_supports.hpp"
@@ -37,18 +39,6 @@ struct DofTable {
   std::vector<double> sign;                         // per row of the matrices
 };
 
-std::array<std::string_view, 5> cells_of(const std::string& place, std::string_view text) {
-  std::array<std::string_view, 5> cells;
-  std::size_t count = 0;
-  for (std::size_t begin = 0; begin <= text.size(); ++count) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    if (count < cells.size()) cells[count] = stripped(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  if (count != cells.size()) throw input_error(place, fmt::format("{} columns", count), fmt::format("5: {}", header));
-  return cells;
-}
-
 void set_rails(Node& node, const std::string& place, std::string_view rail) {
   if (rail != "left" && rail != "right" && rail != "both" && rail != "support" && !rail.empty()) {
     throw input_error(place, fmt::format("rail '{}'", rail), "left, right, both, support, or nothing");
@@ -58,8 +48,10 @@ void set_rails(Node& node, const std::string& place, std::string_view rail) {
   node.right = rail == "right" || rail == "both";
 }
 
-void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place, std::string_view text) {
-  const auto [row_cell, name, x_cell, motion_cell, rail] = cells_of(place, text);
+void add_row(DofTable& table, std::vector<bool>& taken, const ColumnRows& line) {
+  const std::string place = line.reader().place();
+  const std::string_view row_cell = line.cells()[0], name = line.cells()[1], x_cell = line.cells()[2];
+  const std::string_view motion_cell = line.cells()[3], rail = line.cells()[4];
   const int rows = static_cast<int>(table.sign.size());
   int row = 0;
   if (!parse(row_cell, row) || row < 1 || row > rows) {
@@ -100,22 +92,11 @@ void add_row(DofTable& table, std::vector<bool>& taken, const std::string& place
 }
 
 DofTable read_dofs(const std::filesystem::path& file, int rows) {
-  LineReader reader(file, "a table of dofs");
+  ColumnRows lines(file, "a table of dofs", header);
   DofTable table;
   table.sign.assign(static_cast<std::size_t>(rows), 1.0);
   std::vector<bool> taken(static_cast<std::size_t>(rows), false);
-  bool has_header = false;
-  while (reader.next()) {
-    const std::string_view line = stripped(reader.line());
-    if (line.empty() || line.front() == '#') continue;
-    if (has_header) {
-      add_row(table, taken, reader.place(), line);
-    } else if (line == header) {
-      has_header = true;
-    } else {
-      throw reader.error(fmt::format("'{}'", line), header);
-    }
-  }
+  while (lines.next()) add_row(table, taken, lines);
   return table;
 }
 
@@ -145,10 +126,10 @@ Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
   return symmetric_mean(file, read_matrix_market(file), rows);
 }
 
-// What becomes of each row: unknown, moved by the ground (y and z of a support), or held.
+// The role of each row: degree of freedom, moved by the ground (y and z of a support), or held.
 std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& support_x) {
   constexpr std::size_t lateral = 1, vertical = 2;
-  std::vector<int> column_of_row(table.sign.size(), RowSplit::unknown);
+  std::vector<int> column_of_row(table.sign.size(), RowSplit::dof);
   for (const auto& [name, node] : table.nodes) {
     if (!node.support) continue;
     const int first = static_cast<int>(2 * support_x.size());
@@ -197,8 +178,25 @@ void settle_named_supports(const std::filesystem::path& file, StructureModel& mo
           "all supports, whose translation strains nothing");
     }
   }
-  const auto name = [](Eigen::Index row) { return fmt::format("unknown {} beside the supports' rows", row + 1); };
+  const auto name = [](Eigen::Index row) {
+    return fmt::format("degree of freedom {} beside the supports' rows", row + 1);
+  };
   settle_supports({model.mass, model.damping, model.stiffness}, translation, name, s);
+}
+
+void check_numbers(const StructureFiles& files, const DofTable& table, const StructureModel& model) {
+  const auto row_text = [&](Eigen::Index row) {
+    for (const auto& [name, node] : table.nodes) {
+      for (std::size_t k = 0; k < node.dof.size(); ++k) {
+        if (node.dof[k] == row) return fmt::format("row {} (node {}, {})", row + 1, name, motion_names[k]);
+      }
+    }
+    return fmt::format("row {}", row + 1);
+  };
+  const FileMatrix mass{model.mass, files.mass}, stiffness{model.stiffness, files.stiffness};
+  check_scales(mass, {model.damping, files.damping}, stiffness, structure_scales, row_text);
+  check_off_diagonals(mass, "mass", row_text);
+  check_off_diagonals(stiffness, "stiffness", row_text);
 }
 
 }  // namespace
@@ -214,6 +212,7 @@ StructureModel import_structure(const StructureFiles& files) {
     *matrix = sign.asDiagonal() * *matrix * sign.asDiagonal();
     matrix->makeCompressed();
   }
+  check_numbers(files, table, model);
   const RowSplit rows(columns_of_rows(table, model.supports.x));
   if (model.supports.columns() > 0) {
     StructureSupports& s = model.supports;

@@ -39,7 +39,7 @@ struct StructureNode {
   DofIndices dof;
 };
 
-/// Where the ground holds a structure. With the unknowns u and the supports' translations s, y and z of each in turn,
+/// Where the ground holds a structure. With the dofs u and the supports' translations s, y and z of each in turn,
 ///   M u'' + C u' + K u = F − (M_s s'' + C_s s' + K_s s),
 /// so that K u + K_s s = 0 where all moves alike. Empty: supports are not known, and the ground stands still.
 struct StructureSupports {
@@ -49,7 +49,7 @@ struct StructureSupports {
   /// Why some supports are known only for ground that moves alike under all, "a structure that …"; empty: all are
   /// known.
   std::string beyond{};
-  /// Rows by the rails' dofs × 2 per support. Not empty: the unknowns are relative to what the supports carry along,
+  /// Rows by the rails' dofs × 2 per support. Not empty: the dofs are relative to what the supports carry along,
   /// and the rails' motion is theirs and carried·s (relative_to_supports()).
   Columns carried{};
   Columns carried_nodes{};  ///< the same for the nodes of interest, 6 rows each
@@ -62,12 +62,12 @@ struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide
   std::vector<StructureNode> nodes;  ///< nodes of interest
-  /// Position along the track of every unknown [m], not decreasing; empty where it is not known.
+  /// Position along the track of every dof [m], not decreasing; empty where it is not known.
   std::vector<double> dof_x;
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.
   std::vector<std::array<double, 2>> spans;
   StructureSupports supports;
-  std::vector<std::string> doubts{};  ///< sentences on an imported structure that is hardly what was meant
+  std::vector<std::string> warnings{};  ///< of an imported structure that is unlike any bridge
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 

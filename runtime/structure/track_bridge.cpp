@@ -164,7 +164,7 @@ std::vector<StructureNode> named_nodes(const TrackNodes& nodes, const Bridge& br
   return named;
 }
 
-/// Renumbers all unknowns in the order of x, so that the matrices are banded as they stand.
+/// Renumbers all degrees of freedom in the order of x, so that the matrices are banded as they stand.
 class OrderAlongTrack {
  public:
   explicit OrderAlongTrack(const std::vector<double>& dof_x) : number_(dof_x.size()) {
@@ -220,7 +220,7 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
   std::sort(bridge.dof_x.begin(), bridge.dof_x.end());
   model.dof_x = std::move(bridge.dof_x);
   model.spans = std::move(bridge.spans);
-  model.doubts = std::move(bridge.doubts);
+  model.warnings = std::move(bridge.warnings);
   for (size_t side = 0; side < 2; ++side) {
     model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, rail.head_height};
   }

@@ -86,8 +86,8 @@ struct BridgeParameters {
 /// of the last span, to a 3D beam bridge whose spans follow each other without a gap.
 ///
 /// Sleepers stand at whole multiples of the spacing; one at start <= x < end of a span rests on that span, joined by
-/// rigid arms to the beam axis (Hermite interpolation between deck nodes, no unknowns of its own). At the two ends of
-/// the model the rails' x, pitch and yaw are held (symmetry: the track goes on beyond), all else is free.
+/// rigid arms to the beam axis (Hermite interpolation between deck nodes, no degrees of freedom of its own). At the two
+/// ends of the model the rails' x, pitch and yaw are held (symmetry: the track goes on beyond), all else is free.
 ///
 /// Named nodes, spans counted from 1: "deck-midspan-<i>" (beam axis), "rail-left-midspan-<i>" and
 /// "rail-right-midspan-<i>" (nearest rail node); without a span "rail-left-origin" and "rail-right-origin" at x = 0.

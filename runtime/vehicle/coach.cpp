@@ -131,7 +131,7 @@ VehicleModel build_coach(const CoachParameters& p, MotionPlane plane) {
     for (DofIndices& dof : dofs) dof[1] = dof[3] = dof[5] = held;
     for (const int wheelset : wheelsets) dofs[static_cast<size_t>(wheelset)][4] = held;
   }
-  return assemble_vehicle(p.name, bodies, suspension, std::move(wheelsets), dofs, p.nominal_radius, p.length);
+  return assemble_vehicle({p.name, bodies, suspension, std::move(wheelsets), dofs, p.nominal_radius, p.length});
 }
 
 }  // namespace railtab

@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/fe/matrix_scales.hpp"
 
 namespace railtab {
 
@@ -82,7 +82,7 @@ void check_rigid_motions(const FreeVehicle& vehicle, const Matrix& matrix, const
 void check_rotation(const FreeVehicle& vehicle, const TableBody& wheelset) {
   constexpr double rounding = 1e-9;
   const int row = wheelset.row[pitch];
-  const auto refuse = [&](const std::filesystem::path& file, std::string_view found) {
+  const auto rejection = [&](const std::filesystem::path& file, std::string_view found) {
     return input_error(fmt::format("{}: {}", file.string(), row_text(vehicle, row)), found,
                        "a wheelset that turns freely about its axle: axle boxes are bodies of their own, or rows that "
                        "belong to no body");
@@ -93,50 +93,49 @@ void check_rotation(const FreeVehicle& vehicle, const TableBody& wheelset) {
     return rounding * stiffest * square(wheelset.position.z());
   };
   if (const double k = vehicle.stiffness(row, row); std::abs(k) > bound(vehicle.stiffness)) {
-    throw refuse(vehicle.import.stiffness, fmt::format("a stiffness of {:.3g} N m/rad", k));
+    throw rejection(vehicle.import.stiffness, fmt::format("a stiffness of {:.3g} N m/rad", k));
   }
   if (const double c = vehicle.damping(row, row); std::abs(c) > bound(vehicle.damping)) {
-    throw refuse(vehicle.import.damping, fmt::format("a damping of {:.3g} N m s/rad", c));
+    throw rejection(vehicle.import.damping, fmt::format("a damping of {:.3g} N m s/rad", c));
   }
   for (Index j = 0; j < vehicle.mass.rows(); ++j) {
     const double coupled = std::abs(vehicle.mass(row, j));
     if (j == row || coupled <= 1e-6 * std::sqrt(vehicle.mass(row, row) * vehicle.mass(j, j))) continue;
-    throw refuse(vehicle.import.mass,
-                 fmt::format("an inertia of {:.3g} shared with {}", coupled, row_text(vehicle, j)));
+    throw rejection(vehicle.import.mass,
+                    fmt::format("an inertia of {:.3g} shared with {}", coupled, row_text(vehicle, j)));
   }
 }
 
 // A matrix in coordinates in which the mass is one: L⁻¹ A L⁻ᵀ with M = L Lᵀ.
-Matrix per_mass(const Eigen::LLT<Matrix>& mass, const Matrix& matrix) {
-  const Matrix half = mass.matrixL().solve(matrix);
-  const Matrix whole = mass.matrixL().solve(half.transpose());
+Matrix per_mass(const CholeskyFactor& mass, const Matrix& matrix) {
+  const Matrix half = mass.solve_L(matrix);
+  const Matrix whole = mass.solve_L(half.transpose());
   return 0.5 * (whole + whole.transpose());
 }
 
 // The row that moves most in a motion of unit mass, by its energy.
-Index moving_row(const FreeVehicle& vehicle, const Eigen::LLT<Matrix>& mass, const Vector& shape) {
-  const Vector motion = mass.matrixU().solve(shape);
+Index moving_row(const FreeVehicle& vehicle, const CholeskyFactor& mass, const Vector& shape) {
+  const Vector motion = mass.solve_LT(shape);
   return largest(vehicle.mass.diagonal().cwiseSqrt().cwiseProduct(motion));
 }
 
 // The lowest squared frequency besides the motions that are free in a vehicle, which are lifted above all others.
-void check_springs(const FreeVehicle& vehicle, const Eigen::LLT<Matrix>& mass) {
+void check_springs(const FreeVehicle& vehicle, const CholeskyFactor& mass) {
   const Index n = vehicle.mass.rows(), wheelsets = static_cast<Index>(vehicle.wheelsets.size());
   Matrix free = Matrix::Zero(n, 6 + wheelsets);
   free.leftCols(6) = vehicle.rigid;
   for (Index w = 0; w < wheelsets; ++w) free(vehicle.wheelset(static_cast<std::size_t>(w)).row[pitch], 6 + w) = 1.0;
-  const Matrix of_mass = mass.matrixU() * free;
-  const Matrix Q = of_mass.colPivHouseholderQr().householderQ() * Matrix::Identity(n, free.cols());
+  const Matrix Q = orthonormal_basis(mass.multiply_LT(free));
   Matrix K = per_mass(mass, vehicle.stiffness);
   const double lifted = K.norm() + 1.0;
   K -= Q * (Q.transpose() * K);
   K -= (K * Q) * Q.transpose();
   K += lifted * (Q * Q.transpose());
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(0.5 * (K + K.transpose()));
-  const double omega2 = eigen.eigenvalues()[0];
+  const SymmetricSpectrum eigen = symmetric_spectrum(0.5 * (K + K.transpose()));
+  const double omega2 = eigen.values[0];
   if (omega2 >= softest_omega2) return;
   const std::string place = fmt::format("{}: {}", vehicle.import.stiffness.string(),
-                                        row_text(vehicle, moving_row(vehicle, mass, eigen.eigenvectors().col(0))));
+                                        row_text(vehicle, moving_row(vehicle, mass, eigen.vectors.col(0))));
   if (omega2 < -softest_omega2) {
     throw input_error(place, fmt::format("springs that push, ω² = {:.3g} rad²/s²", omega2),
                       "a positive semidefinite stiffness");
@@ -145,13 +144,13 @@ void check_springs(const FreeVehicle& vehicle, const Eigen::LLT<Matrix>& mass) {
                     "six rigid motions of the whole vehicle and the wheelsets' rotations alone without resistance");
 }
 
-void check_dampers(const FreeVehicle& vehicle, const Eigen::LLT<Matrix>& mass) {
+void check_dampers(const FreeVehicle& vehicle, const CholeskyFactor& mass) {
   constexpr double rounding = 1e-9;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(per_mass(mass, vehicle.damping));
-  const Vector& rates = eigen.eigenvalues();
+  const SymmetricSpectrum eigen = symmetric_spectrum(per_mass(mass, vehicle.damping));
+  const Vector& rates = eigen.values;
   if (rates[0] >= -rounding * rates.cwiseAbs().maxCoeff()) return;
   throw input_error(fmt::format("{}: {}", vehicle.import.damping.string(),
-                                row_text(vehicle, moving_row(vehicle, mass, eigen.eigenvectors().col(0)))),
+                                row_text(vehicle, moving_row(vehicle, mass, eigen.vectors.col(0)))),
                     fmt::format("a damping that drives a motion by {:.3g} 1/s", -rates[0]),
                     "a positive semidefinite damping");
 }
@@ -201,6 +200,13 @@ void check_wheelsets(const FreeVehicle& vehicle) {
   }
 }
 
+void check_numbers(const FreeVehicle& vehicle) {
+  const Eigen::SparseMatrix<double> mass = vehicle.mass.sparseView(), damping = vehicle.damping.sparseView(),
+                                    stiffness = vehicle.stiffness.sparseView();
+  check_scales({mass, vehicle.import.mass}, {damping, vehicle.import.damping}, {stiffness, vehicle.import.stiffness},
+               vehicle_scales, [&](Index row) { return row_text(vehicle, row); });
+}
+
 void check_mass(const FreeVehicle& vehicle) {
   constexpr double rounding = 1e-12;
   const Vector diagonal = vehicle.mass.diagonal();
@@ -210,10 +216,10 @@ void check_mass(const FreeVehicle& vehicle) {
                       fmt::format("mass {}", diagonal[row]), "> 0 on the diagonal");
   }
   const Vector scale = diagonal.cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * vehicle.mass * scale.asDiagonal());
-  if (eigen.eigenvalues()[0] > rounding) return;
+  const SymmetricSpectrum eigen = symmetric_spectrum(scale.asDiagonal() * vehicle.mass * scale.asDiagonal());
+  if (eigen.values[0] > rounding) return;
   throw input_error(
-      fmt::format("{}: {}", vehicle.import.mass.string(), row_text(vehicle, largest(eigen.eigenvectors().col(0)))),
+      fmt::format("{}: {}", vehicle.import.mass.string(), row_text(vehicle, largest(eigen.vectors.col(0)))),
       "a motion without or with negative mass", "a positive definite mass");
 }
 
@@ -234,16 +240,16 @@ Matrix rigid_motions(const FreeVehicle& vehicle) {
   if (inner.empty()) return rigid;
   const Matrix K = vehicle.stiffness(inner, inner);
   const Vector scale = vehicle.mass.diagonal()(inner).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * K * scale.asDiagonal());
-  if (eigen.eigenvalues()[0] < softest_omega2) {
-    const auto row = static_cast<std::size_t>(largest(eigen.eigenvectors().col(0)));
+  const SymmetricSpectrum eigen = symmetric_spectrum(scale.asDiagonal() * K * scale.asDiagonal());
+  if (eigen.values[0] < softest_omega2) {
+    const auto row = static_cast<std::size_t>(largest(eigen.vectors.col(0)));
     throw input_error(
         fmt::format("{}: row {} (of no body)", vehicle.import.stiffness.string(), inner[row] + 1),
-        fmt::format("an inner unknown at ω² = {:.3g} rad²/s² while the bodies rest", eigen.eigenvalues()[0]),
-        "unknowns that springs hold to the bodies");
+        fmt::format("an inner degree of freedom at ω² = {:.3g} rad²/s² while the bodies rest", eigen.values[0]),
+        "degrees of freedom that springs hold to the bodies");
   }
   const Matrix load = vehicle.stiffness(inner, Eigen::all) * rigid;  // rigid is 0 at the inner rows
-  rigid(inner, Eigen::all) = -K.ldlt().solve(load);
+  rigid(inner, Eigen::all) = -symmetric_solution(K, load);
   return rigid;
 }
 
@@ -252,7 +258,7 @@ void check_free_motions(const FreeVehicle& vehicle) {
   check_rigid_motions(vehicle, vehicle.damping, vehicle.import.damping);
   for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) check_rotation(vehicle, vehicle.wheelset(w));
   check_total_mass(vehicle);
-  const Eigen::LLT<Matrix> mass(vehicle.mass);
+  const CholeskyFactor mass(vehicle.mass);
   check_springs(vehicle, mass);
   check_dampers(vehicle, mass);
 }

@@ -24,11 +24,14 @@ struct FreeVehicle {
 /// their axles at one height. @throws InputError
 void check_wheelsets(const FreeVehicle& vehicle);
 
+/// The matrices' scales fit a vehicle and each other: vehicle_scales. @throws InputError naming file, row and value
+void check_numbers(const FreeVehicle& vehicle);
+
 /// The mass is positive definite. @throws InputError naming file and row
 void check_mass(const FreeVehicle& vehicle);
 
-/// Columns of FreeVehicle::rigid: inner unknowns follow the bodies without strain, K_ii r_i = −K_ib r_b.
-/// @throws InputError where an inner unknown is not held by springs
+/// Columns of FreeVehicle::rigid: inner degrees of freedom follow the bodies without strain, K_ii r_i = −K_ib r_b.
+/// @throws InputError where an inner degree of freedom is not held by springs
 [[nodiscard]] Eigen::MatrixXd rigid_motions(const FreeVehicle& vehicle);
 
 /// What a free vehicle is: rigid motions and rotations of wheelsets without resistance, all other motions with; mass

@@ -72,6 +72,7 @@ FreeVehicle read_free_vehicle(const VehicleImport& import) {
   vehicle.car_body = body_index(vehicle.bodies, import.car_body, "vehicle.car_body");
   convert(vehicle);
   check_wheelsets(vehicle);
+  check_numbers(vehicle);
   check_mass(vehicle);
   vehicle.rigid = rigid_motions(vehicle);
   check_free_motions(vehicle);
@@ -97,7 +98,7 @@ std::vector<VehicleBody> named_bodies(const FreeVehicle& vehicle) {
   return bodies;
 }
 
-// Rows that are no unknowns of a run.
+// Rows that are no degrees of freedom of a run.
 std::vector<bool> held_rows(const FreeVehicle& vehicle, MotionPlane plane) {
   std::vector<bool> is_held(static_cast<std::size_t>(vehicle.mass.rows()), false);
   const auto hold = [&](const TableBody& body, std::size_t motion) {

@@ -35,7 +35,7 @@ inline constexpr int most_vehicle_rows = 1000;
 /// "wheelset-1" …; other bodies keep their names. The nominal radius is the height of the axles. Static load: what the
 /// wheelsets carry of M·g times a unit fall; J_y of a wheelset is the mass matrix' entry of its rotation. In the
 /// vertical plane y, roll and yaw of all bodies and the wheelsets' rotation are held.
-/// @throws InputError with file and line, row or key: what the readers of its files refuse; matrices that are not
+/// @throws InputError with file and line, row or key: what the readers of its files reject; matrices that are not
 ///         symmetric, not positive (semi)definite, tied to the ground or free in more than the six rigid motions and
 ///         the wheelsets' rotations; mass that differs between x, y and z; wheelsets or a car body without their rows
 [[nodiscard]] VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane = MotionPlane::spatial,

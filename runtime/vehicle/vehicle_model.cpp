@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <utility>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
@@ -139,7 +139,7 @@ Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::Vec
 
   const Eigen::MatrixXd K = vehicle.stiffness(carried, carried);
   const Eigen::VectorXd load = weight(carried);
-  const Eigen::VectorXd sag = K.completeOrthogonalDecomposition().solve(load);
+  const Eigen::VectorXd sag = least_norm_solution(K, load);
   const Eigen::VectorXd residual = K * sag - load;
   if (!(residual.norm() <= 1e-6 * weight.norm())) {
     throw input_error(vehicle.name, fmt::format("a weight of {:.3g} N that no spring carries", residual.norm()),
@@ -150,23 +150,21 @@ Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::Vec
   return reaction;
 }
 
-VehicleModel assemble_vehicle(std::string name, const std::vector<RigidBody>& bodies,
-                              const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
-                              const std::vector<DofIndices>& held_dofs, double nominal_radius, double length,
-                              double gravity) {
-  check_bodies(name, bodies);
-  check_connections(name, bodies.size(), suspension, wheelsets);
-  require_positive(name + ".nominal_radius", nominal_radius, "m");
-  require_positive(name + ".length", length, "m");
-  require_not_negative(name + ".gravity", gravity, "m/s²");
+VehicleModel assemble_vehicle(const VehicleDescription& parts) {
+  const std::string& name = parts.name;
+  check_bodies(name, parts.bodies);
+  check_connections(name, parts.bodies.size(), parts.suspension, parts.wheelsets);
+  require_positive(name + ".nominal_radius", parts.nominal_radius, "m");
+  require_positive(name + ".length", parts.length, "m");
+  require_not_negative(name + ".gravity", parts.gravity, "m/s²");
 
   VehicleModel vehicle;
-  vehicle.name = std::move(name);
-  for (const RigidBody& body : bodies) vehicle.bodies.push_back({body.name, body.position});
-  vehicle.wheelsets = std::move(wheelsets);
-  vehicle.nominal_radius = nominal_radius;
-  vehicle.length = length;
-  const int n = number_dofs(vehicle, held_dofs);
+  vehicle.name = name;
+  for (const RigidBody& body : parts.bodies) vehicle.bodies.push_back({body.name, body.position});
+  vehicle.wheelsets = parts.wheelsets;
+  vehicle.nominal_radius = parts.nominal_radius;
+  vehicle.length = parts.length;
+  const int n = number_dofs(vehicle, parts.held_dofs);
   for (Eigen::MatrixXd* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness, &vehicle.gyroscopic}) {
     matrix->setZero(n, n);
   }
@@ -175,10 +173,10 @@ VehicleModel assemble_vehicle(std::string name, const std::vector<RigidBody>& bo
   for (const DofIndices& dof : vehicle.dof) {
     if (dof[y_dof] != held) vehicle.lateral_shift[dof[y_dof]] = 1.0;
   }
-  add_inertia(vehicle, bodies);
-  add_suspension(vehicle, suspension);
-  for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, bodies[w].inertia.y());
-  vehicle.static_load = wheelset_reactions(vehicle, weight_of(vehicle, bodies, gravity));
+  add_inertia(vehicle, parts.bodies);
+  add_suspension(vehicle, parts.suspension);
+  for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, parts.bodies[w].inertia.y());
+  vehicle.static_load = wheelset_reactions(vehicle, weight_of(vehicle, parts.bodies, parts.gravity));
   return vehicle;
 }
 

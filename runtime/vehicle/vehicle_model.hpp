@@ -34,7 +34,7 @@ struct VehicleBody {
 
 /// A vehicle with linear suspension, running at constant speed (the car body's x is held). Small displacements from the
 /// vehicle's own static equilibrium, so that gravity acts as the static axle loads only. Rows of the matrices that no
-/// body has are inner unknowns (flexible bodies, springs in series with dampers).
+/// body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
 struct VehicleModel {
   std::string name;
   std::vector<VehicleBody> bodies;
@@ -55,17 +55,25 @@ struct VehicleModel {
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 
+/// A vehicle by its parts.
+struct VehicleDescription {
+  std::string name;
+  std::vector<RigidBody> bodies;
+  std::vector<Suspension> suspension;
+  std::vector<int> wheelsets;  ///< bodies that are wheelsets, front first
+  /// Per body; an entry `held` holds that dof, any other value frees it; empty: all are free.
+  std::vector<DofIndices> held_dofs;
+  double nominal_radius = 0.46;  ///< [m]
+  double length = 26.4;          ///< over couplers [m]
+  double gravity = 9.81;         ///< [m/s²]
+};
+
 /// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points).
 /// Dofs are numbered body by body. Static load: the reactions of the wheelsets' z and roll under gravity, so that zero
 /// displacement is the equilibrium on a rigid level track; z parts [N] add up to the weight, roll parts [N m] vanish on
 /// a vehicle that is loaded symmetrically.
-/// @param held_dofs per body; an entry `held` holds that dof, any other value frees it; empty: all are free
 /// @throws InputError where a mass or inertia is not positive, an index is out of range, or the suspension does not
-/// carry
-///         a body's weight.
-[[nodiscard]] VehicleModel assemble_vehicle(std::string name, const std::vector<RigidBody>& bodies,
-                                            const std::vector<Suspension>& suspension, std::vector<int> wheelsets,
-                                            const std::vector<DofIndices>& held_dofs, double nominal_radius,
-                                            double length, double gravity = 9.81);
+/// carry a body's weight
+[[nodiscard]] VehicleModel assemble_vehicle(const VehicleDescription& parts);
 
 }  // namespace railtab

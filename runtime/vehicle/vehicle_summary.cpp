@@ -1,9 +1,10 @@
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 namespace railtab {
 
@@ -26,10 +27,10 @@ VehicleSummary summarise(const VehicleModel& vehicle, int modes, double gravity)
   }
   if (moves.empty() || modes == 0) return summary;
   const Eigen::MatrixXd K = vehicle.stiffness(moves, moves), M = vehicle.mass(moves, moves);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K, M, Eigen::EigenvaluesOnly);
-  const Eigen::Index count = std::min<Eigen::Index>(modes, eigen.eigenvalues().size());
+  const Eigen::VectorXd omega2 = generalised_eigenvalues(K, M);
+  const Eigen::Index count = std::min<Eigen::Index>(modes, omega2.size());
   for (Eigen::Index k = 0; k < count; ++k) {
-    summary.frequencies.push_back(std::sqrt(std::max(0.0, eigen.eigenvalues()[k])) / (2.0 * std::numbers::pi));
+    summary.frequencies.push_back(std::sqrt(std::max(0.0, omega2[k])) / (2.0 * std::numbers::pi));
   }
   return summary;
 }

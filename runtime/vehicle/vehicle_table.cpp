@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/base/column_rows.hpp"
 
 namespace railtab {
 
@@ -18,8 +18,9 @@ constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "rotx", "roty",
 // Of one line; new bodies are added.
 TableBody& body_of_line(const LineReader& reader, std::string_view name, const Eigen::Vector3d& position,
                         std::vector<TableBody>& bodies) {
-  if (name.find_first_of("/*") != std::string_view::npos) {
-    throw reader.error(fmt::format("body '{}'", name), "a name without / and *, which results have a use for");
+  if (name.empty() || name.find_first_of("/* \t") != std::string_view::npos) {
+    throw reader.error(fmt::format("body '{}'", name),
+                       "a name without / and *, which results have a use for, and without blanks");
   }
   const auto known =
       std::find_if(bodies.begin(), bodies.end(), [name](const TableBody& body) { return body.name == name; });
@@ -33,12 +34,12 @@ TableBody& body_of_line(const LineReader& reader, std::string_view name, const E
 }  // namespace
 
 std::vector<TableBody> read_vehicle_table(const std::filesystem::path& file, int rows) {
-  LineReader reader(file, "a table of a vehicle's rows");
+  ColumnRows table(file, "a table of a vehicle's rows", header);
+  const LineReader& reader = table.reader();
   std::vector<TableBody> bodies;
   std::vector<bool> taken(static_cast<std::size_t>(rows), false);
-  TableRows table(reader, header);
-  std::array<std::string_view, 6> words;
-  while (table.next(words)) {
+  while (table.next()) {
+    const std::vector<std::string_view>& words = table.cells();
     const int row = reader.number<int>(words[0], "the number of a row");
     if (row < 1 || row > rows) {
       throw reader.error(fmt::format("row {}", row), fmt::format("1 to {}, the matrices' rows", rows));
@@ -58,7 +59,6 @@ std::vector<TableBody> read_vehicle_table(const std::filesystem::path& file, int
     if (of_motion != held) throw reader.error(fmt::format("{} of body {} again", *motion, body.name), "each once");
     of_motion = row - 1;
   }
-  if (!table.has_header()) throw reader.file_error("no line", header);
   return bodies;
 }
 

@@ -101,7 +101,7 @@ void differentiate(const WheelContactModel& model, const ContactProblem& problem
       const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
       const Matrix9 t = (start ? problem.mean_weight : 1.0) *
                         wheel_force_tangent(model, sides[index(side)], motion, rail, s.patches[number],
-                                            problem.velocity_rate, problem.rail_velocity_rate, start);
+                                            {problem.velocity_rate, problem.rail_velocity_rate, start});
       const int r = 6 + 3 * side;
       tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
       tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();

@@ -22,7 +22,6 @@ struct IntegrationParameters {
   /// Steps after which the iteration forgets tangents and forces of earlier steps. Checkpoints are taken there, so that
   /// a resumed run and an uninterrupted one are the same to the last bit; >= 1.
   long reinitialise_every = 2000;
-  void validate() const;  ///< @throws InputError naming the member out of range
 };
 
 }  // namespace railtab

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
 
 namespace railtab {
 
@@ -154,11 +157,20 @@ StepOperators& Integrator::operators(int level, double end) {
   const Stopwatch watch = times_.measure(Phase::setup);
   auto found = operators_.find(level);
   if (found == operators_.end()) {
+    make_room(level);
     const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = length(parameters_.time_step, level)};
     found = operators_.emplace(level, StepOperators(model_, scheme)).first;
   }
   found->second.update_for_time(model_, end, active_);
   return found->second;
+}
+
+// Memory is bounded: of divided steps' operators, those of the level farthest from the one to come go. Nobody holds on
+// to operators of another level: a step that is divided no longer needs its own.
+void Integrator::make_room(int level) {
+  if (operators_.size() < most_operators) return;
+  const auto finest = std::prev(operators_.end()), coarsest = std::next(operators_.begin());
+  operators_.erase(std::abs(finest->first - level) > std::abs(coarsest->first - level) ? finest : coarsest);
 }
 
 void Integrator::reinitialise(VsiState& state) {

@@ -49,6 +49,7 @@ class Integrator {
   [[nodiscard]] StepReport solve(int level, const StepLimits& limits, VsiState& state);
   [[nodiscard]] StepLimits limits_of(ContactForceRule rule) const;
   StepOperators& operators(int level, double end);
+  void make_room(int level);
   void after_step(const StepReport& report, int level, ContactForceRule rule, VsiState& state);
 
   const VsiModel& model_;

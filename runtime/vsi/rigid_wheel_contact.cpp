@@ -125,9 +125,10 @@ class RigidWheels : public ContactLaw {
       free[w] = heave(step.hht, w, increment_[w]);
     }
     solve_forces(step, free);
+    ++report.newton_iterations;
+    if (!force_.allFinite()) return ContactSolve::diverged;  // the system of the forces is singular
     for (const LineCoupling& c : couplings_) increment_[index(c.i)] -= c.line * force_[c.j];
     set_vertical_forces(force_, ws.solution);
-    ++report.newton_iterations;
     return ContactSolve::changed;
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "railtab/runtime/base/input_error.hpp"
+
 namespace railtab {
 
 namespace {
@@ -23,6 +25,10 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
                                     scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
   const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
   inverse_bb_ = b_.empty() ? effective_bb : Eigen::MatrixXd(effective_bb.partialPivLu().inverse());
+  if (!inverse_bb_.allFinite()) {
+    throw ComputationError(
+        "the vehicle's effective matrix has no inverse: check masses and stiffnesses of the vehicle");
+  }
   E_inverse_ = effective(c_, b_) * inverse_bb_;
   K_bc_ = vehicle.stiffness(b_, c_);
   C_bc_ = damping(b_, c_);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 #include "railtab/runtime/vsi/derailment.hpp"
@@ -41,7 +42,9 @@ class Run {
         record_every_(record_every),
         state_(state),
         observer_(observer),
-        integrator_(model, integration, observer.energy, observer.contact_energy) {}
+        integrator_(model, integration, observer.energy, observer.contact_energy) {
+    assert(integration.reinitialise_every >= 1);
+  }
 
   void steps(long first, long last, RunSummary& summary) {
     integrator_.reinitialise(state_);

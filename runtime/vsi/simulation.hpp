@@ -30,6 +30,9 @@ struct RunObserver {
   std::function<bool()> stop;  ///< asked after every step: true ends the run there, with a checkpoint
 };
 
+/// Operators of steps of different sizes that exist at once: of the whole step and of two divided ones.
+inline constexpr int most_operators = 3;
+
 /// Time integration of a model from time 0 to `duration` [s], with steps halved where Newton fails: the core of
 /// run_scene, for models built in code. `state` is that of step `first_step`.
 [[nodiscard]] RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration,

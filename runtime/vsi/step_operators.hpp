@@ -25,6 +25,11 @@ class StepOperators {
   /// degrees of freedom in `active`.
   void update_for_time(const VsiModel& model, double time, const DofRange& active);
 
+  /// Memory that the operators keep for a vehicle [bytes].
+  [[nodiscard]] static double vehicle_bytes(const VsiModel& model);
+  /// The largest table of compliances of a run of `duration` [s] [bytes].
+  [[nodiscard]] static double largest_table(const VsiModel& model, double duration, double time_step);
+
  private:
   double speed_;  ///< of the gyroscopic terms [m/s]
   double covered_from_ = 0.0,

@@ -147,12 +147,54 @@ StructureResponse::~StructureResponse() = default;
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
+  factor_.reset();  // not two at a time
   factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);
 }
 
 StructureResponse::Entries& StructureResponse::entries() {
   if (!entries_) entries_ = std::make_unique<Entries>(effective_);
   return *entries_;
+}
+
+StructureResponse::Memory StructureResponse::memory() const {
+  /// Counts its entries without making them.
+  struct Symbolic : LowFactor {
+    [[nodiscard]] double entries() const { return static_cast<double>(m_matrix.nonZeros()); }
+  };
+  constexpr double entry = sizeof(double) + sizeof(int);
+  const auto n = static_cast<double>(dofs_), nonzeros = static_cast<double>(effective_.nonZeros());
+  Memory memory;
+  memory.kept = entry * nonzeros + sizeof(int) * n + static_cast<double>(factor_->stored_bytes()) +
+                static_cast<double>(load_bytes()) + sizeof(int) * n;
+  // The ordering works on four copies of the pattern; then there are the permuted upper triangle and L by columns.
+  const double ordering = 4.0 * entry * nonzeros;
+  memory.setup = std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->entries())));
+  Symbolic low;
+  low.analyzePattern(effective_);
+  constexpr double per_dof = SelectedSolve::bytes_per_row + 2.0 * sizeof(double) + 6.0 * sizeof(int);
+  memory.low_entries = low.entries();
+  memory.low = entry * memory.low_entries + per_dof * n;
+  memory.low_setup = entry * nonzeros;
+  return memory;
+}
+
+double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) {
+  double bytes = 0.0;
+  for (const RailLine& rail : structure.rail) {
+    double longest = 0.0;
+    for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
+    const double reach = std::max(window, longest);
+    const auto nodes_between = [&](const RailLine& line, double low, double high) {
+      return static_cast<double>(std::upper_bound(line.x.begin(), line.x.end(), high) -
+                                 std::lower_bound(line.x.begin(), line.x.end(), low));
+    };
+    bytes += static_cast<double>(rail.x.size()) * sizeof(Column);
+    for (double x : rail.x) {
+      if (x < from - longest || x > to + longest) continue;
+      for (const RailLine& other : structure.rail) bytes += nodes_between(other, x - reach, x + reach) * sizeof(Block);
+    }
+  }
+  return bytes;
 }
 
 void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
@@ -189,6 +231,7 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     last[other] =
         static_cast<std::size_t>(std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin());
     column.first[other] = static_cast<int>(begin);
+    column.rows[other].reserve(last[other] - static_cast<std::size_t>(begin));
     for (auto n = static_cast<std::size_t>(begin); n < last[other]; ++n) {
       for (int dof : to.dof[n]) {
         if (dof != held) wanted.push_back(e.row(dof));

@@ -55,6 +55,18 @@ class StructureResponse {
   /// What step_load() reads of the matrices [bytes].
   [[nodiscard]] std::size_t load_bytes() const noexcept { return entry_.size() * (sizeof(Entry) + sizeof(int)); }
 
+  /// Memory of a run's operator [bytes]. Those of compliances are counted, not made.
+  struct Memory {
+    double kept = 0.0;   ///< matrix, factor and what step_load() reads
+    double setup = 0.0;  ///< besides that while the factor is made
+    double low = 0.0;    ///< the factor that compliances come from, with its solver
+    double low_setup = 0.0;
+    double low_entries = 0.0;
+  };
+  [[nodiscard]] Memory memory() const;
+  /// Of a table of compliances with the train between positions `from` and `to` [bytes].
+  [[nodiscard]] static double table_bytes(const StructureModel& structure, double window, double from, double to);
+
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
   /// Make the table of node-by-node compliances cover loads on the rails between positions `from` and `to` [m], coupled

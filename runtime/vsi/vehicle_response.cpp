@@ -1,19 +1,30 @@
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
-#include <Eigen/LU>
+#include "railtab/runtime/base/dense_solvers.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
+
+namespace {
+
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& effective) {
+  Eigen::MatrixXd inverse = dense_inverse(effective);
+  if (inverse.allFinite()) return inverse;
+  throw ComputationError("the vehicle's effective matrix has no inverse: check masses and stiffnesses of the vehicle");
+}
+
+}  // namespace
 
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme) {
   const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
                                     scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
-  inverse_ = effective.partialPivLu().inverse();
+  inverse_ = inverse_of(effective);
   restrict_to_wheelsets(vehicle);
 }
 
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, double regularisation) {
   const Eigen::MatrixXd effective = vehicle.stiffness + regularisation * vehicle.mass;
-  inverse_ = effective.partialPivLu().inverse();
+  inverse_ = inverse_of(effective);
   restrict_to_wheelsets(vehicle);
 }
 

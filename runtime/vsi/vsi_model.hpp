@@ -43,8 +43,8 @@ struct VsiModel {
   VehicleModel vehicle;
   std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
   std::optional<StructureModel> structure;
-  std::vector<std::string> structure_doubts{};  ///< StructureModel::doubts of what was imported
-  std::optional<WindowModel> window;            ///< for Reduction::window
+  std::vector<std::string> structure_warnings{};  ///< StructureModel::warnings of what was imported
+  std::optional<WindowModel> window;              ///< for Reduction::window
   Irregularity irregularity;
   std::optional<SpanDeviation> span_deviation;        ///< besides `irregularity`
   std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`

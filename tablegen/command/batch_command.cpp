@@ -6,15 +6,17 @@
 #include <sstream>
 
 #include "batch_list.hpp"
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "geometry_request.hpp"
-#include "progress_bar.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
@@ -89,11 +91,11 @@ std::string other_options(const BatchPair& pair, const GeometryRequest& request)
 }
 
 GeometryRequest request_of(const BatchPair& pair) {
-  return geometry_request(CommandLine("tablegen geometry", geometry_options(), {}, pair.arguments));
+  return geometry_request(TableCommandLine("tablegen geometry", geometry_options(), {}, pair.arguments));
 }
 
 /// Reads every pair before the first is made: what is wrong with the input is said at once.
-std::vector<Job> read_jobs(const CommandLine& line) {
+std::vector<Job> read_jobs(const TableCommandLine& line) {
   std::vector<Job> jobs;
   for (BatchPair& pair : read_batch_list(line.required("list"))) {
     Job job{std::move(pair), State::waiting, ""};
@@ -123,7 +125,7 @@ std::vector<Job> read_jobs(const CommandLine& line) {
   return own;
 }
 
-void make(Job& job, const std::string& title, const CommandLine& line) {
+void make(Job& job, const std::string& title, const TableCommandLine& line) {
   try {
     const GeometryRequest request = request_of(job.pair);
     if (!line.quiet()) print_notes(request);
@@ -138,7 +140,7 @@ void make(Job& job, const std::string& title, const CommandLine& line) {
   }
 }
 
-void print_json(const std::vector<Job>& jobs) {
+void print_jobs(const std::vector<Job>& jobs) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Job& job : jobs) {
     nlohmann::ordered_json j{
@@ -147,7 +149,7 @@ void print_json(const std::vector<Job>& jobs) {
     if (!job.message.empty()) j["message"] = job.message;
     list.push_back(std::move(j));
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"kind", "batch"}, {"pairs", std::move(list)}}.dump(2));
+  print_json(nlohmann::ordered_json{{"kind", "batch"}, {"pairs", std::move(list)}});
 }
 
 po::options_description batch_options() {
@@ -162,8 +164,8 @@ po::options_description batch_options() {
 }  // namespace
 
 void batch_command(const std::vector<std::string>& arguments) {
-  const CommandLine line("tablegen batch LIST.toml [--only I/N] [--overwrite] [--plan]", batch_options(), {"list"},
-                         arguments);
+  const TableCommandLine line("tablegen batch LIST.toml [--only I/N] [--overwrite] [--plan]", batch_options(), {"list"},
+                              arguments);
   if (line.help_printed()) return;
   std::vector<Job> jobs = read_jobs(line);
   const bool text = !line.json() && !line.quiet();
@@ -173,12 +175,13 @@ void batch_command(const std::vector<std::string>& arguments) {
     if (job.state == State::waiting && !line.given("plan")) {
       make(job, fmt::format("table {} of {}", i + 1, jobs.size()), line);
     }
-    if (text && job.state != State::failed) fmt::print("{}: {}\n", job.pair.output.string(), state_name(job.state));
+    if (text && job.state != State::failed)
+      print_formatted("{}: {}\n", job.pair.output.string(), state_name(job.state));
     if (job.state != State::failed) continue;
     print_message(fmt::format("{}: {}: failed: {}\n", job.pair.place, job.pair.output.string(), job.message));
     ++failed;
   }
-  if (line.json()) print_json(jobs);
+  if (line.json()) print_jobs(jobs);
   if (failed > 0) throw ComputationError(fmt::format("{} of {} tables failed", failed, jobs.size()));
 }
 

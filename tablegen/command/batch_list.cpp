@@ -11,6 +11,7 @@
 #include "geometry_options.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/toml_text.hpp"
 
 namespace railtab {
 
@@ -89,9 +90,9 @@ BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file
 }
 
 toml::table parsed(const std::filesystem::path& file) {
-  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "a list of pairs in TOML");
+  const std::string text = read_toml_text(file, "a list of pairs in TOML");
   try {
-    return toml::parse_file(file.string());
+    return toml::parse(text, file.string());
   } catch (const toml::parse_error& wrong) {
     throw InputError(fmt::format("{}: {}", place(file, wrong.source().begin.line), wrong.description()));
   }

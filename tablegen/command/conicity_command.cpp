@@ -2,17 +2,19 @@
 
 #include <optional>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
 #include "wheelset_functions.hpp"
 
 namespace railtab {
 
 namespace {
 
-WheelsetRoll roll_option(const CommandLine& line) {
+WheelsetRoll roll_option(const TableCommandLine& line) {
   const std::string found = line.text("roll");
   if (found == "on") return WheelsetRoll::free;
   if (found == "off") return WheelsetRoll::off;
@@ -28,7 +30,7 @@ void conicity_command(const std::vector<std::string>& arguments) {
       ("amplitude", text_value("3e-3")->value_name("M"), "of the kinematic wave")                               //
       ("diameter-difference", text_value("0")->value_name("M"), "right wheel's diameter minus the left one's")  //
       ("roll", text_value("off")->value_name("on|off"), "off: as EN 15302; on: the wheelset rests on both rails");
-  const CommandLine line("tablegen conicity FILE.h5 [options]", own, {"file"}, arguments);
+  const TableCommandLine line("tablegen conicity FILE.h5 [options]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
   const double amplitude = line.number("amplitude");
@@ -48,11 +50,11 @@ void conicity_command(const std::vector<std::string>& arguments) {
     j["wave"] = conicity_json(wave);
     j["regression"] = conicity_json(regression);
     j.update(functions_json(functions));
-    fmt::print("{}\n", j.dump(2));
+    print_json(j);
   } else {
-    fmt::print("{}: equivalent conicity {} at an amplitude of {:g} mm (regression: {})\n", file, conicity_text(wave),
-               1e3 * amplitude, conicity_text(regression));
-    if (!line.quiet()) fmt::print("{}", functions_text(functions));
+    print_formatted("{}: equivalent conicity {} at an amplitude of {:g} mm (regression: {})\n", file,
+                    conicity_text(wave), 1e3 * amplitude, conicity_text(regression));
+    if (!line.quiet()) print_formatted("{}", functions_text(functions));
   }
   if (wave.status != ConicityStatus::found) {
     throw ComputationError(fmt::format("no equivalent conicity at an amplitude of {:g} m: {}", amplitude,

@@ -5,10 +5,12 @@
 #include <stdexcept>
 #include <vector>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/rolling_contact.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
@@ -60,7 +62,7 @@ void contact_command(const std::vector<std::string>& arguments) {
       ("poisson", text_value("0.28")->value_name("NU"), "Poisson's ratio")                                      //
       ("elements", text_value("40")->value_name("N"),
        "along each axis, even; the result is extrapolated from N/2 and N");
-  const CommandLine line("tablegen contact --ratio A/B --creepage X,Y,PHI [options]", own, {}, arguments);
+  const TableCommandLine line("tablegen contact --ratio A/B --creepage X,Y,PHI [options]", own, {}, arguments);
   if (line.help_printed()) return;
   RollingContactOptions options;
   options.elements = static_cast<int>(line.whole_number("elements", 8, 240));
@@ -84,11 +86,11 @@ void contact_command(const std::vector<std::string>& arguments) {
                                    {"mz", s.force.moment},
                                    {"fine", grid_description(s.fine, options.elements)},
                                    {"coarse", grid_description(s.coarse, options.elements / 2)}};
-    fmt::print("{}\n", j.dump(2));
+    print_json(j);
   } else if (!line.quiet()) {
-    fmt::print("               F_x/(mu F_n)  F_y/(mu F_n)  M_z/(mu F_n sqrt(ab)), on the wheel\n");
-    fmt::print("  limit        {:12.8f} {:12.8f} {:12.8f}\n", s.force.x, s.force.y, s.force.moment);
-    fmt::print("{}{}", grid_text(s.fine, options.elements), grid_text(s.coarse, options.elements / 2));
+    print_formatted("               F_x/(mu F_n)  F_y/(mu F_n)  M_z/(mu F_n sqrt(ab)), on the wheel\n");
+    print_formatted("  limit        {:12.8f} {:12.8f} {:12.8f}\n", s.force.x, s.force.y, s.force.moment);
+    print_formatted("{}{}", grid_text(s.fine, options.elements), grid_text(s.coarse, options.elements / 2));
   }
 }
 

@@ -4,13 +4,15 @@
 #include <charconv>
 #include <filesystem>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
 #include "commands.hpp"
-#include "progress_bar.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/creep_job.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
@@ -49,7 +51,7 @@ std::array<int, 4> parse_nodes(const std::string& text) {
   return nodes;
 }
 
-CreepJob creep_job(const CommandLine& line) {
+CreepJob creep_job(const TableCommandLine& line) {
   CreepJob job;
   job.layout.layout = creep_table_layout(line.text("layout"));
   job.layout.poisson = line.number("poisson");
@@ -69,7 +71,7 @@ CreepJob creep_job(const CommandLine& line) {
 }  // namespace
 
 void creep_command(const std::vector<std::string>& arguments) {
-  const CommandLine line("tablegen creep [options] -o FILE.h5", creep_options(), {}, arguments);
+  const TableCommandLine line("tablegen creep [options] -o FILE.h5", creep_options(), {}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("output");
   require_output(file, {creep_table_filetype, creep_shard_filetype});
@@ -97,12 +99,12 @@ void creep_command(const std::vector<std::string>& arguments) {
     } else {
       j["checksum"] = array_file_checksum(file);
     }
-    fmt::print("{}\n", j.dump(2));
+    print_json(j);
   } else if (!line.quiet()) {
-    fmt::print("{}: {} cases", file, done.cases);
-    if (done.resumed > 0) fmt::print(", {} of them from an interrupted run", done.resumed);
-    fmt::print(", {:.1f} s, {:.0f} cases per second\n  worst residual {:.2g}, {} cases by the safe method\n",
-               done.seconds, rate, done.worst_residual, done.safe_method);
+    print_formatted("{}: {} cases", file, done.cases);
+    if (done.resumed > 0) print_formatted(", {} of them from an interrupted run", done.resumed);
+    print_formatted(", {:.1f} s, {:.0f} cases per second\n  worst residual {:.2g}, {} cases by the safe method\n",
+                    done.seconds, rate, done.worst_residual, done.safe_method);
   }
 }
 

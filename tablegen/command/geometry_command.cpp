@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "geometry_request.hpp"
-#include "progress_bar.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
 void geometry_command(const std::vector<std::string>& arguments) {
-  const CommandLine line("tablegen geometry --wheel P --rail P [options] -o FILE.h5", geometry_options(), {},
-                         arguments);
+  const TableCommandLine line("tablegen geometry --wheel P --rail P [options] -o FILE.h5", geometry_options(), {},
+                              arguments);
   if (line.help_printed()) return;
   const GeometryRequest request = geometry_request(line);
   if (!line.quiet()) print_notes(request);
@@ -20,9 +22,9 @@ void geometry_command(const std::vector<std::string>& arguments) {
   if (line.quiet() && !line.json()) return;
   const GeometryTableData table = read_geometry_table(request.file);
   if (line.json()) {
-    fmt::print("{}\n", table_description(table, request.file).dump(2));
+    print_json(table_description(table, request.file));
   } else {
-    fmt::print("{}", table_text(table, request.file));
+    print_formatted("{}", table_text(table, request.file));
   }
 }
 

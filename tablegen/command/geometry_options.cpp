@@ -1,6 +1,6 @@
 #include "geometry_options.hpp"
 
-#include "command_line.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 

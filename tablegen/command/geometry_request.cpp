@@ -14,7 +14,7 @@ namespace railtab {
 
 namespace {
 
-PairDimensions dimensions(const CommandLine& line) {
+PairDimensions dimensions(const TableCommandLine& line) {
   PairDimensions d;
   d.track_gauge = line.number("gauge");
   d.gauge_height = line.number("gauge-height");
@@ -25,7 +25,7 @@ PairDimensions dimensions(const CommandLine& line) {
 
 }  // namespace
 
-GeometryRequest geometry_request(const CommandLine& line) {
+GeometryRequest geometry_request(const TableCommandLine& line) {
   const std::string file = line.required("output");
   const std::string wheel_name = line.required("wheel");
   const std::string rail_name = line.required("rail");

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
 #include "geometry_options.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
@@ -18,7 +18,7 @@ struct GeometryRequest {
 };
 
 /// @throws InputError
-[[nodiscard]] GeometryRequest geometry_request(const CommandLine& line);
+[[nodiscard]] GeometryRequest geometry_request(const TableCommandLine& line);
 
 /// To stderr, before the table is made: what was repaired in profile files should be looked at.
 void print_notes(const GeometryRequest& request);

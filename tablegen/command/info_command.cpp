@@ -6,14 +6,17 @@
 #include <numeric>
 #include <optional>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
 #include "creep_report.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/report/html_page.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
 #include "table_page.hpp"
 #include "wheelset_functions.hpp"
 
@@ -112,15 +115,17 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
 
 namespace {
 
-void geometry_info(const CommandLine& line, const std::string& file) {
+void geometry_info(const TableCommandLine& line, const std::string& file) {
   const GeometryTableData data = read_geometry_table(file);
-  if (line.given("html")) require_no_input(line.text("html"), {file});
+  if (line.given("html")) {
+    require_no_input(line.text("html"), {file});
+    require_replaceable_text(line.text("html"), report::html_first_line(table_page_kind));
+  }
   const std::string text = table_text(data, file);
   nlohmann::ordered_json description = table_description(data, file);
   if (!data.shard.whole()) {
     if (line.given("html")) throw input_error(file, "a part of a table", "a whole one: merge the parts first");
-    fmt::print("{}", line.json() ? description.dump(2) + "\n" : text);
-    return;
+    return line.json() ? print_json(description) : print_text(text);
   }
   const TableContact table{GeometryTable(data)};
   const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
@@ -131,9 +136,9 @@ void geometry_info(const CommandLine& line, const std::string& file) {
   }
   if (line.json()) {
     if (functions) description["wheelset"] = functions_json(*functions);
-    fmt::print("{}\n", description.dump(2));
+    print_json(description);
   } else {
-    fmt::print("{}{}", text, functions ? functions_text(*functions) : "");
+    print_formatted("{}{}", text, functions ? functions_text(*functions) : "");
   }
 }
 
@@ -145,16 +150,16 @@ void info_command(const std::vector<std::string>& arguments) {
   own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "a table")  //
       ("html", po::value<std::string>()->value_name("PAGE.html"),
        "write a page with contact points, rolling radius difference, contact angle and conicity");
-  const CommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
+  const TableCommandLine line("tablegen info FILE.h5 [--html PAGE.html] [--json]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
   if (is_creep_table(file)) {
     if (line.given("html")) throw input_error("--html", "on a creep table", "a geometry table, or no --html");
     const CreepTableData table = read_creep_table(file);
     if (line.json()) {
-      fmt::print("{}\n", table_description(table, file).dump(2));
+      print_json(table_description(table, file));
     } else {
-      fmt::print("{}", table_text(table, file));
+      print_formatted("{}", table_text(table, file));
     }
     return;
   }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 
+#include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
@@ -32,11 +33,11 @@ int run(const std::vector<std::string>& arguments) {
       {"merge", merge_command}, {"verify", verify_command}};
   if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
   if (arguments[0] == "--help" || arguments[0] == "-h") {
-    fmt::print("{}", usage);
+    print_formatted("{}", usage);
     return 0;
   }
   if (arguments[0] == "--version") {
-    fmt::print("railtab {}\n", RAILTAB_VERSION);
+    print_formatted("railtab {}\n", RAILTAB_VERSION);
     return 0;
   }
   const auto command = commands.find(arguments[0]);

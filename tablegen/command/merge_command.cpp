@@ -2,7 +2,8 @@
 
 #include <filesystem>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
@@ -11,6 +12,7 @@
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
@@ -64,7 +66,7 @@ void merge_command(const std::vector<std::string>& arguments) {
   po::options_description own("Arguments");
   own.add_options()("shard", po::value<std::vector<std::string>>()->value_name("SHARD.h5"), "all shards of a table")  //
       ("output,o", po::value<std::string>()->value_name("FILE.h5"), "the table");
-  const CommandLine line("tablegen merge SHARD.h5... -o FILE.h5", own, {"shard..."}, arguments);
+  const TableCommandLine line("tablegen merge SHARD.h5... -o FILE.h5", own, {"shard..."}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("output");
   const std::vector<std::string> names = line.required_many("shard");
@@ -79,9 +81,9 @@ void merge_command(const std::vector<std::string>& arguments) {
                                    {"shards", shards.size()},
                                    {"checksum", array_file_checksum(file)},
                                    {"file_bytes", std::filesystem::file_size(file)}};
-    fmt::print("{}\n", j.dump(2));
+    print_json(j);
   } else if (!line.quiet()) {
-    fmt::print("{}: merged from {} shards\n", file, shards.size());
+    print_formatted("{}: merged from {} shards\n", file, shards.size());
   }
 }
 

@@ -146,7 +146,8 @@ std::string table_page(const WheelRailPair& pair, const GeometryTableData& table
   body += report::html_section("Wheel and rail", contact_figure(pair, table, functions) + shift_charts(functions));
   body += report::html_section("Conicity", conicity_chart(functions));
   body += report::html_section("The table", fmt::format("<pre>{}</pre>", report::escaped(description)));
-  return report::html_page(table.wheel.name + " on " + table.rail.name, body, table.provenance.program_version);
+  return report::html_page(table_page_kind, table.wheel.name + " on " + table.rail.name, body,
+                           table.provenance.program_version);
 }
 
 }  // namespace railtab

@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
-#include "command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "creep_report.hpp"
-#include "progress_bar.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
 
 namespace railtab {
 
@@ -56,7 +58,7 @@ std::string text(const GeometryVerification& v) {
   return out;
 }
 
-void verify_creep(const CommandLine& line, const std::string& file) {
+void verify_creep(const TableCommandLine& line, const std::string& file) {
   if (line.given("dz")) throw input_error("--dz", "on a creep table", "a geometry table, or no --dz");
   const TableCreep law{std::make_shared<const CreepTable>(read_creep_table(file))};
   CreepVerificationOptions options;
@@ -67,13 +69,13 @@ void verify_creep(const CommandLine& line, const std::string& file) {
   ProgressBar bar("verify", !line.quiet());
   const CreepVerification result = verify_creep_table(law, options, [&](double share) { bar.show(share); });
   if (line.json()) {
-    fmt::print("{}\n", verification_description(result).dump(2));
+    print_json(verification_description(result));
   } else {
-    fmt::print("{}", verification_text(result));
+    print_formatted("{}", verification_text(result));
   }
 }
 
-void verify_geometry(const CommandLine& line, const std::string& file) {
+void verify_geometry(const TableCommandLine& line, const std::string& file) {
   for (const char* option : {"ratio", "creepage"}) {
     if (line.given(option)) {
       throw input_error(fmt::format("--{}", option), "on a geometry table", "a creep table, or none of it");
@@ -87,9 +89,9 @@ void verify_geometry(const CommandLine& line, const std::string& file) {
   ProgressBar bar("verify", !line.quiet());
   const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
   if (line.json()) {
-    fmt::print("{}\n", description(result).dump(2));
+    print_json(description(result));
   } else {
-    fmt::print("{}", text(result));
+    print_formatted("{}", text(result));
   }
 }
 
@@ -106,7 +108,7 @@ void verify_command(const std::vector<std::string>& arguments) {
       ("ratio", po::value<std::string>()->value_name("LO:HI"), "creep: a/b, log-uniform (0.05:20)")  //
       ("creepage", po::value<std::string>()->value_name("LO:HI"),
        "creep: size of (c11 ux/3, c22 uy/3, c23 phi), log-uniform (0.05:30)");
-  const CommandLine line("tablegen verify FILE.h5 [options]", own, {"file"}, arguments);
+  const TableCommandLine line("tablegen verify FILE.h5 [options]", own, {"file"}, arguments);
   if (line.help_printed()) return;
   const std::string file = line.required("file");
   if (is_creep_table(file)) {

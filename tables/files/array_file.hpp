@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -48,17 +49,17 @@ class ArrayFileWriter {
   ArrayFileWriter(ArrayFileWriter&&) noexcept;
   ArrayFileWriter& operator=(ArrayFileWriter&&) noexcept;
 
+  using Shape = std::vector<std::size_t>;
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
-  void write(std::string_view path, std::span<const double> values, const std::vector<std::size_t>& shape,
-             std::string_view unit, std::string_view description);
-  void write(std::string_view path, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape,
-             std::string_view unit, std::string_view description);
-  /// Stored with 32 bits; read_integers() reads them.
+  void write(std::string_view path, std::span<const double> values, const Shape& shape, std::string_view unit,
+             std::string_view description);
+  void write(std::string_view path, std::span<const std::int64_t> values, const Shape& shape, std::string_view unit,
+             std::string_view description);
   /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
-  void write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
-             std::string_view unit, std::string_view description);
-  void write(std::string_view path, std::span<const std::uint32_t> values, const std::vector<std::size_t>& shape,
-             std::string_view unit, std::string_view description);
+  void write(std::string_view path, std::span<const float> values, const Shape& shape, std::string_view unit,
+             std::string_view description);
+  void write(std::string_view path, std::span<const std::uint32_t> values, const Shape& shape, std::string_view unit,
+             std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);
 
   /// Create or overwrite an attribute of a group or dataset.
@@ -68,7 +69,7 @@ class ArrayFileWriter {
   void attribute(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0);
 
   /// A dataset that grows along its first dimension; `row_shape` is the rest, no extent zero. Chunked.
-  void create_growing(std::string_view path, const std::vector<std::size_t>& row_shape, std::string_view unit,
+  void create_growing(std::string_view path, const Shape& row_shape, std::string_view unit,
                       std::string_view description);
   /// Append whole rows: values.size() is a multiple of the row size.
   void append(std::string_view path, std::span<const double> values);
@@ -95,7 +96,8 @@ class ArrayFileWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a file of named arrays, also one that is being written or whose writer was killed.
+/// Reads a file of named arrays, also one that is being written or whose writer was killed. What lies in other files,
+/// behind links or filters is rejected; sizes are held against that of the file before anything is read.
 class ArrayFileReader {
  public:
   /// Checks that the file exists, is HDF5 and whole, then its filetype, then its format version.
@@ -103,6 +105,7 @@ class ArrayFileReader {
   ~ArrayFileReader();
   ArrayFileReader(ArrayFileReader&&) noexcept;
 
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
   [[nodiscard]] bool contains(std::string_view path) const;
   /// Of a growing dataset, the rows that were flushed.
   [[nodiscard]] Array read(std::string_view path) const;
@@ -140,9 +143,17 @@ void require_replaceable(const std::filesystem::path& file, std::initializer_lis
 [[nodiscard]] std::string array_file_checksum(const std::filesystem::path& file);
 
 /// 64-bit FNV-1a over the little-endian bytes: the checksum of what a table stores.
-[[nodiscard]] std::uint64_t checksum(std::span<const double> values,
-                                     std::uint64_t seed = 14695981039346656037ULL) noexcept;
-[[nodiscard]] std::uint64_t checksum(std::span<const float> values, std::uint64_t seed) noexcept;
-[[nodiscard]] std::uint64_t checksum(std::span<const std::uint32_t> values, std::uint64_t seed) noexcept;
+inline constexpr std::uint64_t checksum_seed = 14695981039346656037ULL;
+[[nodiscard]] std::uint64_t checksum_of_bytes(std::span<const std::byte> bytes, std::uint64_t seed) noexcept;
+[[nodiscard]] inline std::uint64_t checksum(std::span<const double> values,
+                                            std::uint64_t seed = checksum_seed) noexcept {
+  return checksum_of_bytes(std::as_bytes(values), seed);
+}
+[[nodiscard]] inline std::uint64_t checksum(std::span<const float> values, std::uint64_t seed) noexcept {
+  return checksum_of_bytes(std::as_bytes(values), seed);
+}
+[[nodiscard]] inline std::uint64_t checksum(std::span<const std::uint32_t> values, std::uint64_t seed) noexcept {
+  return checksum_of_bytes(std::as_bytes(values), seed);
+}
 
 }  // namespace railtab

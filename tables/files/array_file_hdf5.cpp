@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "railtab/runtime/base/text_file.hpp"
@@ -34,26 +35,8 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
 std::string innermost_error() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
-  // HDF5 quotes the system's message between file names and addresses.
-  constexpr std::string_view before = "error message = '";
-  const std::size_t begin = text.find(before);
-  if (begin != std::string::npos) {
-    text.erase(0, begin + before.size());
-    text.erase(std::min(text.find('\''), text.size()));
-  }
   return text;
 }
-
-}  // namespace
-
-Section::Section() : lock_(library_mutex()) {
-  H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
-Section::~Section() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
-
-namespace {
 
 // HDF5 before 1.14.5 loses memory where an object's header is damaged, although nothing of it is open, and says at the
 // end of the process that it cannot close itself (HDFGroup/hdf5, issue 3790) unless it may not print errors.
@@ -63,6 +46,18 @@ void let_process_end_quietly() {
 }
 
 }  // namespace
+
+Section::Section() : lock_(library_mutex()) {
+  H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5PLget_loading_state(&plugins_);
+  H5PLset_loading_state(0);
+}
+
+Section::~Section() {
+  H5PLset_loading_state(plugins_);
+  H5Eset_auto2(H5E_DEFAULT, print_, print_data_);
+}
 
 InputError failure(const std::string& place, std::string_view expected) {
   let_process_end_quietly();
@@ -83,34 +78,48 @@ std::string place(const std::filesystem::path& file, std::string_view path, std:
   return fmt::format("{}, attribute {}", place(file, path), attribute);
 }
 
-Properties file_access() {
-  Properties access(H5Pcreate(H5P_FILE_ACCESS));
-  const bool done = access.valid() && H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0 &&
-                    H5Pset_file_locking(access.get(), false, true) >= 0;
-  require(done, "HDF5 file access", "its properties");
-  return access;
-}
-
-void set_page_alignment(const Properties& access, const std::filesystem::path& file) {
-  constexpr hsize_t page = 4096;
-  require(H5Pset_alignment(access.get(), 1, page) >= 0, file.string(), "HDF5 objects in pages of their own");
-}
-
-bool contains(hid_t file, std::string_view path) {
+bool contains(hid_t file, const std::filesystem::path& name, std::string_view path) {
   for (std::size_t end = 0; end != std::string_view::npos;) {
     end = path.find('/', end + 1);
     const std::string prefix(path.substr(0, end));
     if (H5Lexists(file, prefix.c_str(), H5P_DEFAULT) <= 0) return false;
+    H5L_info_t link{};
+    require(H5Lget_info(file, prefix.c_str(), &link, H5P_DEFAULT) >= 0, place(name, prefix), "a readable link");
+    if (link.type == H5L_TYPE_HARD) continue;
+    throw input_error(place(name, prefix),
+                      link.type == H5L_TYPE_EXTERNAL ? "a link to another file" : "a link to another place",
+                      "a dataset or group of this file, without links");
   }
-  return H5Oexists_by_name(file, std::string(path).c_str(), H5P_DEFAULT) > 0;
+  return true;
 }
 
+namespace {
+
+void require_plain(hid_t dataset, const std::string& at) {
+  const Properties properties(H5Dget_create_plist(dataset));
+  require(properties.valid(), at, "a dataset with a layout");
+  constexpr const char* expected = "a dataset that lies in this file as it is, without filters";
+  if (H5Pget_layout(properties.get()) == H5D_VIRTUAL) throw input_error(at, "a virtual dataset", expected);
+  if (H5Pget_external_count(properties.get()) != 0) throw input_error(at, "values in other files", expected);
+  if (H5Pget_nfilters(properties.get()) == 0) return;
+  std::array<char, 64> filter{};
+  std::size_t values = 0;
+  unsigned flags = 0;
+  const H5Z_filter_t id =
+      H5Pget_filter2(properties.get(), 0, &flags, &values, nullptr, filter.size() - 1, filter.data(), nullptr);
+  throw input_error(at, fmt::format("values behind the filter {} ({})", id, filter.data()), expected);
+}
+
+}  // namespace
+
 Object open_object(hid_t file, const std::filesystem::path& name, std::string_view path) {
-  if (!path.empty() && !contains(file, path)) {
-    throw input_error(place(name, path), "no such dataset or group", "one of that name");
+  const std::string at = place(name, path);
+  if (!path.empty() && !contains(file, name, path)) {
+    throw input_error(at, "no such dataset or group", "one of that name");
   }
   Object object(H5Oopen(file, path.empty() ? "/" : std::string(path).c_str(), H5P_DEFAULT));
-  require(object.valid(), place(name, path), "a readable dataset or group");
+  require(object.valid(), at, "a readable dataset or group");
+  if (H5Iget_type(object.get()) == H5I_DATASET) require_plain(object.get(), at);
   return object;
 }
 
@@ -129,23 +138,31 @@ Attribute open_attribute(hid_t object, const std::string& at, const char* name) 
 
 }  // namespace
 
-std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name) {
-  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
-  const Type type(H5Aget_type(attribute.get()));
-  if (!type.valid() || H5Tget_class(type.get()) != H5T_INTEGER) throw input_error(at, "no integer", "an integer");
-  std::int64_t value = 0;
-  require(H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) >= 0, at, "a readable integer");
-  return value;
-}
+namespace {
 
-double number_attribute(hid_t object, const std::string& at, std::string_view name) {
+/// Of an integer; where `Number` is floating-point, also of a floating-point attribute.
+template <typename Number>
+Number scalar_attribute(hid_t object, const std::string& at, std::string_view name) {
+  constexpr bool integer = std::is_integral_v<Number>;
   const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
   const Type type(H5Aget_type(attribute.get()));
   const H5T_class_t found = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
-  if (found != H5T_INTEGER && found != H5T_FLOAT) throw input_error(at, "no number", "a number");
-  double value = 0;
-  require(H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0, at, "a readable number");
+  if (found != H5T_INTEGER && (integer || found != H5T_FLOAT)) {
+    throw input_error(at, integer ? "no integer" : "no number", integer ? "an integer" : "a number");
+  }
+  Number value{};
+  require(H5Aread(attribute.get(), integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, &value) >= 0, at, "readable");
   return value;
+}
+
+}  // namespace
+
+std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name) {
+  return scalar_attribute<std::int64_t>(object, at, name);
+}
+
+double number_attribute(hid_t object, const std::string& at, std::string_view name) {
+  return scalar_attribute<double>(object, at, name);
 }
 
 std::string text_attribute(hid_t object, const std::string& at, std::string_view name) {
@@ -153,6 +170,11 @@ std::string text_attribute(hid_t object, const std::string& at, std::string_view
   const Type type(H5Aget_type(attribute.get()));
   if (!type.valid() || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) {
     throw input_error(at, "no text of fixed length", "a text of fixed length");
+  }
+  constexpr std::size_t longest = 1U << 20U;  // a header of an object, where railtab keeps them, has 64 KiB
+  if (H5Tget_size(type.get()) > longest) {
+    throw input_error(at, fmt::format("a text of {} bytes", H5Tget_size(type.get())),
+                      fmt::format("{} bytes at most", longest));
   }
   std::string value(H5Tget_size(type.get()), '\0');
   require(H5Aread(attribute.get(), type.get(), value.data()) >= 0, at, "a readable text");
@@ -195,19 +217,67 @@ FileState inspect_file(const std::filesystem::path& file) {
   return state;
 }
 
-File open_for_reading(const std::filesystem::path& file, FileState& state) {
-  const Properties access = file_access();
-  // Beside a running writer HDF5 repeats a read whose checksum fails, each pause twice the one before: from 1 ns, these
-  // many come to 4 ms. Its own 100 attempts would wait for ever on a damaged file.
+Type text_type(std::size_t length) {
+  Type type(H5Tcopy(H5T_C_S1));
+  const bool done = H5Tset_size(type.get(), length) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
+                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
+  require(done, "HDF5 text", "its type");
+  return type;
+}
+
+Properties group_properties(hid_t kind) {
+  Properties properties(H5Pcreate(kind));
+  constexpr unsigned always_compact = 65535;
+  const bool done = H5Pset_attr_creation_order(properties.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0 &&
+                    H5Pset_attr_phase_change(properties.get(), always_compact, 0) >= 0;
+  require(done, "HDF5 group creation", "its properties");
+  return properties;
+}
+
+File open_file(const std::filesystem::path& file, Access access) {
+  const Properties properties(H5Pcreate(H5P_FILE_ACCESS));
+  const hid_t id = properties.get();
+  // Where a checksum of metadata fails, HDF5 reads again, each pause twice the one before: from 1 ns, these many come
+  // to 4 ms, which a running writer takes. Its own 100 attempts would wait for ever on a damaged file.
   constexpr unsigned attempts = 22;
-  require(H5Pset_metadata_read_attempts(access.get(), attempts) >= 0, file.string(), "HDF5 1.10 or later");
-  while (true) {
-    const unsigned flags = H5F_ACC_RDONLY | (state.being_written ? H5F_ACC_SWMR_READ : 0U);
-    File handle(H5Fopen(file.c_str(), flags, access.get()));
+  // Checksummed metadata, and no lock of HDF5's own, which many file systems lack.
+  bool done = H5Pset_driver(id, file_driver(), nullptr) >= 0 && H5Pset_metadata_read_attempts(id, attempts) >= 0 &&
+              H5Pset_libver_bounds(id, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0 &&
+              H5Pset_file_locking(id, false, true) >= 0;
+  // Each object of a growing file has pages of its own. A kill can end a write at the edge of a page; an object in one
+  // page is written wholly or not at all.
+  constexpr hsize_t page = 4096;
+  const bool growing = access == Access::create_growing || access == Access::write_growing;
+  done = done && (!growing || H5Pset_alignment(id, 1, page) >= 0);
+  // What h5clear does to the file of a killed writer: forget that it is being written, and take its size from the file
+  // system, since the superblock, written last, may not know of the newest chunks yet.
+  const hbool_t yes = true;
+  done = done && (access != Access::write_growing ||
+                  (H5Pset(id, "clear_status_flags", &yes) >= 0 && H5Pset(id, "skip_eof_check", &yes) >= 0));
+  require(done, file.string(), "HDF5 1.10.7 or later");
+  switch (access) {
+    case Access::read:
+      return File(H5Fopen(file.c_str(), H5F_ACC_RDONLY, id));
+    case Access::read_growing:
+      return File(H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, id));
+    case Access::write_growing:
+      return File(H5Fopen(file.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, id));
+    default:
+      break;
+  }
+  const Properties creation = group_properties(H5P_FILE_CREATE);
+  require(growing || H5Pset_userblock(creation.get(), seal_bytes) >= 0, file.string(), "room for the seal");
+  return File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), id));
+}
+
+File open_for_reading(const std::filesystem::path& file, FileState& state) {
+  constexpr int most_changes = 100;
+  for (int attempt = 0;; ++attempt) {
+    File handle = open_file(file, state.being_written ? Access::read_growing : Access::read);
     if (handle.valid()) return handle;
     const InputError refused = failure(file.string(), "a whole HDF5 file");
     const bool was_written = std::exchange(state, inspect_file(file)).being_written;
-    if (state.being_written == was_written) throw refused;
+    if (state.being_written == was_written || attempt == most_changes) throw refused;
   }
 }
 

@@ -15,8 +15,9 @@
 /// What the reader and the writer of array files share: handles, errors, the checks before a file is believed.
 namespace railtab::hdf5 {
 
-/// Held around every call into HDF5: one thread at a time, since not every build of HDF5 is thread-safe, and its error
-/// stack kept off the screen, since every error becomes an InputError.
+/// Held around every call into HDF5: one thread at a time, since not every build of HDF5 is thread-safe; its error
+/// stack kept off the screen, since every error becomes an InputError; no plug-ins loaded, which are code that a file
+/// names.
 class Section {
  public:
   Section();
@@ -28,6 +29,7 @@ class Section {
   std::lock_guard<std::mutex> lock_;
   H5E_auto2_t print_ = nullptr;
   void* print_data_ = nullptr;
+  unsigned plugins_ = 0;
 };
 
 /// Owns an HDF5 identifier; negative is none.
@@ -54,8 +56,6 @@ class Handle {
 };
 using File = Handle<H5Fclose>;
 using Object = Handle<H5Oclose>;
-using Group = Handle<H5Gclose>;
-using Dataset = Handle<H5Dclose>;
 using Attribute = Handle<H5Aclose>;
 using Space = Handle<H5Sclose>;
 using Type = Handle<H5Tclose>;
@@ -73,17 +73,12 @@ inline void require(bool done, const std::string& place, std::string_view expect
 [[nodiscard]] std::string place(const std::filesystem::path& file, std::string_view path);
 [[nodiscard]] std::string place(const std::filesystem::path& file, std::string_view path, std::string_view attribute);
 
-/// File access with checksummed metadata, and without HDF5's own file lock, which many file systems lack.
-[[nodiscard]] Properties file_access();
+/// Whether "a/b" exists. Hard links alone are followed. @throws InputError at any other link: it may leave the file.
+[[nodiscard]] bool contains(hid_t file, const std::filesystem::path& name, std::string_view path);
 
-/// Gives each object of a growing file pages of its own. A kill can end a write at the edge of a page; an object in one
-/// page is written wholly or not at all.
-void set_page_alignment(const Properties& access, const std::filesystem::path& file);
-
-/// "a/b" exists as link and object.
-[[nodiscard]] bool contains(hid_t file, std::string_view path);
-
-/// Opens a group or dataset. @throws InputError where there is none.
+/// Opens a group or a plain dataset: one that lies in this file as it is. @throws InputError where there is none, and
+/// where a dataset is virtual, lies in other files or needs filters, whose plug-ins are code of others and which can
+/// inflate without bound; railtab writes none of these.
 [[nodiscard]] Object open_object(hid_t file, const std::filesystem::path& name, std::string_view path);
 
 [[nodiscard]] std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name);
@@ -101,6 +96,20 @@ struct FileState {
 };
 /// Checks that the file exists, is HDF5 and, unless it is being written, not cut short. @throws InputError
 [[nodiscard]] FileState inspect_file(const std::filesystem::path& file);
+
+/// HDF5's view of files on a disk, with the rules for failed writes and for what is beyond a file's end.
+[[nodiscard]] hid_t file_driver();
+/// Drop whatever HDF5 still has to write, also when the file is closed: it stays as it is on the disk.
+void stop_writing(hid_t file);
+
+/// Fixed length: HDF5 keeps variable-length text in a heap without checksums.
+[[nodiscard]] Type text_type(std::size_t length);
+
+enum class Access { create_whole, create_growing, read, read_growing, write_growing };
+/// The one place where files are opened. Invalid where HDF5 cannot.
+[[nodiscard]] File open_file(const std::filesystem::path& file, Access access);
+/// Groups that keep their attributes in the order of creation, and in the object header, whose checksum covers them.
+[[nodiscard]] Properties group_properties(hid_t kind);
 
 /// @param state of the file, found anew where a writer opens or closes it at this moment
 /// @throws InputError where HDF5 cannot open it

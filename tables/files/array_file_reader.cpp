@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
+#include <map>
 #include <system_error>
 
 #include "railtab/runtime/base/file_checksum.hpp"
@@ -60,54 +60,19 @@ std::size_t count_values(const Source& source, std::uint64_t file_bytes, const s
   return count;
 }
 
-/// Every byte to be read must lie in the file: HDF5 reads zeros where it does not. A file that is being written may
-/// have grown since it was opened.
-void check_stored(const Source& source, const std::filesystem::path& file, std::uint64_t file_bytes,
-                  const std::string& at) {
-  const auto check = [&](haddr_t address, hsize_t bytes) {
-    const auto inside = [&] {
-      return address != HADDR_UNDEF && address <= file_bytes && bytes <= file_bytes - address;
-    };
-    if (inside()) return;
-    std::error_code error;
-    file_bytes = std::filesystem::file_size(file, error);
-    if (error || !inside()) throw input_error(at, "values that are not in the file", "a whole file");
-  };
-  const hid_t dataset = source.dataset.get();
-  const hdf5::Properties properties(H5Dget_create_plist(dataset));
-  const H5D_layout_t layout = H5Pget_layout(properties.get());
-  if (layout == H5D_CONTIGUOUS) {
-    check(H5Dget_offset(dataset), source.count * source.value_bytes);
-  } else if (layout == H5D_CHUNKED) {
-    std::vector<hsize_t> chunk(source.extent.size());
-    require(H5Pget_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()) >= 0, at, "chunks");
-    std::vector<hsize_t> first(source.extent.size(), 0);
-    for (; first[0] < source.extent[0]; first[0] += chunk[0]) {
-      haddr_t address = HADDR_UNDEF;
-      hsize_t bytes = 0;
-      require(H5Dget_chunk_info_by_coord(dataset, first.data(), nullptr, &address, &bytes) >= 0, at, "readable chunks");
-      check(address, bytes);
-    }
-  }
-}
-
 void read_values(const Source& source, hid_t memory_type, void* values, const std::string& at) {
   if (source.count == 0) return;
   const hid_t dataset = source.dataset.get();
   const hdf5::Space file_space(H5Dget_space(dataset));
-  herr_t status = 0;
-  if (source.extent.empty()) {
-    status = H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-  } else {
-    const std::vector<hsize_t> start(source.extent.size(), 0);
-    const hdf5::Space memory_space(
-        H5Screate_simple(static_cast<int>(source.extent.size()), source.extent.data(), nullptr));
-    status =
-        H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, source.extent.data(), nullptr);
-    if (status >= 0) {
-      status = H5Dread(dataset, memory_type, memory_space.get(), file_space.get(), H5P_DEFAULT, values);
-    }
-  }
+  const bool scalar = source.extent.empty();
+  const std::vector<hsize_t> start(source.extent.size(), 0);
+  const hdf5::Space memory_space(
+      scalar ? H5Screate(H5S_SCALAR)
+             : H5Screate_simple(static_cast<int>(source.extent.size()), source.extent.data(), nullptr));
+  herr_t status = scalar ? 0
+                         : H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr,
+                                               source.extent.data(), nullptr);
+  if (status >= 0) status = H5Dread(dataset, memory_type, memory_space.get(), file_space.get(), H5P_DEFAULT, values);
   require(status >= 0, at, "readable values");
 }
 
@@ -123,13 +88,17 @@ struct ArrayFileReader::Impl {
   std::vector<std::uint64_t> block_sums;
   std::size_t block_width = 0;  ///< columns
 
+  /// Of the datasets that were read: all together have room in the file.
+  mutable std::map<std::string, std::uint64_t> bytes_of;
+  mutable std::uint64_t all_bytes = 0;
+
   /// Size of the file; of one that is being written, now.
   [[nodiscard]] std::uint64_t bytes() const {
     std::error_code error;
     const std::uint64_t now = state.being_written ? std::filesystem::file_size(file, error) : state.bytes;
     return error ? state.bytes : now;
   }
-  /// Type, shape and storage are checked before any value is read.
+  /// Type and shape are checked before any value is read.
   [[nodiscard]] Source open(std::string_view path, H5T_class_t expected) const {
     const std::string at = place(file, path);
     Source source;
@@ -142,6 +111,9 @@ struct ArrayFileReader::Impl {
       throw input_error(at, class_name(found), fmt::format("{} of fixed length", class_name(expected)));
     }
     source.value_bytes = H5Tget_size(type.get());
+    if (found != H5T_STRING && source.value_bytes != sizeof(double) && source.value_bytes != sizeof(float)) {
+      throw input_error(at, fmt::format("numbers of {} bytes", source.value_bytes), "numbers of 4 or 8 bytes");
+    }
     const hdf5::Space space(H5Dget_space(source.dataset.get()));
     const int rank = space.valid() ? H5Sget_simple_extent_ndims(space.get()) : -1;
     require(rank >= 0 && source.value_bytes > 0, at, "a dataset with a shape");
@@ -149,7 +121,14 @@ struct ArrayFileReader::Impl {
     H5Sget_simple_extent_dims(space.get(), source.extent.data(), nullptr);
     limit_rows(source, at);
     source.count = count_values(source, bytes(), at);
-    if (source.count > 0) check_stored(source, file, bytes(), at);
+    std::uint64_t& own = bytes_of[std::string(path)];
+    const std::uint64_t now = source.count * source.value_bytes, together = all_bytes - own + now;
+    if (together > bytes()) {
+      throw input_error(at, fmt::format("{} bytes of values up to this dataset", together),
+                        fmt::format("no more than the {} bytes of the file", bytes()));
+    }
+    all_bytes = together;
+    own = now;
     return source;
   }
 
@@ -249,13 +228,11 @@ void ArrayFileReader::Impl::check_whole(const Source& source, const std::string&
 ArrayFileReader::ArrayFileReader(std::filesystem::path file, std::string_view filetype, int format_version)
     : impl_(std::make_unique<Impl>()) {
   impl_->file = std::move(file);
-  {
-    const Section section;
-    impl_->state = hdf5::inspect_file(impl_->file);
-    impl_->handle = hdf5::open_for_reading(impl_->file, impl_->state);
-    hdf5::check_type(impl_->handle.get(), impl_->file, filetype, format_version);
-    if (hdf5::contains(impl_->handle.get(), hdf5::records_dataset)) impl_->read_records();
-  }
+  const Section section;
+  impl_->state = hdf5::inspect_file(impl_->file);
+  impl_->handle = hdf5::open_for_reading(impl_->file, impl_->state);
+  hdf5::check_type(impl_->handle.get(), impl_->file, filetype, format_version);
+  if (hdf5::contains(impl_->handle.get(), impl_->file, hdf5::records_dataset)) impl_->read_records();
 }
 
 ArrayFileReader::~ArrayFileReader() {
@@ -268,7 +245,7 @@ ArrayFileReader::ArrayFileReader(ArrayFileReader&&) noexcept = default;
 
 bool ArrayFileReader::contains(std::string_view path) const {
   const Section section;
-  return hdf5::contains(impl_->handle.get(), path);
+  return hdf5::contains(impl_->handle.get(), impl_->file, path);
 }
 
 Array ArrayFileReader::read(std::string_view path) const {
@@ -307,6 +284,11 @@ std::vector<std::string> ArrayFileReader::read_strings(std::string_view path) co
   const Section section;
   const Source source = impl_->open(path, H5T_STRING);
   const hdf5::Type type(H5Dget_type(source.dataset.get()));
+  constexpr std::size_t most_texts = 1'000'000;  // each takes far more room in memory than in the file
+  if (source.count > most_texts) {
+    throw input_error(place(impl_->file, path), fmt::format("{} texts", source.count),
+                      fmt::format("{} at most", most_texts));
+  }
   std::string bytes(source.count * source.value_bytes, '\0');
   read_values(source, type.get(), bytes.data(), place(impl_->file, path));
   impl_->check_whole(source, place(impl_->file, path));
@@ -358,6 +340,8 @@ std::vector<std::string> ArrayFileReader::attribute_names(std::string_view path)
   require(status >= 0, place(impl_->file, path), "readable attributes");
   return names;
 }
+
+const std::filesystem::path& ArrayFileReader::file() const noexcept { return impl_->file; }
 
 std::size_t ArrayFileReader::records() const noexcept { return impl_->records; }
 

@@ -40,38 +40,25 @@ herr_t keep_growing(hid_t group, const char* name, const H5L_info_t* link, void*
 
 }  // namespace
 
-void ArrayFileWriter::Impl::open_for_writing() {
-  const hdf5::Properties access = hdf5::file_access();
-  hdf5::set_page_alignment(access, file);
-  // What h5clear does to the file of a killed writer: forget that it is being written, and take its size from the file
-  // system, since the superblock, written last, may not know of the newest chunks yet.
-  const hbool_t yes = true;
-  const bool set =
-      H5Pset(access.get(), "clear_status_flags", &yes) >= 0 && H5Pset(access.get(), "skip_eof_check", &yes) >= 0;
-  require(set, file.string(), "HDF5 1.10 or later");
-  const std::filesystem::path& name = temporary.empty() ? file : temporary;
-  handle = hdf5::File(H5Fopen(name.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access.get()));
-  require(handle.valid() && H5Fincrement_filesize(handle.get(), 0) >= 0, file.string(), "a file that can be written");
-}
-
 ArrayFileWriter::Impl::Growing ArrayFileWriter::Impl::open_growing(const std::string& path) const {
   Growing entry;
-  entry.dataset = hdf5::Dataset(H5Dopen2(handle.get(), path.c_str(), H5P_DEFAULT));
-  const hdf5::Space space(entry.dataset.valid() ? H5Dget_space(entry.dataset.get()) : -1);
+  entry.dataset = hdf5::open_object(handle.get(), file, path);
+  const hdf5::Space space(H5Dget_space(entry.dataset.get()));
   const int rank = space.valid() ? H5Sget_simple_extent_ndims(space.get()) : 0;
   require(rank > 0, place(file, path), "a growing dataset");
   entry.extent.resize(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.get(), entry.extent.data(), nullptr);
   for (std::size_t i = 1; i < entry.extent.size(); ++i) entry.row_size *= entry.extent[i];
+  if (entry.row_size == 0) throw input_error(place(file, path), "rows without values", "a growing dataset");
   return entry;
 }
 
 void ArrayFileWriter::Impl::open_records() {
-  open_for_writing();
-  records_dataset = hdf5::Dataset(H5Dopen2(handle.get(), hdf5::records_dataset, H5P_DEFAULT));
+  handle = hdf5::open_file(temporary.empty() ? file : temporary, hdf5::Access::write_growing);
+  require(handle.valid() && H5Fincrement_filesize(handle.get(), 0) >= 0, file.string(), "a file that can be written");
+  records_dataset = hdf5::open_object(handle.get(), file, hdf5::records_dataset);
   std::array<std::int64_t, 2> count{-1, -1};
-  const bool read = records_dataset.valid() &&
-                    H5Dread(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, count.data()) >= 0;
+  const bool read = H5Dread(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, count.data()) >= 0;
   require(read && count[0] >= 0, place(file, hdf5::records_dataset), "the number of records");
   records = static_cast<std::size_t>(count[0]);
 
@@ -89,6 +76,10 @@ void ArrayFileWriter::Impl::open_records() {
   }
   if (growing.empty()) return;
   blocks = open_growing(hdf5::blocks_dataset);
+  if (blocks.extent.size() != 2 || blocks.row_size != 1 + growing.size()) {
+    throw input_error(place(file, hdf5::blocks_dataset), fmt::format("{} columns", blocks.row_size),
+                      fmt::format("{}, one for each growing dataset and one more", 1 + growing.size()));
+  }
   for (const auto& [path, entry] : growing) {
     if (entry.column < blocks.row_size && entry.column > 0) continue;
     throw input_error(place(file, path, hdf5::column_attribute), fmt::format("{}", entry.column),

@@ -44,6 +44,12 @@ std::string expected_seal(std::istream& stream) {
 
 }  // namespace
 
+std::uint64_t checksum_of_bytes(std::span<const std::byte> bytes, std::uint64_t seed) noexcept {
+  constexpr std::uint64_t prime = 1099511628211ULL;
+  for (const std::byte byte : bytes) seed = (seed ^ static_cast<std::uint64_t>(byte)) * prime;
+  return seed;
+}
+
 void seal_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string block = expected_seal(in);

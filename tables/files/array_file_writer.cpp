@@ -12,16 +12,6 @@ using hdf5::place;
 using hdf5::require;
 using hdf5::Section;
 
-namespace {
-
-[[maybe_unused]] std::size_t product(const std::vector<std::size_t>& shape) {
-  std::size_t count = 1;
-  for (const std::size_t extent : shape) count *= extent;
-  return count;
-}
-
-}  // namespace
-
 ArrayFileWriter::ArrayFileWriter(std::filesystem::path file, std::string_view filetype, int format_version, Mode mode)
     : impl_(std::make_unique<Impl>()) {
   impl_->file = std::move(file);
@@ -58,49 +48,34 @@ ArrayFileWriter& ArrayFileWriter::operator=(ArrayFileWriter&& other) noexcept {
   return *this;
 }
 
-void ArrayFileWriter::write(std::string_view path, std::span<const double> values,
-                            const std::vector<std::size_t>& shape, std::string_view unit,
-                            std::string_view description) {
-  assert(values.size() == product(shape));
-  const Section section;
-  impl_->write_dataset(path, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), shape, unit, description);
-}
-
-void ArrayFileWriter::write(std::string_view path, std::span<const std::int64_t> values,
-                            const std::vector<std::size_t>& shape, std::string_view unit,
-                            std::string_view description) {
-  assert(values.size() == product(shape));
-  const Section section;
-  impl_->write_dataset(path, H5T_STD_I64LE, H5T_NATIVE_INT64, values.data(), shape, unit, description);
-}
-
-void ArrayFileWriter::write(std::string_view path, std::span<const float> values, const std::vector<std::size_t>& shape,
+void ArrayFileWriter::write(std::string_view path, std::span<const double> values, const Shape& shape,
                             std::string_view unit, std::string_view description) {
-  assert(values.size() == product(shape));
-  const Section section;
-  impl_->write_dataset(path, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values.data(), shape, unit, description);
+  impl_->write_numbers(path, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values, shape, unit, description);
 }
 
-void ArrayFileWriter::write(std::string_view path, std::span<const std::uint32_t> values,
-                            const std::vector<std::size_t>& shape, std::string_view unit,
-                            std::string_view description) {
-  assert(values.size() == product(shape));
-  const Section section;
-  impl_->write_dataset(path, H5T_STD_U32LE, H5T_NATIVE_UINT32, values.data(), shape, unit, description);
+void ArrayFileWriter::write(std::string_view path, std::span<const std::int64_t> values, const Shape& shape,
+                            std::string_view unit, std::string_view description) {
+  impl_->write_numbers(path, H5T_STD_I64LE, H5T_NATIVE_INT64, values, shape, unit, description);
+}
+
+void ArrayFileWriter::write(std::string_view path, std::span<const float> values, const Shape& shape,
+                            std::string_view unit, std::string_view description) {
+  impl_->write_numbers(path, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values, shape, unit, description);
+}
+
+void ArrayFileWriter::write(std::string_view path, std::span<const std::uint32_t> values, const Shape& shape,
+                            std::string_view unit, std::string_view description) {
+  impl_->write_numbers(path, H5T_STD_U32LE, H5T_NATIVE_UINT32, values, shape, unit, description);
 }
 
 void ArrayFileWriter::write(std::string_view path, const std::vector<std::string>& values,
                             std::string_view description) {
-  // Fixed length: HDF5 keeps variable-length text in a heap without checksums.
   std::size_t length = 1;
   for (const std::string& value : values) length = std::max(length, value.size());
   std::string bytes(length * values.size(), '\0');
   for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(bytes.data() + i * length, length);
   const Section section;
-  const hdf5::Type type(H5Tcopy(H5T_C_S1));
-  const bool done = H5Tset_size(type.get(), length) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
-                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
-  require(done, place(impl_->file, path), "a text type");
+  const hdf5::Type type = hdf5::text_type(length);
   impl_->write_dataset(path, type.get(), type.get(), bytes.data(), {values.size()}, "text", description);
 }
 
@@ -122,7 +97,7 @@ void ArrayFileWriter::attribute(std::string_view path, std::string_view name, st
 
 void ArrayFileWriter::create_growing(std::string_view path, const std::vector<std::size_t>& row_shape,
                                      std::string_view unit, std::string_view description) {
-  assert(impl_->mode == Mode::growing && product(row_shape) > 0);
+  assert(impl_->mode == Mode::growing && size_of(row_shape) > 0);
   const Section section;
   Impl::Growing entry;
   entry.extent.assign(1, 0);
@@ -139,7 +114,9 @@ void ArrayFileWriter::append(std::string_view path, std::span<const double> valu
   const Section section;
   impl_->begin_records();
   const auto found = impl_->growing.find(path);
-  assert(found != impl_->growing.end() && values.size() % found->second.row_size == 0);
+  if (found == impl_->growing.end() || values.size() % found->second.row_size != 0) {  // of a file that was reopened
+    throw input_error(place(impl_->file, path), "no growing dataset with rows of that size", "one to go on with");
+  }
   auto& [name, entry] = *found;
   if (values.empty()) return;
   impl_->append_rows(name, entry, H5T_NATIVE_DOUBLE, values.data(), values.size() / entry.row_size);
@@ -172,8 +149,7 @@ void ArrayFileWriter::replace(std::string_view path, std::span<const double> val
   const Section section;
   impl_->begin_records();
   const std::string at = place(impl_->file, path);
-  const hdf5::Dataset dataset(H5Dopen2(impl_->handle.get(), std::string(path).c_str(), H5P_DEFAULT));
-  require(dataset.valid(), at, "a slot");
+  const hdf5::Object dataset = hdf5::open_object(impl_->handle.get(), impl_->file, path);
   hsize_t extent = 0;
   H5Sget_simple_extent_dims(hdf5::Space(H5Dget_space(dataset.get())).get(), &extent, nullptr);
   std::vector<double> content(values.begin(), values.end());

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cassert>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "railtab/runtime/base/file_checksum.hpp"
@@ -17,6 +20,11 @@ inline std::array<std::int64_t, 2> records_and_complement(std::size_t records) {
   return {count, -1 - count};
 }
 
+/// Number of values.
+[[nodiscard]] inline std::size_t size_of(const ArrayFileWriter::Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
+}
+
 /// State of a file being written. Its members call HDF5 without taking a Section: the public functions do.
 struct ArrayFileWriter::Impl {
   std::filesystem::path file;       ///< the name at the end
@@ -27,7 +35,7 @@ struct ArrayFileWriter::Impl {
   hdf5::File handle;
 
   struct Growing {
-    hdf5::Dataset dataset;
+    hdf5::Object dataset;
     std::vector<hsize_t> extent;  ///< rows that there is room for, then the shape of a row
     std::size_t rows = 0;         ///< rows that are written
     std::size_t row_size = 1;
@@ -36,7 +44,7 @@ struct ArrayFileWriter::Impl {
   };
   std::map<std::string, Growing, std::less<>> growing;
   Growing blocks;  ///< checksums; its rows count blocks, not records
-  hdf5::Dataset records_dataset;
+  hdf5::Object records_dataset;
   std::size_t records = 0;
 
   Impl() = default;
@@ -50,15 +58,22 @@ struct ArrayFileWriter::Impl {
   void abandon() noexcept;
 
   void create(std::string_view filetype, int format_version);
+  /// Those before each '/'.
   void create_groups_of(std::string_view path);
-  void create_group(const std::string& path);
-  hdf5::Dataset create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
-  void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
-                     const std::vector<std::size_t>& shape, std::string_view unit, std::string_view description);
+  hdf5::Object create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
+  void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values, const Shape& shape,
+                     std::string_view unit, std::string_view description);
+  template <typename Number>
+  void write_numbers(std::string_view path, hid_t file_type, hid_t memory_type, std::span<const Number> values,
+                     const Shape& shape, std::string_view unit, std::string_view description) {
+    assert(values.size() == size_of(shape));
+    const hdf5::Section section;
+    write_dataset(path, file_type, memory_type, values.data(), shape, unit, description);
+  }
   /// @param fill of rows that were never written; null: zeros
-  hdf5::Dataset create_extendible(std::string_view path, hid_t file_type, const double* fill,
-                                  const std::vector<hsize_t>& extent, std::string_view unit,
-                                  std::string_view description);
+  hdf5::Object create_extendible(std::string_view path, hid_t file_type, const double* fill,
+                                 const std::vector<hsize_t>& extent, std::string_view unit,
+                                 std::string_view description);
   void write_attribute(std::string_view path, std::string_view name, hid_t file_type, hid_t memory_type,
                        const void* value);
   void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity);
@@ -68,8 +83,6 @@ struct ArrayFileWriter::Impl {
   void open_records();
   void create_blocks();
   [[nodiscard]] Growing open_growing(const std::string& path) const;
-  /// Also of a file whose writer was killed.
-  void open_for_writing();
   /// Never less than there is: a chunk given back could be used again before the file stops naming its old place, and
   /// a process that ends in between leaves two owners of one place.
   void make_room(const std::string& path, Growing& dataset, std::size_t rows);

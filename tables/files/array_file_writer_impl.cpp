@@ -1,6 +1,5 @@
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,16 +20,6 @@ using hdf5::place;
 using hdf5::require;
 
 namespace {
-
-/// Groups that keep their attributes in the order of creation, and in the object header, whose checksum covers them.
-hdf5::Properties group_properties(hid_t kind) {
-  hdf5::Properties properties(H5Pcreate(kind));
-  constexpr unsigned always_compact = 65535;
-  const bool done = H5Pset_attr_creation_order(properties.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0 &&
-                    H5Pset_attr_phase_change(properties.get(), always_compact, 0) >= 0;
-  require(done, "HDF5 group creation", "its properties");
-  return properties;
-}
 
 /// Rows of a chunk: about 16 KiB, so that short runs stay small files; at least 8, so that the index of a long run
 /// stays small too (up to 8180 chunks each of its blocks fits in a page).
@@ -70,16 +59,7 @@ void ArrayFileWriter::Impl::require_written(bool done, const std::string& place)
 
 void ArrayFileWriter::Impl::abandon() noexcept {
   broken = true;
-  // HDF5 keeps what it could not write and tries again at the close of the file, piece by piece, whatever depends on
-  // whatever. Its descriptor is led to an empty file in memory first, which takes all of it.
-  int* descriptor = nullptr;
-  if (handle.valid() && H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, reinterpret_cast<void**>(&descriptor)) >= 0) {
-    const int nowhere = ::memfd_create("railtab", MFD_CLOEXEC);
-    if (nowhere >= 0) {
-      ::dup3(nowhere, *descriptor, O_CLOEXEC);
-      ::close(nowhere);
-    }
-  }
+  if (handle.valid()) hdf5::stop_writing(handle.get());
   growing.clear();
   blocks = {};
   records_dataset = {};
@@ -90,59 +70,46 @@ void ArrayFileWriter::Impl::abandon() noexcept {
 void ArrayFileWriter::Impl::create(std::string_view filetype, int format_version) {
   file = output_file(file);
   if (mode == Mode::growing && std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
-  remove_abandoned(file);
-  temporary = temporary_name(file);
-  const hdf5::Properties access = hdf5::file_access();
-  const hdf5::Properties creation = group_properties(H5P_FILE_CREATE);
-  if (mode == Mode::growing) {
-    hdf5::set_page_alignment(access, file);
-  } else {
-    require(H5Pset_userblock(creation.get(), seal_bytes) >= 0, file.string(), "room for the seal");
-  }
-  handle = hdf5::File(H5Fcreate(temporary.c_str(), H5F_ACC_EXCL, creation.get(), access.get()));
-  if (!handle.valid()) {
-    temporary.clear();
-    throw hdf5::failure(file.string(), "a file that can be created");
-  }
-  lock = WriterLock(temporary);
+  TemporaryFile made = create_temporary(file);
+  temporary = made.name;
+  lock = std::move(made.lock);
+  const bool whole = mode == Mode::whole_or_nothing;
+  handle = hdf5::open_file(temporary, whole ? hdf5::Access::create_whole : hdf5::Access::create_growing);
+  if (!handle.valid()) throw hdf5::failure(file.string(), "a file that can be created");
   write_text("", "filetype", filetype, 0);
   const std::int64_t version = format_version;
   write_attribute("", "format_version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version);
-  if (mode == Mode::whole_or_nothing) return;
+  if (whole) return;
   const std::array<std::int64_t, 2> none = records_and_complement(0);
   write_dataset(hdf5::records_dataset, H5T_STD_I64LE, H5T_NATIVE_INT64, none.data(), {none.size()}, "1",
                 "rows of the growing datasets that are valid; minus one minus that number");
 }
 
 void ArrayFileWriter::Impl::create_groups_of(std::string_view path) {
+  const hdf5::Properties properties = hdf5::group_properties(H5P_GROUP_CREATE);
   for (std::size_t end = path.find('/'); end != std::string_view::npos; end = path.find('/', end + 1)) {
-    create_group(std::string(path.substr(0, end)));
+    const std::string group(path.substr(0, end));
+    if (H5Lexists(handle.get(), group.c_str(), H5P_DEFAULT) > 0) continue;
+    const hdf5::Object created(H5Gcreate2(handle.get(), group.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+    require_written(created.valid(), place(file, group));
   }
 }
 
-void ArrayFileWriter::Impl::create_group(const std::string& path) {
-  if (H5Lexists(handle.get(), path.c_str(), H5P_DEFAULT) > 0) return;
-  const hdf5::Properties properties = group_properties(H5P_GROUP_CREATE);
-  const hdf5::Group group(H5Gcreate2(handle.get(), path.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
-  require_written(group.valid(), place(file, path));
-}
-
-hdf5::Dataset ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties) {
+hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties) {
   assert(!temporary.empty() && "nothing can be created once records have begun");
   create_groups_of(path);
-  hdf5::Dataset dataset(
+  hdf5::Object dataset(
       H5Dcreate2(handle.get(), std::string(path).c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
   require_written(dataset.valid(), place(file, path));
   return dataset;
 }
 
 void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values,
-                                          const std::vector<std::size_t>& shape, std::string_view unit,
-                                          std::string_view description) {
+                                          const Shape& shape, std::string_view unit, std::string_view description) {
   const std::vector<hsize_t> extent(shape.begin(), shape.end());
   const hdf5::Space space(shape.empty() ? H5Screate(H5S_SCALAR)
                                         : H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
-  const hdf5::Dataset dataset = create_dataset(path, file_type, space.get(), H5P_DEFAULT);
+  const hdf5::Object dataset = create_dataset(path, file_type, space.get(), H5P_DEFAULT);
   if (std::find(shape.begin(), shape.end(), 0U) == shape.end()) {
     require_written(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0,
                     place(file, path));
@@ -150,15 +117,14 @@ void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t file_type
   write_text(path, "unit", unit, 0);
   write_text(path, "description", description, 0);
   if (mode != Mode::growing || path == hdf5::records_dataset) return;
-  std::size_t bytes = H5Tget_size(memory_type);
-  for (const std::size_t length : shape) bytes *= length;
+  const std::size_t bytes = H5Tget_size(memory_type) * size_of(shape);
   const auto sum = static_cast<std::int64_t>(word_checksum({static_cast<const std::byte*>(values), bytes}));
   write_attribute(path, hdf5::checksum_attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &sum);
 }
 
-hdf5::Dataset ArrayFileWriter::Impl::create_extendible(std::string_view path, hid_t file_type, const double* fill,
-                                                       const std::vector<hsize_t>& extent, std::string_view unit,
-                                                       std::string_view description) {
+hdf5::Object ArrayFileWriter::Impl::create_extendible(std::string_view path, hid_t file_type, const double* fill,
+                                                      const std::vector<hsize_t>& extent, std::string_view unit,
+                                                      std::string_view description) {
   std::vector<hsize_t> limit = extent;
   limit[0] = H5S_UNLIMITED;
   std::vector<hsize_t> chunk = extent;
@@ -171,7 +137,7 @@ hdf5::Dataset ArrayFileWriter::Impl::create_extendible(std::string_view path, hi
   const bool done = H5Pset_chunk(properties.get(), rank, chunk.data()) >= 0 &&
                     (fill == nullptr || H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, fill) >= 0);
   require(done, place(file, path), "chunks");
-  hdf5::Dataset dataset = create_dataset(path, file_type, space.get(), properties.get());
+  hdf5::Object dataset = create_dataset(path, file_type, space.get(), properties.get());
   write_text(path, "unit", unit, 0);
   write_text(path, "description", description, 0);
   return dataset;
@@ -181,8 +147,9 @@ void ArrayFileWriter::Impl::write_attribute(std::string_view path, std::string_v
                                             hid_t memory_type, const void* value) {
   const std::string at = place(file, path, name);
   const std::string key(name);
-  create_groups_of(path);
-  if (!path.empty()) create_group(std::string(path));
+  if (!path.empty() && H5Lexists(handle.get(), std::string(path).c_str(), H5P_DEFAULT) <= 0) {
+    create_groups_of(std::string(path) + "/");
+  }
   const hdf5::Object object = hdf5::open_object(handle.get(), file, path);
   hdf5::Attribute attribute;
   if (H5Aexists(object.get(), key.c_str()) > 0) {
@@ -200,7 +167,7 @@ void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view n
                                        std::size_t capacity) {
   const std::string key(name);
   std::size_t room = std::max({value.size(), capacity, std::size_t{1}});
-  if (path.empty() || hdf5::contains(handle.get(), path)) {
+  if (path.empty() || hdf5::contains(handle.get(), file, path)) {
     const hdf5::Object object = hdf5::open_object(handle.get(), file, path);
     if (H5Aexists(object.get(), key.c_str()) > 0) {
       const hdf5::Attribute present(H5Aopen(object.get(), key.c_str(), H5P_DEFAULT));
@@ -212,10 +179,7 @@ void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view n
   constexpr std::string_view cut = "...";
   if (bytes.size() > room) bytes.replace(room - std::min(room, cut.size()), std::string::npos, cut);
   bytes.resize(room, '\0');
-  const hdf5::Type type(H5Tcopy(H5T_C_S1));
-  const bool done = H5Tset_size(type.get(), room) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
-                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
-  require(done, place(file, path, name), "a text type");
+  const hdf5::Type type = hdf5::text_type(room);
   write_attribute(path, name, type.get(), type.get(), bytes.data());
 }
 

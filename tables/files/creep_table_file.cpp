@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <array>
 
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/file_fields.hpp"
 #include "railtab/tables/files/table_statements.hpp"
 
 namespace railtab {
@@ -35,7 +35,21 @@ const std::array<AxisText, 4>& axes(CreepTableLayout layout) {
   return layout == CreepTableLayout::smooth ? smooth_axes : paper_axes;
 }
 
-std::string axis_path(const AxisText& axis) { return fmt::format("axes/{}", axis.name); }
+Field axis_field(const AxisText& axis) {
+  return {fmt::format("axes/{}", axis.name), {axis.name}, axis.unit, axis.description, Field::Values::increasing};
+}
+
+Field values_field(CreepTableLayout layout) {
+  Field field{"values",
+              {},
+              "1",
+              layout == CreepTableLayout::smooth
+                  ? "F_x/t, F_y/t, M_z/(t m) at the nodes, m^2 = (a/b + b/a)/2; at t = 0 the limit of linear theory"
+                  : "F_x, F_y, M_z at the nodes"};
+  for (const AxisText& axis : axes(layout)) field.shape.emplace_back(axis.name);
+  field.shape.emplace_back("3");
+  return field;
+}
 
 /// Over every number of the table, every array after its length.
 std::string content_checksum(const CreepTableData& table) {
@@ -61,63 +75,6 @@ std::vector<float> rounded(const std::vector<double>& values) {
   return result;
 }
 
-class Reading {
- public:
-  explicit Reading(const std::filesystem::path& name)
-      : name_(name), file_(name, creep_table_filetype, format_version) {}
-
-  [[nodiscard]] CreepTableData table() const {
-    CreepTableData table;
-    const std::string layout = file_.text("options", "layout");
-    if (layout != "default" && layout != "paper") {
-      throw input_error(place("options: layout"), fmt::format("\"{}\"", layout), "default or paper");
-    }
-    table.layout = creep_table_layout(layout);
-    table.poisson = option("poisson", 0.0, 0.5);
-    table.elements = static_cast<int>(option("elements", 1.0, 1e6));
-    std::vector<long> shape;
-    for (std::size_t i = 0; i < 4; ++i) {
-      table.nodes[i] = numbers(axis_path(axes(table.layout)[i]), {-1});
-      shape.push_back(static_cast<long>(table.nodes[i].size()));
-    }
-    shape.push_back(3);
-    table.values = numbers("values", shape);
-    if (table.layout == CreepTableLayout::smooth) {
-      table.ratio_stretch = option("ratio_stretch", 1e-3, 1e3);
-      table.radius_unit = option("radius_unit", 1e-3, 1e3);
-    }
-    table.statistics = read_statistics(file_);
-    table.provenance = read_provenance(file_);
-    require_checksum(file_, name_, content_checksum(table));
-    return table;
-  }
-
- private:
-  [[nodiscard]] std::string place(std::string_view path) const { return fmt::format("{}: {}", name_.string(), path); }
-
-  [[nodiscard]] double option(std::string_view name, double low, double high) const {
-    const double value = file_.number("options", name);
-    if (!(value >= low && value <= high)) {
-      throw input_error(place(fmt::format("options: {}", name)), fmt::format("{}", value),
-                        fmt::format("{} to {}", low, high));
-    }
-    return value;
-  }
-
-  [[nodiscard]] std::vector<double> numbers(const std::string& path, const std::vector<long>& shape) const {
-    std::vector<double> values = file_.read(path, shape);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i])) {
-        throw input_error(place(path), fmt::format("{} as value {}", values[i], i), "a finite number");
-      }
-    }
-    return values;
-  }
-
-  std::filesystem::path name_;
-  ArrayFileReader file_;
-};
-
 }  // namespace
 
 void write_creep_table(const std::filesystem::path& file, const CreepTableData& table) {
@@ -128,22 +85,13 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
   out.attribute("", "description",
                 "Forces of exact rolling contact (Kalker), normalised: G = 1, mu F_n = 1, sqrt(ab) = 1; on the wheel, "
                 "x forward, y right, z down. Layout: docs/file_formats/creep_table.md");
-  std::vector<std::size_t> shape;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const AxisText& axis = axes(table.layout)[i];
-    const std::vector<double>& nodes = table.nodes[i];
-    out.write(axis_path(axis), nodes, {nodes.size()}, axis.unit, axis.description);
-    shape.push_back(nodes.size());
-  }
-  shape.push_back(3);
-  const bool smooth = table.layout == CreepTableLayout::smooth;
-  out.write("values", values, shape, "1",
-            smooth ? "F_x/t, F_y/t, M_z/(t m) at the nodes, m^2 = (a/b + b/a)/2; at t = 0 the limit of linear theory"
-                   : "F_x, F_y, M_z at the nodes");
+  FieldWriter arrays(out);
+  for (std::size_t i = 0; i < 4; ++i) arrays.write(axis_field(axes(table.layout)[i]), table.nodes[i]);
+  arrays.write(values_field(table.layout), values);
   out.attribute("options", "layout", creep_table_layout_name(table.layout));
   out.attribute("options", "poisson", table.poisson);
   out.attribute("options", "elements", static_cast<std::int64_t>(table.elements));
-  if (smooth) {
+  if (table.layout == CreepTableLayout::smooth) {
     out.attribute("options", "ratio_stretch", table.ratio_stretch);
     out.attribute("options", "radius_unit", table.radius_unit);
   }
@@ -151,6 +99,28 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
   out.close();
 }
 
-CreepTableData read_creep_table(const std::filesystem::path& file) { return Reading(file).table(); }
+CreepTableData read_creep_table(const std::filesystem::path& name) {
+  const ArrayFileReader file(name, creep_table_filetype, format_version);
+  FieldReader in(file);
+  CreepTableData table;
+  const std::string layout = file.text("options", "layout");
+  if (layout != "default" && layout != "paper") {
+    throw input_error(fmt::format("{}: options: layout", name.string()), fmt::format("\"{}\"", layout),
+                      "default or paper");
+  }
+  table.layout = creep_table_layout(layout);
+  table.poisson = in.number("options", "poisson", 0.0, 0.5);
+  table.elements = static_cast<int>(in.number("options", "elements", 1.0, 1e6));
+  for (std::size_t i = 0; i < 4; ++i) table.nodes[i] = in.numbers(axis_field(axes(table.layout)[i]));
+  table.values = in.numbers(values_field(table.layout));
+  if (table.layout == CreepTableLayout::smooth) {
+    table.ratio_stretch = in.number("options", "ratio_stretch", 1e-3, 1e3);
+    table.radius_unit = in.number("options", "radius_unit", 1e-3, 1e3);
+  }
+  table.statistics = read_statistics(file);
+  table.provenance = read_provenance(file);
+  require_checksum(file, content_checksum(table));
+  return table;
+}
 
 }  // namespace railtab

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tables/files/file_fields.hpp"
 
 namespace railtab {
 
@@ -19,7 +20,7 @@ TableStatistics read_statistics(const ArrayFileReader& file) {
   TableStatistics statistics;
   if (!file.contains("statistics")) return statistics;
   for (const std::string& name : file.attribute_names("statistics")) {
-    statistics.emplace_back(name, file.number("statistics", name));
+    statistics.emplace_back(name, FieldReader(file).number("statistics", name));
   }
   return statistics;
 }
@@ -29,10 +30,10 @@ TableProvenance read_provenance(const ArrayFileReader& file) {
           file.text("provenance", "created")};
 }
 
-void require_checksum(const ArrayFileReader& file, const std::filesystem::path& name, const std::string& found) {
+void require_checksum(const ArrayFileReader& file, const std::string& found) {
   const std::string expected = file.text("", "checksum");
   if (found == expected) return;
-  throw input_error(name.string(), fmt::format("contents with checksum {}", found),
+  throw input_error(file.file().string(), fmt::format("contents with checksum {}", found),
                     fmt::format("{}: the file is damaged", expected));
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +20,6 @@ void write_statements(ArrayFileWriter& file, const TableProvenance& provenance, 
 [[nodiscard]] TableProvenance read_provenance(const ArrayFileReader& file);
 
 /// @param found of the contents as they were read @throws InputError where the file states another checksum
-void require_checksum(const ArrayFileReader& file, const std::filesystem::path& name, const std::string& found);
+void require_checksum(const ArrayFileReader& file, const std::string& found);
 
 }  // namespace railtab

@@ -10,7 +10,7 @@
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/tablegen/profile_intersection.hpp"
+#include "railtab/tablegen/intersection/profile_intersection.hpp"
 
 namespace railtab {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "csv_table.hpp"
+#include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
@@ -63,7 +63,7 @@ const std::vector<Reader>& readers() {
       {"speed_profile", ".csv", read_speed_file},
       {"creep_queries", ".csv",
        [](const Path& file) {
-         static_cast<void>(vsi::read_csv(file, {"ratio", "ux", "uy", "phi"}));
+         static_cast<void>(read_number_rows(file, {"ratio", "ux", "uy", "phi"}));
        }},
       {"batch_list", ".toml", read_batch_file},
       {"geometry_table", ".h5", read_geometry_file, write_geometry_seed},

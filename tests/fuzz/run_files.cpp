@@ -110,10 +110,11 @@ std::string scene_vocabulary() {
     const bool list = section == "bridge" || section == "support" || section == "load" || section == "ground_motion";
     if (!top) lines += list ? "[[" + section + "]]\n" : "[" + section + "]\n";
     const bool number = key.type == "number" || key.type == "integer" || key.type == "ratio";
-    const bool bare = number || key.standard == "true" || key.standard == "false" || key.type == "list of texts";
-    const std::string value = key.standard.empty() ? (number ? "1" : "\"\"")
-                              : bare               ? key.standard
-                                                   : "\"" + key.standard + "\"";
+    const bool bare =
+        number || key.default_value == "true" || key.default_value == "false" || key.type == "list of texts";
+    const std::string value = key.default_value.empty() ? (number ? "1" : "\"\"")
+                              : bare                    ? key.default_value
+                                                        : "\"" + key.default_value + "\"";
     lines += (top ? key.path : key.path.substr(dot + 1)) + " = " + value + "\n";
   }
   return lines;

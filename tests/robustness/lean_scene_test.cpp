@@ -1,4 +1,4 @@
-// A scene pays for what it names: on rigid track with a linear creep law no matrix of a structure is built and no file
+// A scene costs what it names: on rigid track with a linear creep law no matrix of a structure is built and no file
 // of one, nor the creep table, is opened.
 
 #include <gtest/gtest.h>
@@ -97,7 +97,7 @@ TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
   const RunPlan lean = plan_run(scene(TrackKind::rigid, "linear"));
   EXPECT_EQ(lean.structure_dofs, 0);
   EXPECT_EQ(lean.vehicle_dofs, 41);
-  EXPECT_LT(lean.memory, 1e6);
+  EXPECT_LT(lean.memory.step_reads, 1e6);
   SceneParameters vertical = scene(TrackKind::rigid, "linear");
   vertical.contact.normal = NormalContact::rigid;
   const RunPlan plan = plan_run(vertical);
@@ -105,13 +105,13 @@ TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
   std::string left_out;
   for (const std::string& part : plan.left_out) left_out += part + "\n";
   EXPECT_NE(left_out.find("the track is rigid"), std::string::npos);
-  EXPECT_NE(left_out.find("lateral, roll and yaw unknowns of the vehicles"), std::string::npos);
+  EXPECT_NE(left_out.find("lateral, roll and yaw degrees of freedom of the vehicles"), std::string::npos);
   EXPECT_NE(left_out.find("creep forces"), std::string::npos);
   vertical.track_kind = TrackKind::flexible;
   vertical.structure.files = {};
   const RunPlan track = plan_run(vertical);
   EXPECT_GT(track.structure_dofs, 1000);
-  EXPECT_GT(track.memory, 1e6);
+  EXPECT_GT(track.memory.step_reads, 1e6);
   vertical.contact.normal = NormalContact::hertz;
   EXPECT_GT(plan_run(vertical).structure_dofs, 1.8 * static_cast<double>(track.structure_dofs));
 }

@@ -166,5 +166,33 @@ TEST_F(StructureImport, RefusesMatricesThatDoNotBelongTogether) {
   refused("1,a,0,z\n", {"e.csv:2", "4 columns"});
 }
 
+// Numbers that are finite and absurd: used, they give modes that were not found, or a factor without a right digit.
+TEST_F(StructureImport, RefusesAbsurdScales) {
+  const std::string header = "row,node,x[m],motion,rail\n";
+  const auto dofs = write("d.csv", header + "1,a,0,z,both\n2,b,1,z,both\n");
+  const auto none = write("c.mtx", Eigen::MatrixXd(Eigen::Matrix2d::Zero()), false);
+  const auto matrix = [&](const std::string& name, double first, double second, double between) {
+    Eigen::Matrix2d m;
+    m << first, between, between, second;
+    return write(name, Eigen::MatrixXd(m), false);
+  };
+  const auto refused = [&](const std::filesystem::path& mass, const std::filesystem::path& stiffness,
+                           std::initializer_list<std::string> words) {
+    expect_refused([&] { static_cast<void>(import_structure({mass, none, stiffness, dofs})); }, words);
+  };
+  const auto mass = matrix("m.mtx", 1e3, 2e3, 0.0), stiffness = matrix("k.mtx", 1e8, 2e8, -1e7);
+  EXPECT_EQ(import_structure({mass, none, stiffness, dofs}).dofs(), 2);
+  EXPECT_EQ(import_structure({matrix("m0.mtx", 1e3, 0.0, 0.0), none, stiffness, dofs}).dofs(), 2);
+  refused(matrix("m1.mtx", 1e3, 1e150, 0.0), stiffness,
+          {"m1.mtx: row 2 (node b, z), column 2: found mass 1e+150, expected -1e+15 to 1e+15 in SI units"});
+  refused(mass, matrix("k1.mtx", 1e300, 2e8, 0.0), {"k1.mtx: row 1 (node a, z), column 1", "stiffness 1e+300"});
+  refused(mass, matrix("k2.mtx", 1e24, 1.0, 0.0),
+          {"k2.mtx: row 1", "stiffness 1e+24 beside 1 in row 2", "1e+20 times"});
+  refused(matrix("m2.mtx", 1e3, 1e14, 0.0), stiffness, {"m2.mtx: row 2", "0.000225 Hz", "0.001 to 1e+12 Hz"});
+  refused(matrix("m3.mtx", 1e-12, 1e-3, 0.0), matrix("k3.mtx", 1e24, 1e24, 0.0), {"m3.mtx: row 1", "Hz"});
+  refused(matrix("m4.mtx", 1e3, 2e3, 1e6), stiffness, {"m4.mtx: row 2", "column 1", "mass 1e+06 with 2000 and 1000"});
+  refused(mass, matrix("k4.mtx", 1e8, 2e8, 1e12), {"k4.mtx: row 2", "positive semidefinite"});
+}
+
 }  // namespace
 }  // namespace railtab

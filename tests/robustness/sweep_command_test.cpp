@@ -231,6 +231,20 @@ TEST_F(SweepCommand, MissingAndDamagedResultsAreMadeAgain) {
   EXPECT_NE(text("log").find("v030.000.row: found no row of this run"), std::string::npos) << text("log");
 }
 
+// What killed processes left, also of runs that are finished and of which nothing is written any more.
+TEST_F(SweepCommand, LeftOversOfItsOutputsGo) {
+  write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.02\n");
+  const std::vector<std::string> sweep{"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"};
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
+  const std::vector<std::string> outputs{"out/v030.000.h5", "out/v030.000.row", "out/summary.csv", "out/scene.toml"};
+  for (const std::string& output : outputs) write(output + ".part-abcdefghijkl", "unfinished");
+  write("out/notes.txt.part-abcdefghijkl", "somebody's");
+  ASSERT_EQ(vsi(sweep), 0) << text("log");
+  for (const std::string& output : outputs)
+    EXPECT_FALSE(fs::exists(folder_ / (output + ".part-abcdefghijkl"))) << output;
+  EXPECT_TRUE(fs::exists(folder_ / "out/notes.txt.part-abcdefghijkl"));
+}
+
 TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   write("scene.toml", scene);
   write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");

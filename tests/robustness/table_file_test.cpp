@@ -14,6 +14,7 @@
 #include "../unit/small_geometry_table.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
@@ -212,6 +213,60 @@ TEST_F(TableFile, MissingMisshapenInfiniteOrChangedDatasetsAreNamed) {
        {"profiles/wheel/dy", "axes/lateral", "cells/trusted_lowering", "branches/coefficient"}) {
     expect(outcome_of({.wrong_shape = path}), path + ": found the shape");
   }
+}
+
+TEST_F(TableFile, ProfilesWithoutIncreasingArcLengthAreNamed) {
+  GeometryTableData table = table_;
+  table.rail.s[2] = table.rail.s[1];
+  write_geometry_table(file_, table);
+  EXPECT_NE(outcome().find("profiles/rail/s: found"), std::string::npos) << outcome();
+  EXPECT_NE(outcome().find("expected strictly increasing values"), std::string::npos) << outcome();
+}
+
+/// A creep table in the paper's layout, right in its checksum but for what `change` does to the arrays.
+std::string creep_outcome(const std::filesystem::path& file, const std::string& path, const std::vector<double>& values,
+                          const std::vector<std::size_t>& shape) {
+  CreepTableData table;
+  table.layout = CreepTableLayout::paper;
+  table.nodes = {{{0.5, 2.0}, {0.0, 1.0, 3.0}, {0.0, 0.5}, {-1.0, 0.0, 1.0}}};
+  table.values.assign(3 * 2 * 3 * 2 * 3, 0.25);
+  const std::filesystem::path sound = file.string() + ".sound";
+  write_creep_table(sound, table);
+  {
+    const ArrayFileReader in(sound, creep_table_filetype, 1);
+    ArrayFileWriter out(file, creep_table_filetype, 1);
+    for (const std::string each : {"axes/ratio", "axes/x", "axes/y", "axes/spin", "values"}) {
+      const Array array = in.read(each);
+      out.write(each, each == path ? values : array.values, each == path ? shape : array.shape, "1", "values");
+    }
+    out.attribute("options", "layout", in.text("options", "layout"));
+    for (const char* name : {"poisson", "elements"}) out.attribute("options", name, in.number("options", name));
+    for (const char* name : {"program_version", "command_line", "created"}) {
+      out.attribute("provenance", name, in.text("provenance", name));
+    }
+    out.attribute("", "checksum", in.text("", "checksum"));
+    out.close();
+  }
+  std::filesystem::remove(sound);
+  try {
+    static_cast<void>(read_creep_table(file));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(TableFile, ArraysOfACreepTableThatDoNotAgreeAreNamed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto expect = [](const std::string& message, const std::string& words) {
+    EXPECT_NE(message.find(words), std::string::npos) << "\"" << words << "\" is missing in: " << message;
+  };
+  EXPECT_EQ(creep_outcome(file_, "", {}, {}), "");
+  expect(creep_outcome(file_, "axes/x", {0.0, 1.0}, {2}),
+         "values: found the shape (2, 3, 2, 3, 3), expected (2 ratio as in axes/ratio, 2 x as in axes/x, ");
+  expect(creep_outcome(file_, "axes/spin", {-1.0, nan, 1.0}, {3}), "axes/spin: found nan as value 1");
+  expect(creep_outcome(file_, "axes/y", {0.5, 0.5}, {2}), "axes/y: found 0.5 as value 1, after 0.5");
+  expect(creep_outcome(file_, "axes/y", {0.0, 0.5}, {1, 2}), "axes/y: found the shape (1, 2)");
 }
 
 TEST_F(TableFile, AFullDiskIsAComputationErrorAndKeepsTheOldTable) {

@@ -60,7 +60,7 @@ TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused(std::string(small) + "--tolerance nan", "--tolerance");
   expect_refused(std::string(small) + "--gauge 1435", "gauge");
   expect_refused(std::string(small) + "--rail-inclination 1:zero", "--rail-inclination");
-  expect_refused(std::string(small) + "--threads 0", "--threads");
+  expect_refused(std::string(small) + "--threads 1.5", "--threads");
   expect_refused("geometry --wheel S1003 --rail 60E1 -o out.h5", "S1003");
   expect_refused("geometry --wheel missing.prw --rail 60E1 -o out.h5", "missing.prw");
   expect_refused("geometry --wheel S1002 --rail 60E1 --lateral 0.002:0.002 -o out.h5", "lateral");
@@ -256,6 +256,7 @@ TEST_F(TablegenCommand, PartsOfAnotherTableAreMadeAnew) {
   EXPECT_EQ(before.node, after.node);
   EXPECT_EQ(before.coefficient, after.coefficient);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5.part-0-1"));
+  EXPECT_EQ(contents(folder_ / "out.h5.part-0-2"), "not HDF5") << "somebody's file is replaced";
 }
 
 TEST_F(TablegenCommand, TheOutputIsLookedAtBeforeTheSweep) {

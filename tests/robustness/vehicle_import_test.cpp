@@ -9,11 +9,11 @@
 
 #include "../imported_vehicle.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
@@ -109,7 +109,7 @@ TEST_F(VehicleImportFiles, AreSummedUpInThePlan) {
       vehicle_section() + "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1\n"));
   std::string built;
   for (const std::string& part : plan.built) built += part + "\n";
-  EXPECT_NE(built.find("1 x imported, 41 unknowns each"), std::string::npos) << built;
+  EXPECT_NE(built.find("1 x imported, 41 degrees of freedom each"), std::string::npos) << built;
   // 32 t + 2 x 2.615 t + 4 x 1.813 t on eight wheels; bounce as in docs/theory/vehicle.md
   EXPECT_NE(built.find("k.mtx: 44482 kg, wheels of the wheelsets carry 54.55, 54.55, 54.55, 54.55 kN"),
             std::string::npos)
@@ -160,6 +160,23 @@ TEST_F(VehicleImportFiles, MustHaveMass) {
   expect_refused(coach, {"m.mtx: row", "symmetric"});
 }
 
+// Finite and absurd numbers are named before anything is computed with them.
+TEST_F(VehicleImportFiles, HaveScalesOfAVehicle) {
+  FreeCoach coach = free_coach();
+  const int row = coach.row("CAR", z);
+  coach.mass(row, row) = 1e150;
+  expect_refused(coach, {"m.mtx: row", "(z of CAR)", "found mass 1e+150, expected -1e+09 to 1e+09 in SI units"});
+  coach = free_coach();
+  coach.stiffness(row, row) = 1e300;
+  expect_refused(coach, {"k.mtx: row", "(z of CAR)", "stiffness 1e+300", "-1e+18 to 1e+18"});
+  coach = free_coach();
+  coach.damping(row, row) = -1e200;
+  expect_refused(coach, {"c.mtx: row", "(z of CAR)", "damping -1e+200"});
+  coach = free_coach();
+  coach.mass(row, row) = 1e-15;
+  expect_refused(coach, {"m.mtx: row", "(z of CAR)", "Hz", "0 to 1e+09 Hz"});
+}
+
 TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
   FreeCoach braked = free_coach();
   add_spring(braked, "WS1", "bogie-1", {0.0, 0.0, 0.0}, {0.0, 1e4, 0.0}, braked.stiffness);
@@ -176,7 +193,7 @@ TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
 TEST_F(VehicleImportFiles, HaveInnerUnknownsOnSprings) {
   FreeCoach coach = free_coach();
   coach.hang_mass(100.0, 0.0);
-  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner unknown", "springs hold"});
+  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner degree of freedom", "springs hold"});
 }
 
 TEST_F(VehicleImportFiles, HaveATableThatFits) {

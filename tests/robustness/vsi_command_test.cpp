@@ -192,10 +192,10 @@ TEST_F(VsiCommand, WrongQueriesNameTheirLine) {
   refuse("ratio,ux,uy\n1,2,3\n", "q.csv:1: found 3 columns");
   refuse("ratio,ux,uy,spin\n1,2,3,4\n", "q.csv:1: found column 'spin'");
   refuse("ratio,ux,uy,ux\n1,2,3,4\n", "q.csv:1: found column 'ux' twice");
-  refuse("ratio,ux,uy,phi\n1,0,0,0\n1,0,0\n", "q.csv:3: found 3 fields");
-  refuse("ratio,ux,uy,phi\n1,0,zero,0\n", "q.csv:2: found 'zero' in column uy");
-  refuse("ratio,ux,uy,phi\n1,0,nan,0\n", "q.csv:2: found 'nan' in column uy");
-  refuse("ratio,ux,uy,phi\n1,,0,0\n", "q.csv:2: found '' in column ux");
+  refuse("ratio,ux,uy,phi\n1,0,0,0\n1,0,0\n", "q.csv:3: found 3 columns");
+  refuse("ratio,ux,uy,phi\n1,0,zero,0\n", "q.csv:2: column uy: found 'zero'");
+  refuse("ratio,ux,uy,phi\n1,0,nan,0\n", "q.csv:2: column uy: found 'nan'");
+  refuse("ratio,ux,uy,phi\n1,,0,0\n", "q.csv:2: column ux: found ''");
   refuse("# a comment\nratio,ux,uy,phi\n\n0,0,0,0\n", "q.csv:4: found ratio = 0, expected a/b > 0");
 }
 
@@ -259,7 +259,14 @@ TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
 
   const Outcome resumed = vsi("run scene.toml -o r.h5 --json --resume");
   EXPECT_EQ(resumed.exit_code, 0) << resumed.output;
-  EXPECT_NE(resumed.output.find("resumed at t = "), std::string::npos) << resumed.output;
+  // The time that it names is that of the step from which it counts, recorded (every third one) or not.
+  const auto number_after = [&](const std::string& words) {
+    const std::size_t at = resumed.output.find(words);
+    return at == std::string::npos ? -1.0 : std::stod(resumed.output.substr(at + words.size()));
+  };
+  const double from = number_after("\"counted_from_step\": ");
+  EXPECT_GT(from, 0.0) << resumed.output;
+  EXPECT_NEAR(number_after("resumed at t = "), 5e-4 * from, 1e-6) << resumed.output;
   // First and last record, the last at the end of the run though no multiple of output.every.
   EXPECT_NE(resumed.output.find("\"simulated_time\": 4"), std::string::npos) << resumed.output;
 }
@@ -279,6 +286,7 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
   refused("run scene.toml -o notes.txt", "a file of another kind");
   write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
   refused("creep --law polach --query q.csv -o table.h5", "a table or results of railtab");
+  refused("creep --law polach --query q.csv -o notes.txt", "notes.txt: found a file that begins with 'mine'");
   EXPECT_EQ(std::filesystem::file_size(folder_ / "table.h5"), bytes);
 
   write("empty.h5", "");
@@ -289,8 +297,55 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
   EXPECT_EQ(vsi("run scene.toml -o link.h5 -q").exit_code, 0);
   EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.h5"));
   EXPECT_EQ(vsi("report elsewhere/r.h5 -o link.html -q").exit_code, 0);
+  EXPECT_EQ(vsi("report elsewhere/r.h5 -o link.html -q").exit_code, 0) << "a report replaces a report";
+  refused("report elsewhere/r.h5 -o notes.txt", "notes.txt: found a file that begins with 'mine'");
+  refused("report elsewhere/r.h5 -o q.csv", "q.csv: found a file that begins with 'ratio,ux,uy,phi'");
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "notes.txt"), 4U);
   std::filesystem::create_symlink("circle.h5", folder_ / "circle.h5");
   refused("run scene.toml -o circle.h5", "links in a circle");
+}
+
+// A scene without a static equilibrium: its run cannot begin, and what another run has computed stays.
+TEST_F(VsiCommand, ARunThatCannotBeginReplacesNothing) {
+  write("jump.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-40,300,0,300,0\n40,300,0,300,0\n");
+  write("good.toml", rigid_scene + "duration = 0.01\n");
+  write("lost.toml", rigid_scene + "duration = 0.01\n[irregularity]\nfile = \"jump.csv\"\n");
+  ASSERT_EQ(vsi("run good.toml -o r.h5 -q").exit_code, 0);
+  const auto contents = [&] {
+    std::ifstream in(folder_ / "r.h5", std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string before = contents();
+  const Outcome lost = vsi("run lost.toml -o r.h5");
+  EXPECT_EQ(lost.exit_code, 1);
+  EXPECT_NE(lost.output.find("no state of rest"), std::string::npos) << lost.output;
+  EXPECT_NE(lost.output.find("r.h5 stays as it was"), std::string::npos) << lost.output;
+  EXPECT_EQ(lost.output.find("replaces"), std::string::npos) << lost.output;
+  EXPECT_TRUE(contents() == before);
+  EXPECT_EQ(vsi("run lost.toml -o new.h5 -q").exit_code, 1);
+  EXPECT_EQ(vsi("report new.h5 -o new.html -q").exit_code, 0) << "results that give the reason";
+}
+
+// A terminal obeys control characters: those of a file are shown, not sent.
+TEST_F(VsiCommand, TextsOfFilesAreShownWithoutControlCharacters) {
+  const std::string name = "name = \"red\\u001b[31m\\u009b2J\\u0007 <b>\"\n";
+  write("scene.toml", name + rigid_scene + "duration = 0.01\n");
+  const auto control = [](const std::string& text) {
+    return text.find_first_of("\x1b\x07\x7f") != std::string::npos || text.find("\xC2\x9B") != std::string::npos;
+  };
+  const Outcome plan = vsi("run scene.toml --plan");
+  EXPECT_TRUE(plan.output.starts_with("red\\x1B[31m\\xC2\\x9B2J\\x07 <b>: ")) << plan.output;
+  for (const char* arguments : {"run scene.toml --plan --json", "run scene.toml -o r.h5", "report r.h5 -o r.html"}) {
+    const Outcome outcome = vsi(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_FALSE(control(outcome.output)) << arguments;
+  }
+  EXPECT_NE(vsi("run scene.toml --plan --json").output.find("red\\u001b[31m\\u009b2J\\u0007 <b>"), std::string::npos);
+  std::ifstream page(folder_ / "r.html");
+  const std::string html(std::istreambuf_iterator<char>(page), {});
+  EXPECT_FALSE(control(html));
+  EXPECT_NE(html.find("<title>red\\x1B[31m\\xC2\\x9B2J\\x07 &lt;b&gt;"), std::string::npos);
+  EXPECT_NE(html.find("<meta name=\"generator\" content=\"railtab: run report\">"), std::string::npos);
 }
 
 TEST_F(VsiCommand, ARunIsNotResumedWithOtherInputFiles) {

@@ -1,4 +1,4 @@
-// What vsi run says of scenes that are not wrong, but hardly what was meant, and of runs that cannot begin.
+// Warnings of vsi run: scenes that are valid, but most likely not what was meant, and runs that cannot begin.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace railtab {
 namespace {
 
-TEST_F(VsiCommand, WhatActsNowhereInTheRunIsSaid) {
+TEST_F(VsiCommand, InputThatActsNowhereInTheRunIsWarnedOf) {
   write("rough.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n50,1,1,1,1\n100,0,0,0,0\n");
   write("wind.csv", "x[m],Fy[kN]\n0,1\n50,2\n");
   write("quake.csv", "t[s],y[m]\n0,0\n1,0.05\n2,0\n");
@@ -20,8 +20,9 @@ TEST_F(VsiCommand, WhatActsNowhereInTheRunIsSaid) {
                           "[[ground_motion]]\nfile = \"quake.csv\"\n";
   write("far.toml", far + "start = 10.0\n");
   const char* const warnings[] = {
-      "vsi run: warning: [[load]] 1 of 2 is given for t = 30 to 34 s, the run is at t = 0 to 0.01 s: it does not act\n",
-      "vsi run: warning: [[load]] 2 of 2 is given for x = 0 to 50 m",
+      "vsi run: warning: [[load]] 1 of 2 is specified for t = 30 to 34 s, the run is at t = 0 to 0.01 s: it does not "
+      "act\n",
+      "vsi run: warning: [[load]] 2 of 2 is specified for x = 0 to 50 m",
       "vsi run: warning: [[ground_motion]] 1 of 1 begins at t = 10 s, the run ends at 0.01 s",
       "vsi run: warning: the spans of [span_deviation] turn at x = 100 to 140 m",
       "vsi run: warning: irregularity.file rough.csv is measured at x = 0 to 100 m"};
@@ -34,7 +35,8 @@ TEST_F(VsiCommand, WhatActsNowhereInTheRunIsSaid) {
   }
   EXPECT_NE(vsi("run far.toml --plan").output.find("built:    irregularity of rough.csv"), std::string::npos);
   write("zero.toml", far + "factor = 0\n");
-  EXPECT_NE(vsi("run zero.toml --plan --json").output.find("is taken times 0: the ground stays at rest"),
+  EXPECT_NE(vsi("run zero.toml --plan --json")
+                .output.find("is multiplied by ground_motion.factor = 0: the ground stays at rest"),
             std::string::npos);
 
   // the same where the train meets them
@@ -68,7 +70,8 @@ TEST_F(SceneWarnings, OfRecordsThatMoveNothing) {
   };
   write("constant.csv", "t[s],y[m/s2]\n0,1\n1,1\n2,1\n");
   expect(plan(ground("constant.csv")),
-         "y: up to 1 m/s² added to a peak of 1 m/s², which is 0 m/s² then (0 %)): is it whole, and an acceleration?");
+         "y: up to 1 m/s² added to a peak of 1 m/s², which is 0 m/s² then (0 %)); check that the record is complete, "
+         "and an acceleration");
   write("zero.csv", "t[s],z[m]\n0,0\n1,0\n");
   expect(plan(ground("zero.csv")), "[[ground_motion]] 1 of 1 is zero throughout: the ground stays at rest");
   write("both.csv", "t[s],y[m],z[m]\n0,0,0\n1,0.01,0.01\n2,0,0\n");
@@ -161,7 +164,7 @@ TEST_F(VsiCommand, MessagesNameTheFileAndItsDamage) {
                                                         std::to_string(bytes) + " bytes: the file is cut short");
 }
 
-TEST_F(VsiCommand, ATrainPlacedOnItsFlangesIsSaidToBeginWithAnImpact) {
+TEST_F(VsiCommand, ATrainPlacedOnItsFlangesBeginsWithAnImpact) {
   const auto output_of = [&](const std::string& shift) {
     write("aside.toml", rigid_scene + "duration = 0.002\n[train]\ninitial_lateral_shift = " + shift + "\n");
     return vsi("run aside.toml -o r.h5").output;
@@ -174,8 +177,8 @@ TEST_F(VsiCommand, ATrainPlacedOnItsFlangesIsSaidToBeginWithAnImpact) {
   }
 }
 
-// What holds the train from rest is named: its acceleration, the loads, or the wheels that do not fit.
-TEST_F(VsiCommand, NoStateOfRestSaysWhy) {
+// The cause is named: its acceleration, the loads, or the wheels that do not fit.
+TEST_F(VsiCommand, NoStaticEquilibriumNamesTheCause) {
   const auto output_of = [&](const std::string& more, const std::string& contact = "") {
     std::string text = rigid_scene + "duration = 0.01\n" + more;
     write("scene.toml", text.insert(text.find("[track]"), contact));
@@ -188,11 +191,11 @@ TEST_F(VsiCommand, NoStateOfRestSaysWhy) {
     EXPECT_NE(output.find(text), std::string::npos) << output;
   };
   write("stop.csv", "t[s],V[m/s]\n0,60\n5,20\n");
-  expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: the train cannot bear -8 m/s²");
+  expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: -8 m/s² at t = ");
   expect(output_of("[[load]]\nFy = 3e6\n"), "there is one without the loads that act at t = 0 s");
   expect(output_of("", "dimensions.flange_back = 1.50\n"), "flange backs 1.5 m apart");
   write("aside.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n-90,0,0,0,0\n0,0.4,0,0.4,0\n90,0,0,0,0\n");
-  expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "the deviations of the rails under it (0.");
+  expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "deviations of the rails under it (0.");
 }
 
 TEST_F(VsiCommand, APlanCountsWholeSteps) {
@@ -200,7 +203,7 @@ TEST_F(VsiCommand, APlanCountsWholeSteps) {
   EXPECT_NE(vsi("run scene.toml --plan").output.find("21 steps of 0.0005 s, 0.0105 s in all"), std::string::npos);
 }
 
-TEST_F(VsiCommand, APlanRefusesWhatTheRunRefuses) {
+TEST_F(VsiCommand, APlanRejectsWhatTheRunRejects) {
   write("scene.toml", rigid_scene + "duration = 0.01\n[output]\nbodies = [\"nothing\"]\n");
   for (const char* command : {"run scene.toml --plan", "run scene.toml -o out"}) {
     expect_refused(command,

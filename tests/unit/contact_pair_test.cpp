@@ -101,7 +101,7 @@ TEST(RefinePair, ConeOnCircleInClosedForm) {
     const double z0 = c.z + std::sin(roll) * pair.tape_circle_offset() + std::cos(roll) * pair.nominal_radius();
     const double distance = -(0.0 - y0) * std::sin(angle) + (r - z0) * std::cos(angle);
     const RefinedPair result =
-        refine_pair(pair, pose, PoseTrigonometry(pose), pair.wheel().s_at_y(0.0), pair.rail().s_at_y(0.0), 30);
+        refine_pair(pair, pose, PoseTrigonometry(pose), {pair.wheel().s_at_y(0.0), pair.rail().s_at_y(0.0)}, {30});
     ASSERT_EQ(result.status, PairStatus::converged);
     const ContactPatch& p = result.patch;
     EXPECT_NEAR(p.angle, angle, 1e-12);
@@ -121,7 +121,7 @@ TEST(RefinePair, NormalIsThatOfTheWheelSurfaceUnderYawAndRoll) {
   const WheelRailPair& pair = s1002_on_60e1();
   const WheelsetPose pose{0.0075, -3.0e-3, -0.006, 0.018};
   const double s0 = pair.wheel().s_at_y(-0.0408);
-  const RefinedPair result = refine_pair(pair, pose, PoseTrigonometry(pose), s0, pair.rail().s_at_y(-0.0415), 30);
+  const RefinedPair result = refine_pair(pair, pose, PoseTrigonometry(pose), {s0, pair.rail().s_at_y(-0.0415)}, {30});
   ASSERT_EQ(result.status, PairStatus::converged);
   const ContactPatch& p = result.patch;
   const CurvePoint w = pair.wheel().at(p.s_wheel);
@@ -150,10 +150,11 @@ TEST(RefinePair, ConvergesQuadraticallyNearTheContact) {
   const WheelRailPair& pair = s1002_on_60e1();
   const WheelsetPose pose{0.003, 0.3e-3, 0.0, 0.01};
   const PoseTrigonometry trig(pose);
-  const RefinedPair exact = refine_pair(pair, pose, trig, pair.wheel().s_at_y(-0.013), pair.rail().s_at_y(-0.0205), 30);
+  const RefinedPair exact =
+      refine_pair(pair, pose, trig, {pair.wheel().s_at_y(-0.013), pair.rail().s_at_y(-0.0205)}, {30});
   ASSERT_EQ(exact.status, PairStatus::converged);
   const auto iterations = [&](double off) {
-    const RefinedPair r = refine_pair(pair, pose, trig, exact.patch.s_wheel + off, exact.patch.s_rail - off);
+    const RefinedPair r = refine_pair(pair, pose, trig, {exact.patch.s_wheel + off, exact.patch.s_rail - off});
     EXPECT_EQ(r.status, PairStatus::converged);
     EXPECT_NEAR(r.patch.s_wheel, exact.patch.s_wheel, 1e-12);
     EXPECT_NEAR(r.patch.penetration, exact.patch.penetration, 1e-16);
@@ -169,8 +170,8 @@ TEST(RefinePair, PenetrationErrorIsOfSecondOrderInTheTolerance) {
   const PoseTrigonometry trig(pose);
   const double s_wheel = pair.wheel().s_at_y(0.0032);
   const double s_rail = pair.rail().s_at_y(-0.0073);
-  const RefinedPair exact = refine_pair(pair, pose, trig, s_wheel, s_rail, 30);
-  const RefinedPair loose = refine_pair(pair, pose, trig, exact.patch.s_wheel + 4e-6, exact.patch.s_rail, 30, 1e-5);
+  const RefinedPair exact = refine_pair(pair, pose, trig, {s_wheel, s_rail}, {30});
+  const RefinedPair loose = refine_pair(pair, pose, trig, {exact.patch.s_wheel + 4e-6, exact.patch.s_rail}, {30, 1e-5});
   ASSERT_EQ(loose.status, PairStatus::converged);
   EXPECT_EQ(loose.iterations, 1);
   EXPECT_NEAR(loose.patch.penetration, exact.patch.penetration, 1e-9);
@@ -185,7 +186,7 @@ TEST(RefinePair, SaysThatAMaximumIsNotAContact) {
   for (double y = -0.027; y < -0.019; y += 1e-4) {
     const double s = pair.wheel().s_at_y(y);
     const SilhouettePoint S = silhouette(pair, pose, s);
-    const RefinedPair r = refine_pair(pair, pose, trig, s, pair.rail().s_at_y(S.y), 30);
+    const RefinedPair r = refine_pair(pair, pose, trig, {s, pair.rail().s_at_y(S.y)}, {30});
     if (r.status != PairStatus::not_a_minimum) continue;
     ++maxima;
     // Wheel points to both sides are deeper.
@@ -208,7 +209,7 @@ TEST(RefinePair, SaysThatAPairBeyondTheEndIsOffTheProfile) {
   // The wheel's cone ends 0.03 m inside its tape circle; shifted outwards it misses the rail's crown.
   const WheelsetPose pose{0.06, 0.0, 0.0, 0.0};
   const RefinedPair r =
-      refine_pair(pair, pose, PoseTrigonometry(pose), pair.wheel().s_begin(), pair.rail().s_at_y(0.0), 100);
+      refine_pair(pair, pose, PoseTrigonometry(pose), {pair.wheel().s_begin(), pair.rail().s_at_y(0.0)}, {100});
   EXPECT_EQ(r.status, PairStatus::off_profile);
 }
 
@@ -221,15 +222,16 @@ TEST(PolishPair, IsThePairOfRefinePair) {
     const PoseTrigonometry trig(pose);
     for (double at = -0.03; at < 0.02; at += 0.0011) {
       WheelsetPose lowered = pose;
-      const RefinedTouch touch = refine_touch(pair, pose, trig, pair.wheel().s_at_y(at), pair.rail().s_at_y(at), 40);
+      const RefinedTouch touch =
+          refine_touch(pair, pose, trig, {pair.wheel().s_at_y(at), pair.rail().s_at_y(at)}, {40});
       if (touch.status != PairStatus::converged) continue;
       lowered.z = touch.touch.z_touch + 1e-4;
-      const RefinedPair r = refine_pair(pair, lowered, trig, touch.touch.s_wheel, touch.touch.s_rail);
+      const RefinedPair r = refine_pair(pair, lowered, trig, {touch.touch.s_wheel, touch.touch.s_rail});
       if (r.status != PairStatus::converged) continue;
       for (const double off : {-20e-6, -3e-6, 0.0, 5e-6, 20e-6}) {
         ContactPatch p;
         ASSERT_EQ(
-            polish_pair(pair, wheelset_centre(pair, lowered), trig, r.patch.s_wheel + off, r.patch.s_rail - off, p),
+            polish_pair(pair, wheelset_centre(pair, lowered), trig, {r.patch.s_wheel + off, r.patch.s_rail - off}, p),
             PairStatus::converged);
         // The second order of a step of 20 µm, times the change of curvature over the relative curvature.
         EXPECT_NEAR(p.s_wheel, r.patch.s_wheel, 1e-6);
@@ -264,11 +266,11 @@ TEST(RefineTouch, IsTheContactOfZeroPenetration) {
   const WheelsetPose pose{0.007, 0.0, -0.005, 0.02};
   const PoseTrigonometry trig(pose);
   const RefinedTouch touch =
-      refine_touch(pair, pose, trig, pair.wheel().s_at_y(-0.0405), pair.rail().s_at_y(-0.0415), 40);
+      refine_touch(pair, pose, trig, {pair.wheel().s_at_y(-0.0405), pair.rail().s_at_y(-0.0415)}, {40});
   ASSERT_EQ(touch.status, PairStatus::converged);
   WheelsetPose at_touch = pose;
   at_touch.z = touch.touch.z_touch;
-  const RefinedPair r = refine_pair(pair, at_touch, trig, touch.touch.s_wheel, touch.touch.s_rail);
+  const RefinedPair r = refine_pair(pair, at_touch, trig, {touch.touch.s_wheel, touch.touch.s_rail});
   ASSERT_EQ(r.status, PairStatus::converged);
   EXPECT_NEAR(r.patch.penetration, 0.0, 1e-15);
   EXPECT_NEAR(r.patch.s_wheel, touch.touch.s_wheel, 1e-12);

@@ -221,8 +221,7 @@ TEST(Creepage, TractionPushesForwardAndBrakingBackward) {
   const PatchCreepage driven = patch_creepage(rolling(1.002), arm, ContactAxes(0.0), kSpeed);
   EXPECT_NEAR(driven.x, -0.002, 1e-15);
   const double a = 6e-3, b = 4e-3, G = 82e9, bound = 0.3 * 60e3;
-  const CreepForce f =
-      creep_force(PolachCreep{}, a / b, normalised_creepage(driven.x, driven.y, driven.spin, a, b, G, bound));
+  const CreepForce f = creep_force(PolachCreep{}, a / b, normalised_creepage(driven, a, b, G, bound));
   EXPECT_GT(dimensional_creep_force(f, a, b, bound).x, 1e3);
   EXPECT_GT(patch_creepage(rolling(0.998), arm, ContactAxes(0.0), kSpeed).x, 0.0);
 }
@@ -254,7 +253,7 @@ TEST(Creepage, LateralVelocityAndYaw) {
 
 TEST(Creepage, NormalisationKeepsTheDimensionalLinearForce) {
   const double a = 6e-3, b = 4e-3, G = 82e9, bound = 18e3, phi = 0.4, upsilon_y = 1e-6;
-  const CreepForce f = creep_force(LinearCreep{}, a / b, normalised_creepage(2e-6, upsilon_y, phi, a, b, G, bound));
+  const CreepForce f = creep_force(LinearCreep{}, a / b, normalised_creepage({2e-6, upsilon_y, phi}, a, b, G, bound));
   const PatchCreepForce F = dimensional_creep_force(f, a, b, bound);
   const KalkerCoefficients c = kalker_coefficients(a / b, 0.28);
   const double root = std::sqrt(a * b);

@@ -8,8 +8,13 @@ namespace {
 // One wheelset over rigid rails, free along y and z and in the air.
 VsiModel wheelset() {
   VsiModel model;
-  model.vehicle = assemble_vehicle("wheelset", {{"wheelset", 1500.0, {1, 1, 1}, {0, 0, -0.46}}}, {}, {0},
-                                   {{held, 0, 1, held, held, held}}, 0.46, 10.0);
+  model.vehicle = assemble_vehicle({"wheelset",
+                                    {{"wheelset", 1500.0, {1, 1, 1}, {0, 0, -0.46}}},
+                                    {},
+                                    {0},
+                                    {{held, 0, 1, held, held, held}},
+                                    0.46,
+                                    10.0});
   model.vehicle_x = {0.0};
   model.contact.speed = 20.0;
   return model;

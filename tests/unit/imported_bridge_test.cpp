@@ -371,13 +371,13 @@ TEST(ImportedBridge, MassesAndFrequenciesOfNoBridgeAreDoubted) {
   ImportParameters parameters = WrittenSpan(FeFormat::matrix_market).parameters;
   parameters.files.damping.clear();
   parameters.damping.ratio = 0.01;
-  EXPECT_TRUE(build_track_on_import(short_track(), parameters).doubts.empty());
+  EXPECT_TRUE(build_track_on_import(short_track(), parameters).warnings.empty());
   // 33.9 t/m less about half an element at each support
   EXPECT_NEAR(mass_per_length(read_on_supports(parameters)), 33.9e3 * 5.0 / 6.0, 33.9e3 * 0.1);
-  EXPECT_EQ(doubts_about(33.9, 5.0).size(), 1U);
-  EXPECT_EQ(doubts_about(33.9e6, 5e-3).size(), 2U);
-  EXPECT_EQ(doubts_about(33.9e3, 5e3).size(), 1U);
-  EXPECT_TRUE(doubts_about(33.9e3, 0.0).empty());
+  EXPECT_EQ(plausibility_warnings(33.9, 5.0).size(), 1U);
+  EXPECT_EQ(plausibility_warnings(33.9e6, 5e-3).size(), 2U);
+  EXPECT_EQ(plausibility_warnings(33.9e3, 5e3).size(), 1U);
+  EXPECT_TRUE(plausibility_warnings(33.9e3, 0.0).empty());
 }
 
 TEST(ImportedBridge, DampingByRatioTypeAndCoefficients) {

@@ -78,6 +78,8 @@ TEST(Polyline, GapStartsANewLine) {
 
 TEST(HtmlText, EscapesAndRounds) {
   EXPECT_EQ(escaped("a<b & \"c\" 'd'>"), "a&lt;b &amp; &quot;c&quot; &#39;d&#39;&gt;");
+  EXPECT_EQ(escaped("tab\tline\nm²"), "tab\tline\nm²");
+  EXPECT_EQ(escaped("\x1b[2J\xff\x7f"), "\\x1B[2J\\xFF\\x7F");
   EXPECT_EQ(shown(1234.56), "1235");
   EXPECT_EQ(shown(0.012345), "0.0123");
   EXPECT_EQ(shown(-2.0), "−2.00");

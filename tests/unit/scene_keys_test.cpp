@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -15,21 +16,6 @@
 namespace railtab {
 namespace {
 
-/// The ends of "0.2 to 5", "> 0, <= 1000", ">= 0"; nothing where there is none.
-struct Ends {
-  std::optional<double> low, high;
-  bool open_low = false;
-};
-Ends ends_of(const std::string& range) {
-  Ends ends;
-  double low = 0, high = 0;
-  if (std::sscanf(range.c_str(), "> %lf, <= %lf", &low, &high) == 2) return {low, high, true};
-  if (std::sscanf(range.c_str(), "%lf to %lf", &low, &high) == 2) return {low, high, false};
-  if (std::sscanf(range.c_str(), ">= %lf", &low) == 1) return {low, {}, false};
-  if (std::sscanf(range.c_str(), "> %lf", &low) == 1) return {low, {}, true};
-  return ends;
-}
-
 /// An imported structure with the one way of damping that a key of damping needs beside itself.
 std::string imported_with(const std::string& key) {
   std::string text = "track.kind = \"imported\"\n";
@@ -38,6 +24,8 @@ std::string imported_with(const std::string& key) {
   text += "structure.rail_left.set = \"LEFT\"\nstructure.rail_right.set = \"RIGHT\"\n";
   if (key.ends_with("span")) text += "structure.damping_type = \"steel-composite\"\n";
   if (key.find("frequency") != std::string::npos) text += "structure.damping_ratio = 0.01\n";
+  if (key.ends_with("frequency_low")) text += "structure.damping_frequency_high = 1e4\n";
+  if (key.ends_with("frequency_high")) text += "structure.damping_frequency_low = 1e-3\n";
   return text;
 }
 
@@ -92,15 +80,20 @@ std::string scene_with(const std::string& key, double value, bool integer) {
   return rest + "[contact]\n" + contact + bridge;
 }
 
+/// Keys whose values another key bounds too, from below (or above).
+bool bounded_below(const std::string& key) {
+  return key == "track.rail.height" || key == "irregularity.longest_wave" || key.ends_with("frequency_high");
+}
+bool bounded_above(const std::string& key) {
+  return key == "track.rail.head_height" || key == "irregularity.shortest_wave" || key.ends_with("frequency_low");
+}
+
 /// What the guide says of a range holds to its ends, through every check that a scene passes before it is built.
 TEST_F(Scene, RangesHoldToTheirEnds) {
-  // the rail's height and that of its head bound each other, and so do the two wavelengths and the two frequencies
   int checked = 0;
   for (const SceneKey& key : scene_keys()) {
-    if (key.type != "number" && key.type != "integer" && key.type != "ratio") continue;
+    if (!key.bounds) continue;
     const bool integer = key.type == "integer";
-    if (key.path.starts_with("structure.damping_frequency")) continue;
-    const Ends ends = ends_of(key.range);
     const auto outcome = [&](double value) {
       const std::string what = message(scene_with(key.path, value, integer));
       if (what != "no error") return what;
@@ -114,55 +107,118 @@ TEST_F(Scene, RangesHoldToTheirEnds) {
     const auto beyond = [&](double end, double way) {
       return integer ? end + way : end + way * std::max(1e-9, 1e-5 * std::abs(end));
     };
-    // the printed ends have six digits, and a low end that is excluded may stand for a small number
-    if (ends.low) {
-      EXPECT_NE(outcome(beyond(*ends.low, -1.0)), "no error") << key.path;
-      const double in = ends.open_low ? beyond(*ends.low, 1.0) : *ends.low == -0.333333 ? -1.0 / 3.0 : *ends.low;
-      if (key.path != "track.rail.height" && key.path != "irregularity.longest_wave") {
-        EXPECT_EQ(outcome(in), "no error") << key.path << ' ' << in;
-      }
-      ++checked;
+    const auto [low, high, zero, either_sign] = *key.bounds;
+    const bool positive = low > 0.0 && low < 1e-4;  // an end so low that what is beyond it is negative
+    EXPECT_NE(outcome(positive ? 0.5 * low : beyond(low, -1.0)), "no error") << key.path;
+    EXPECT_NE(outcome(beyond(high, 1.0)), "no error") << key.path;
+    if (!bounded_below(key.path)) {
+      EXPECT_EQ(outcome(low), "no error") << key.path << ' ' << low;
     }
-    if (ends.high && key.path != "track.rail.head_height" && key.path != "irregularity.shortest_wave") {
-      EXPECT_EQ(outcome(*ends.high), "no error") << key.path << ' ' << *ends.high;
-      EXPECT_NE(outcome(beyond(*ends.high, 1.0)), "no error") << key.path;
-      ++checked;
+    if (!bounded_above(key.path)) {
+      EXPECT_EQ(outcome(high), "no error") << key.path << ' ' << high;
+    }
+    if (either_sign) {
+      EXPECT_EQ(outcome(-high), "no error") << key.path;
+      EXPECT_NE(outcome(-0.5 * low), "no error") << key.path;
+    }
+    if (zero && key.path.find("frequency") == std::string::npos) {
+      EXPECT_EQ(outcome(0.0), "no error") << key.path;
+    }
+    ++checked;
+  }
+  EXPECT_GT(checked, 110);
+}
+
+/// Every number is read or rejected with its range, however small or large: none reaches a loop that would not end.
+TEST_F(Scene, ExtremesAreReadOrRejectedWithTheRange) {
+  constexpr double tiny = 1e-300, huge = 1e300, least = std::numeric_limits<double>::denorm_min();
+  int rejected = 0;
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.bounds || key.type == "integer") continue;
+    EXPECT_TRUE(std::isfinite(key.bounds->low) && std::isfinite(key.bounds->high)) << key.path;
+    for (const double value : {tiny, -tiny, least, huge, -huge, std::numeric_limits<double>::max()}) {
+      const std::string what = message(scene_with(key.path, value, false));
+      if (key.bounds->accepts(value)) continue;
+      EXPECT_NE(what.find(": " + key.path + ": found "), std::string::npos) << what;
+      EXPECT_NE(what.find(key.range), std::string::npos) << what;
+      ++rejected;
     }
   }
-  EXPECT_GT(checked, 180);
+  EXPECT_GT(rejected, 400);
+  EXPECT_EQ(message(std::string(online) + "[span_deviation]\nshape = \"bending\"\nspan = 1e-300\n"),
+            "scene.toml:5: span_deviation.span: found 1e-300, expected a number, 0.5 to 1000 m");
+  EXPECT_EQ(message(std::string(online) + "[span_deviation]\nshape = \"bending\"\nbeta = 1e-300\n"),
+            "scene.toml:5: span_deviation.beta: found 1e-300, expected a number, 0 or 0.01 to 100 1/m");
+  EXPECT_EQ(message(imported_with("") + "structure.origin = [0, 1e300, 0]\n").substr(0, 77),
+            "scene.toml:8: structure.origin: found 1e+300 in the list, expected three numb");
+  for (const char* number : {"nan", "inf", "-inf"}) {
+    EXPECT_TRUE(message(std::string(online) + "friction = " + number + "\n")
+                    .starts_with("scene.toml:3: contact.friction: found"))
+        << number;
+  }
 }
 
-// Another unit than the guide's is off by orders of magnitude, and no number of any sense is refused.
-TEST_F(Scene, NumbersOfAnotherUnitAreRefused) {
-  const auto refused = [&](const std::string& rest) { return message(online + rest); };
-  EXPECT_EQ(refused("[[bridge]]\nE = 34500\n"),
+/// A scene that a program puts together passes the same ranges.
+TEST_F(Scene, RangesHoldForParametersOfAProgram) {
+  const auto what = [](auto&& change) -> std::string {
+    SceneParameters scene;
+    scene.contact.mode = ContactMode::online;
+    change(scene);
+    try {
+      scene.validate();
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(what([](SceneParameters&) {}), "no error");
+  EXPECT_EQ(what([](SceneParameters& scene) { scene.span_deviation.emplace().beta = 1e-300; }),
+            "span_deviation.beta: found 1e-300, expected a number, 0 or 0.01 to 100 1/m");
+  EXPECT_EQ(what([](SceneParameters& scene) { scene.train.speed = 0.0; }),
+            "train.speed: found 0, expected a number, 0.001 to 200 m/s");
+  EXPECT_EQ(what([](SceneParameters& scene) { scene.train.count = 0; }),
+            "train.count: found 0, expected an integer 1 to 100");
+  EXPECT_EQ(what([](SceneParameters& scene) {
+              scene.loads.emplace_back().load[1] = 1.0;
+              scene.loads.emplace_back().load[1] = 1e300;
+            }),
+            "load.Fy: found 1e+300, expected a number, -1e+08 to 1e+08 N");
+}
+
+// Another unit than the guide's is off by orders of magnitude, and no number of any sense is rejected.
+TEST_F(Scene, NumbersOfAnotherUnitAreRejected) {
+  const auto rejected = [&](const std::string& rest) { return message(online + rest); };
+  EXPECT_EQ(rejected("[[bridge]]\nE = 34500\n"),
             "scene.toml:4: bridge.E: found 34500, expected a number, 1e+09 to 1e+13 Pa");
-  EXPECT_EQ(refused("[track]\nrail.E = 2.1e8\n"),
+  EXPECT_EQ(rejected("[track]\nrail.E = 2.1e8\n"),
             "scene.toml:4: track.rail.E: found 210000000, expected a number, 1e+10 to 1e+13 Pa");
-  EXPECT_NE(refused("[track]\nrail.Iy = 3038.0\n"), "no error") << "cm4";
-  EXPECT_NE(refused("[track]\npad.kz = 65.0\n"), "no error") << "kN/mm";
-  EXPECT_NE(refused("[track]\nsleeper.mass = 0.25\n"), "no error") << "t";
-  EXPECT_NE(refused("[[bridge]]\nmass = 33.9\n"), "no error") << "t/m";
-  EXPECT_NE(refused("[[load]]\nFy = 1e12\n"), "no error");
+  EXPECT_NE(rejected("[track]\nrail.Iy = 3038.0\n"), "no error") << "cm4";
+  EXPECT_NE(rejected("[track]\npad.kz = 65.0\n"), "no error") << "kN/mm";
+  EXPECT_NE(rejected("[track]\nsleeper.mass = 0.25\n"), "no error") << "t";
+  EXPECT_NE(rejected("[[bridge]]\nmass = 33.9\n"), "no error") << "t/m";
+  EXPECT_NE(rejected("[[load]]\nFy = 1e12\n"), "no error");
   // a steel footbridge, a bridge of 1 km wholly of concrete, rails as good as rigid, soft ballast
-  EXPECT_EQ(refused("[[bridge]]\nlength = 12\nE = 2.1e11\nA = 0.02\nIy = 2e-4\nmass = 400\n"), "no error");
-  EXPECT_EQ(refused("[[bridge]]\nlength = 1000\nA = 60.0\nIy = 900.0\nmass = 3e5\n"), "no error");
-  EXPECT_EQ(refused("[track]\nrail.E = 1e13\npad.kz = 1e12\nballast_ground.kz = 2e6\n"), "no error");
+  EXPECT_EQ(rejected("[[bridge]]\nlength = 12\nE = 2.1e11\nA = 0.02\nIy = 2e-4\nmass = 400\n"), "no error");
+  EXPECT_EQ(rejected("[[bridge]]\nlength = 1000\nA = 60.0\nIy = 900.0\nmass = 3e5\n"), "no error");
+  EXPECT_EQ(rejected("[track]\nrail.E = 1e13\npad.kz = 1e12\nballast_ground.kz = 2e6\n"), "no error");
 }
 
-TEST_F(Scene, KeysThatNothingWouldUseAreRefused) {
-  const auto refused = [&](const std::string& rest) { return message(online + rest); };
-  EXPECT_EQ(refused("[irregularity]\nseed = 3\n"),
-            "scene.toml:4: irregularity.seed: found no irregularity.spectrum, expected one, or no seed");
-  EXPECT_EQ(refused("[structure]\nwindow_ahead = 30\n"),
-            "scene.toml:4: structure.window_ahead: found a structure.reduction without window, expected \"window\"");
-  EXPECT_EQ(refused("[structure]\nreduction = \"none\"\nwindow_ahead = 30\n"), "no error");
-  EXPECT_EQ(refused("[structure]\ndamping_ratio = 0.01\n[[bridge]]\n"),
-            "scene.toml:4: structure.damping_ratio: found no structure.stiffness, expected an imported structure, or "
-            "damping_ratio and damping_type in [[bridge]]");
-  EXPECT_NE(refused("[[load]]\nFy = 1.0\n[[load]]\nFy = 1.0\nstart = 2.0\n").find("[[load]] 2 of 2"),
+TEST_F(Scene, KeysThatNothingWouldUseAreRejected) {
+  const auto rejected = [&](const std::string& rest) { return message(online + rest); };
+  EXPECT_EQ(rejected("[irregularity]\nseed = 3\n"),
+            "scene.toml:4: irregularity.seed: found no irregularity.spectrum, expected irregularity.spectrum, or no "
+            "irregularity.seed");
+  EXPECT_EQ(
+      rejected("[structure]\nwindow_ahead = 30\n"),
+      "scene.toml:4: structure.window_ahead: found structure.reduction = \"none\", expected structure.reduction = "
+      "\"window\", or no structure.window_ahead");
+  EXPECT_EQ(rejected("[structure]\nreduction = \"none\"\nwindow_ahead = 30\n"), "no error");
+  EXPECT_EQ(rejected("[structure]\ndamping_ratio = 0.01\n[[bridge]]\n"),
+            "scene.toml:4: structure.damping_ratio: found no structure.stiffness, expected structure.stiffness, or no "
+            "structure.damping_ratio");
+  EXPECT_NE(rejected("[[load]]\nFy = 1.0\n[[load]]\nFy = 1.0\nstart = 2.0\n").find("[[load]] 2 of 2"),
             std::string::npos);
-  EXPECT_NE(refused("[[ground_motion]]\nfile = \"pair.h5\"\nx = 3.0\n").find("ground_motion.x = 3 m of a single"),
+  EXPECT_NE(rejected("[[ground_motion]]\nfile = \"pair.h5\"\nx = 3.0\n").find("ground_motion.x = 3 m of a single"),
             std::string::npos);
 }
 
@@ -178,19 +234,20 @@ TEST_F(Scene, DeletedReductionsAreNamedWithWhatToTake) {
 }
 
 // Wheels that follow the rails, rigid track and imported rails leave keys without use; what is left of them stays.
-TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRefused) {
+TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRejected) {
   const std::string follow = "contact.normal = \"rigid\"\n";
   const std::string rigid = "contact.mode = \"online\"\ntrack.kind = \"rigid\"\n";
   const std::string rails = "contact.mode = \"online\"\n" + imported_with("") + "structure.damping_ratio = 0.01\n";
-  EXPECT_EQ(message(follow + "contact.friction = 0.3\n"),
-            "scene.toml:2: contact.friction: found contact.normal = \"rigid\", expected no other key of contact: such "
-            "wheels follow the rails");
+  EXPECT_EQ(
+      message(follow + "contact.friction = 0.3\n"),
+      "scene.toml:2: contact.friction: found contact.normal = \"rigid\", expected contact.normal = \"hertz\", or no "
+      "contact.friction");
   EXPECT_EQ(message(rigid + "track.pad.kz = 1e8\n"),
-            "scene.toml:3: track.pad.kz: found track.kind = \"rigid\", expected track.kind = \"flexible\", or no other "
-            "key of track");
+            "scene.toml:3: track.pad.kz: found track.kind = \"rigid\", expected track.kind = \"flexible\", or no "
+            "track.pad.kz");
   EXPECT_EQ(message(rigid + "structure.reduction = \"window\"\n"),
-            "scene.toml:3: structure.reduction: found track.kind = \"rigid\", expected a structure to reduce, or "
-            "\"none\"");
+            "scene.toml:3: structure.reduction: found track.kind = \"rigid\", expected track.kind = \"flexible\" or "
+            "\"imported\", or no structure.reduction");
   struct Case {
     std::string scene, key, value;
   };
@@ -201,6 +258,7 @@ TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRefused) {
         Case{follow, "train.initial_lateral_shift", "0.001"}, Case{follow, "integration.contact_force", "\"energy\""},
         Case{rigid, "track.length_before", "10.0"}, Case{rigid, "structure.mass", "\"pair.h5\""},
         Case{rigid, "structure.window_ahead", "10.0"}, Case{online_text, "track.ballast_deck.kz", "1e8"},
+        Case{online_text + "contact.creep_law = \"polach\"\n", "contact.creep_table", "\"pair.h5\""},
         Case{online_text, "structure.units", "\"m-N-kg\""}, Case{online_text, "structure.rail_left.set", "\"LEFT\""},
         Case{rails, "track.length_before", "10.0"}, Case{rails, "structure.deck.set", "\"DECK\""},
         Case{rails, "structure.report", "[3.0]"}, Case{follow, "integration.impact_step", "1e-4"},

@@ -61,7 +61,7 @@ VehicleModel frame(const Vector3d& frame_position, const std::vector<DofIndices>
       suspension.push_back({wheelset, 2, {wheelset == 0 ? 1.0 : -1.0, y, -0.5}, {2e7, 5e6, 1e6}, {1e3, 2e3, 3e3}});
     }
   }
-  return assemble_vehicle("frame", bodies, suspension, {0, 1}, held_dofs, 0.5, 10.0, 10.0);
+  return assemble_vehicle({"frame", bodies, suspension, {0, 1}, held_dofs, 0.5, 10.0, 10.0});
 }
 
 TEST(Vehicle, MatricesAreSymmetricAndPositiveSemidefinite) {
@@ -161,7 +161,7 @@ TEST(Vehicle, RefusesWhatIsNoVehicle) {
   const Suspension spring{0, 1, {0, 0, -0.5}, {1e6, 1e6, 1e6}, {0, 0, 0}};
   const auto assemble = [](std::vector<RigidBody> bodies, const std::vector<Suspension>& suspension,
                            std::vector<int> wheelsets, const std::vector<DofIndices>& dofs = {}) {
-    return message_of([&] { (void)assemble_vehicle("v", bodies, suspension, wheelsets, dofs, 0.5, 10.0); });
+    return message_of([&] { (void)assemble_vehicle({"v", bodies, suspension, wheelsets, dofs, 0.5, 10.0}); });
   };
   EXPECT_EQ(assemble({axle, box}, {spring}, {0}), "no InputError");
 

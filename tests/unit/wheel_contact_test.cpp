@@ -163,7 +163,7 @@ TEST(WheelForce, TangentIsThatOfTheForce) {
                          geometry->patches(relative_pose(geometry->pair(), WheelSide::right, w, r)));
     };
     const ContactPatches patches = geometry->patches(relative_pose(geometry->pair(), WheelSide::right, wheelset, rail));
-    const Matrix9 tangent = wheel_force_tangent(model, WheelSide::right, wheelset, rail, patches, rate, rate[0]);
+    const Matrix9 tangent = wheel_force_tangent(model, WheelSide::right, wheelset, rail, patches, {rate, rate[0]});
     for (int j = 0; j < 9; ++j) {
       const double step = 1e-8;
       const auto moved = [&](double h) {

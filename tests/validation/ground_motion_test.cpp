@@ -76,10 +76,14 @@ double sprung_mass_error(double time_step) {
   constexpr double mass = 5750.0, omega = 2.0 * pi * 1.3, zeta = 0.05;
   VsiModel model;
   const DofIndices all_but_z{held, held, 0, held, held, held};
-  model.vehicle = assemble_vehicle(
-      "sprung mass", {{"wheelset", 100.0, {1, 1, 1}, {0, 0, -0.46}}, {"mass", mass, {1, 1, 1}, {0, 0, -1.0}}},
-      {{0, 1, {0, 0, -0.7}, {0, 0, mass * omega * omega}, {0, 0, 2.0 * zeta * omega * mass}}}, {0},
-      {all_but_z, all_but_z}, 0.46, 10.0);
+  model.vehicle =
+      assemble_vehicle({"sprung mass",
+                        {{"wheelset", 100.0, {1, 1, 1}, {0, 0, -0.46}}, {"mass", mass, {1, 1, 1}, {0, 0, -1.0}}},
+                        {{0, 1, {0, 0, -0.7}, {0, 0, mass * omega * omega}, {0, 0, 2.0 * zeta * omega * mass}}},
+                        {0},
+                        {all_but_z, all_but_z},
+                        0.46,
+                        10.0});
   model.vehicle_x = {0.0};
   model.contact.speed = 20.0;
   model.normal_contact = NormalContact::rigid;

@@ -60,7 +60,7 @@ inline VsiModel wheelset(const Assumptions& assume, double speed) {
     const Eigen::Vector3d k(135e3, 250e3, 0.0);  // N/m
     for (double y : {-l, l}) suspension.push_back({0, 1, {0.0, y, -R0}, k, Eigen::Vector3d::Zero()});
   }
-  model.vehicle = assemble_vehicle("suspended wheelset", bodies, suspension, {1}, {none, free}, R0, 10.0);
+  model.vehicle = assemble_vehicle({"suspended wheelset", bodies, suspension, {1}, {none, free}, R0, 10.0});
   model.vehicle_x = {0.0};
   model.gyroscopic_moments = assume.gyroscopic_moments;
 

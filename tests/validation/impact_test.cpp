@@ -32,9 +32,13 @@ VsiModel bouncing_mass() {
   none.fill(held);
   const DofIndices heave{held, held, 0, held, held, held};
   model.vehicle = assemble_vehicle(
-      "bouncing mass",
-      {{"frame", 1.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}}, {"mass", 11000.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}}}, {}, {1},
-      {none, heave}, R0, 10.0);
+      {"bouncing mass",
+       {{"frame", 1.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}}, {"mass", 11000.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}}},
+       {},
+       {1},
+       {none, heave},
+       R0,
+       10.0});
   model.contact.constant_ellipse.reset();
   model.contact.gravitational_stiffness = GravitationalStiffness::included;
   model.contact.friction = 0.0;

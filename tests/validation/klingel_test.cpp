@@ -43,7 +43,7 @@ VsiModel wheelset_on_cones(Roll roll) {
   VsiModel model;
   const std::vector<RigidBody> bodies{{"wheelset", 10000.0, {800.0, 100.0, 800.0}, {0.0, 0.0, -0.46}}};
   const DofIndices held_dofs{held, 0, 0, roll == Roll::held ? held : 0, 0, 0};
-  model.vehicle = assemble_vehicle("wheelset", bodies, {}, {0}, {held_dofs}, 0.46, 10.0);
+  model.vehicle = assemble_vehicle({"wheelset", bodies, {}, {0}, {held_dofs}, 0.46, 10.0});
   model.vehicle_x = {0.0};
   if (roll == Roll::held) model.structure = soft_rails();
   model.geometry = std::make_shared<const ContactGeometry>(

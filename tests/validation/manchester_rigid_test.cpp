@@ -59,7 +59,7 @@ ContactPosition touching(double y, double roll, double yaw, double side) {
   const ContactSearch& s = search();
   const TouchPoint touch = s.first_touch(side * y, side * roll, side * yaw);
   const WheelsetPose pose{side * y, touch.z_touch, side * roll, side * yaw};
-  const ContactPatch p = patch_of_pair(s.pair(), pose, PoseTrigonometry(pose), touch.s_wheel, touch.s_rail);
+  const ContactPatch p = patch_of_pair(s.pair(), pose, PoseTrigonometry(pose), {touch.s_wheel, touch.s_rail});
   return {side * (p.y_rail + rail_origin_shift), side * p.y_wheel, side * p.angle, p.rolling_radius, p.x};
 }
 

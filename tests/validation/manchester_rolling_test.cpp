@@ -57,9 +57,8 @@ Rolling rolling(const ContactGeometry& geometry, const NormalContactModel& model
   const double bound = friction * load.elastic_force;
   const double a = load.hertz.a1 * std::cbrt(load.elastic_force);
   const double b = load.hertz.b1 * std::cbrt(load.elastic_force);
-  const CreepForce force = creep_force(law, load.hertz.ratio,
-                                       normalised_creepage(result.creepage.x, result.creepage.y, result.creepage.spin,
-                                                           a, b, model.material.shear_modulus(), bound));
+  const CreepForce force = creep_force(
+      law, load.hertz.ratio, normalised_creepage(result.creepage, a, b, model.material.shear_modulus(), bound));
   result.fx = force.x;
   result.fy = force.y;
 

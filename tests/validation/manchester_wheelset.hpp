@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/patch_loads.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
@@ -88,8 +89,6 @@ class ManchesterWheelset {
     wheel.y_wheel *= side / wheel.normal_force;
     return wheel;
   }
-
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
   ContactSearch search_;
   ContactGeometry geometry_;

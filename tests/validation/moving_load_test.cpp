@@ -34,7 +34,7 @@ VsiModel load_on_beam(const Load& load, double speed) {
     suspension.push_back({0, 1, {0.0, 0.0, -0.7}, {0.0, 0.0, load.stiffness}, {0.0, 0.0, load.damping}});
     dofs.push_back(all_but_z);
   }
-  model.vehicle = assemble_vehicle("load", bodies, suspension, {0}, dofs, 0.46, 10.0);
+  model.vehicle = assemble_vehicle({"load", bodies, suspension, {0}, dofs, 0.46, 10.0});
   model.vehicle_x = {0.0};
   model.structure =
       build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = beam_mass, .elements = 40});

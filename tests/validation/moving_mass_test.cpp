@@ -38,7 +38,7 @@ VsiModel sprung_mass_on_beam(const Idealisation& ideal) {
                                       {"wheelset", ideal.wheelset_mass, {1.0, 1.0, 1.0}, {0.0, 0.0, -0.46}}};
   const std::vector<Suspension> suspension{{0, 1, {0.0, 0.0, -0.7}, {0.0, 0.0, 1595e3}, {0.0, 0.0, 0.0}}};
   const DofIndices all_but_z{held, held, 0, held, held, held};
-  model.vehicle = assemble_vehicle("sprung mass", bodies, suspension, {1}, {all_but_z, all_but_z}, 0.46, 10.0);
+  model.vehicle = assemble_vehicle({"sprung mass", bodies, suspension, {1}, {all_but_z, all_but_z}, 0.46, 10.0});
   model.vehicle_x = {0.0};
   model.structure =
       build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements});

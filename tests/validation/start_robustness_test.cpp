@@ -57,6 +57,17 @@ TEST(Start, RestDoesNotDependOnTheSpeed) {
   }
 }
 
+// Heights at which a millimetre more is the same number: the search for the rails ends, and says that there is no rest.
+TEST(Start, RailsOutOfAllReachHaveNoStateOfRest) {
+  for (const double z : {1e13, 1e20, 1e290}) {
+    VsiModel model = build_model(coach_on_rigid_track(50.0));
+    const std::vector<double> x{-1e3, 1e3}, flat{0.0, 0.0}, far{z, z};
+    model.irregularity = Irregularity(x, flat, far, flat, far);
+    VsiState state(model);
+    EXPECT_FALSE(steady_start(model, state).converged) << z;
+  }
+}
+
 // A wheelset that is moved aside rises and rolls with its treads: wheel loads stay what they were.
 TEST(Start, MovedAsideEveryWheelCarriesItsLoad) {
   for (const double shift : {-4e-3, 1e-3, 3e-3}) {

@@ -25,7 +25,7 @@ VsiModel sprung_mass() {
   const std::vector<Suspension> spring{
       {0, 1, {0.0, 0.0, -0.7}, {0.0, 0.0, 5000.0 * omega * omega}, Eigen::Vector3d::Zero()}};
   const DofIndices all_but_z{held, held, 0, held, held, held};
-  model.vehicle = assemble_vehicle("sprung mass", bodies, spring, {0}, {all_but_z, all_but_z}, 0.46, 10.0);
+  model.vehicle = assemble_vehicle({"sprung mass", bodies, spring, {0}, {all_but_z, all_but_z}, 0.46, 10.0});
   model.vehicle_x = {0.0};
   model.contact.speed = 1.0;
   model.normal_contact = NormalContact::rigid;

@@ -20,11 +20,14 @@ VsiModel freely_turning(const DofIndices& dofs, double V) {
   none.fill(held);
   const Eigen::Vector3d k(135e3, 250e3, 0.0);
   model.vehicle = assemble_vehicle(
-      "turning wheelset",
-      {{"frame", 1.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}},
-       {"wheelset", 1568.0, {656.0, axle_inertia, 656.0}, {0.0, 0.0, -R0}}},
-      {{0, 1, {0.0, -l, -R0}, k, Eigen::Vector3d::Zero()}, {0, 1, {0.0, l, -R0}, k, Eigen::Vector3d::Zero()}}, {1},
-      {none, dofs}, R0, 10.0);
+      {"turning wheelset",
+       {{"frame", 1.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}},
+        {"wheelset", 1568.0, {656.0, axle_inertia, 656.0}, {0.0, 0.0, -R0}}},
+       {{0, 1, {0.0, -l, -R0}, k, Eigen::Vector3d::Zero()}, {0, 1, {0.0, l, -R0}, k, Eigen::Vector3d::Zero()}},
+       {1},
+       {none, dofs},
+       R0,
+       10.0});
   return model;
 }
 

@@ -211,8 +211,8 @@ TEST(SpeedProfile, BrakingMassOnABeamFollowsItsEquations) {
   const std::vector<double> expected = BrakingMass().midspan(end, points);
   VsiModel model;
   const DofIndices all_but_z{held, held, 0, held, held, held};
-  model.vehicle = assemble_vehicle("mass", {{"wheelset", BrakingMass::m, {1, 1, 1}, {0, 0, -0.46}}}, {}, {0},
-                                   {all_but_z}, 0.46, 10.0);
+  model.vehicle = assemble_vehicle(
+      {"mass", {{"wheelset", BrakingMass::m, {1, 1, 1}, {0, 0, -0.46}}}, {}, {0}, {all_but_z}, 0.46, 10.0});
   model.vehicle_x = {0.0};
   model.structure =
       build_simple_beam({.length = BrakingMass::L, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = 40});

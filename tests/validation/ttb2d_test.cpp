@@ -112,8 +112,13 @@ VehicleModel planar_car(const ptree& car, const std::vector<double>& axles) {
     springs.push_back({1 + w / 2, 3 + w, {x, 0, -R0}, {0, 0, first("Susp.Prim.k")}, {0, 0, first("Susp.Prim.c")}});
   }
   const DofIndices z_and_pitch{held, held, 0, held, 0, held}, z_only{held, held, 0, held, held, held};
-  return assemble_vehicle("car", bodies, springs, {3, 4, 5, 6},
-                          {z_and_pitch, z_and_pitch, z_and_pitch, z_only, z_only, z_only, z_only}, R0, 25.0);
+  return assemble_vehicle({"car",
+                           bodies,
+                           springs,
+                           {3, 4, 5, 6},
+                           {z_and_pitch, z_and_pitch, z_and_pitch, z_only, z_only, z_only, z_only},
+                           R0,
+                           25.0});
 }
 
 struct Reference {

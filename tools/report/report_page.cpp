@@ -103,7 +103,7 @@ std::string run_table(const RunResults& results) {
   row("contact queries", std::to_string(summary.contact_queries));
   row("of these from the table", std::to_string(summary.table_queries));
   row("creep forces from outside the creep table", std::to_string(summary.outside_creep_table));
-  row("unknowns of the structure", std::to_string(summary.structure_dofs));
+  row("degrees of freedom of the structure", std::to_string(summary.structure_dofs));
   row("unknowns of the vehicles", std::to_string(summary.vehicle_dofs));
   return "<table>" + rows + "</table></div>";
 }
@@ -145,7 +145,7 @@ std::string report_page(const RunResults& results) {
   body +=
       html_section("Scene", fmt::format("<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
                                         escaped(results.header.scene_text)));
-  return html_page(results.header.scene_name, body, results.header.program_version);
+  return html_page(page_kind, results.header.scene_name, body, results.header.program_version);
 }
 
 void write_report(const std::filesystem::path& file, const RunResults& results) {

@@ -2,10 +2,14 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "railtab/runtime/results/result_file.hpp"
 
 namespace railtab::report {
+
+/// Of its first line, see html_first_line().
+inline constexpr std::string_view page_kind = "run report";
 
 /// A run as one HTML page that needs no other file and no network: headline numbers, charts, contact positions, where
 /// the time went, the scene.

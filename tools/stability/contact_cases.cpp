@@ -125,7 +125,7 @@ void add_profile_cases(Cases& cases) {
            return result;
          }});
   }
-  cases.push_back({"knife-edge rail", "S1002", impulse, 1e-3, Outcome::refused, true,
+  cases.push_back({"knife-edge rail", "S1002", impulse, 1e-3, Outcome::rejected, true,
                    [](double) { return profile_run("S1002", "knife-edge", 0.0, 0.0); }});
 }
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <optional>
 
@@ -76,7 +76,7 @@ CaseResult judged_flight(const WatchedRun& run, double least) {
                   run.longest_flight, result.energy.impacts, 1e-3 * run.largest_load);
   if (result.outcome == Outcome::converged && run.longest_flight < least) {
     result.outcome = Outcome::wrong;
-    result.note += ", shorter than meant";
+    result.note += ", shorter than planned";
   }
   return result;
 }

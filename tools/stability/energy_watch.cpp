@@ -8,7 +8,7 @@ namespace {
 
 constexpr double shortest_flight = 2e-3, longest_impact = 20e-3;  // s
 
-/// What the time integration of the contacts made; stiffness_work is none of its.
+/// Energy gained by the time integration of the contacts, without stiffness_work.
 double contact_gain(const EnergyBalance& balance) { return balance.contact_gain - balance.stiffness_work; }
 
 /// How much energy the motion has moved: the kinetic one, or the largest change of any other.
@@ -37,7 +37,6 @@ void EnergyWatch::record(const StepRecord& record) {
   going_on_.resize(record.wheels.size());
   largest_step_ = std::max(largest_step_, std::abs(now_.gain() - last_.gain()));
   most_exchanged_ = std::max(most_exchanged_, exchanged(first_, now_));
-  most_gain_ = std::max(most_gain_, now_.gain());
   for (std::size_t w = 0; w < record.wheels.size(); ++w) {
     const bool in_contact = record.wheels[w].patches > 0;
     std::optional<Impact>& impact = going_on_[w];
@@ -56,17 +55,13 @@ void EnergyWatch::record(const StepRecord& record) {
 EnergyResult EnergyWatch::result() const {
   constexpr double at_rest = 1e-9;  // J
   if (!kept_ || !(most_exchanged_ > at_rest)) return {};
-  constexpr double hard = 0.01;  // of the hardest landing's energy: softer ones say nothing about the run
+  constexpr double hard = 0.01;  // of the hardest landing's energy: softer ones do not count
   double hardest = 0.0, impact = 0.0;
   for (const Landing& landing : landings_) hardest = std::max(hardest, landing.held);
   for (const Landing& landing : landings_) {
     if (landing.held > hard * hardest) impact = std::max(impact, std::abs(landing.gain) / landing.held);
   }
-  return {true,
-          largest_step_ / most_exchanged_,
-          last_.gain() / most_exchanged_,
-          most_gain_ / most_exchanged_,
-          static_cast<int>(landings_.size()),
+  return {true, largest_step_ / most_exchanged_, last_.gain() / most_exchanged_, static_cast<int>(landings_.size()),
           impact};
 }
 

@@ -9,7 +9,8 @@
 
 namespace railtab::stability {
 
-/// Sums up the energy account of a run, step by step and impact by impact.
+/// The energy account of a run, step by step and impact by impact. ContactEnergyRecord counts impacts by wheelset and
+/// with stiffness_work; here stiffness_work is left out, so that the gain is that of the time integration alone.
 class EnergyWatch {
  public:
   /// The account after a step or after one of its halves.
@@ -29,7 +30,7 @@ class EnergyWatch {
 
   EnergyBalance first_, now_, last_;  ///< after the first step, and at the ends of this one and the one before
   bool kept_ = false;
-  double largest_step_ = 0.0, most_exchanged_ = 0.0, most_gain_ = 0.0;
+  double largest_step_ = 0.0, most_exchanged_ = 0.0;
   struct Landing {
     double gain, held;  ///< of the contacts, and the most that their springs took up [J]
   };

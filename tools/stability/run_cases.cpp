@@ -114,7 +114,7 @@ void add_speed_cases(Cases& cases) {
                        return run_of(scene);
                      }});
   }
-  cases.push_back({"speed", "standing train", impulse, 1e-3, Outcome::refused, true, [](double) {
+  cases.push_back({"speed", "standing train", impulse, 1e-3, Outcome::rejected, true, [](double) {
                      SceneParameters scene = coach_on_rigid_track();
                      scene.train.speed = 0.0;
                      return run_of(scene);
@@ -200,7 +200,7 @@ void add_structure_cases(Cases& cases) {
     s.track.sleeper.mass = s.track.sleeper.Jx = s.track.sleeper.Jy = s.track.sleeper.Jz = 1e-9;
   });
   add("two elements in the bridge", false, [](SceneParameters& s) { s.spans[0].elements = 2; });
-  cases.push_back({"structure", "one element in the bridge", impulse, 1e-3, Outcome::refused, true, [](double) {
+  cases.push_back({"structure", "one element in the bridge", impulse, 1e-3, Outcome::rejected, true, [](double) {
                      SceneParameters scene = coach_on_bridge();
                      scene.spans[0].elements = 1;
                      return run_of(scene);

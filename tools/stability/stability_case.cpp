@@ -14,8 +14,8 @@ const char* outcome_name(Outcome outcome) noexcept {
       return "converged";
     case Outcome::ended:
       return "ended";
-    case Outcome::refused:
-      return "refused";
+    case Outcome::rejected:
+      return "rejected";
     case Outcome::wrong:
       break;
   }
@@ -39,12 +39,12 @@ CaseResult outcome_of(const StabilityCase& one) {
   try {
     result = one.run(one.allowed);
     if (result.outcome == Outcome::converged && !(result.error <= one.allowed)) result.outcome = Outcome::wrong;
-  } catch (const InputError& refusal) {
-    result = {.outcome = Outcome::refused, .note = refusal.what()};
+  } catch (const InputError& rejection) {
+    result = {.outcome = Outcome::rejected, .note = rejection.what()};
   } catch (const std::exception& failure) {
     result = {.outcome = Outcome::wrong, .note = failure.what()};
   }
-  if ((result.outcome == Outcome::ended || result.outcome == Outcome::refused) && result.note.empty()) {
+  if ((result.outcome == Outcome::ended || result.outcome == Outcome::rejected) && result.note.empty()) {
     result.outcome = Outcome::wrong;
     result.note = "no message";
   }

@@ -10,7 +10,7 @@ namespace railtab::stability {
 enum class Outcome {
   converged,  ///< to its end, and within its stated error
   ended,      ///< before its end, with a message and the results so far
-  refused,    ///< before it began, with a message
+  rejected,   ///< before it began, with a message
   wrong,      ///< none of these: to its end beyond the stated error, or ended without a word, or not finite
 };
 [[nodiscard]] const char* outcome_name(Outcome outcome) noexcept;
@@ -21,9 +21,8 @@ struct EnergyResult {
   /// Largest of a step, relative to the energy that the motion moves: the most of kinetic energy and of the changes of
   /// strain energy, potential and contact springs.
   double step = 0.0;
-  double total = 0.0;   ///< of the run, relative to the same
-  double gained = 0.0;  ///< most by any instant of the run, relative to the same
-  int impacts = 0;      ///< wheels that land after at least 2 ms in the air
+  double total = 0.0;  ///< of the run, relative to the same
+  int impacts = 0;     ///< wheels that land after at least 2 ms in the air
   /// Largest that the contacts gain in an impact, relative to the most that their springs take up in it; of impacts
   /// with at least 1 % of the hardest one's energy.
   double impact = 0.0;
@@ -36,7 +35,7 @@ struct CaseResult {
   long steps = 0;         ///< of a run
   long halved_steps = 0;  ///< of a run
   EnergyResult energy{};
-  std::string note{};  ///< the message of a case that was refused or ended; what else is worth knowing
+  std::string note{};  ///< the message of a case that was rejected or ended; other remarks
 };
 
 /// One cell of the matrix.
@@ -61,7 +60,7 @@ struct StabilityCase {
 /// Whether an outcome is the expected one, or better: to the end where an early end was expected.
 [[nodiscard]] bool as_expected(const StabilityCase& one, const CaseResult& result) noexcept;
 
-/// Runs a case; what it throws becomes its outcome: an InputError is a refusal, anything else is wrong.
+/// Runs a case; what it throws becomes its outcome: an InputError is a rejection, anything else is wrong.
 [[nodiscard]] CaseResult outcome_of(const StabilityCase& one);
 
 }  // namespace railtab::stability

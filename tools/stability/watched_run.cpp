@@ -179,7 +179,7 @@ VsiModel sprung_wheelset() {
   const std::vector<RigidBody> bodies{{"wheelset", 1500.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -R0}},
                                       {"mass", 8500.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -2.0 * R0}}};
   const std::vector<Suspension> spring{{0, 1, {0.0, 0.0, -1.5 * R0}, {0.0, 0.0, 1.2e6}, {0.0, 0.0, 1e4}}};
-  model.vehicle = assemble_vehicle("sprung wheelset", bodies, spring, {0}, {heave, heave}, R0, 10.0);
+  model.vehicle = assemble_vehicle({"sprung wheelset", bodies, spring, {0}, {heave, heave}, R0, 10.0});
   model.vehicle_x = {0.0};
   return model;
 }

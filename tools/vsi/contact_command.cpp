@@ -3,10 +3,12 @@
 #include <cmath>
 #include <iterator>
 
-#include "command_line.hpp"
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/output_place.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
-#include "csv_table.hpp"
-#include "json_object.hpp"
+#include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
@@ -38,12 +40,11 @@ void append_patches(const ContactPatches& patches, std::size_t query, std::strin
 }
 
 /// One row per patch of every query. dz is measured from the first touch, which the online search gives exactly.
-std::string answer(const TableContact& contact, const CsvTable& queries, const std::string& file, bool online,
-                   Counts& counts) {
+std::string answer(const TableContact& contact, const NumberRows& queries, bool online, Counts& counts) {
   std::string text = result_header;
   for (std::size_t i = 0; i < queries.rows.size(); ++i) {
     const std::vector<double>& q = queries.rows[i];
-    const std::string place = fmt::format("{}:{}", file, queries.line[i]);
+    const std::string& place = queries.places[i];
     constexpr double deepest = 0.01;  // m: beyond, the profiles are through each other
     if (!(q[3] >= 0.0 && q[3] <= deepest)) {
       throw input_error(place, fmt::format("dz = {}", q[3]), fmt::format("0 to {} m below first touch", deepest));
@@ -65,29 +66,30 @@ std::string answer(const TableContact& contact, const CsvTable& queries, const s
 }  // namespace
 
 int contact_command(const Arguments& arguments) {
-  CommandSyntax syntax{"vsi contact TABLE.h5 --query Q.csv -o R.csv [--online]", "table", true, {}};
-  syntax.options.add_options()(
-      "query", po::value<std::string>()->required()->value_name("Q.csv"),
-      "columns y,yaw,roll,dz [m, rad, rad, m]: pose of the wheelset against the right rail, dz "
-      "below first touch")("output,o", po::value<std::string>()->required()->value_name("R.csv"),
-                           "one row per contact patch")("online", "answer by the online search on the table's pair");
-  const auto values = parse_command_line(syntax, arguments);
-  if (!values) return 0;
-  const std::string query_file = (*values)["query"].as<std::string>();
-  const std::string output = (*values)["output"].as<std::string>();
+  po::options_description own("Options");
+  own.add_options()("table", text_value()->value_name("TABLE.h5"), "a contact geometry table")  //
+      ("query", text_value()->value_name("Q.csv"),
+       "columns y,yaw,roll,dz [m, rad, rad, m]: pose of the wheelset against the right rail, dz below first touch")  //
+      ("output,o", text_value()->value_name("R.csv"), "one row per contact patch")                                   //
+      ("online", "answer by the online search on the table's pair");
+  const CommandLine line("vsi contact TABLE.h5 --query Q.csv -o R.csv [--online]", own, {"table"}, arguments);
+  if (line.help_printed()) return 0;
+  const std::string table = line.required("table"), query = line.required("query"), output = line.required("output");
   require_writable_place(output, "-o");
-  require_no_input(output, {query_file, (*values)["table"].as<std::string>()});
-  const TableContact contact(GeometryTable(read_geometry_table((*values)["table"].as<std::string>())));
-  const CsvTable queries = read_csv(query_file, {"y", "yaw", "roll", "dz"});
+  require_no_input(output, {query, table});
+  require_replaceable_text(output, result_header);
+  const TableContact contact(GeometryTable(read_geometry_table(table)));
+  const NumberRows queries = read_number_rows(query, {"y", "yaw", "roll", "dz"});
   Counts counts;
-  write_text_file(output, answer(contact, queries, query_file, values->contains("online"), counts));
-  if (values->contains("json")) {
-    JsonObject json;
-    json.add("queries", counts.queries).add("patches", counts.patches).add("patches_from_table", counts.table);
-    fmt::print("{}\n", json.add("output", output).text());
-  } else if (!values->contains("quiet")) {
-    fmt::print("{} queries, {} patches, {} of them from the table: {}\n", counts.queries, counts.patches, counts.table,
-               output);
+  write_text_file(output, answer(contact, queries, line.given("online"), counts));
+  if (line.json()) {
+    print_json_line({{"queries", counts.queries},
+                     {"patches", counts.patches},
+                     {"patches_from_table", counts.table},
+                     {"output", output}});
+  } else if (!line.quiet()) {
+    print_formatted("{} queries, {} patches, {} of them from the table: {}\n", counts.queries, counts.patches,
+                    counts.table, output);
   }
   return 0;
 }

@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/output_place.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
-#include "csv_table.hpp"
-#include "json_object.hpp"
+#include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
@@ -27,19 +29,20 @@ std::string_view source(const CreepLaw& law, double ratio, const Creepage& creep
   return share == 1.0 ? "table" : share == 0.0 ? "polach" : "blend";
 }
 
+constexpr const char* result_header = "fx,fy,mz,source\n";
+
 struct Answer {
-  std::string text = "fx,fy,mz,source\n";
+  std::string text = result_header;
   long outside = 0;  ///< queries that Polach answered for the table, wholly or in part
 };
 
-Answer answer(const CreepLaw& law, const CsvTable& queries, const std::string& file) {
+Answer answer(const CreepLaw& law, const NumberRows& queries) {
   Answer result;
   for (std::size_t i = 0; i < queries.rows.size(); ++i) {
     const std::vector<double>& q = queries.rows[i];
     constexpr double most = 1e6;
     if (!(q[0] > 0.0 && q[0] <= most && q[0] * most >= 1.0)) {
-      throw input_error(fmt::format("{}:{}", file, queries.line[i]), fmt::format("ratio = {}", q[0]),
-                        "a/b > 0, from 1e-06 to 1e+06");
+      throw input_error(queries.places[i], fmt::format("ratio = {}", q[0]), "a/b > 0, from 1e-06 to 1e+06");
     }
     const Creepage creepage{q[1], q[2], q[3]};
     const CreepForce force = creep_force(law, q[0], creepage);
@@ -51,10 +54,10 @@ Answer answer(const CreepLaw& law, const CsvTable& queries, const std::string& f
 }
 
 /// Poisson's ratio that was asked for, or the one of the table.
-CreepLaw wanted_law(const po::variables_map& values, const std::string& name) {
-  const std::string table = values.contains("table") ? values["table"].as<std::string>() : std::string();
-  if (values.contains("poisson")) {
-    const double nu = values["poisson"].as<double>();
+CreepLaw wanted_law(const CommandLine& line, const std::string& name) {
+  const std::string table = line.given("table") ? line.text("table") : std::string();
+  if (line.given("poisson")) {
+    const double nu = line.number("poisson");
     if (!(nu >= 0.0 && nu <= 0.5)) throw input_error("--poisson", fmt::format("{}", nu), "a number 0 to 0.5");
     return creep_law(name, nu, table);
   }
@@ -67,46 +70,40 @@ CreepLaw wanted_law(const po::variables_map& values, const std::string& name) {
 }  // namespace
 
 int creep_command(const Arguments& arguments) {
-  CommandSyntax syntax{
-      "vsi creep [TABLE.h5] --query Q.csv -o R.csv [--law table|polach|fastsim|linear]", "table", false, {}};
-  syntax.options.add_options()("query", po::value<std::string>()->required()->value_name("Q.csv"),
-                               "columns ratio,ux,uy,phi: a/b and normalised creepages")(
-      "output,o", po::value<std::string>()->required()->value_name("R.csv"), "columns fx,fy,mz,source")(
-      "law", po::value<std::string>()->default_value("table")->value_name("LAW"), "table, polach, fastsim or linear")(
-      "poisson", po::value<double>()->value_name("NU"),
-      "Poisson's ratio of wheel and rail (0.28, or the table's where one is named)");
-  const auto values = parse_command_line(syntax, arguments);
-  if (!values) return 0;
-  const std::string name = (*values)["law"].as<std::string>();
+  po::options_description own("Options");
+  own.add_options()("table", text_value()->value_name("TABLE.h5"), "a creep table; the shipped one without it")  //
+      ("query", text_value()->value_name("Q.csv"), "columns ratio,ux,uy,phi: a/b and normalised creepages")      //
+      ("output,o", text_value()->value_name("R.csv"), "columns fx,fy,mz,source")                                 //
+      ("law", text_value("table")->value_name("LAW"), "table, polach, fastsim or linear")                        //
+      ("poisson", text_value()->value_name("NU"),
+       "Poisson's ratio of wheel and rail (0.28, or the table's where one is named)");
+  const CommandLine line("vsi creep [TABLE.h5] --query Q.csv -o R.csv [--law table|polach|fastsim|linear]", own,
+                         {"table"}, arguments);
+  if (line.help_printed()) return 0;
+  const std::string name = line.text("law");
   const std::vector<std::string> laws{"table", "polach", "fastsim", "linear"};
   if (std::find(laws.begin(), laws.end(), name) == laws.end()) {
     throw input_error("--law", name, "table, polach, fastsim or linear");
   }
-  const std::string query_file = (*values)["query"].as<std::string>();
-  const std::string output = (*values)["output"].as<std::string>();
+  const std::string query = line.required("query"), output = line.required("output");
   require_writable_place(output, "-o");
-  require_no_input(output, {query_file});
-  if (values->contains("table")) require_no_input(output, {(*values)["table"].as<std::string>()});
-  if (values->contains("table") && name != "table") {
-    throw input_error("--law " + name, "with the creep table " + (*values)["table"].as<std::string>(),
-                      "--law table, or no table");
+  require_no_input(output, {query});
+  if (line.given("table")) require_no_input(output, {line.text("table")});
+  if (line.given("table") && name != "table") {
+    throw input_error("--law " + name, "with the creep table " + line.text("table"), "--law table, or no table");
   }
-  const CreepLaw law = wanted_law(*values, name);
-  const CsvTable queries = read_csv(query_file, {"ratio", "ux", "uy", "phi"});
-  const Answer result = answer(law, queries, query_file);
+  require_replaceable_text(output, result_header);
+  const CreepLaw law = wanted_law(line, name);
+  const NumberRows queries = read_number_rows(query, {"ratio", "ux", "uy", "phi"});
+  const Answer result = answer(law, queries);
   write_text_file(output, result.text);
-  const auto count = static_cast<long>(queries.rows.size());
-  if (values->contains("json")) {
-    fmt::print("{}\n", JsonObject()
-                           .add("queries", count)
-                           .add("law", name)
-                           .add("outside_table", result.outside)
-                           .add("output", output)
-                           .text());
-  } else if (!values->contains("quiet")) {
-    fmt::print("{} queries by {}: {}\n", count, name, output);
+  if (line.json()) {
+    print_json_line(
+        {{"queries", queries.rows.size()}, {"law", name}, {"outside_table", result.outside}, {"output", output}});
+  } else if (!line.quiet()) {
+    print_formatted("{} queries by {}: {}\n", queries.rows.size(), name, output);
     if (result.outside > 0)
-      fmt::print("{} of them outside the table or at its border, answered by Polach\n", result.outside);
+      print_formatted("{} of them outside the table or at its border, answered by Polach\n", result.outside);
   }
   return 0;
 }

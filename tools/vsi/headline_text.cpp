@@ -32,9 +32,9 @@ class TimeTable {
   double total_, steps_;
 };
 
-void member(JsonObject& json, std::string_view name, const report::Extreme& extreme) {
+void member(nlohmann::ordered_json& json, const char* name, const report::Extreme& extreme) {
   if (!extreme.found()) return;
-  json.add(name, JsonObject().add("value", extreme.value).add("time", extreme.time).add("where", extreme.where));
+  json[name] = {{"value", extreme.value}, {"time", extreme.time}, {"where", extreme.where}};
 }
 
 std::string contact_energy_text(const ContactEnergy& e) {
@@ -51,16 +51,13 @@ std::string contact_energy_text(const ContactEnergy& e) {
   return text;
 }
 
-JsonObject contact_energy_json(const ContactEnergy& e) {
-  JsonObject json;
-  json.add("gain", e.gain).add("stiffness_work", e.stiffness_work);
-  json.add("largest_step", JsonObject().add("value", e.largest_step).add("time", e.largest_step_time));
-  json.add("impacts", e.impacts);
+nlohmann::ordered_json contact_energy_json(const ContactEnergy& e) {
+  nlohmann::ordered_json json{{"gain", e.gain}, {"stiffness_work", e.stiffness_work}};
+  json["largest_step"] = {{"value", e.largest_step}, {"time", e.largest_step_time}};
+  json["impacts"] = e.impacts;
   if (e.impacts > 0) {
-    json.add("largest_impact", JsonObject()
-                                   .add("value", e.largest_impact)
-                                   .add("time", e.largest_impact_time)
-                                   .add("stored", e.largest_impact_stored));
+    json["largest_impact"] = {
+        {"value", e.largest_impact}, {"time", e.largest_impact_time}, {"stored", e.largest_impact_stored}};
   }
   return json;
 }
@@ -113,9 +110,8 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   return text;
 }
 
-JsonObject headline_json(const report::Headline& headline, const RunSummary& summary) {
-  JsonObject json;
-  json.add("complete", summary.complete).add("message", summary.message);
+nlohmann::ordered_json headline_json(const report::Headline& headline, const RunSummary& summary) {
+  nlohmann::ordered_json json{{"complete", summary.complete}, {"message", summary.message}};
   member(json, "max_deck_acceleration", headline.deck_acceleration);
   member(json, "max_deck_displacement", headline.deck_displacement);
   member(json, "max_car_body_vertical_acceleration", headline.car_body_vertical);
@@ -126,25 +122,27 @@ JsonObject headline_json(const report::Headline& headline, const RunSummary& sum
   member(json, "max_wheel_unloading", headline.unloading);
   member(json, "max_Q", headline.largest_Q);
   member(json, "min_Q", headline.smallest_Q);
-  json.add("simulated_time", headline.simulated_time).add("distance", headline.distance);
-  json.add("contact_mode", summary.contact_mode).add("contact_queries", summary.contact_queries);
-  json.add("table_queries", summary.table_queries).add("table_share", headline.table_share);
-  json.add("outside_creep_table", summary.outside_creep_table);
-  json.add("steps", summary.steps).add("counted_from_step", summary.counted_from);
-  json.add("newton_iterations", summary.newton_iterations);
-  json.add("halved_steps", summary.halved_steps).add("impact_steps", summary.impact_steps);
-  json.add("back_substitutions", summary.back_substitutions);
-  json.add("structure_dofs", summary.structure_dofs).add("vehicle_dofs", summary.vehicle_dofs);
-  json.add("seconds", JsonObject()
-                          .add("total", summary.seconds_total)
-                          .add("setup", summary.seconds_setup)
-                          .add("lookup", summary.seconds_lookup)
-                          .add("contact", summary.seconds_contact)
-                          .add("structure", summary.seconds_structure)
-                          .add("vehicle", summary.seconds_vehicle)
-                          .add("output", summary.seconds_output));
-  if (summary.contact_energy) json.add("contact_energy", contact_energy_json(*summary.contact_energy));
-  if (headline.real_time_factor > 0.0) json.add("real_time_factor", headline.real_time_factor);
+  json["simulated_time"] = headline.simulated_time;
+  json["distance"] = headline.distance;
+  json["contact_mode"] = summary.contact_mode;
+  json["contact_queries"] = summary.contact_queries;
+  json["table_queries"] = summary.table_queries;
+  json["table_share"] = headline.table_share;
+  json["outside_creep_table"] = summary.outside_creep_table;
+  json["steps"] = summary.steps;
+  json["counted_from_step"] = summary.counted_from;
+  json["newton_iterations"] = summary.newton_iterations;
+  json["halved_steps"] = summary.halved_steps;
+  json["impact_steps"] = summary.impact_steps;
+  json["back_substitutions"] = summary.back_substitutions;
+  json["structure_dofs"] = summary.structure_dofs;
+  json["vehicle_dofs"] = summary.vehicle_dofs;
+  json["seconds"] = {{"total", summary.seconds_total},         {"setup", summary.seconds_setup},
+                     {"lookup", summary.seconds_lookup},       {"contact", summary.seconds_contact},
+                     {"structure", summary.seconds_structure}, {"vehicle", summary.seconds_vehicle},
+                     {"output", summary.seconds_output}};
+  if (summary.contact_energy) json["contact_energy"] = contact_energy_json(*summary.contact_energy);
+  if (headline.real_time_factor > 0.0) json["real_time_factor"] = headline.real_time_factor;
   return json;
 }
 

@@ -1,15 +1,15 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "headline.hpp"
-#include "json_object.hpp"
 
 namespace railtab::vsi {
 
 /// The headline of a run for the terminal, one number a line with unit and place.
 [[nodiscard]] std::string headline_text(const report::Headline& headline, const RunSummary& summary);
 /// The same numbers as one JSON object, SI units; quantities that the run does not have are left out.
-[[nodiscard]] JsonObject headline_json(const report::Headline& headline, const RunSummary& summary);
+[[nodiscard]] nlohmann::ordered_json headline_json(const report::Headline& headline, const RunSummary& summary);
 
 }  // namespace railtab::vsi

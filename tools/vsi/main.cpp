@@ -2,9 +2,11 @@
 
 #include <string_view>
 
+#include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/process_memory.hpp"
 
 namespace railtab::vsi {
 namespace {
@@ -29,11 +31,11 @@ int dispatch(const Arguments& arguments) {
   if (name == "report") return report_command(rest);
   if (name == "structure") return structure_command(rest);
   if (name == "--help" || name == "-h") {
-    fmt::print("{}", usage);
+    print_formatted("{}", usage);
     return 0;
   }
   if (name == "--version") {
-    fmt::print("railtab {}\n", RAILTAB_VERSION);
+    print_formatted("railtab {}\n", RAILTAB_VERSION);
     return 0;
   }
   throw InputError(fmt::format("unknown command '{}'\n{}", name, usage));
@@ -43,5 +45,6 @@ int dispatch(const Arguments& arguments) {
 }  // namespace railtab::vsi
 
 int main(int argc, char** argv) {
+  railtab::return_large_pieces();
   return railtab::run_process("vsi", [&] { return railtab::vsi::dispatch({argv + 1, argv + argc}); });
 }

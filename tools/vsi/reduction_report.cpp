@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "json_object.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/reduction_check.hpp"
 
@@ -11,56 +12,55 @@ namespace {
 
 double step_ms(const RunSummary& s) { return 1e3 * (s.seconds_total - s.seconds_setup) / static_cast<double>(s.steps); }
 
-void print_json(const SceneParameters& scene, const ReductionError& e) {
-  fmt::print("{}\n", JsonObject()
-                         .add("reduction", std::string(reduction_name(scene.reduction.kind)))
-                         .add("seconds", e.duration)
-                         .add("force_max", e.force_max)
-                         .add("force_rms", e.force_rms)
-                         .add("force_of_static", e.force_static)
-                         .add("force_dynamic", e.dynamic_force)
-                         .add("deck_max", e.deck_max)
-                         .add("deck_rms", e.deck_rms)
-                         .add("deck_acceleration", e.deck_acceleration)
-                         .add("peak_force", e.peak_force)
-                         .add("peak_deck", e.peak_deck)
-                         .add("unknowns", e.reduced.active_dofs)
-                         .add("unknowns_none", e.whole.active_dofs)
-                         .add("step_ms", step_ms(e.reduced))
-                         .add("step_ms_none", step_ms(e.whole))
-                         .text());
+void print_as_json(const SceneParameters& scene, const ReductionError& e) {
+  print_json_line({{"reduction", reduction_name(scene.reduction.kind)},
+                   {"seconds", e.duration},
+                   {"force_max", e.force_max},
+                   {"force_rms", e.force_rms},
+                   {"force_of_static", e.force_static},
+                   {"force_dynamic", e.dynamic_force},
+                   {"deck_max", e.deck_max},
+                   {"deck_rms", e.deck_rms},
+                   {"deck_acceleration", e.deck_acceleration},
+                   {"peak_force", e.peak_force},
+                   {"peak_deck", e.peak_deck},
+                   {"unknowns", e.reduced.active_dofs},
+                   {"unknowns_none", e.whole.active_dofs},
+                   {"step_ms", step_ms(e.reduced)},
+                   {"step_ms_none", step_ms(e.whole)}});
 }
 
 /// Errors are relative to the largest values, which say nothing before the train has moved anything.
 void print_text(const SceneParameters& scene, const ReductionError& e) {
   constexpr double still_force = 1.0, still_deck = 1e-3;  // [N], [m/s²]: beside 1e3 N and 0.1 m/s² of a crossing
-  fmt::print("{}: reduction \"{}\" against \"none\" over {} s\n", scene.name, reduction_name(scene.reduction.kind),
-             e.duration);
+  print_formatted("{}: reduction \"{}\" against \"none\" over {} s\n", scene.name, reduction_name(scene.reduction.kind),
+                  e.duration);
   if (e.dynamic_force > still_force) {
-    fmt::print(
+    print_formatted(
         "  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its dynamic part, {:.3g} kN; {:.3g} % of the static load\n",
         "vertical contact force", 100.0 * e.force_max, 100.0 * e.force_rms, 1e-3 * e.dynamic_force,
         100.0 * e.force_static);
   } else {
-    fmt::print("  {:<28}{:>9.3g} % of the static load; its dynamic part is less than {} N, nothing to compare\n",
-               "vertical contact force", 100.0 * e.force_static, still_force);
+    print_formatted("  {:<28}{:>9.3g} % of the static load; its dynamic part is less than {} N, nothing to compare\n",
+                    "vertical contact force", 100.0 * e.force_static, still_force);
   }
   if (e.deck_acceleration > still_deck) {
-    fmt::print("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its largest value, {:.3g} m/s²\n", "deck acceleration",
-               100.0 * e.deck_max, 100.0 * e.deck_rms, e.deck_acceleration);
-    fmt::print("  {:<28}{:>9.3g} % of the largest Q, {:.3g} % of the largest deck acceleration\n", "peaks",
-               100.0 * e.peak_force, 100.0 * e.peak_deck);
+    print_formatted("  {:<28}{:>9.3g} % largest {:>9.3g} % rms  of its largest value, {:.3g} m/s²\n",
+                    "deck acceleration", 100.0 * e.deck_max, 100.0 * e.deck_rms, e.deck_acceleration);
+    print_formatted("  {:<28}{:>9.3g} % of the largest Q, {:.3g} % of the largest deck acceleration\n", "peaks",
+                    100.0 * e.peak_force, 100.0 * e.peak_deck);
   } else {
-    fmt::print("  {:<28} less than {} m/s², nothing to compare: compare until the train is on the bridge\n",
-               "deck acceleration", still_deck);
-    fmt::print("  {:<28}{:>9.3g} % of the largest Q\n", "peaks", 100.0 * e.peak_force);
+    print_formatted("  {:<28} less than {} m/s², nothing to compare: compare until the train is on the bridge\n",
+                    "deck acceleration", still_deck);
+    print_formatted("  {:<28}{:>9.3g} % of the largest Q\n", "peaks", 100.0 * e.peak_force);
   }
   if (const double left = scene.integration.tolerance; e.force_static < left) {
-    fmt::print("  {:<28} differ by less than Newton leaves of them (integration.tolerance, {:g} of the static load)\n",
-               "the forces", left);
+    print_formatted(
+        "  {:<28} differ by less than Newton leaves of them (integration.tolerance, {:g} of the static load)\n",
+        "the forces", left);
   }
-  fmt::print("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
-             e.reduced.active_dofs, step_ms(e.whole), e.whole.active_dofs);
+  print_formatted("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
+                  e.reduced.active_dofs, step_ms(e.whole), e.whole.active_dofs);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ int print_reduction_error(const SceneParameters& scene, double seconds, bool jso
   }
   const ReductionError e = check_reduction(scene, seconds);
   if (json) {
-    print_json(scene, e);
+    print_as_json(scene, e);
   } else {
     print_text(scene, e);
   }

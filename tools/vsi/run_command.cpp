@@ -8,14 +8,18 @@
 #include <span>
 #include <string>
 
-#include "command_line.hpp"
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/output_place.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "headline.hpp"
 #include "headline_text.hpp"
-#include "progress_bar.hpp"
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
@@ -42,27 +46,35 @@ ContactMode contact_mode(const std::string& name) {
 void print_warning(std::string_view warning) { print_message(fmt::format("vsi run: warning: {}\n", warning)); }
 
 int print_plan(const SceneParameters& scene, const RunOptions& options) {
-  SetupProgress progress(options.quiet || options.json);
+  SetupProgress progress(!options.quiet && !options.json);
   const RunPlan plan = plan_run(scene, [&](std::string_view part) { progress.show(part); });
   progress.end();
   if (options.json) {
-    JsonObject json;
-    json.add("scene", scene.name).add("structure_dofs", plan.structure_dofs).add("vehicle_dofs", plan.vehicle_dofs);
-    json.add("wheels", static_cast<long>(plan.wheels)).add("steps", plan.steps).add("time_step", plan.time_step);
-    json.add("duration", plan.duration)
-        .add("memory_bytes", plan.memory)
-        .add("built", plan.built)
-        .add("left_out", plan.left_out)
-        .add("warnings", plan.warnings);
-    fmt::print("{}\n", json.text());
+    print_json_line({{"scene", scene.name},
+                     {"structure_dofs", plan.structure_dofs},
+                     {"vehicle_dofs", plan.vehicle_dofs},
+                     {"wheels", plan.wheels},
+                     {"steps", plan.steps},
+                     {"time_step", plan.time_step},
+                     {"duration", plan.duration},
+                     {"memory_bytes", plan.memory.most},
+                     {"memory_undivided_bytes", plan.memory.undivided},
+                     {"results_bytes", plan.memory.results},
+                     {"step_reads_bytes", plan.memory.step_reads},
+                     {"built", plan.built},
+                     {"left_out", plan.left_out},
+                     {"warnings", plan.warnings}});
     return 0;
   }
-  fmt::print("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
-  fmt::print("  {} unknowns of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs, plan.vehicle_dofs,
-             plan.wheels);
-  fmt::print("  {:.3g} MB for what the steps work on, besides contact tables and records\n", 1e-6 * plan.memory);
-  for (const std::string& part : plan.built) fmt::print("  built:    {}\n", part);
-  for (const std::string& part : plan.left_out) fmt::print("  left out: {}\n", part);
+  print_formatted("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
+  print_formatted("  {} degrees of freedom of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
+                  plan.vehicle_dofs, plan.wheels);
+  print_formatted(
+      "  at most {:.4g} MB of memory in all, {:.4g} MB where no step is divided; a step reads {:.3g} MB of it\n",
+      1e-6 * plan.memory.most, 1e-6 * plan.memory.undivided, 1e-6 * plan.memory.step_reads);
+  print_formatted("  {:.4g} MB of results\n", 1e-6 * plan.memory.results);
+  for (const std::string& part : plan.built) print_formatted("  built:    {}\n", part);
+  for (const std::string& part : plan.left_out) print_formatted("  left out: {}\n", part);
   for (const std::string& warning : plan.warnings) print_warning(warning);
   return 0;
 }
@@ -70,11 +82,10 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
 /// A table that does not cover what the run does makes it slow, not wrong: say so.
 void warn_of_uncovered_queries(const RunSummary& summary) {
   if (summary.contact_mode != "table" || 2 * summary.table_queries >= summary.contact_queries) return;
-  fmt::print(
-      stderr,
-      "vsi run: warning: the table served {:.1f} % of the contact queries, the online search the rest; does it cover "
-      "the run's roll, yaw and lateral shift (tablegen info; tablegen geometry --roll)?\n",
-      100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
+  print_warning(fmt::format(
+      "the table served {:.1f} % of the contact queries, the online search the rest; does it cover the run's roll, yaw "
+      "and lateral shift (tablegen info; tablegen geometry --roll)?",
+      100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries)));
 }
 
 /// Wheel forces that the scene's track or contact cannot give, wherever they come from.
@@ -105,15 +116,26 @@ class Interrupt {
   static inline volatile std::sig_atomic_t asked_ = 0;
 };
 
+/// What a run says that could not begin, and its exit code. Results of another run that are in its place stay there.
+int conclude_without_results(const RunSummary& summary, const RunOptions& options) {
+  if (options.ended) options.ended({}, summary);
+  if (options.json) print_json_line(headline_json({}, summary));
+  print_message(
+      fmt::format("vsi run: {}; no step was made, and {} stays as it was\n", summary.message, options.output));
+  return 1;
+}
+
 /// What a run that has ended says, and its exit code.
 int conclude(const SceneParameters& scene, const report::Headline& headline, const RunSummary& summary,
              const RunOptions& options) {
   if (options.ended) options.ended(headline, summary);
   constexpr int interrupted = 130;  // as a shell says of a program that Ctrl-C has ended
   if (options.json) {
-    fmt::print("{}\n", headline_json(headline, summary).add("results", options.output).text());
+    nlohmann::ordered_json json = headline_json(headline, summary);
+    json["results"] = options.output;
+    print_json_line(json);
   } else if (!options.quiet && summary.steps > 0) {
-    fmt::print("{}Results: {}\n", headline_text(headline, summary), options.output);
+    print_formatted("{}Results: {}\n", headline_text(headline, summary), options.output);
   }
   if (!options.quiet) {
     warn_of_uncovered_queries(summary);
@@ -147,7 +169,7 @@ void say_what_is_replaced(const RunOptions& options) {
 class RunRecorder {
  public:
   explicit RunRecorder(const RunOptions& options)
-      : options_(options), setup_(options.quiet || options.json), progress_(options.quiet || options.json) {}
+      : options_(options), setup_(!options.quiet && !options.json), progress_("run", !options.quiet && !options.json) {}
 
   /// Take up what the file holds up to its last checkpoint, if it has one.
   [[nodiscard]] std::optional<RunCheckpoint> take_up(const RunResults& before) {
@@ -159,7 +181,7 @@ class RunRecorder {
     }
     collector_.emplace(before.header);
     for (std::size_t i = 0; i < checkpoint->records; ++i) collector_->add(before.steps[i]);
-    resumed_at_ = checkpoint->records > 0 ? before.steps[checkpoint->records - 1].time : 0.0;
+    resumed_ = true;
     writer_.emplace(ResultWriter::resume(options_.output, *checkpoint));
     return RunCheckpoint{checkpoint->step, checkpoint->state};
   }
@@ -174,14 +196,14 @@ class RunRecorder {
       if (!options_.quiet) print_warning(warning);
     };
     observer.ready = [this] {
+      replace_results();
       setup_.end();
       Interrupt::listen();
     };
     observer.stop = [] { return Interrupt::asked(); };
     observer.start = [this](const ResultHeader& header) {
       if (writer_) return;  // taken up
-      say_what_is_replaced(options_);
-      writer_.emplace(options_.output, header);
+      header_ = header;
       collector_.emplace(header);
     };
     observer.record = [this](const StepRecord& step) {
@@ -205,21 +227,35 @@ class RunRecorder {
   [[nodiscard]] int finish(const SceneParameters& scene, RunSummary summary) {
     setup_.end();
     progress_.wipe();
-    if (resumed_at_ && summary.complete) {
-      summary.message =
-          fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then", *resumed_at_);
+    if (resumed_ && summary.complete) {
+      summary.message = fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then",
+                                    static_cast<double>(summary.counted_from) * scene.integration.time_step);
+    }
+    if (!writer_) {
+      if (is_file(options_.output) && std::filesystem::file_size(options_.output) > 0) {
+        return conclude_without_results(summary, options_);
+      }
+      replace_results();  // with nothing but the reason
     }
     writer_->finish(summary);
     return conclude(scene, collector_->result(summary), summary, options_);
   }
 
  private:
+  /// Only where the set-up has succeeded: earlier results are worth more than a run that could not begin.
+  void replace_results() {
+    if (writer_) return;
+    say_what_is_replaced(options_);
+    writer_.emplace(options_.output, header_);
+  }
+
   const RunOptions& options_;
   SetupProgress setup_;
   ProgressBar progress_;
   std::optional<ResultWriter> writer_;
   std::optional<report::HeadlineCollector> collector_;
-  std::optional<double> resumed_at_;
+  ResultHeader header_;
+  bool resumed_ = false;
 };
 
 /// Results must not overwrite what the run reads.
@@ -258,6 +294,7 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
 }
 
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
+  remove_abandoned(output_file(options.output));  // also where results are gone on with
   RunRecorder recorder(options);
   std::optional<RunCheckpoint> from;
   if (options.resume && std::filesystem::exists(options.output)) {
@@ -279,44 +316,53 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
   }
 }
 
+namespace {
+
+po::options_description run_options() {
+  po::options_description own("Options");
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "what is run")  //
+      ("output,o", text_value()->value_name("RESULTS.h5"),
+       "results; default: <scene>.results.h5 in this folder")  //
+      ("resume",
+       "go on from the last checkpoint in RESULTS.h5; nothing is run where it is complete")            //
+      ("plan", "say what will be built and what is left out, and do not run")                          //
+      ("contact", text_value()->value_name("MODE"), "table, online or paper, instead of the scene's")  //
+      ("check-reduction", text_value()->value_name("SECONDS"),
+       "say how far the first SECONDS with structure.reduction are from those without, and do not run on");
+  return own;
+}
+
+/// @throws InputError
+void set_contact_mode(const std::string& name, SceneParameters& scene) {
+  if (scene.contact.normal == NormalContact::rigid) {
+    throw input_error("--contact", "a scene with contact.normal = \"rigid\"", "one whose wheels have contact patches");
+  }
+  scene.contact.mode = contact_mode(name);
+  scene.validate();
+}
+
+}  // namespace
+
 int run_command(const Arguments& arguments) {
-  CommandSyntax syntax{
+  const CommandLine line(
       "vsi run SCENE.toml [-o RESULTS.h5] [--resume] [--plan] [--contact table|online|paper]\n"
       "               [--check-reduction SECONDS]",
-      "scene",
-      true,
-      {}};
-  syntax.options.add_options()("output,o", po::value<std::string>()->value_name("RESULTS.h5"),
-                               "results; default: <scene>.results.h5 in this folder")(
-      "resume", "go on from the last checkpoint in RESULTS.h5; nothing is run where it is complete")(
-      "plan", "say what will be built and what is left out, and do not run")(
-      "contact", po::value<std::string>()->value_name("MODE"), "table, online or paper, instead of the scene's")(
-      "check-reduction", po::value<double>()->value_name("SECONDS"),
-      "say how far the first SECONDS with structure.reduction are from those without, and do not run on");
-  const auto values = parse_command_line(syntax, arguments);
-  if (!values) return 0;
-  const std::filesystem::path file = (*values)["scene"].as<std::string>();
+      run_options(), {"scene"}, arguments);
+  if (line.help_printed()) return 0;
+  const std::filesystem::path file = line.required("scene");
   SceneParameters scene = read_scene(file);
-  if (values->contains("contact")) {
-    if (scene.contact.normal == NormalContact::rigid) {
-      throw input_error("--contact", "a scene with contact.normal = \"rigid\"",
-                        "one whose wheels have contact patches");
-    }
-    scene.contact.mode = contact_mode((*values)["contact"].as<std::string>());
-    scene.validate();
-  }
-  RunOptions options{file.stem().string() + ".results.h5", values->contains("json"), values->contains("quiet"),
-                     values->contains("resume")};
-  if (values->contains("output")) options.output = (*values)["output"].as<std::string>();
+  if (line.given("contact")) set_contact_mode(line.text("contact"), scene);
+  RunOptions options{file.stem().string() + ".results.h5", line.json(), line.quiet(), line.given("resume")};
+  if (line.given("output")) options.output = line.text("output");
   for (const char* other : {"plan", "resume", "output"}) {
-    if (values->contains("check-reduction") && values->contains(other)) {
+    if (line.given("check-reduction") && line.given(other)) {
       throw input_error("--check-reduction", fmt::format("--{} too", other), "one of them");
     }
   }
   try {
-    if (values->contains("plan")) return print_plan(scene, options);
-    if (values->contains("check-reduction")) {
-      const double seconds = (*values)["check-reduction"].as<double>();
+    if (line.given("plan")) return print_plan(scene, options);
+    if (line.given("check-reduction")) {
+      const double seconds = line.number("check-reduction");
       if (!(seconds > 0.0)) throw input_error("--check-reduction", fmt::format("{}", seconds), "> 0 s");
       return print_reduction_error(scene, seconds, options.json);
     }

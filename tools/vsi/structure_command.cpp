@@ -3,9 +3,10 @@
 
 #include <cmath>
 
-#include "command_line.hpp"
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
-#include "json_object.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
@@ -25,48 +26,53 @@ StructureSummary summary_of(const SceneParameters& scene, int modes) {
   throw input_error("scene", "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
 }
 
-std::vector<std::string> doubts(const SceneParameters& scene, const StructureSummary& s) {
+std::vector<std::string> warnings(const SceneParameters& scene, const StructureSummary& s) {
   const double length = s.high[0] - s.low[0];
   if (scene.structure.files.nodes.empty() || !(length > 0.0)) return {};
-  return doubts_about(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
+  return plausibility_warnings(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
 }
 
 /// No "-0.000" for what turning axes leaves of zero [m].
 double shown(double x) { return std::abs(x) < 5e-4 ? 0.0 : x; }
 
 void print(const SceneParameters& scene, const StructureSummary& s) {
-  fmt::print("{}: {} unknowns, {} nodes\n", scene.name, s.dofs, s.nodes);
-  fmt::print("  from x = {:.3f}, y = {:.3f}, z = {:.3f} m to {:.3f}, {:.3f}, {:.3f} m below the rail-head tops\n",
-             shown(s.low[0]), shown(s.low[1]), shown(s.low[2]), shown(s.high[0]), shown(s.high[1]), shown(s.high[2]));
-  fmt::print("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
-             1e-3 * s.mass[2]);
+  print_formatted("{}: {} unknowns, {} nodes\n", scene.name, s.dofs, s.nodes);
+  print_formatted("  from x = {:.3f}, y = {:.3f}, z = {:.3f} m to {:.3f}, {:.3f}, {:.3f} m below the rail-head tops\n",
+                  shown(s.low[0]), shown(s.low[1]), shown(s.low[2]), shown(s.high[0]), shown(s.high[1]),
+                  shown(s.high[2]));
+  print_formatted("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
+                  1e-3 * s.mass[2]);
   if (!s.free.empty()) {
-    fmt::print("  without resistance it {}: supports are missing\n", fmt::join(s.free, "; "));
+    print_formatted("  without resistance it {}: supports are missing\n", fmt::join(s.free, "; "));
   }
   for (std::size_t k = 0; k < s.frequencies.size(); ++k) {
-    fmt::print("  {:3}. {:10.4f} Hz, damping {:.3f} %\n", k + 1, s.frequencies[k], 100.0 * s.damping_ratios[k]);
+    print_formatted("  {:3}. {:10.4f} Hz, damping {:.3f} %\n", k + 1, s.frequencies[k], 100.0 * s.damping_ratios[k]);
   }
 }
 
-void print_json(const SceneParameters& scene, const StructureSummary& s) {
-  JsonObject json;
-  json.add("scene", scene.name).add("dofs", s.dofs).add("nodes", s.nodes);
-  json.add("mass_x", s.mass[0]).add("mass_y", s.mass[1]).add("mass_z", s.mass[2]);
-  json.add("free", s.free).add("frequencies", s.frequencies).add("damping_ratios", s.damping_ratios);
-  fmt::print("{}\n", json.text());
+void print_as_json(const SceneParameters& scene, const StructureSummary& s) {
+  print_json_line({{"scene", scene.name},
+                   {"dofs", s.dofs},
+                   {"nodes", s.nodes},
+                   {"mass_x", s.mass[0]},
+                   {"mass_y", s.mass[1]},
+                   {"mass_z", s.mass[2]},
+                   {"free", s.free},
+                   {"frequencies", s.frequencies},
+                   {"damping_ratios", s.damping_ratios}});
 }
 
 }  // namespace
 
 int structure_command(const Arguments& arguments) {
-  CommandSyntax syntax{"vsi structure SCENE.toml [--modes N]", "scene", true, {}};
-  syntax.options.add_options()("modes", po::value<int>()->value_name("N"),
-                               "natural frequencies of the bridge without its track; default 10, 0 for none");
-  const auto values = parse_command_line(syntax, arguments);
-  if (!values) return 0;
-  const int modes = values->contains("modes") ? (*values)["modes"].as<int>() : 10;
-  if (modes < 0 || modes > 500) throw input_error("--modes", fmt::format("{}", modes), "0 to 500");
-  const std::filesystem::path file = (*values)["scene"].as<std::string>();
+  po::options_description own("Options");
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge")  //
+      ("modes", text_value("10")->value_name("N"), "natural frequencies of the bridge without its track, 0 for none");
+  const CommandLine line("vsi structure SCENE.toml [--modes N]", own, {"scene"}, arguments);
+  if (line.help_printed()) return 0;
+  constexpr int most_modes = 500;
+  const int modes = static_cast<int>(line.whole_number("modes", 0, most_modes));
+  const std::filesystem::path file = line.required("scene");
   const SceneParameters scene = read_scene(file);
   const StructureSummary summary = [&] {
     try {
@@ -75,10 +81,10 @@ int structure_command(const Arguments& arguments) {
       throw with_scene_line(wrong, scene, file);
     }
   }();
-  for (const std::string& doubt : doubts(scene, summary))
-    print_message(fmt::format("vsi structure: warning: {}\n", doubt));
-  if (values->contains("json")) {
-    print_json(scene, summary);
+  for (const std::string& warning : warnings(scene, summary))
+    print_message(fmt::format("vsi structure: warning: {}\n", warning));
+  if (line.json()) {
+    print_as_json(scene, summary);
   } else {
     print(scene, summary);
   }

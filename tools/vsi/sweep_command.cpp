@@ -5,21 +5,23 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <thread>
 
-#include "command_line.hpp"
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
 #include "commands.hpp"
-#include "json_object.hpp"
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
@@ -33,23 +35,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr int done = 0, failed = 1, interrupted = 130;
 constexpr int kept = 3;  // of a process whose run was finished before
-
-struct Shard {
-  std::size_t index = 1, count = 1;
-};
-
-Shard shard_of(const std::string& text) {
-  Shard shard;
-  const char* const end = text.data() + text.size();
-  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
-  bool good = first == std::errc() && slash != end && *slash == '/';
-  if (good) {
-    const auto [stop, second] = std::from_chars(slash + 1, end, shard.count);
-    good = second == std::errc() && stop == end && shard.index >= 1 && shard.index <= shard.count;
-  }
-  if (!good) throw input_error("--shard", text, "I/N with 1 <= I <= N");
-  return shard;
-}
 
 std::string whole_text(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -109,7 +94,11 @@ class Sweep {
   void set_aside(const SweepRun& run, const char* suffix, const std::string& why) const {
     const fs::path old = file(run, suffix);
     fs::path aside = old.string() + "." + why;
-    for (int k = 2; fs::exists(aside); ++k) aside = fmt::format("{}.{}-{}", old.string(), why, k);
+    constexpr int most = 10000;
+    for (int k = 2; fs::exists(aside); ++k) {
+      if (k > most) throw input_error(old.string(), fmt::format("{} files set aside", most), "fewer: remove them");
+      aside = fmt::format("{}.{}-{}", old.string(), why, k);
+    }
     fs::rename(old, aside);
     print_message(fmt::format("vsi sweep: {}: {} is set aside as {}\n", run.name, old.filename().string(),
                               aside.filename().string()));
@@ -176,7 +165,8 @@ class Sweep {
     going_.erase(ended);
     if (WIFEXITED(status) && WEXITSTATUS(status) == kept) return done;
     const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
-    if (!quiet_) fmt::print("{}: {}\n", run.name, complete ? "done" : finished(run) ? "ended early" : "not finished");
+    if (!quiet_)
+      print_formatted("{}: {}\n", run.name, complete ? "done" : finished(run) ? "ended early" : "not finished");
     std::fflush(stdout);
     return complete ? done : failed;
   }
@@ -252,64 +242,87 @@ void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
   }
 }
 
-std::vector<double> speeds_of(const po::variables_map& values) {
-  const bool si = values.contains("speed"), kmh = values.contains("speed-kmh");
+std::vector<double> speeds_of(const CommandLine& line) {
+  const bool si = line.given("speed"), kmh = line.given("speed-kmh");
   if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
   if (!si && !kmh) throw input_error("vsi sweep", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
   const std::string option = si ? "speed" : "speed-kmh";
-  std::vector<double> speeds = values_of_range("--" + option, values[option].as<std::string>());
+  std::vector<double> speeds = values_of_range("--" + option, line.text(option));
   if (kmh) std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double v) { return v / 3.6; });
   return speeds;
+}
+
+/// What processes left that were killed while they wrote: of finished runs too, which nothing is written of any more.
+void remove_abandoned_of(const std::vector<SweepRun>& runs, const fs::path& folder) {
+  std::set<std::string> outputs{"scene.toml", "summary.csv"};
+  for (const SweepRun& run : runs) {
+    for (const char* suffix : {".h5", ".row"}) outputs.insert(run.name + suffix);
+  }
+  remove_abandoned_in(folder, [&](const std::string& output) { return outputs.contains(output); });
+}
+
+po::options_description sweep_options() {
+  po::options_description own("Options");
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "what is run")                         //
+      ("output,o", text_value()->value_name("DIR"), "folder of the results, made where it does not exist")  //
+      ("speed", text_value()->value_name("LO:HI:STEP"), "speeds in m/s")                                    //
+      ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "speeds in km/h")                               //
+      ("seeds", text_value("1")->value_name("N"),
+       "random tracks for each speed: irregularity.seed and the N - 1 that follow")  //
+      ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs");
+  return own;
+}
+
+/// What the whole sweep has come to, or one of its shards, which writes no summary.
+void print_outcome(const CommandLine& line, const SweepCount& count, std::size_t own, std::size_t all,
+                   const std::string& summary) {
+  if (line.json()) {
+    nlohmann::ordered_json json{{"runs", own}, {"finished", count.finished}, {"ended_early", count.ended_early}};
+    if (!summary.empty()) json["summary"] = summary;
+    print_json_line(json);
+  } else if (!line.quiet() && !summary.empty()) {
+    print_formatted("{} of {} runs finished, {} of them ended early: {}\n", count.finished, all, count.ended_early,
+                    summary);
+  } else if (!line.quiet()) {
+    const PartOf shard = line.part("shard");
+    print_formatted(
+        "shard {} of {}: {} of its {} runs finished, {} of them ended early; the sweep has {} runs, and the same "
+        "command without --shard writes the summary of all\n",
+        shard.index, shard.count, count.finished, own, count.ended_early, all);
+  }
 }
 
 }  // namespace
 
 int sweep_command(const Arguments& arguments) {
-  CommandSyntax syntax{"vsi sweep SCENE.toml --speed LO:HI:STEP [--seeds N] [--shard I/N] -o DIR", "scene", true, {}};
-  syntax.options.add_options()("output,o", po::value<std::string>()->required()->value_name("DIR"),
-                               "folder of the results, made where it does not exist")(
-      "speed", po::value<std::string>()->value_name("LO:HI:STEP"), "speeds in m/s")(
-      "speed-kmh", po::value<std::string>()->value_name("LO:HI:STEP"), "speeds in km/h")(
-      "seeds", po::value<int>()->default_value(1)->value_name("N"),
-      "random tracks for each speed: irregularity.seed and the N - 1 that follow")(
-      "shard", po::value<std::string>()->default_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs");
-  const auto values = parse_command_line(syntax, arguments);
-  if (!values) return done;
-  const SceneParameters scene = read_scene((*values)["scene"].as<std::string>());
-  const int seeds = (*values)["seeds"].as<int>();
-  if (seeds < 1) throw input_error("--seeds", std::to_string(seeds), "a number >= 1");
-  const std::vector<SweepRun> all = sweep_runs(scene, speeds_of(*values), seeds);
+  const CommandLine line("vsi sweep SCENE.toml --speed LO:HI:STEP [--seeds N] [--shard I/N] -o DIR", sweep_options(),
+                         {"scene"}, arguments);
+  if (line.help_printed()) return done;
+  const std::string scene_file = line.required("scene");
+  const fs::path folder = line.required("output");
+  const SceneParameters scene = read_scene(scene_file);
+  constexpr int most_seeds = 100000;
+  const int seeds = static_cast<int>(line.whole_number("seeds", 1, most_seeds));
+  const std::vector<SweepRun> all = sweep_runs(scene, speeds_of(line), seeds);
   for (const SweepRun& run : all) static_cast<void>(scene_of(scene, run));
-  const Shard shard = shard_of((*values)["shard"].as<std::string>());
+  const PartOf shard = line.part("shard");
   std::vector<SweepRun> own;
-  for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) own.push_back(all[i]);
+  for (std::size_t i = static_cast<std::size_t>(shard.index - 1); i < all.size();
+       i += static_cast<std::size_t>(shard.count)) {
+    own.push_back(all[i]);
+  }
 
-  const fs::path folder = (*values)["output"].as<std::string>();
   make_folder(folder);
+  remove_abandoned_of(all, folder);
   check_same_scene(scene, folder);
-  const auto asked = static_cast<std::size_t>((*values)["threads"].as<int>());
-  const std::size_t processes = asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
-  const bool json = values->contains("json"), quiet = values->contains("quiet") || json;
-  Sweep sweep(scene, (*values)["scene"].as<std::string>(), folder, quiet);
+  const auto processes = static_cast<std::size_t>(
+      line.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))));
+  Sweep sweep(scene, scene_file, folder, line.quiet() || line.json());
   const int code = sweep.run(own, processes);
   const bool whole = shard.count == 1;
   const fs::path summary = folder / "summary.csv";
   const SweepCount count = whole ? write_summary(sweep, all, summary) : count_runs(sweep, own);
-  if (json) {
-    JsonObject object;
-    object.add("runs", static_cast<long>(own.size())).add("finished", static_cast<long>(count.finished));
-    object.add("ended_early", static_cast<long>(count.ended_early));
-    if (whole) object.add("summary", summary.string());
-    fmt::print("{}\n", object.text());
-  } else if (!quiet && whole) {
-    fmt::print("{} of {} runs finished, {} of them ended early: {}\n", count.finished, all.size(), count.ended_early,
-               summary.string());
-  } else if (!quiet) {
-    fmt::print(
-        "shard {} of {}: {} of its {} runs finished, {} of them ended early; the sweep has {} runs, and the same "
-        "command without --shard writes the summary of all\n",
-        shard.index, shard.count, count.finished, own.size(), count.ended_early, all.size());
-  }
+  print_outcome(line, count, own.size(), all.size(), whole ? summary.string() : "");
   return code == done && count.ended_early > 0 ? failed : code;
 }
 

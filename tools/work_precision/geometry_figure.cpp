@@ -9,6 +9,7 @@
 #include <random>
 
 #include "interleaved_timing.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
@@ -34,7 +35,10 @@ std::vector<Query> random_queries(const WheelRailPair& pair, int count) {
   std::mt19937_64 generator(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::vector<Query> queries;
-  while (static_cast<int>(queries.size()) < count) {
+  const long most_draws = 1000L * count;
+  for (long draw = 0; static_cast<int>(queries.size()) < count; ++draw) {
+    if (draw == most_draws)
+      throw ComputationError("work_precision: hardly any position where the wheel meets the rail");
     WheelsetPose pose{-12e-3 + 24e-3 * uniform(generator), 0.0, 0.0, -0.03 + 0.06 * uniform(generator)};
     const double lowering = 3e-4 * uniform(generator);
     const double touch = reference.touch_height(pose.y, pose.roll, pose.yaw);

@@ -124,7 +124,7 @@ int run(const std::vector<std::string>& arguments) {
     for (const WorkFigure& figure : group.make(options)) {
       if (figure.points.empty()) continue;
       const std::string svg = log_figure(figure);
-      write_text_file(options.folder / (figure.name + ".csv"), "# " + origin + "\n" + csv(figure));
+      write_text_file(options.folder / (figure.name + ".csv"), "# " + origin + "\n" + csv(figure), "# railtab ");
       write_text_file(options.folder / (figure.name + ".svg"), svg);
       body +=
           report::html_section(figure.title, svg + table_of(figure) + "<p>" + report::escaped(figure.advice) + "</p>");
@@ -132,7 +132,8 @@ int run(const std::vector<std::string>& arguments) {
       std::fflush(stdout);
     }
   }
-  write_text_file(options.folder / "index.html", report::html_page("Error against run time", body, RAILTAB_VERSION));
+  write_text_file(options.folder / "index.html",
+                  report::html_page("error against run time", "Error against run time", body, RAILTAB_VERSION));
   fmt::print("{}\n", (options.folder / "index.html").string());
   return 0;
 }

@@ -128,7 +128,7 @@ void study_long_line(const std::string& table, const std::filesystem::path& fold
       }
     }
   }
-  write_text_file(folder / "long_line.csv", text);
+  write_text_file(folder / "long_line.csv", text, "# railtab ");
 }
 
 // The first seconds of docs/examples/viaduct.toml.
@@ -160,7 +160,7 @@ void study_steps(const std::string& table, const std::filesystem::path& folder) 
     fmt::print("{}", text.substr(text.rfind('\n', text.size() - 2) + 1));
     std::fflush(stdout);
   }
-  write_text_file(folder / "crossing_steps.csv", text);
+  write_text_file(folder / "crossing_steps.csv", text, "# railtab ");
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -202,7 +202,7 @@ int run(const std::vector<std::string>& arguments) {
                          e.force_max, e.force_rms, e.force_static, e.deck_max, e.deck_rms, e.peak_force, e.peak_deck);
     fmt::print("{}", table.substr(table.rfind('\n', table.size() - 2) + 1));
     std::fflush(stdout);
-    write_text_file(folder / "reduction.csv", table);
+    write_text_file(folder / "reduction.csv", table, "# railtab ");
   }
   return 0;
 }

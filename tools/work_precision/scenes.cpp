@@ -62,9 +62,13 @@ RunSummary cross_beam(const IntegrationParameters& integration, int record_every
   const DofIndices heave{held, held, 0, held, held, held};
   VsiModel model;
   model.vehicle = assemble_vehicle(
-      "sprung mass",
-      {{"wheelset", 1e-3, {1.0, 1.0, 1.0}, {0.0, 0.0, -0.46}}, {"mass", 5750.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -1.0}}},
-      {{0, 1, {0.0, 0.0, -0.7}, {0.0, 0.0, 1595e3}, {0.0, 0.0, 0.0}}}, {0}, {heave, heave}, 0.46, 10.0);
+      {"sprung mass",
+       {{"wheelset", 1e-3, {1.0, 1.0, 1.0}, {0.0, 0.0, -0.46}}, {"mass", 5750.0, {1.0, 1.0, 1.0}, {0.0, 0.0, -1.0}}},
+       {{0, 1, {0.0, 0.0, -0.7}, {0.0, 0.0, 1595e3}, {0.0, 0.0, 0.0}}},
+       {0},
+       {heave, heave},
+       0.46,
+       10.0});
   model.vehicle_x = {0.0};
   model.structure = build_simple_beam({.length = 25.0, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = 40});
   model.contact.speed = 25.0 / beam_crossing;

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace railtab {
+
+// Eigen's dense decompositions as functions. Each takes seconds to compile; here each is compiled once. For set-up
+// code: matrices are copied and results allocated.
+
+/// Eigenvalues in increasing order; eigenvectors of unit length, one per column.
+struct SymmetricSpectrum {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+/// @param A symmetric; its lower triangle is read
+[[nodiscard]] SymmetricSpectrum symmetric_spectrum(const Eigen::MatrixXd& A);
+
+/// λ of K v = λ M v in increasing order, K symmetric, M symmetric and positive definite.
+[[nodiscard]] Eigen::VectorXd generalised_eigenvalues(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M);
+
+/// Inverse by LU decomposition with partial pivoting, of a regular matrix.
+[[nodiscard]] Eigen::MatrixXd dense_inverse(const Eigen::MatrixXd& A);
+
+/// X with A X = B, A symmetric and semidefinite (LDLᵀ).
+[[nodiscard]] Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// The shortest x that minimises |A x - b|, whatever the rank of A (complete orthogonal decomposition).
+[[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// X that minimises |A X - B|, the columns of A being independent (QR).
+[[nodiscard]] Eigen::MatrixXd least_squares_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// An orthonormal basis of the space of the columns of A, which are independent; as many columns.
+[[nodiscard]] Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& A);
+
+/// M = L Lᵀ, M symmetric and positive definite.
+class CholeskyFactor {
+ public:
+  explicit CholeskyFactor(const Eigen::MatrixXd& M);
+
+  [[nodiscard]] Eigen::MatrixXd solve_L(const Eigen::MatrixXd& B) const;      ///< L⁻¹ B
+  [[nodiscard]] Eigen::VectorXd solve_LT(const Eigen::VectorXd& b) const;     ///< L⁻ᵀ b
+  [[nodiscard]] Eigen::MatrixXd multiply_LT(const Eigen::MatrixXd& B) const;  ///< Lᵀ B
+
+ private:
+  Eigen::MatrixXd L_;  // lower triangle
+};
+
+}  // namespace railtab

@@ -1,0 +1,116 @@
+#include "railtab/runtime/base/toml_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+
+namespace railtab {
+
+namespace {
+
+/// Goes through a text character by character. It follows strings and comments, whose dots and brackets are none, and
+/// leaves it to the parser to reject what is no TOML.
+class BoundsCheck {
+ public:
+  BoundsCheck(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
+
+  void run() {
+    for (; at_ < text_.size(); ++at_) {
+      switch (text_[at_]) {
+        case '#':
+          at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+          break;
+        case '"':
+        case '\'':
+          skip_string(text_[at_]);
+          break;
+        case '.':
+          ++parts_;
+          break;
+        case '\n':
+          end_key();
+          ++line_;
+          break;
+        case '[':
+        case '{':
+          end_key();
+          check(++depth_, TomlBounds::depth, "arrays and inline tables within each other");
+          break;
+        case ']':
+        case '}':
+          end_key();
+          depth_ = std::max(0, depth_ - 1);
+          break;
+        case '=':
+        case ',':
+          end_key();
+          break;
+        default:
+          break;
+      }
+    }
+    end_key();
+  }
+
+ private:
+  // Numbers and dates have a dot too, and never more than one.
+  void end_key() {
+    check(parts_, TomlBounds::key_parts, "parts of a key, separated by dots");
+    parts_ = 1;
+  }
+
+  void check(int found, int most, std::string_view what) const {
+    if (found <= most) return;
+    throw input_error(fmt::format("{}:{}", file_.string(), line_), fmt::format("{} {}", found, what),
+                      fmt::format("at most {}", most));
+  }
+
+  // From the opening quote to the closing one; a string on one line ends with its line in any case.
+  void skip_string(char quote) {
+    const std::string three(3, quote);
+    const bool many_lines = text_.substr(at_, 3) == three;
+    std::size_t end = at_ + (many_lines ? 3 : 1);
+    for (; end < text_.size(); ++end) {
+      if (many_lines && text_[end] == '\n') ++line_;
+      if (text_[end] == '\\' && quote == '"' && text_.substr(end + 1, 1) != "\n") {
+        ++end;
+        continue;
+      }
+      if (!many_lines && (text_[end] == quote || text_[end] == '\n')) break;
+      if (many_lines && text_.substr(end, 3) == three) break;
+    }
+    if (many_lines) end += 2;
+    at_ = !many_lines && text_.substr(end, 1) == "\n" ? end - 1 : end;  // the end of the line ends the key too
+  }
+
+  std::string_view text_;
+  const std::filesystem::path& file_;
+  std::size_t at_ = 0;
+  int line_ = 1, parts_ = 1, depth_ = 0;
+};
+
+}  // namespace
+
+void check_toml_bounds(std::string_view text, const std::filesystem::path& file) { BoundsCheck(text, file).run(); }
+
+std::string read_toml_text(const std::filesystem::path& file, std::string_view what) {
+  if (!is_file(file)) throw input_error(file.string(), what_is_at(file), what);
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(TomlBounds::bytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream && !stream.eof()) throw input_error(file.string(), "a file that cannot be read", what);
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  text.shrink_to_fit();
+  if (text.size() > TomlBounds::bytes) {
+    throw input_error(file.string(), fmt::format("more than {} MB", TomlBounds::bytes >> 20),
+                      fmt::format("{} of at most that size", what));
+  }
+  check_toml_bounds(text, file);
+  return text;
+}
+
+}  // namespace railtab

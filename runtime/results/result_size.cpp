@@ -1,0 +1,43 @@
+#include "railtab/runtime/results/result_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "railtab/runtime/results/result_columns.hpp"
+
+namespace railtab {
+
+ResultSize result_size(const ResultHeader& header, double records, double state) {
+  namespace columns = result_columns;
+  std::vector<double> row_sizes(columns::step.size() + 1, 1.0);  // numbers per record, of each history
+  const auto wheels = static_cast<double>(header.wheel_x.size());
+  if (wheels > 0.0) row_sizes.insert(row_sizes.end(), columns::wheel.size() + 1, wheels);
+  for (const columns::MotionGroup& group : columns::motion_groups) {
+    const auto members = static_cast<double>((header.*group.names).size());
+    if (members > 0.0) row_sizes.insert(row_sizes.end(), columns::motion.size(), 6.0 * members);
+  }
+  constexpr double number = sizeof(double);
+  // as in ArrayFileWriter: chunks of 16 KiB, at least 8 records, in pages of their own; indices, names, attributes
+  constexpr double chunk_values = 2048.0, fewest = 8.0, page = 4096.0, per_dataset = 16384.0, least = 131072.0;
+  // HDF5 keeps chunks, and buffers for as many, of each dataset
+  constexpr double cache = 2.0 * (1 << 20), library = 4e6;
+  constexpr double between_flushes = 200.0;
+  ResultSize size{least, library};
+  for (double row : row_sizes) {
+    const double chunk = std::max(fewest, std::floor(chunk_values / row));
+    const double bytes = page * std::ceil(number * row * chunk / page) * std::ceil(records / chunk);
+    size.file += bytes + per_dataset;
+    size.memory += std::min(2.0 * bytes, cache) + number * row * std::min(records, between_flushes);
+  }
+  for (const columns::HeaderColumn& column : columns::header) {
+    size.file += number * static_cast<double>((header.*column.values).size());
+  }
+  size.file += static_cast<double>(header.scene_text.size());
+  constexpr double slots = 2.0, copies = 3.0;  // packed, with its counters, and HDF5's own
+  size.file += slots * number * state;
+  size.memory += copies * number * state;
+  return size;
+}
+
+}  // namespace railtab

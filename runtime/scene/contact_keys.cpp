@@ -1,0 +1,94 @@
+#include "railtab/runtime/scene/key_table.hpp"
+
+namespace railtab::scene {
+namespace {
+
+std::vector<std::string> creep_law_names() { return {"linear", "polach", "fastsim", "table"}; }
+
+template <auto member>
+auto& of_contact(SceneDraft& draft) {
+  return draft.parameters.contact.*member;
+}
+template <auto member>
+auto& of_dimensions(SceneDraft& draft) {
+  return draft.parameters.contact.dimensions.*member;
+}
+
+std::string contact_search_left_out(const SceneParameters& scene) {
+  if (scene.contact.normal == NormalContact::rigid || scene.contact.mode == ContactMode::table) return {};
+  return "geometry table look-up: contact is searched in every iteration";
+}
+std::string contact_left_out(const SceneParameters& scene) {
+  if (scene.contact.normal == NormalContact::hertz) return {};
+  return "contact geometry, creep forces, loss of contact: contact.normal is \"rigid\"";
+}
+
+/// Profiles and dimensions, which a table has too.
+std::vector<KeyRow> pair_keys() {
+  return applying(
+      without_contact_table,
+      {
+          {"contact.wheel", "", "wheel profile", ProfileKey{of_contact<&ContactParameters::wheel>, ProfileKind::wheel}},
+          {"contact.rail", "", "rail profile", ProfileKey{of_contact<&ContactParameters::rail>, ProfileKind::rail}},
+          {"contact.rail_inclination", "1", "inclination of a built-in rail towards the track centre",
+           RatioKey{of_contact<&ContactParameters::rail_inclination>, {0.0, 0.1}}},
+          {"contact.dimensions.track_gauge", "m", "distance of the gauge points",
+           NumberKey{of_dimensions<&PairDimensions::track_gauge>, {0.5, 2.0}}},
+          {"contact.dimensions.gauge_height", "m", "depth of the gauge points below the rail-head tops",
+           NumberKey{of_dimensions<&PairDimensions::gauge_height>, {0.0, 0.05}}},
+          {"contact.dimensions.flange_back", "m", "flange-back distance of the wheelset",
+           NumberKey{of_dimensions<&PairDimensions::flange_back>, {0.4, 2.0}}},
+          {"contact.dimensions.nominal_radius", "m", "wheel radius at the tape circle",
+           NumberKey{of_dimensions<&PairDimensions::nominal_radius>, {0.1, 1.0}}},
+      });
+}
+
+std::vector<KeyRow> force_keys() {
+  return {
+      {"contact.creep_law", "", "creep law", TextKey{of_contact<&ContactParameters::creep_law>, creep_law_names}},
+      {"contact.creep_table",
+       "",
+       "creep table; absent: the shipped one, for nu = 0.28",
+       FileKey{of_contact<&ContactParameters::creep_table>},
+       {&with_creep_table_law}},
+      {"contact.friction", "1", "Coulomb friction coefficient",
+       NumberKey{of_contact<&ContactParameters::friction>, {0.0, 2.0}}},
+      {"contact.damping", "s/m", "contact damping c of F_n·(1 + c·d'), with the rate of penetration d'",
+       NumberKey{of_contact<&ContactParameters::damping>, {0.0, 1e3}}},
+      {"contact.curvature_floor", "1/m", "smallest relative lateral curvature of the Hertz ellipse",
+       NumberKey{of_contact<&ContactParameters::curvature_floor>, {1e-6, 1e4}}},
+      {"contact.material.E", "Pa", "Young's modulus of wheel and rail",
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.material.E; }, {1e9, 1e15}}},
+      {"contact.material.nu", "1", "Poisson's ratio of wheel and rail",
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.material.nu; }, {0.0, 0.5}}},
+  };
+}
+
+}  // namespace
+
+std::vector<KeyRow> contact_keys() {
+  std::vector<KeyRow> rows{
+      {"contact.normal",
+       "",
+       "normal contact: Hertz's theory, or wheels that follow the rails rigidly, vertically only and without lift-off",
+       choice<NormalContact>(of_contact<&ContactParameters::normal>,
+                             {{"hertz", NormalContact::hertz}, {"rigid", NormalContact::rigid}}),
+       {},
+       {},
+       contact_left_out}};
+  std::vector<KeyRow> hertz{
+      {"contact.mode",
+       "",
+       "source of the contact points: the geometry table, the online search, or the search of the paper",
+       choice<ContactMode>(
+           of_contact<&ContactParameters::mode>,
+           {{"table", ContactMode::table}, {"online", ContactMode::online}, {"paper", ContactMode::paper}}),
+       {},
+       {},
+       contact_search_left_out},
+      {"contact.table", "", "geometry table, with its profiles and dimensions",
+       FileKey{of_contact<&ContactParameters::table>}}};
+  return all_of({rows, applying(with_hertz_contact, all_of({hertz, pair_keys(), force_keys()}))});
+}
+
+}  // namespace railtab::scene

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "railtab/runtime/scene/scene_case.hpp"
+#include "railtab/runtime/scene/scene_loads.hpp"
+
+// Ground motion that moves nothing, or of which something is left out.
+
+namespace railtab::scene {
+namespace {
+
+std::string place(const SceneCase& at, std::size_t index) {
+  return fmt::format("[[ground_motion]] {} of {}", index + 1, at.scene.ground_motion.size());
+}
+
+bool moves(const SceneCase& at, std::size_t index) {
+  return at.scene.ground_motion[index].factor != 0.0 && !at.records[index].given_peak().isZero(0.0);
+}
+
+/// The stretch of x that a station's record has a share in.
+Interval reach_of_station(const std::vector<GroundMotionParameters>& stations, std::size_t index) {
+  return {index == 0 ? -INFINITY : stations[index - 1].x,
+          index + 1 == stations.size() ? INFINITY : stations[index + 1].x};
+}
+
+/// Where the ground moves something: wheels, and supports of the structure.
+Interval ground_way(const VsiModel& model, Interval way) {
+  if (!model.structure) return way;
+  for (const double x : model.structure->supports.x) way = {std::min(way.low, x), std::max(way.high, x)};
+  return way;
+}
+
+std::optional<std::string> of_drift_correction(const GroundRecord& record, const std::string& place) {
+  constexpr double noticeable = 0.1;  // of the peak: real records need a few per cent
+  std::string parts;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const double given = record.given_peak()[k], added = record.drift_correction()[k];
+    if (added <= noticeable * given) continue;
+    parts += fmt::format("{}{}: up to {:.3g} m/s² added to a peak of {:.3g} m/s², which is {:.3g} m/s² then ({:.0f} %)",
+                         parts.empty() ? "" : "; ", k == 0 ? "y" : "z", added, given, record.peak()[k],
+                         100.0 * record.peak()[k] / given);
+  }
+  if (parts.empty()) return std::nullopt;
+  return fmt::format(
+      "{}: the straight line that lets the ground end at rest where it began changes the record ({}); check that the "
+      "record is complete, and an acceleration",
+      place, parts);
+}
+
+}  // namespace
+
+const Warning ground_at_rest{
+    "the factor or the record is zero", [](const SceneCase& at, Warnings& list) {
+      for (std::size_t i = 0; i < at.records.size(); ++i) {
+        if (moves(at, i)) continue;
+        const bool by_factor = at.scene.ground_motion[i].factor == 0.0;
+        list.push_back(place(at, i) + (by_factor
+                                           ? " is multiplied by ground_motion.factor = 0: the ground stays at rest"
+                                           : " is zero throughout: the ground stays at rest"));
+      }
+    }};
+
+const Warning ground_drift{"the drift correction changes a record by more than a tenth of its peak",
+                           [](const SceneCase& at, Warnings& list) {
+                             for (std::size_t i = 0; i < at.records.size(); ++i) {
+                               if (!moves(at, i)) continue;
+                               auto corrected = of_drift_correction(at.records[i], place(at, i));
+                               if (corrected) list.push_back(std::move(*corrected));
+                             }
+                           }};
+
+const Warning ground_lateral_motion{
+    "a record moves along y with contact.normal = \"rigid\"", [](const SceneCase& at, Warnings& list) {
+      constexpr double rounding = 1e-12;  // of the correction of a constant
+      if (vehicle_plane(at.scene) != MotionPlane::vertical) return;
+      for (std::size_t i = 0; i < at.records.size(); ++i) {
+        if (at.records[i].peak()[0] <= rounding * at.records[i].given_peak()[0]) continue;
+        list.push_back(place(at, i) + (lateral_ground_is_left_out(at.scene)
+                                           ? " moves the ground along y too: nothing in a vertical scene follows it"
+                                           : " moves the ground along y: the structure follows it, the train, whose "
+                                             "wheels follow the rails vertically, does not"));
+      }
+    }};
+
+const Warning ground_after_run{
+    "the record begins after the run", [](const SceneCase& at, Warnings& list) {
+      for (std::size_t i = 0; i < at.records.size(); ++i) {
+        const double begin = at.records[i].begin() + at.scene.ground_motion[i].start;
+        if (begin < at.duration) continue;
+        list.push_back(fmt::format("{} begins at t = {:.6g} s, the run ends at {:.6g} s: the ground stays at rest",
+                                   place(at, i), begin, at.duration));
+      }
+    }};
+
+const Warning ground_moves_nothing{
+    "no wheel and no support is near the station", [](const SceneCase& at, Warnings& list) {
+      const Interval moved = ground_way(at.model, at.wheels);
+      if (at.records.size() < 2) return;
+      for (std::size_t i = 0; i < at.records.size(); ++i) {
+        if (reach_of_station(at.scene.ground_motion, i).meets(moved)) continue;
+        list.push_back(fmt::format("{}, at x = {:.6g} m, moves nothing: wheels and supports are at {}", place(at, i),
+                                   at.scene.ground_motion[i].x, text(moved, "x", "m")));
+      }
+    }};
+
+}  // namespace railtab::scene

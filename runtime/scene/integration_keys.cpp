@@ -1,0 +1,71 @@
+#include "railtab/runtime/scene/key_table.hpp"
+
+namespace railtab::scene {
+namespace {
+
+template <auto member>
+auto& of_integration(SceneDraft& draft) {
+  return draft.parameters.integration.*member;
+}
+template <auto member>
+auto& of_output(SceneDraft& draft) {
+  return draft.parameters.output.*member;
+}
+
+ChoiceKey contact_force_rules() {
+  using Rule = std::optional<ContactForceRule>;
+  return choice<Rule>(of_integration<&IntegrationParameters::contact_force>,
+                      {{"automatic", Rule()},
+                       {"endpoint", Rule(ContactForceRule::endpoint)},
+                       {"energy", Rule(ContactForceRule::energy)}});
+}
+
+std::vector<KeyRow> time_step_keys() {
+  return {
+      {"integration.time_step", "s", "time step",
+       NumberKey{of_integration<&IntegrationParameters::time_step>, {1e-9, 0.1}}},
+      {"integration.duration", "s", "simulated time; 0: until the last wheelset has left the last span",
+       NumberKey{of_integration<&IntegrationParameters::duration>, {1e-9, 1e5, true}}},
+      {"integration.alpha", "1", "parameter α of the HHT method; 0: Newmark's trapezoidal rule",
+       NumberKey{of_integration<&IntegrationParameters::alpha>, {-1.0 / 3.0, 0.0}}},
+      {"integration.contact_force",
+       "",
+       "contact force of a step: that at its end, the one that conserves the energy of the contact springs, or the "
+       "latter at impacts only (automatic)",
+       contact_force_rules(),
+       {&with_hertz_contact},
+       {&energy_rule_with_paper_search}},
+      {"integration.impact_step",
+       "s",
+       "longest step in the first millisecond of an impact; time_step is divided by a power of two",
+       NumberKey{of_integration<&IntegrationParameters::impact_step>, {1e-6, 0.1}},
+       {&with_hertz_contact, &with_automatic_contact_force, &with_smooth_search}},
+      {"integration.tolerance", "1",
+       "tolerance of Newton's method: change of the contact forces relative to the static wheel load",
+       NumberKey{of_integration<&IntegrationParameters::tolerance>, {1e-12, 1e-2}}},
+      {"integration.max_iterations", "1", "Newton iterations before a step is halved",
+       IntegerKey{of_integration<&IntegrationParameters::max_iterations>, 2, 1000}},
+      {"integration.max_halvings", "1", "halvings of a step that does not converge",
+       IntegerKey{of_integration<&IntegrationParameters::max_halvings>, 0, 30}},
+  };
+}
+
+std::vector<KeyRow> output_keys() {
+  return {
+      {"output.every", "1", "steps between records", IntegerKey{of_output<&OutputParameters::every>, 1, 1000000}},
+      {"output.wheels", "", "record contact forces and contact positions",
+       SwitchKey{of_output<&OutputParameters::wheels>}},
+      {"output.energy", "", "energy balance of the normal contacts, for the summary",
+       SwitchKey{of_output<&OutputParameters::energy>}},
+      {"output.bodies", "", "names of the bodies to record; * stands for any letters",
+       TextListKey{of_output<&OutputParameters::bodies>}},
+      {"output.nodes", "", "names of the nodes of the structure to record; * stands for any letters",
+       TextListKey{of_output<&OutputParameters::nodes>}},
+  };
+}
+
+}  // namespace
+
+std::vector<KeyRow> integration_keys() { return all_of({time_step_keys(), output_keys()}); }
+
+}  // namespace railtab::scene

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "railtab/runtime/scene/scene_case.hpp"
+
+// Deviations of the rails and speeds over time that the run does not meet, or that begin or end abruptly.
+
+namespace railtab::scene {
+namespace {
+
+std::string file_name(const std::filesystem::path& file) { return file.filename().string(); }
+
+void speed_beyond_run(const SceneCase& at, Warnings& list) {
+  if (!at.model.speed_profile) return;
+  const Interval profile{at.model.speed_profile->begin(), at.model.speed_profile->end()}, run{0.0, at.duration};
+  // beyond its points the speed is constant: one that only touches the run changes nothing
+  if (profile.low < run.high && run.low < profile.high) return;
+  list.push_back(fmt::format("train.speed_file {} is specified for {}, the run is at {}: its {} speed holds throughout",
+                             file_name(at.scene.train.speed_file), text(profile, "t", "s"), text(run, "t", "s"),
+                             profile.low >= run.high ? "first" : "last"));
+}
+
+void spans_beyond_run(const SceneCase& at, Warnings& list) {
+  if (!at.scene.span_deviation || at.scene.span_deviation->amplitude == 0.0) return;
+  const SpanDeviationParameters& deviation = *at.scene.span_deviation;
+  const double spans = deviation.shape == SpanDeviationShape::bending ? 2.0 : 1.0;
+  const Interval turning{deviation.start, deviation.start + spans * deviation.span};
+  if (turning.meets(at.wheels)) return;
+  list.push_back(fmt::format("the spans of [span_deviation] turn at {}, the wheels run at {}", text(turning, "x", "m"),
+                             text(at.wheels, "x", "m")));
+}
+
+bool is_zero(const SceneCase& at) { return at.model.irregularity.largest() == 0.0; }
+
+void track_beyond_run(const SceneCase& at, Warnings& list) {
+  if (!at.scene.irregularity || is_zero(at)) return;
+  const Interval measured{at.model.irregularity.begin(), at.model.irregularity.end()};
+  if (measured.meets(at.wheels)) return;
+  list.push_back(fmt::format("irregularity.file {} is measured at {}, the wheels run at {}: their track is perfect",
+                             file_name(*at.scene.irregularity), text(measured, "x", "m"), text(at.wheels, "x", "m")));
+}
+
+/// Outside a record the track is perfect: where one ends off zero, wheels meet a step.
+void steps_at_ends(const SceneCase& at, Warnings& list) {
+  if (!at.scene.irregularity) return;
+  const VsiModel& model = at.model;
+  constexpr double noticeable = 1e-4;  // [m]
+  std::string steps;
+  const auto step_at = [&](double x, std::string_view verb) {
+    if (x < at.wheels.low || x > at.wheels.high) return;
+    const RailDeviation left = model.irregularity.at(RailSide::left, x),
+                        right = model.irregularity.at(RailSide::right, x);
+    std::pair<std::string_view, double> largest{"", 0.0};
+    for (const auto& column : {std::pair<std::string_view, double>{"y_left", left.y},
+                               {"z_left", left.z},
+                               {"y_right", right.y},
+                               {"z_right", right.z}}) {
+      if (std::abs(column.second) > std::abs(largest.second)) largest = column;
+    }
+    if (std::abs(largest.second) <= noticeable) return;
+    steps += fmt::format("{}{} at x = {:.6g} m with {} = {:.3g} mm", steps.empty() ? "" : " and ", verb, x,
+                         largest.first, 1e3 * largest.second);
+  };
+  step_at(model.irregularity.begin(), "begins");
+  step_at(model.irregularity.end(), "ends");
+  if (steps.empty()) return;
+  list.push_back(fmt::format(
+      "irregularity.file {} {}, not with zero: {}; fade the record in and out, or let it reach beyond the run",
+      file_name(*at.scene.irregularity), steps,
+      model.normal_contact == NormalContact::rigid
+          ? "wheels that follow the rails jump there, without the force that it would take"
+          : "wheels meet a step there, whose force grows without bound as integration.time_step shrinks"));
+}
+
+}  // namespace
+
+const Warning speed_outside_run{"the speeds lie outside the run", speed_beyond_run};
+const Warning deviation_zero{"it is 0", [](const SceneCase& at, Warnings& list) {
+                               if (!at.scene.span_deviation || at.scene.span_deviation->amplitude != 0.0) return;
+                               list.emplace_back("span_deviation.amplitude is 0: no span turns");
+                             }};
+const Warning deviation_outside_run{"no wheel runs over the spans that turn", spans_beyond_run};
+const Warning irregularity_zero{
+    "the record is zero throughout", [](const SceneCase& at, Warnings& list) {
+      if (!at.scene.irregularity || !is_zero(at)) return;
+      list.push_back(fmt::format("irregularity.file {} is zero throughout: the track is perfect",
+                                 file_name(*at.scene.irregularity)));
+    }};
+const Warning irregularity_outside_run{"no wheel runs over the record", track_beyond_run};
+const Warning irregularity_with_step{"the record begins or ends under the wheels more than 0.1 mm off zero",
+                                     steps_at_ends};
+
+}  // namespace railtab::scene

@@ -1,0 +1,88 @@
+#include "railtab/runtime/scene/key_table.hpp"
+#include "railtab/runtime/vehicle/coach.hpp"
+
+namespace railtab::scene {
+namespace {
+
+std::vector<std::string> train_vehicle_names() {
+  std::vector<std::string> names = vehicle_names();
+  names.emplace_back(imported_vehicle);
+  return names;
+}
+
+template <auto member>
+auto& of_train(SceneDraft& draft) {
+  return draft.parameters.train.*member;
+}
+template <auto member>
+auto& of_vehicle(SceneDraft& draft) {
+  return draft.parameters.vehicle.*member;
+}
+
+}  // namespace
+
+std::vector<KeyRow> train_keys() {
+  return {
+      {"name", "", "name of the scene in results and reports; absent: the name of the file",
+       TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.name; }, nullptr}},
+      {"train.vehicle", "", "a published vehicle, or \"imported\": that of [vehicle], the default where it has keys",
+       TextKey{of_train<&TrainParameters::vehicle>, train_vehicle_names}},
+      {"train.count", "1", "number of coaches", IntegerKey{of_train<&TrainParameters::count>, 1, 100}},
+      {"train.speed",
+       "m/s",
+       "constant running speed",
+       NumberKey{of_train<&TrainParameters::speed>, {1e-3, 200.0}},
+       {&without_speed_kmh, &without_speed_file}},
+      {"train.speed_kmh",
+       "km/h",
+       "constant running speed in km/h",
+       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return d.speed_kmh; }, {3.6e-3, 720.0}},
+       {&without_speed_file}},
+      {"train.speed_file",
+       "",
+       "running speed over time",
+       FileKey{of_train<&TrainParameters::speed_file>},
+       {},
+       {&speed_outside_run}},
+      {"train.start", "m", "position of the first wheelset at t = 0; the first span begins at x = 0",
+       NumberKey{of_train<&TrainParameters::start>, {-1e6, 1e6}}},
+      {"train.initial_lateral_shift",
+       "m",
+       "lateral shift of every wheelset at t = 0, to the right",
+       NumberKey{of_train<&TrainParameters::initial_lateral_shift>, {-0.02, 0.02}},
+       {&with_hertz_contact},
+       {&start_on_flanges}},
+      {"train.initial_yaw",
+       "rad",
+       "yaw of every wheelset at t = 0, about z (down)",
+       NumberKey{of_train<&TrainParameters::initial_yaw>, {-0.1, 0.1}},
+       {&with_hertz_contact}},
+  };
+}
+
+std::vector<KeyRow> vehicle_keys() {
+  return applying(
+      with_imported_vehicle,
+      {
+          {"vehicle.mass", "", "mass matrix (Matrix Market)", FileKey{of_vehicle<&VehicleImport::mass>}},
+          {"vehicle.damping", "", "damping matrix", FileKey{of_vehicle<&VehicleImport::damping>}},
+          {"vehicle.stiffness", "", "stiffness matrix", FileKey{of_vehicle<&VehicleImport::stiffness>}},
+          {"vehicle.dofs", "", "body and direction of each row of the matrices",
+           FileKey{of_vehicle<&VehicleImport::dofs>}},
+          {"vehicle.units", "", "units of length, force and mass of the model; its unit of time is the second",
+           TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.vehicle.frame.units; }, fe_unit_systems}},
+          {"vehicle.axes", "", "directions of the model that point forward, right and down",
+           TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.vehicle.frame.axes; }, nullptr}},
+          {"vehicle.origin", "",
+           "point of the model under the vehicle's centre, at the height of the rail-head tops, in its axes and unit",
+           PointKey{[](SceneDraft& d) -> std::optional<Point>& { return d.parameters.vehicle.frame.origin; },
+                    {-1e9, 1e9}}},
+          {"vehicle.wheelsets", "", "names of the wheelsets, from front to rear",
+           TextListKey{of_vehicle<&VehicleImport::wheelsets>}},
+          {"vehicle.car_body", "", "name of the car body", TextKey{of_vehicle<&VehicleImport::car_body>, nullptr}},
+          {"vehicle.length", "m", "length over couplers; required for a train of several vehicles",
+           OptionalNumberKey{of_vehicle<&VehicleImport::length>, {0.5, 100.0}}},
+      });
+}
+
+}  // namespace railtab::scene

@@ -1,0 +1,73 @@
+// `vsi run --plan` names an upper bound of what the process of the run occupies, and not a far one.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "vsi_fixture.hpp"
+
+namespace railtab {
+namespace {
+
+// Sanitizers take memory of their own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool instrumented = true;
+#else
+constexpr bool instrumented = false;
+#endif
+
+class PlanMemory : public VsiCommand {
+ protected:
+  void SetUp() override {
+    VsiCommand::SetUp();
+    if (instrumented) GTEST_SKIP() << "memory under a sanitizer is not the run's";
+  }
+
+  /// Peak resident memory of a run of scene.toml [bytes].
+  [[nodiscard]] double peak() const {
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder_.c_str()) != 0) _exit(127);
+      execl(VSI_COMMAND, VSI_COMMAND, "run", "scene.toml", "--quiet", "-o", "results.h5", nullptr);
+      _exit(127);
+    }
+    int status = 0;
+    rusage usage{};
+    EXPECT_EQ(wait4(child, &status, 0, &usage), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+  }
+
+  void expect_bound(const std::string& scene, double least_share) const {
+    write("scene.toml", scene);
+    const Outcome outcome = vsi("run scene.toml --plan --json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    const nlohmann::json plan = nlohmann::json::parse(outcome.output);
+    const double taken = peak(), undivided = plan["memory_undivided_bytes"];
+    std::printf("%s: peak %.1f MB of %.1f MB, results %.2f MB\n", plan["scene"].get<std::string>().c_str(),
+                1e-6 * taken, 1e-6 * undivided, 1e-6 * plan["results_bytes"].get<double>());
+    EXPECT_LE(taken, undivided);
+    EXPECT_GE(taken, least_share * undivided);
+    EXPECT_GE(plan["memory_bytes"].get<double>(), undivided);
+    const auto results = static_cast<double>(std::filesystem::file_size(folder_ / "results.h5"));
+    EXPECT_LE(results, plan["results_bytes"].get<double>());
+    EXPECT_GE(results, 0.5 * plan["results_bytes"].get<double>());
+  }
+};
+
+TEST_F(PlanMemory, BoundsARunOnRigidTrack) {
+  expect_bound("name = \"rigid\"\n" + rigid_scene + "duration = 0.5\n", 0.5);
+}
+
+TEST_F(PlanMemory, BoundsARunOnALongTrackClosely) {
+  expect_bound(
+      "name = \"long\"\n[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 4000.0\nlength_after = 4000.0\n"
+      "[integration]\ntime_step = 1e-3\nduration = 0.02\n",
+      0.6);
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,67 @@
+// Every decomposition by what defines its result.
+#include "railtab/runtime/base/dense_solvers.hpp"
+
+#include <gtest/gtest.h>
+
+namespace railtab {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double rounding = 1e-12;
+
+const MatrixXd A{{4.0, 1.0, -0.5}, {0.3, 3.0, 0.2}, {-1.0, 0.4, 5.0}};
+const MatrixXd K{{4.0, 1.0, -0.5}, {1.0, 3.0, 0.2}, {-0.5, 0.2, 5.0}};
+const MatrixXd M{{2.0, 0.1, 0.0}, {0.1, 1.0, 0.3}, {0.0, 0.3, 4.0}};
+const MatrixXd tall{{1.0, 2.0}, {0.0, 1.0}, {-1.0, 0.5}};
+const VectorXd b{{1.0, -2.0, 3.0}};
+
+TEST(DenseSolvers, SymmetricSpectrum) {
+  const SymmetricSpectrum s = symmetric_spectrum(K);
+  EXPECT_LT((K * s.vectors - s.vectors * s.values.asDiagonal()).norm(), rounding);
+  EXPECT_LT((s.vectors.transpose() * s.vectors - MatrixXd::Identity(3, 3)).norm(), rounding);
+  EXPECT_LT(s.values[0], s.values[1]);
+  EXPECT_LT(s.values[1], s.values[2]);
+}
+
+TEST(DenseSolvers, GeneralisedEigenvaluesMakeThePencilSingular) {
+  const VectorXd lambda = generalised_eigenvalues(K, M);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(symmetric_spectrum(K - lambda[k] * M).values.cwiseAbs().minCoeff(), 0.0, rounding) << k;
+  }
+}
+
+TEST(DenseSolvers, InverseAndSolutions) {
+  EXPECT_LT((dense_inverse(A) * A - MatrixXd::Identity(3, 3)).norm(), rounding);
+  EXPECT_LT((K * symmetric_solution(K, A) - A).norm(), rounding);
+  const MatrixXd x = least_squares_solution(tall, b);
+  EXPECT_LT((tall.transpose() * (tall * x - b)).norm(), rounding);
+}
+
+TEST(DenseSolvers, LeastNormSolutionOfASingularMatrix) {
+  MatrixXd singular = tall * tall.transpose();
+  const VectorXd x = least_norm_solution(singular, b);
+  const VectorXd residual = singular * x - b;
+  EXPECT_LT((singular.transpose() * residual).norm(), rounding);
+  const VectorXd null = symmetric_spectrum(singular).vectors.col(0);
+  EXPECT_NEAR(x.dot(null), 0.0, rounding);
+}
+
+TEST(DenseSolvers, OrthonormalBasisSpansTheColumns) {
+  const MatrixXd Q = orthonormal_basis(tall);
+  ASSERT_EQ(Q.cols(), 2);
+  EXPECT_LT((Q.transpose() * Q - MatrixXd::Identity(2, 2)).norm(), rounding);
+  EXPECT_LT((Q * (Q.transpose() * tall) - tall).norm(), rounding);
+}
+
+TEST(DenseSolvers, CholeskyFactor) {
+  const CholeskyFactor factor(M);
+  const MatrixXd LT = factor.multiply_LT(MatrixXd::Identity(3, 3));
+  EXPECT_LT((LT.transpose() * LT - M).norm(), rounding);
+  EXPECT_LT((LT.transpose() * factor.solve_L(A) - A).norm(), rounding);
+  EXPECT_LT((LT * factor.solve_LT(b) - b).norm(), rounding);
+}
+
+}  // namespace
+}  // namespace railtab

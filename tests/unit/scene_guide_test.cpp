@@ -1,0 +1,130 @@
+// The tables of keys in docs/guide/scene.md are those of the reader's own table.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "railtab/runtime/scene/scene_keys.hpp"
+
+namespace railtab {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+std::string row(const Cells& cells) {
+  std::string line = "|";
+  for (const std::string& cell : cells) line += " " + cell + " |";
+  return line + "\n";
+}
+
+std::string table(const Cells& heading, const std::vector<Cells>& rows) {
+  std::string text = row(heading) + row(Cells(heading.size(), "---"));
+  for (const Cells& cells : rows) text += row(cells);
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+  return text;
+}
+
+std::string section_of(const SceneKey& key) {
+  const std::size_t dot = key.path.find('.');
+  return dot == std::string::npos ? "" : key.path.substr(0, dot);
+}
+
+/// The guide's heading of a section.
+std::string heading_of(const std::string& section) {
+  if (section.empty()) return "### Top of the file";
+  const bool list = section == "bridge" || section == "support" || section == "load" || section == "ground_motion";
+  return list ? "### `[[" + section + "]]`" : "### `[" + section + "]`";
+}
+
+std::string keys_of(const std::string& section) {
+  std::vector<Cells> rows;
+  bool conditions = false;
+  for (const SceneKey& key : scene_keys()) {
+    if (section_of(key) != section) continue;
+    rows.push_back(
+        {"`" + key.path + "`", key.type, key.unit, key.range, key.default_value, key.meaning, joined(key.applies)});
+    conditions = conditions || !key.applies.empty();
+  }
+  Cells heading{"key", "type", "unit", "range", "default", "meaning", "applies with"};
+  if (!conditions) {
+    heading.pop_back();
+    for (Cells& cells : rows) cells.pop_back();
+  }
+  return table(heading, rows);
+}
+
+std::string warnings() {
+  std::vector<Cells> rows;
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.warns.empty()) rows.push_back({"`" + key.path + "`", joined(key.warns)});
+  }
+  return table({"key", "warning when"}, rows);
+}
+
+/// Headings of the guide with the table below each.
+std::vector<std::pair<std::string, std::string>> tables_of_guide() {
+  std::vector<std::pair<std::string, std::string>> tables;
+  for (const SceneKey& key : scene_keys()) {
+    const std::string heading = heading_of(section_of(key));
+    const bool there = std::any_of(tables.begin(), tables.end(), [&](const auto& t) { return t.first == heading; });
+    if (!there) tables.emplace_back(heading, keys_of(section_of(key)));
+  }
+  tables.emplace_back("### Warnings", warnings());
+  return tables;
+}
+
+/// Place and length of the first table below a heading.
+std::pair<std::size_t, std::size_t> table_below(const std::string& guide, const std::string& heading) {
+  const std::size_t at = guide.find("\n" + heading + "\n");
+  if (at == std::string::npos) return {guide.size(), 0};
+  const std::size_t next = std::min(guide.find("\n##", at + 1), guide.size());
+  const std::size_t begin = std::min(guide.find("\n|", at), next) + 1;
+  std::size_t end = begin;
+  while (end < guide.size() && guide[end] == '|') end = guide.find('\n', end) + 1;
+  return {begin, end - begin};
+}
+
+/// With RAILTAB_UPDATE_GUIDE set, the test writes the tables (tools/regenerate guide) and passes.
+TEST(SceneGuide, HasTheTablesOfTheReader) {
+  const std::string file = RAILTAB_SOURCE_DIR "/docs/guide/scene.md";
+  std::ifstream stream(file);
+  std::string guide((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const bool update = std::getenv("RAILTAB_UPDATE_GUIDE") != nullptr;
+  for (const auto& [heading, expected] : tables_of_guide()) {
+    const auto [begin, length] = table_below(guide, heading);
+    if (update) {
+      guide.replace(begin, length, expected);
+    } else {
+      EXPECT_EQ(guide.substr(begin, length), expected) << heading << ": tools/regenerate guide writes this table";
+    }
+  }
+  if (update) std::ofstream(file) << guide;
+  EXPECT_GT(scene_keys().size(), 150u);
+}
+
+/// What the table says of a key is complete.
+TEST(SceneGuide, EveryKeyHasAMeaningAndEveryNumberARange) {
+  for (const SceneKey& key : scene_keys()) {
+    EXPECT_FALSE(key.meaning.empty()) << key.path;
+    const bool number = key.type == "number" || key.type == "integer" || key.type == "ratio";
+    EXPECT_EQ(number, key.bounds.has_value()) << key.path;
+    for (const std::string& condition : key.applies) EXPECT_FALSE(condition.empty()) << key.path;
+    for (const std::string& warning : key.warns) EXPECT_FALSE(warning.empty()) << key.path;
+  }
+}
+
+}  // namespace
+}  // namespace railtab

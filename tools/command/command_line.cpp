@@ -1,0 +1,126 @@
+#include "command/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
+
+namespace railtab {
+
+namespace po = boost::program_options;
+
+namespace {
+
+/// Both numbers around a separator.
+struct Pair {
+  double first = 0.0, second = 0.0;
+};
+
+std::optional<Pair> parse_pair(std::string_view text, char separator) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string_view::npos) return std::nullopt;
+  const std::optional<double> first = parse_number(text.substr(0, at)), second = parse_number(text.substr(at + 1));
+  if (!first || !second) return std::nullopt;
+  return Pair{*first, *second};
+}
+
+bool is_whole(double value) { return value == std::floor(value); }
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0.0;
+  return parse(text, value) ? std::optional(value) : std::nullopt;
+}
+
+CommandLine::CommandLine(std::string usage, const po::options_description& own,
+                         const std::vector<std::string>& positional, const std::vector<std::string>& arguments)
+    : usage_(std::move(usage)) {
+  po::options_description shared("All commands");
+  shared.add_options()("help,h", "print this help")                                       //
+      ("version", "print the version")                                                    //
+      ("threads", text_value("0")->value_name("N"), "threads to use, 0: all processors")  //
+      ("quiet,q", "no progress bar and no text, errors apart")                            //
+      ("json", "print one JSON object on stdout");
+  all_.add(own).add(shared);
+  po::positional_options_description places;
+  for (const std::string& name : positional) {
+    const bool all_left = name.ends_with("...");
+    places.add(name.substr(0, name.size() - (all_left ? 3 : 0)).c_str(), all_left ? -1 : 1);
+  }
+  const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+  try {
+    po::store(po::command_line_parser(arguments).options(all_).positional(places).style(style).run(), values_);
+  } catch (const po::error& wrong) {
+    throw InputError(fmt::format("{}\nusage: {}", wrong.what(), usage_));
+  }
+  constexpr int most_threads = 4096;
+  if (const auto threads = static_cast<int>(whole_number("threads", 0, most_threads)); threads > 0) threads_ = threads;
+}
+
+bool CommandLine::help_printed() const {
+  if (given("help")) {
+    std::ostringstream text;
+    text << all_;
+    print_text(fmt::format("Usage: {}\n\n{}", usage_, text.str()));
+    return true;
+  }
+  if (given("version")) print_text("railtab " RAILTAB_VERSION "\n");
+  return given("version");
+}
+
+std::string CommandLine::required(const std::string& name) const {
+  if (!given(name)) throw InputError(fmt::format("the argument {} is missing\nusage: {}", name, usage_));
+  return text(name);
+}
+
+std::vector<std::string> CommandLine::required_many(const std::string& name) const {
+  if (!given(name)) throw InputError(fmt::format("the argument {} is missing\nusage: {}", name, usage_));
+  return values_[name].as<std::vector<std::string>>();
+}
+
+double CommandLine::number(const std::string& name) const {
+  const std::optional<double> value = parse_number(text(name));
+  if (!value) throw input_error("--" + name, fmt::format("\"{}\"", text(name)), "a number");
+  return *value;
+}
+
+long long CommandLine::whole_number(const std::string& name, long long low, long long high) const {
+  const double value = number(name);
+  if (!is_whole(value) || value < static_cast<double>(low) || value > static_cast<double>(high)) {
+    throw input_error("--" + name, text(name), fmt::format("a whole number in {}..{}", low, high));
+  }
+  return static_cast<long long>(value);
+}
+
+NumberRange CommandLine::range(const std::string& name) const {
+  const std::optional<Pair> ends = parse_pair(text(name), ':');
+  if (ends && ends->first <= ends->second) return {ends->first, ends->second};
+  throw input_error("--" + name, fmt::format("\"{}\"", text(name)),
+                    "LO:HI, two numbers in SI units with LO not above HI");
+}
+
+PartOf CommandLine::part(const std::string& name) const {
+  constexpr double most = 100000;
+  const std::optional<Pair> part = parse_pair(text(name), '/');
+  if (part && is_whole(part->first) && is_whole(part->second) && part->first >= 1 && part->first <= part->second &&
+      part->second <= most) {
+    return {static_cast<int>(part->first), static_cast<int>(part->second)};
+  }
+  throw input_error("--" + name, fmt::format("\"{}\"", text(name)),
+                    fmt::format("I/N, whole numbers with 1 <= I <= N <= {}", most));
+}
+
+double CommandLine::slope(const std::string& name) const {
+  if (const std::optional<double> value = parse_number(text(name))) return *value;
+  const std::optional<Pair> fraction = parse_pair(text(name), ':');
+  if (fraction && fraction->second != 0.0) return fraction->first / fraction->second;
+  throw input_error("--" + name, fmt::format("\"{}\"", text(name)), "a slope such as 1:40 or 0.025");
+}
+
+}  // namespace railtab
