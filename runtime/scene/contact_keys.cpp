@@ -58,7 +58,7 @@ std::vector<KeyRow> force_keys() {
       {"contact.curvature_floor", "1/m", "smallest relative lateral curvature of the Hertz ellipse",
        NumberKey{of_contact<&ContactParameters::curvature_floor>, {1e-6, 1e4}}},
       {"contact.material.E", "Pa", "Young's modulus of wheel and rail",
-       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.material.E; }, {1e9, 1e15}}},
+       NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.material.E; }, {1e8, 1e15}}},
       {"contact.material.nu", "1", "Poisson's ratio of wheel and rail",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.contact.material.nu; }, {0.0, 0.5}}},
   };

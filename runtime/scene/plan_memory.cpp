@@ -21,7 +21,7 @@ constexpr double state_vectors = 5.0;                        // LinearMotion
 constexpr double start_vectors = 6.0 * state_vectors + 8.0;  // states of steady_start(), loads and solutions
 constexpr double step_vectors = 2.0 * state_vectors + 14.0;  // StepWorkspace, and the state that the run begins with
 constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
-constexpr double allocator = 1.03;  // of what is asked of it: ends of pages and pieces
+constexpr double allocator = 1.03;                           // of what is asked of it: ends of pages and pieces
 
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {

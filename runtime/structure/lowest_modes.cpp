@@ -90,7 +90,7 @@ class BlockLanczos {
       basis_.conservativeResize(mass_.rows(), room);
       mass_basis_.conservativeResize(mass_.rows(), room);
     }
-    const double scale = block.cwiseAbs().maxCoeff();
+    const double scale = block.size() > 0 ? block.cwiseAbs().maxCoeff() : 0.0;
     Matrix inner = Matrix::Zero(block.cols(), block.cols());
     added_ = 0;
     for (Eigen::Index k = 0; k < block.cols(); ++k) {

@@ -275,7 +275,7 @@ TEST_F(VehicleImportFiles, AreNamedByTheScene) {
   const std::string rigid = "[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n";
   refused("train.vehicle = \"imported\"\n" + online, "scene.toml:1: train.vehicle: found \"imported\" without all");
   refused("train.vehicle = \"manchester-coach\"\n" + online + vehicle_section(),
-          "scene.toml:5: vehicle.mass: found a published train.vehicle");
+          "scene.toml:5: vehicle.mass: found train.vehicle = \"manchester-coach\"");
   refused(without("damping"), "vehicle.damping");
   refused(without("wheelsets"), "vehicle.wheelsets: found none");
   refused(without("car_body"), "vehicle.car_body: found none");

@@ -14,11 +14,12 @@ namespace {
 
 using namespace railtab;
 
+constexpr double shift = -4e-3;      // to the left, where the tread touches in one patch [m]
 constexpr double half_width = 1e-4;  // of the table's one cell along the lateral shift [m]
 
-// A table with one cell and one branch about the centred position of S1002 on 60E1: its polynomials are constants, the
+// A table with one cell and one branch about one position of S1002 on 60E1: its polynomials are constants, the
 // starting point of the search for the contact pair.
-GeometryTableData table_about_centre(const ContactSearch& search) {
+GeometryTableData table_about_shift(const ContactSearch& search) {
   const WheelRailPair& pair = search.pair();
   const PairDimensions dimensions;
   GeometryTableData table;
@@ -28,12 +29,12 @@ GeometryTableData table_about_centre(const ContactSearch& search) {
   table.gauge_height = dimensions.gauge_height;
   table.flange_back = dimensions.flange_back;
   table.nominal_radius = dimensions.nominal_radius;
-  table.lateral = {-half_width, half_width, 1};
+  table.lateral = {shift - half_width, shift + half_width, 1};
   table.node = {CellNode::leaf(0)};
   table.leaf_branch = {1};
   table.trusted_lowering = {4e-4F};
   table.coefficient.assign(static_cast<std::size_t>(branch_terms(false, false) * branch_quantities), 0.0F);
-  const TouchPoint touch = search.first_touch(0.0, 0.0, 0.0);
+  const TouchPoint touch = search.first_touch(shift, 0.0, 0.0);
   table.coefficient[0] = static_cast<float>(touch.z_touch);
   table.coefficient[1] = static_cast<float>(touch.s_wheel);
   table.coefficient[2] = static_cast<float>(touch.s_rail);
@@ -47,13 +48,14 @@ int main() {
   const ProfileCurve wheel(standard_profile(ProfileKind::wheel, "S1002", 0.0));
   const ProfileCurve rail(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0));
   const ContactSearch search(WheelRailPair(wheel, rail, PairDimensions{}));
-  const ContactGeometry table{TableContact(GeometryTable(table_about_centre(search)))};
+  const ContactGeometry table{TableContact(GeometryTable(table_about_shift(search)))};
   const ContactGeometry online{search};
 
   WheelContactModel model;
   model.speed = 50.0;
   WheelsetMotion wheelset;
-  wheelset.displacement[2] = search.touch_height(0.0, 0.0, 0.0) + 8e-5;  // lowered by 80 µm below first touch
+  wheelset.displacement[1] = shift;
+  wheelset.displacement[2] = search.touch_height(shift, 0.0, 0.0) + 8e-5;  // lowered by 80 µm below first touch
   const auto force = [&](const ContactGeometry& geometry, bool& from_table) {
     model.geometry = &geometry;
     const WheelsetPose pose = relative_pose(geometry.pair(), WheelSide::right, wheelset, {});
