@@ -2,7 +2,7 @@
 
 namespace railtab {
 
-void DividedSubstitution::begin(const StructureFactor& factor, const Eigen::VectorXd& known, std::span<const int> few) {
+void DividedSubstitution::begin(const SparseLdlt& factor, const Eigen::VectorXd& known, std::span<const int> few) {
   few_.assign(few.begin(), few.end());
   factor.find_path(few_, path_);
   factor.into(known, known_);
@@ -13,12 +13,12 @@ void DividedSubstitution::begin(const StructureFactor& factor, const Eigen::Vect
   }
 }
 
-void DividedSubstitution::respond(const StructureFactor& factor, Eigen::VectorXd& solution) {
+void DividedSubstitution::respond(const SparseLdlt& factor, Eigen::VectorXd& solution) {
   factor.backward(known_, solved_, path_);
   for (int unknown : few_) solution[unknown] = solved_[factor.position(unknown)];
 }
 
-void DividedSubstitution::respond(const StructureFactor& factor, double weight, const Eigen::VectorXd& extra,
+void DividedSubstitution::respond(const SparseLdlt& factor, double weight, const Eigen::VectorXd& extra,
                                   Eigen::VectorXd& solution) {
   factor.visit(path_, [&](int first, int columns) { work_.segment(first, columns).setZero(); });
   for (int unknown : few_) work_[factor.position(unknown)] = weight * extra[unknown];
@@ -28,7 +28,7 @@ void DividedSubstitution::respond(const StructureFactor& factor, double weight, 
   for (int unknown : few_) solution[unknown] = solved_[factor.position(unknown)];
 }
 
-void DividedSubstitution::finish(const StructureFactor& factor, Eigen::VectorXd& solution) {
+void DividedSubstitution::finish(const SparseLdlt& factor, Eigen::VectorXd& solution) {
   factor.backward_off(path_, known_, solved_);
   factor.out_of(solved_, solution);
 }

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 
 namespace railtab {
 
@@ -13,23 +13,23 @@ namespace railtab {
 ///     L w = load on few unknowns  on their path only, as often as it changes
 ///     Lᵀ x = D⁻¹ (z + w)          on the path as often, off it once
 ///
-/// What lies on the path costs little, so that any number of answers to the changing load and the whole solution come
-/// at the price of little more than one back-substitution. Caller-owned buffers; nothing is allocated after the first
+/// What lies on the path costs little, so that any number of responses to the changing load and the whole solution come
+/// at the cost of little more than one back-substitution. Caller-owned buffers; nothing is allocated after the first
 /// use.
 class DividedSubstitution {
  public:
   /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
-  void begin(const StructureFactor& factor, const Eigen::VectorXd& known, std::span<const int> few);
+  void begin(const SparseLdlt& factor, const Eigen::VectorXd& known, std::span<const int> few);
   /// The solution at the few unknowns under the known load. Writes only their entries.
-  void respond(const StructureFactor& factor, Eigen::VectorXd& solution);
+  void respond(const SparseLdlt& factor, Eigen::VectorXd& solution);
   /// Under known + weight·extra. Reads and writes only their entries.
-  void respond(const StructureFactor& factor, double weight, const Eigen::VectorXd& extra, Eigen::VectorXd& solution);
+  void respond(const SparseLdlt& factor, double weight, const Eigen::VectorXd& extra, Eigen::VectorXd& solution);
   /// The whole solution under the loads of the last respond(), which must have been called.
-  void finish(const StructureFactor& factor, Eigen::VectorXd& solution);
+  void finish(const SparseLdlt& factor, Eigen::VectorXd& solution);
 
  private:
   std::vector<int> few_;
-  StructureFactor::Path path_;
+  SparseLdlt::Path path_;
   Eigen::VectorXd known_, work_, solved_;  // in the factor's order
 };
 

@@ -26,7 +26,6 @@ bool flush(double* x) {
 SelectedSolve::SelectedSolve(const Eigen::SparseMatrix<double>& L, Eigen::VectorXd D) : L_(L), D_(std::move(D)) {
   const auto n = static_cast<int>(L_.outerSize());
   parent_.assign(static_cast<std::size_t>(n), -1);
-  mark_.assign(static_cast<std::size_t>(n), 0);
   for (int j = 0; j < n; ++j) {
     const int* const begin = L_.innerIndexPtr() + L_.outerIndexPtr()[j];
     const int* const end = L_.innerIndexPtr() + column_end(j);
@@ -40,32 +39,25 @@ int SelectedSolve::column_end(int j) const noexcept {
   return count ? L_.outerIndexPtr()[j] + count[j] : L_.outerIndexPtr()[j + 1];
 }
 
-void SelectedSolve::collect(std::span<const int> rows, std::vector<int>& path) {
-  path.clear();
-  ++collection_;
-  for (int row : rows) {
-    for (int j = row; j >= 0 && mark_[static_cast<std::size_t>(j)] != collection_;
-         j = parent_[static_cast<std::size_t>(j)]) {
-      mark_[static_cast<std::size_t>(j)] = collection_;
-      path.push_back(j);
-    }
-  }
-  std::sort(path.begin(), path.end());
+void SelectedSolve::collect(std::span<const int> rows, TreePath& path) const {
+  path.clear(parent_.size());
+  for (int row : rows) path.add(row, [&](int j) { return parent_[static_cast<std::size_t>(j)]; });
+  path.sort();
 }
 
 void SelectedSolve::want(std::span<const int> rows) { collect(rows, wanted_); }
 
 void SelectedSolve::solve(std::span<const int> loaded_rows, const Columns& loads) {
   collect(loaded_rows, loaded_);
-  for (int j : wanted_) x_.row(j).setZero();
-  for (int j : loaded_) x_.row(j).setZero();
+  for (int j : wanted_.nodes()) x_.row(j).setZero();
+  for (int j : loaded_.nodes()) x_.row(j).setZero();
   for (std::size_t i = 0; i < loaded_rows.size(); ++i)
     x_.row(loaded_rows[i]) += loads.row(static_cast<Eigen::Index>(i));
 
   const int* const row = L_.innerIndexPtr();
   const double* const value = L_.valuePtr();
   double* const data = x_.data();
-  for (int j : loaded_) {
+  for (int j : loaded_.nodes()) {
     const double* const xj = data + columns * j;
     if (flush(data + columns * j)) continue;
     for (int p = L_.outerIndexPtr()[j], end = column_end(j); p < end; ++p) {
@@ -73,7 +65,7 @@ void SelectedSolve::solve(std::span<const int> loaded_rows, const Columns& loads
       for (int k = 0; k < columns; ++k) xi[k] -= value[p] * xj[k];
     }
   }
-  for (auto at = wanted_.rbegin(); at != wanted_.rend(); ++at) {
+  for (auto at = wanted_.nodes().rbegin(); at != wanted_.nodes().rend(); ++at) {
     const int j = *at;
     double sum[columns];
     for (int k = 0; k < columns; ++k) sum[k] = data[columns * j + k] / D_[j];

@@ -48,18 +48,18 @@ bool is_wrong_name(const std::error_code& refused) noexcept {
          refused == std::errc::no_such_file_or_directory;
 }
 
-std::filesystem::path output_file(const std::filesystem::path& named) {
+std::filesystem::path output_file(const std::filesystem::path& file) {
   std::error_code failed;
-  std::filesystem::path file = named;
+  std::filesystem::path target = file;
   constexpr int most_links = 40;  // as Linux follows
-  for (int i = 0; std::filesystem::is_symlink(file, failed); ++i) {
-    if (i == most_links) throw input_error(named.string(), "links in a circle", "the name of a file");
-    file = file.parent_path() / std::filesystem::read_symlink(file, failed);
+  for (int i = 0; std::filesystem::is_symlink(target, failed); ++i) {
+    if (i == most_links) throw input_error(file.string(), "links in a circle", "the name of a file");
+    target = target.parent_path() / std::filesystem::read_symlink(target, failed);
   }
-  if (std::filesystem::exists(file, failed) && !std::filesystem::is_regular_file(file, failed)) {
-    throw input_error(named.string(), std::string(what_is_at(file)), "the name of a file");
+  if (std::filesystem::exists(target, failed) && !std::filesystem::is_regular_file(target, failed)) {
+    throw input_error(file.string(), std::string(what_is_at(target)), "the name of a file");
   }
-  return file;
+  return target;
 }
 
 namespace {
@@ -92,30 +92,30 @@ void write_all(int descriptor, std::string_view text, const std::filesystem::pat
 
 }  // namespace
 
-void require_replaceable_text(const std::filesystem::path& named, std::string_view mark) {
-  const std::filesystem::path file = output_file(named);
+void require_replaceable_text(const std::filesystem::path& file, std::string_view mark) {
+  const std::filesystem::path target = output_file(file);
   std::error_code failed;
-  if (!is_file(file) || std::filesystem::file_size(file, failed) == 0) return;
+  if (!is_file(target) || std::filesystem::file_size(target, failed) == 0) return;
   constexpr std::size_t enough = 512;  // no text has a zero among them, tables and results have
-  const std::string head = beginning(file, std::max(mark.size(), enough));
+  const std::string head = beginning(target, std::max(mark.size(), enough));
   if (head.starts_with(mark)) return;
   const bool binary = head.find('\0') != std::string::npos;
-  const std::string found = binary ? "a table or results of railtab, or HDF5"
-                                   : "a file that begins with " + quoted(first_line(head));
-  throw input_error(named.string(), found,
+  const std::string found =
+      binary ? "a table or results of railtab, or HDF5" : "a file that begins with " + quoted(first_line(head));
+  throw input_error(file.string(), found,
                     fmt::format("a new name, or an earlier output of this kind to replace, which begins with '{}'",
                                 printable(first_line(mark).substr(0, 140))));
 }
 
-void write_text_file(const std::filesystem::path& named, std::string_view text, std::string_view mark) {
-  require_replaceable_text(named, mark.empty() ? text.substr(0, first_line(text).size() + 1) : mark);
-  const std::filesystem::path file = output_file(named);
-  const TemporaryFile temporary = create_temporary(file);
+void write_text_file(const std::filesystem::path& file, std::string_view text, std::string_view mark) {
+  require_replaceable_text(file, mark.empty() ? text.substr(0, first_line(text).size() + 1) : mark);
+  const std::filesystem::path target = output_file(file);
+  const TemporaryFile temporary = create_temporary(target);
   try {
-    write_all(temporary.lock.descriptor(), text, file);
+    write_all(temporary.lock.descriptor(), text, target);
     std::error_code failed;
-    std::filesystem::rename(temporary.name, file, failed);
-    if (failed) throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), failed.message()));
+    std::filesystem::rename(temporary.name, target, failed);
+    if (failed) throw ComputationError(fmt::format("{}: could not be written: {}", target.string(), failed.message()));
   } catch (const ComputationError&) {
     std::error_code ignored;
     std::filesystem::remove(temporary.name, ignored);

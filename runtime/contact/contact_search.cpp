@@ -70,11 +70,7 @@ struct PosedScan {
   const ContactScan& scan;
   const WheelsetPose& pose;
   const PoseTrigonometry& trig;
-  WheelsetCentre centre;
-
-  PosedScan(const WheelRailPair& pair, const ContactScan& scan, const WheelsetPose& pose,
-            const PoseTrigonometry& trig) noexcept
-      : pair(pair), scan(scan), pose(pose), trig(trig), centre(wheelset_centre(pair, pose)) {}
+  WheelsetCentre centre = wheelset_centre(pair, pose);
 };
 
 // Convex search first (Eqs. 1-4); where its Newton leaves the bracket, the safe search: the deepest of the nearest

@@ -39,7 +39,7 @@ std::vector<KeyRow> time_step_keys() {
        "s",
        "longest step in the first millisecond of an impact; time_step is divided by a power of two",
        NumberKey{of_integration<&IntegrationParameters::impact_step>, {1e-6, 0.1}},
-       {&with_hertz_contact, &with_automatic_contact_force, &with_smooth_search, &with_immediate_response}},
+       {&with_hertz_contact, &with_automatic_contact_force, &with_smooth_search}},
       {"integration.tolerance", "1",
        "tolerance of Newton's method: change of the contact forces relative to the static wheel load",
        NumberKey{of_integration<&IntegrationParameters::tolerance>, {1e-12, 1e-2}}},

@@ -66,13 +66,6 @@ const Condition with_automatic_contact_force{
 const Condition with_smooth_search{
     "contact.mode = \"table\" or \"online\"",
     [](At at) { return unless(at.scene.contact.mode != ContactMode::paper, "contact.mode = \"paper\""); }};
-const Condition with_immediate_response{
-    "no structure.static_correction", [](At at) {
-      const ReductionParameters& reduction = at.scene.reduction;
-      return unless(reduction.kind != Reduction::modal || !reduction.static_correction,
-                    "structure.reduction = \"modal\" with structure.static_correction = true");
-    }};
-
 const Condition with_spectrum{"irregularity.spectrum",
                               [](At at) { return unless(at.scene.spectrum.has_value(), "no irregularity.spectrum"); }};
 const Condition with_turning_spans{"span_deviation.shape = \"bending\" or \"parallel-shift\"", [](At at) {
@@ -115,11 +108,6 @@ const Condition with_structure_to_reduce{
       return unless(at.scene.reduction.kind == Reduction::none || at.scene.track_kind != TrackKind::rigid,
                     track_kind(at.scene));
     }};
-const Condition with_modes{"structure.reduction = \"modal\" or \"craig-bampton\"", [](At at) {
-                             return reduction_among(at, {Reduction::modal, Reduction::craig_bampton});
-                           }};
-const Condition with_modal_reduction{"structure.reduction = \"modal\"",
-                                     [](At at) { return reduction_among(at, {Reduction::modal}); }};
 const Condition with_window{"structure.reduction = \"window\"",
                             [](At at) { return reduction_among(at, {Reduction::window}); }};
 

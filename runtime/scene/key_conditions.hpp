@@ -33,13 +33,13 @@ extern const Condition without_speed_kmh, without_speed_file, without_contact_ta
     without_damping_type;
 // Vehicles and contact.
 extern const Condition with_imported_vehicle, with_hertz_contact, with_creep_table_law, with_automatic_contact_force,
-    with_smooth_search, with_immediate_response;
+    with_smooth_search;
 // The line.
 extern const Condition with_spectrum, with_turning_spans;
 // Track and structure.
 extern const Condition with_any_structure, with_flexible_track, with_ballast_on_deck, with_imported_structure,
     with_structure_nodes, with_imported_rails, with_deck_nodes, with_use_of_deck, with_model_nodes;
 // structure.reduction; "none", written out, is a reduction that was switched off, whose keys may stay.
-extern const Condition with_structure_to_reduce, with_modes, with_modal_reduction, with_window;
+extern const Condition with_structure_to_reduce, with_window;
 
 }  // namespace railtab::scene

@@ -65,7 +65,7 @@ SceneKey describe(const KeyRow& key, SceneDraft& draft) {
                    set("profile", joined(standard_profile_names(k.kind)) + " or a profile file", k.member(draft));
                  },
                  [&](const ChoiceKey& k) { set("choice", joined(k.names), k.names[k.get(draft)]); },
-                 [&](const ReductionKey&) { set("choice", "none, modal, craig-bampton, window", "none"); },
+                 [&](const ReductionKey&) { set("choice", "none, window", "none"); },
                  [&](const TextListKey& k) {
                    const std::vector<std::string>& list = k.member(draft);
                    set("list of texts", "any", list.empty() ? "" : fmt::format("[\"{}\"]", fmt::join(list, "\", \"")));

@@ -41,7 +41,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const IntegrationParameters& integration = scene.integration;
   const double steps = duration / integration.time_step;
   const OutputSelection selection(scene.output, model_header(model));
-  const bool checkpoints = steps >= static_cast<double>(RunObserver{}.checkpoint_every);
+  const bool checkpoints = steps >= static_cast<double>(integration.reinitialise_every);
   const double state = checkpoints ? static_cast<double>(packed(VsiState(model)).size()) : 0.0;
   const ResultSize results =
       result_size(selection.of(result_header(scene, model)), std::floor(steps / scene.output.every) + 2.0, state);

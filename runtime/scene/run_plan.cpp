@@ -20,16 +20,8 @@ namespace railtab {
 namespace {
 
 std::string reduction_text(const ReductionParameters& reduction) {
-  const std::string name = fmt::format("reduction of the structure: {}", reduction_name(reduction.kind));
-  if (reduction.kind == Reduction::window) {
-    return fmt::format("{}, {:g} m ahead of the train and {:g} m behind take part", name, reduction.ahead,
-                       reduction.behind);
-  }
-  if (reduction.kind == Reduction::modal) {
-    return fmt::format("{}, {} modes{}", name, reduction.modes,
-                       reduction.static_correction ? " with static correction" : "");
-  }
-  return fmt::format("{}, {} modes of each part", name, reduction.modes);
+  return fmt::format("reduction of the structure: {}, {:g} m ahead of the train and {:g} m behind take part",
+                     reduction_name(reduction.kind), reduction.ahead, reduction.behind);
 }
 
 void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
@@ -89,11 +81,9 @@ constexpr double wide = 1000.0;  // entries per degree of freedom: tracks have 1
 
 RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
   if (setup) setup("building the model");
-  const bool modal = scene.reduction.kind == Reduction::modal && scene.track_kind != TrackKind::rigid;
-  const VsiModel model = modal ? build_unreduced_model(scene) : build_model(scene);  // modes are counted, not sought
+  const VsiModel model = build_model(scene);
   RunPlan plan;
   plan.structure_dofs = model.structure ? model.structure->dofs() : 0;
-  if (modal) plan.structure_dofs = std::min(plan.structure_dofs, static_cast<long>(scene.reduction.modes));
   plan.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());
   plan.wheels = 2 * model.wheelsets();
   plan.time_step = scene.integration.time_step;

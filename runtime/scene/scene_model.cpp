@@ -105,19 +105,10 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
     model.structure = relative_to_supports(std::move(*model.structure));
   }
   switch (reduction.kind) {
-    case Reduction::modal: {
-      auto unreduced = std::make_shared<const StructureModel>(std::move(*model.structure));
-      model.structure = reduce_to_modes(*unreduced, reduction.modes);
-      if (reduction.static_correction) model.unreduced = std::move(unreduced);
-      break;
-    }
-    case Reduction::craig_bampton:
-      model.structure = reduce_parts(*model.structure, reduction.modes);
-      break;
     case Reduction::window:
       if (model.structure->dof_x.empty()) {
         throw input_error("scene: structure.reduction", "\"window\" of an imported structure",
-                          "another reduction: where its unknowns are along the track is not known");
+                          "\"none\": the positions of its degrees of freedom along the track are not known");
       }
       model.window = make_window(*model.structure, reduction);
       break;
@@ -128,7 +119,7 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 
 }  // namespace
 
-VsiModel build_unreduced_model(const SceneParameters& scene) {
+VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
   model.vehicle = scene.train.vehicle == imported_vehicle
@@ -146,11 +137,6 @@ VsiModel build_unreduced_model(const SceneParameters& scene) {
   add_loads(scene, model);
   if (scene.spectrum) model.irregularity = random_track(scene, model);
   check_on_track(scene, model);
-  return model;
-}
-
-VsiModel build_model(const SceneParameters& scene) {
-  VsiModel model = build_unreduced_model(scene);
   reduce(scene.reduction, model);
   return model;
 }

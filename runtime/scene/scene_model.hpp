@@ -11,7 +11,4 @@ namespace railtab {
 /// @throws InputError where a scene without a span names no duration.
 [[nodiscard]] double run_duration(const SceneParameters& scene, const VsiModel& model);
 
-/// build_model() before structure.reduction, for a plan that counts and does not solve. @throws InputError
-[[nodiscard]] VsiModel build_unreduced_model(const SceneParameters& scene);
-
 }  // namespace railtab

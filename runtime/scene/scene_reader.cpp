@@ -52,10 +52,14 @@ struct Assign {
     key.set(draft, static_cast<std::size_t>(std::find(key.names.begin(), key.names.end(), name) - key.names.begin()));
   }
   void operator()(const ReductionKey&) const {
-    const std::string name = one_of({"none", "modal", "craig-bampton", "window"});
-    for (const Reduction kind : {Reduction::none, Reduction::modal, Reduction::craig_bampton, Reduction::window}) {
-      if (reduction_name(kind) == name) draft.parameters.reduction.kind = kind;
+    // Scenes written for earlier versions may name a reduction that no longer exists.
+    const toml::value<std::string>* named = leaf.node->as_string();
+    if (named && (named->get() == "modal" || named->get() == "craig-bampton")) {
+      throw leaf_error(file, leaf, fmt::format("\"{}\", a reduction that has been removed", named->get()),
+                       "\"none\" or \"window\": take \"window\" for a long line of built track, and \"none\" else; "
+                       "remove structure.modes and structure.static_correction");
     }
+    draft.parameters.reduction.kind = one_of({"none", "window"}) == "window" ? Reduction::window : Reduction::none;
   }
   void operator()(const TextListKey& key) const {
     const std::string expected = "a list of texts, such as [\"deck-*\"]";

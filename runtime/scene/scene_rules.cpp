@@ -73,22 +73,6 @@ Broken deck_of_imported_bridge(Scene scene) {
                    "the deck's nodes, which carry the track, or track.kind = \"imported\""};
 }
 
-Broken modes_without_mean_force(Scene scene) {
-  if (scene.reduction.kind != Reduction::modal || !scene.reduction.static_correction ||
-      scene.integration.contact_force != ContactForceRule::energy) {
-    return {};
-  }
-  return Violation{"integration.contact_force", "\"energy\" with structure.static_correction",
-                   "structure.static_correction = false: residual flexibility follows no mean force"};
-}
-
-Broken modes_under_rigid_wheels(Scene scene) {
-  if (scene.reduction.kind != Reduction::modal || !vertical(scene)) return {};
-  return Violation{
-      "structure.reduction", "\"modal\" with contact.normal = \"rigid\"",
-      "another reduction: a truncated modal basis cannot represent the vertical acceleration of the wheels"};
-}
-
 Broken energy_of_contact_springs(Scene scene) {
   if (!scene.output.energy || !vertical(scene)) return {};
   return Violation{"output.energy", "true with contact.normal = \"rigid\"",
@@ -216,8 +200,6 @@ const std::vector<SceneRule>& scene_rules() {
       {"an imported bridge has matrices", matrices_of_imported_bridge},
       {"track lies on an imported bridge or on a [[bridge]]", one_bridge_under_track},
       {"an imported bridge has a deck", deck_of_imported_bridge},
-      {"residual flexibility excludes the energy rule", modes_without_mean_force},
-      {"modes exclude rigid wheels", modes_under_rigid_wheels},
       {"energy is that of contact springs", energy_of_contact_springs},
       {"a load has a file or components", one_source_of_a_load},
       {"a gust has components", gust_without_file},

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "railtab/runtime/start/wheelset_seat.hpp"
+#include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
 namespace railtab {

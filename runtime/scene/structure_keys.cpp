@@ -163,10 +163,6 @@ std::vector<KeyRow> span_keys() {
 std::vector<KeyRow> reduction_rows() {
   return {
       {"structure.reduction", "", "how the structure is made smaller for the steps", ReductionKey{}},
-      {"structure.modes", "1", "modal: of the structure; craig-bampton: of each part between the rails",
-       IntegerKey{[](SceneDraft& d) -> int& { return d.parameters.reduction.modes; }, 1, 2000}},
-      {"structure.static_correction", "", "modal: modes left out answer without inertia",
-       SwitchKey{[](SceneDraft& d) -> bool& { return d.parameters.reduction.static_correction; }}},
       {"structure.window_ahead", "m", "window: track that takes part before the first wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.ahead; }, {5.0, 1e5}}},
       {"structure.window_behind", "m", "window: track that takes part behind the last wheelset",
@@ -196,10 +192,7 @@ std::vector<KeyRow> bridge_keys() { return span_keys(); }
 std::vector<KeyRow> reduction_keys() {
   std::vector<KeyRow> rows = reduction_rows();
   for (KeyRow& row : rows) {
-    row.applies.push_back(row.path == "structure.reduction"           ? &with_structure_to_reduce
-                          : row.path == "structure.modes"             ? &with_modes
-                          : row.path == "structure.static_correction" ? &with_modal_reduction
-                                                                      : &with_window);
+    row.applies.push_back(row.path == "structure.reduction" ? &with_structure_to_reduce : &with_window);
   }
   return rows;
 }

@@ -6,11 +6,10 @@
 #include <limits>
 
 #include "railtab/runtime/base/index.hpp"
-#include "railtab/runtime/start/wheelset_seat.hpp"
+#include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
-#include "railtab/runtime/vsi/local_flexibility.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
 namespace railtab {
@@ -37,12 +36,10 @@ struct RestOperators {
   WheelContactModel contact;
   VehicleResponse vehicle;
   std::unique_ptr<StructureResponse> structure;
-  std::unique_ptr<LocalFlexibility> local;
 
   explicit RestOperators(const VsiModel& model)
       : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
     if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
-    if (model.unreduced) local = std::make_unique<LocalFlexibility>(*model.unreduced, *model.structure);
   }
 };
 
@@ -60,7 +57,7 @@ class WheelsetConstraint {
       unknown_.push_back(wheelset_unknowns * (k / 6) + k % 6);
       dof_.push_back(dof);
     }
-    answer_ = vehicle.inverse()(Eigen::all, dof_);
+    response_ = vehicle.inverse()(Eigen::all, dof_);
     compliance_.compute(vehicle.inverse()(dof_, dof_));
     first_unknown_ = wheelset_unknowns * model.wheelsets_per_vehicle();
   }
@@ -73,13 +70,13 @@ class WheelsetConstraint {
       apart[static_cast<Eigen::Index>(i)] = q[first_unknown_ * v + unknown_[i]] - apart[static_cast<Eigen::Index>(i)];
     }
     const Eigen::VectorXd force = compliance_.solve(apart);
-    dofs += answer_ * force;
+    dofs += response_ * force;
     return force.cwiseAbs().maxCoeff();
   }
 
  private:
   std::vector<int> unknown_, dof_;
-  Eigen::MatrixXd answer_;
+  Eigen::MatrixXd response_;
   Eigen::PartialPivLU<Eigen::MatrixXd> compliance_;
   int first_unknown_ = 0;
 };
@@ -92,7 +89,6 @@ std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::ve
   for (int i = 0; i < wheels; ++i) {
     for (int j = 0; j < wheels; ++j) {
       rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
-      if (rest.local) rail.back().compliance += (*rest.local)(contacts[index(i)], contacts[index(j)]);
     }
   }
   return rail;
@@ -128,17 +124,6 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
   if (rest.structure) problem.rail = all_couplings(rest, contacts);
   problem.largest_move = 1e-3;
   return problem;
-}
-
-// What the static correction adds to the rail heads' displacement.
-void local_at_rest(const LocalFlexibility& local, const std::vector<RailContact>& contacts, VsiState& state) {
-  state.local.setZero();
-  const int wheels = static_cast<int>(contacts.size());
-  for (int i = 0; i < wheels; ++i) {
-    for (int j = 0; j < wheels; ++j)
-      state.local.segment<3>(3 * i) +=
-          local(contacts[index(i)], contacts[index(j)]) * state.contact.force.segment<3>(rail_unknown(j));
-  }
 }
 
 // Track deviations by a share of themselves.
@@ -189,8 +174,6 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   const VehicleResponse& vehicle = rest.vehicle;
   StructureResponse* structure = rest.structure.get();
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
-  if (rest.local)
-    rest.local->follow(model.wheelset_x(model.wheelsets() - 1, state.time), model.wheelset_x(0, state.time));
   ContactProblem problem = rest_problem(model, rest, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
   WheelContactModel contact = rest.contact;
@@ -257,7 +240,6 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     if (report.converged && unbalanced > balanced) return {.iterations = report.iterations + 1};
   }
   if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
-  if (rest.local) local_at_rest(*rest.local, contacts, state);
   state.contact.step_load = state.contact.force;
   for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;
   state.structure.step_load = state.structure.contact_load;

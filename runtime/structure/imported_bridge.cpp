@@ -13,7 +13,7 @@
 #include "railtab/runtime/structure/deck_attachment.hpp"
 #include "railtab/runtime/structure/fe_supports.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
-#include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
 
 namespace railtab {
 

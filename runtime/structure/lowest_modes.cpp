@@ -1,3 +1,5 @@
+#include "railtab/runtime/structure/lowest_modes.hpp"
+
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -5,9 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/structure/reduction.hpp"
 
 namespace railtab {
 
@@ -20,7 +21,9 @@ using Sparse = Eigen::SparseMatrix<double>;
 class BlockLanczos {
  public:
   BlockLanczos(const Sparse& stiffness, const Sparse& mass, Eigen::Index block)
-      : mass_(mass), factor_(stiffness), block_(block) {
+      : mass_(mass),
+        factor_(stiffness, "the structure's stiffness is not positive definite: check supports and stiffnesses"),
+        block_(block) {
     Matrix start(mass.rows(), block);
     for (double& value : start.reshaped()) value = random();
     append(solved(start), nullptr);
@@ -113,7 +116,7 @@ class BlockLanczos {
   }
 
   const Sparse& mass_;
-  StructureFactor factor_;
+  SparseLdlt factor_;
   Eigen::Index block_, size_ = 0, added_ = 0;
   Matrix basis_, mass_basis_, projection_;
   std::mt19937_64 generator_{20240607};

@@ -5,7 +5,7 @@
 
 namespace railtab {
 
-/// LDLᵀ decomposition of a symmetric sparse matrix, for set-up code (runs use StructureFactor).
+/// LDLᵀ decomposition of a symmetric sparse matrix, for set-up code (runs use SparseLdlt).
 class StiffnessFactor {
  public:
   explicit StiffnessFactor(const Eigen::SparseMatrix<double>& K);

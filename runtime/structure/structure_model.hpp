@@ -62,10 +62,6 @@ struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide
   std::vector<StructureNode> nodes;  ///< nodes of interest
-  /// Modal coordinates: the dofs of the rails are rows of this basis (rows × dofs). Empty: they are dofs.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> basis;
-  /// Motion of the nodes of interest, 6 rows each, as combinations of the dofs. Empty: their motions are dofs.
-  Eigen::SparseMatrix<double, Eigen::RowMajor> node_rows;
   /// Position along the track of every dof [m], not decreasing; empty where it is not known.
   std::vector<double> dof_x;
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.

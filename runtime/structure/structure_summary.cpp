@@ -6,7 +6,7 @@
 
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
-#include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
 
 namespace railtab {
 

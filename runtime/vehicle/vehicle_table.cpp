@@ -19,7 +19,8 @@ constexpr std::array<std::string_view, 6> motions{"x", "y", "z", "rotx", "roty",
 TableBody& body_of_line(const LineReader& reader, std::string_view name, const Eigen::Vector3d& position,
                         std::vector<TableBody>& bodies) {
   if (name.empty() || name.find_first_of("/* \t") != std::string_view::npos) {
-    throw reader.error(fmt::format("body '{}'", name), "a name without blanks, / and *, which results have a use for");
+    throw reader.error(fmt::format("body '{}'", name),
+                       "a name without / and *, which results have a use for, and without blanks");
   }
   const auto known =
       std::find_if(bodies.begin(), bodies.end(), [name](const TableBody& body) { return body.name == name; });

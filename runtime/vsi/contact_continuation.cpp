@@ -29,7 +29,7 @@ NewtonReport solve_contact_by_continuation(const WheelContactModel& model, const
   const auto solve = [&](double share, const Eigen::VectorXd& from) {
     part.creepage_share = share;
     solution.displacement = from;
-    ws.inverse.clear();  // of another law
+    ws.forget_tangents();  // of another law
     add(solve_contact(part, problem, limits, solution, ws), report);
     return report.converged;
   };

@@ -7,7 +7,7 @@ namespace railtab {
 
 ContactEnergyRecord::ContactEnergyRecord(const EnergyAccount& account, const VsiState& state)
     : time_(state.time),
-      touch_(touches(state.contact)),
+      contact_(contact_states(state.contact)),
       energy_(account.wheelset_energy().begin(), account.wheelset_energy().end()),
       impacts_(energy_.size()) {}
 
@@ -20,22 +20,22 @@ void ContactEnergyRecord::step(const EnergyAccount& account, const VsiState& sta
     summary_.largest_step = all;
     summary_.largest_step_time = state.time;
   }
-  const std::vector<Touch> touch = touches(state.contact);
+  const std::vector<ContactState> contact = contact_states(state.contact);
   for (std::size_t w = 0; w < impacts_.size(); ++w) {
     bool gained = false, lost = false;
     for (const std::size_t wheel : {2 * w, 2 * w + 1}) {
-      gained = gained || touch[wheel] > touch_[wheel];
-      lost = lost || touch[wheel] < touch_[wheel];
+      gained = gained || contact[wheel] > contact_[wheel];
+      lost = lost || contact[wheel] < contact_[wheel];
     }
-    follow(w, account, state.time, gained, lost);
+    follow_impact(w, account, state.time, gained, lost);
     energy_[w] = account.wheelset_energy()[w];
   }
-  touch_ = touch;
+  contact_ = contact;
   time_ = state.time;
 }
 
-void ContactEnergyRecord::follow(std::size_t wheelset, const EnergyAccount& account, double time, bool gained,
-                                 bool lost) {
+void ContactEnergyRecord::follow_impact(std::size_t wheelset, const EnergyAccount& account, double time, bool gained,
+                                        bool lost) {
   Impact& impact = impacts_[wheelset];
   if (!impact.going_on) {
     if (!gained) return;

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "railtab/runtime/vsi/contact_touch.hpp"
+#include "railtab/runtime/vsi/contact_state.hpp"
 #include "railtab/runtime/vsi/energy_account.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 
@@ -26,13 +26,13 @@ class ContactEnergyRecord {
     double before = 0.0;  // [J] in the contact springs of the wheelset before
     double stored = 0.0;  // [J] most in them since then, above that
   };
-  void follow(std::size_t wheelset, const EnergyAccount& account, double time, bool gained, bool lost);
+  void follow_impact(std::size_t wheelset, const EnergyAccount& account, double time, bool gained, bool lost);
 
   ContactEnergy summary_;
   double time_;
-  std::vector<Touch> touch_;     // per wheel, after the last step
-  std::vector<double> energy_;   // [J] of the contact springs, per wheelset, after the last step
-  std::vector<Impact> impacts_;  // per wheelset
+  std::vector<ContactState> contact_;  // per wheel, after the last step
+  std::vector<double> energy_;         // [J] of the contact springs, per wheelset, after the last step
+  std::vector<Impact> impacts_;        // per wheelset
 };
 
 }  // namespace railtab

@@ -1,6 +1,7 @@
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 
 #include "railtab/runtime/base/stopwatch.hpp"
+#include "railtab/runtime/contact/wheel_contact.hpp"
 
 namespace railtab {
 

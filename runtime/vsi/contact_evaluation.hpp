@@ -12,7 +12,7 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
               ContactSolution& solution, NewtonWorkspace& workspace, NewtonReport& report);
 
 /// The forces alone, of the last evaluation's loads, moved along (moved_loads()): near to evaluate(), for a fraction of
-/// its price.
+/// its cost.
 void evaluate_moved(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
                     ContactSolution& solution, const NewtonWorkspace& workspace);
 

@@ -22,7 +22,7 @@ constexpr double stiffest_contact = 1e11;
 
 // r + C f, of what joins(i, j) says of two wheelsets.
 template <class Joins>
-void add_answer(const ContactProblem& problem, const Eigen::VectorXd& f, Joins&& joins, Eigen::VectorXd& r) {
+void add_response(const ContactProblem& problem, const Eigen::VectorXd& f, Joins&& joins, Eigen::VectorXd& r) {
   const int wheelsets = static_cast<int>(r.size()) / wheelset_unknowns;
   const int per_vehicle = problem.wheelsets_per_vehicle;
   for (int w = 0; w < wheelsets; ++w) {
@@ -41,7 +41,7 @@ void add_answer(const ContactProblem& problem, const Eigen::VectorXd& f, Joins&&
 // q_free + C f − q
 void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
   r = problem.free - s.displacement;
-  add_answer(
+  add_response(
       problem, s.force, [](int, int) { return true; }, r);
 }
 
@@ -218,8 +218,8 @@ class TrainNewton {
     const Vector12 unexplained = change - tangent * move;
     Eigen::Map<Matrix12> inverse(ws_.inverse[index(g)].data());
     const Vector12 v = weighted / square;
-    const Vector12 answered = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()) * unexplained;
-    const Vector12 z = inverse * answered;
+    const Vector12 responded = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()) * unexplained;
+    const Vector12 z = inverse * responded;
     const double denominator = 1.0 - v.dot(z);
     if (!(std::abs(denominator) > nearly_singular)) return;
     tangent += unexplained * v.transpose();
@@ -269,7 +269,7 @@ class TrainNewton {
             ws_.tangent[index(first_wheelset(g) + k)] * correction.template segment<12>(12 * k);
       }
     }
-    add_answer(
+    add_response(
         problem_, ws_.force_change, [&](int i, int j) { return i / per_group != j / per_group; }, ws_.coupled);
   }
 

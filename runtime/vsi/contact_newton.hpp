@@ -39,12 +39,12 @@ struct ContactSolution {
 };
 
 /// The contact problem of one step, condensed to the contact unknowns q: the linear rest of the train and the structure
-/// answers q = q_free + C·f(q, v) with v = v_predicted + velocity_rate·(q − q_predicted). Derived in
+/// responds with q = q_free + C·f(q, v) with v = v_predicted + velocity_rate·(q − q_predicted). Derived in
 /// docs/theory/coupling.md from Eq. 16.
 struct ContactProblem {
   int wheelsets_per_vehicle = 4;
   /// Wheelsets whose coupling enters Newton's Jacobian, a divisor of wheelsets_per_vehicle: all of a vehicle at rest,
-  /// one in a time step, within which each answers almost alone.
+  /// one in a time step, within which each responds almost independently.
   int wheelsets_per_group = 4;
   /// dv/dq [1/s] of a wheelset and of a rail head: gamma/(beta·dt) in a time step. At rest 0, but for the wheelset's
   /// pitch, whose unknown is then its deviation from the nominal rotation.
@@ -107,6 +107,9 @@ struct WheelLoads {
 
 /// Tangents and inverses, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {
+  /// The next solution makes its tangents anew, without a prediction: nothing then depends on earlier ones.
+  void forget_tangents() { inverse.clear(); }
+
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
   std::vector<Matrix12> tangent;            ///< per wheelset, df/dq
   std::vector<Eigen::MatrixXd> compliance;  ///< per group, C

@@ -14,22 +14,6 @@ void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord
   }
 }
 
-// Nodes whose motion is a combination of the unknowns.
-void fill_combined_nodes(const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows, const VsiState& state,
-                         StepRecord& record) {
-  const Eigen::VectorXd displacement = rows * state.structure.displacement;
-  const Eigen::VectorXd velocity = rows * state.structure.velocity;
-  const Eigen::VectorXd acceleration = rows * state.structure.acceleration;
-  for (std::size_t n = 0; n < record.nodes.size(); ++n) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      const auto row = static_cast<Eigen::Index>(6 * n + k);
-      record.nodes[n].displacement[k] = displacement[row];
-      record.nodes[n].velocity[k] = velocity[row];
-      record.nodes[n].acceleration[k] = acceleration[row];
-    }
-  }
-}
-
 // What supports carry the nodes by, where the structure's displacements are relative to them.
 void add_carried(const VsiModel& model, StepRecord& record) {
   const StructureSupports& supports = model.structure->supports;
@@ -96,12 +80,8 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   }
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
-  if (model.structure->node_rows.rows() > 0) {
-    fill_combined_nodes(model.structure->node_rows, state, record);
-  } else {
-    for (std::size_t n = 0; n < record.nodes.size(); ++n)
-      fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
-  }
+  for (std::size_t n = 0; n < record.nodes.size(); ++n)
+    fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
   add_carried(model, record);
 }
 

@@ -27,18 +27,39 @@ struct Prediction {
   Eigen::VectorXd weighted_displacement, weighted_velocity;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
 };
 
-/// Predictors of the unknowns in `range`; those of others keep what they had.
-inline void predict(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range, Prediction& p) {
+using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
+
+/// Predictors ã and ṽ.
+inline void predict(const HhtScheme& scheme, const ConstVector& a, const ConstVector& v,
+                    const ConstVector& acceleration, Eigen::Ref<Eigen::VectorXd> predicted,
+                    Eigen::Ref<Eigen::VectorXd> predicted_velocity) {
   const double dt = scheme.time_step;
-  const auto a = range.of(motion.displacement);
-  const auto v = range.of(motion.velocity);
-  const auto acceleration = range.of(motion.acceleration);
+  predicted = a + dt * v + dt * dt * (0.5 - scheme.beta()) * acceleration;
+  predicted_velocity = v + dt * (1.0 - scheme.gamma()) * acceleration;
+}
+
+/// Displacement, velocity and acceleration at the end of a step, to be written.
+struct MotionTarget {
+  Eigen::Ref<Eigen::VectorXd> displacement, velocity, acceleration;
+};
+/// Closes a step with the increment Δ over the predictors.
+inline void update(const HhtScheme& scheme, const ConstVector& predicted, const ConstVector& predicted_velocity,
+                   const ConstVector& increment, MotionTarget motion) {
+  motion.displacement = predicted + increment;
+  motion.velocity = predicted_velocity + scheme.velocity_rate() * increment;
+  motion.acceleration = scheme.acceleration_rate() * increment;
+}
+
+/// Predictors of the degrees of freedom in `range`; those of others keep their values.
+inline void predict(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range, Prediction& p) {
   for (Eigen::VectorXd* vector : {&p.displacement, &p.velocity, &p.weighted_displacement, &p.weighted_velocity})
     vector->resize(motion.displacement.size());
-  range.of(p.displacement) = a + dt * v + dt * dt * (0.5 - scheme.beta()) * acceleration;
-  range.of(p.velocity) = v + dt * (1.0 - scheme.gamma()) * acceleration;
-  range.of(p.weighted_displacement) = scheme.load_weight() * range.of(p.displacement) - scheme.alpha * a;
-  range.of(p.weighted_velocity) = scheme.load_weight() * range.of(p.velocity) - scheme.alpha * v;
+  predict(scheme, range.of(motion.displacement), range.of(motion.velocity), range.of(motion.acceleration),
+          range.of(p.displacement), range.of(p.velocity));
+  range.of(p.weighted_displacement) =
+      scheme.load_weight() * range.of(p.displacement) - scheme.alpha * range.of(motion.displacement);
+  range.of(p.weighted_velocity) =
+      scheme.load_weight() * range.of(p.velocity) - scheme.alpha * range.of(motion.velocity);
 }
 inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
   predict(scheme, motion, {0, motion.displacement.size()}, p);
@@ -57,12 +78,25 @@ inline void past_contact_load(const HhtScheme& scheme, const LinearMotion& motio
   }
 }
 
-/// Close the step of the unknowns in `range` with the increment Δ over the predictor.
+/// The contacts' part p of Eq. 12 in a step that ends with the contact forces `load`; for the next step. Before the
+/// contact forces at the step's beginning, motion.contact_load, are replaced.
+inline void close_load(const HhtScheme& scheme, const Eigen::VectorXd& load, const DofRange& range,
+                       LinearMotion& motion) {
+  const double g = scheme.gamma();
+  auto p = range.of(motion.step_load);
+  const auto f = range.of(motion.contact_load);
+  if (scheme.contact_force == ContactForceRule::endpoint) {
+    p = scheme.load_weight() * range.of(load) - scheme.alpha * f;
+  } else {
+    p = scheme.load_weight() * range.of(load) + (0.5 * f - (1.0 - g) * p) / g;
+  }
+}
+
+/// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.
 inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
                    const DofRange& range, LinearMotion& motion) {
-  range.of(motion.displacement) = range.of(p.displacement) + range.of(increment);
-  range.of(motion.velocity) = range.of(p.velocity) + scheme.velocity_rate() * range.of(increment);
-  range.of(motion.acceleration) = scheme.acceleration_rate() * range.of(increment);
+  update(scheme, range.of(p.displacement), range.of(p.velocity), range.of(increment),
+         {range.of(motion.displacement), range.of(motion.velocity), range.of(motion.acceleration)});
 }
 inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
                    LinearMotion& motion) {

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -127,8 +128,8 @@ DofRange MovingWindow::move(VsiState& state) {
 }
 
 // Spans that come in while the ground shakes them meet with rails that each side had held to rest at the cut; joined as
-// they are, the rails would pull both with what the cut has held. And a span's few modes leave out that its track gives
-// way to its own inertia. Both would ring: what comes in moves to where nothing is left to pull, K Δw = −J, with J the
+// they are, the rails would load both with what the cut has held. And a span's few modes leave out that its track gives
+// way to its own inertia. Both would ring: what comes in moves to where nothing is unbalanced, K Δw = −J, with J the
 // forces by which the parts now act upon each other less those by which they did, and what is out of balance in the new
 // ones. Ends of spans at one place belong to both ranges: what both have of them adds up, one of the two being next to
 // nothing.
@@ -144,7 +145,8 @@ void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotio
     return f;
   };
   const Eigen::VectorXd lost = forces(left.displacement - motion.displacement, left.velocity - motion.velocity);
-  Eigen::VectorXd pull = beyond(stayed, lost) - lost + beyond(stayed, forces(motion.displacement, motion.velocity));
+  Eigen::VectorXd unbalanced =
+      beyond(stayed, lost) - lost + beyond(stayed, forces(motion.displacement, motion.velocity));
   Eigen::Index first = 0;
   for (const SpanModes& span : model_.window->spans) {
     const Eigen::Index modes = span.omega2.size();
@@ -153,7 +155,7 @@ void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotio
       span.dofs.of(own.displacement) = span.shape * of_span(state.left_behind, first, modes, 0);
       span.dofs.of(own.velocity) = span.shape * of_span(state.left_behind, first, modes, 1);
       span.dofs.of(own.acceleration) = span.shape * of_span(state.left_behind, first, modes, 2);
-      pull += forces(own.displacement, own.velocity) + s.mass * own.acceleration;
+      unbalanced += forces(own.displacement, own.velocity) + s.mass * own.acceleration;
       motion.displacement += own.displacement;
       motion.velocity += own.velocity;
       motion.acceleration += own.acceleration;
@@ -161,26 +163,23 @@ void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotio
     first += 3 * modes;
   }
   const SupportMotion supports = support_motion(*model_.ground_motion, s.supports.x, state.time);
-  pull += beyond(stayed, s.supports.mass * supports.acceleration + s.supports.damping * supports.velocity);
-  motion.displacement -= StructureFactor(s.stiffness, range).solve(pull);
+  unbalanced += beyond(stayed, s.supports.mass * supports.acceleration + s.supports.damping * supports.velocity);
+  motion.displacement -= SparseLdlt(s.stiffness, range).solve(unbalanced);
 }
 
 // Eq. 12 mode by mode.
 void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd& load,
                              VsiState& state) const {
-  const double dt = scheme_.time_step;
   const Eigen::Index modes = span.omega2.size();
   auto q = of_span(state.left_behind, first, modes, 0);
   auto v = of_span(state.left_behind, first, modes, 1);
   auto a = of_span(state.left_behind, first, modes, 2);
-  const Eigen::ArrayXd predicted = q.array() + dt * v.array() + dt * dt * (0.5 - scheme_.beta()) * a.array();
-  const Eigen::ArrayXd velocity = v.array() + dt * (1.0 - scheme_.gamma()) * a.array();
-  const Eigen::ArrayXd increment =
-      (load.array() - span.damping.array() * velocity - span.omega2.array() * predicted) /
+  Eigen::VectorXd predicted(modes), velocity(modes);
+  predict(scheme_, q, v, a, predicted, velocity);
+  const Eigen::VectorXd increment =
+      (load.array() - span.damping.array() * velocity.array() - span.omega2.array() * predicted.array()) /
       (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array());
-  q.array() = predicted + increment;
-  v.array() = velocity + scheme_.velocity_rate() * increment;
-  a.array() = scheme_.acceleration_rate() * increment;
+  update(scheme_, predicted, velocity, increment, {q, v, a});
   for (const StructureNode& node : model_.structure->nodes) {
     if (node.x < span.from || node.x > span.to) continue;
     for (int dof : node.dof) {
@@ -193,7 +192,7 @@ void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Ei
   }
 }
 
-void MovingWindow::vibrate(VsiState& state) const {
+void MovingWindow::step_inactive_spans(VsiState& state) const {
   SupportMotion supports;
   if (model_.ground_motion) supports = support_motion(*model_.ground_motion, model_.structure->supports.x, state.time);
   Eigen::Index first = 0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "railtab/runtime/structure/reduction.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
 namespace railtab {
@@ -22,7 +23,7 @@ struct SpanModes {
   Eigen::MatrixXd support_mass, support_damping;
 };
 
-/// A structure that takes part in the steps only where the train is.
+/// A structure that is active only where the train is.
 struct WindowModel {
   double ahead = 20.0, behind = 20.0;  ///< of the first and last wheelset [m]
   std::vector<SpanModes> spans;
@@ -32,18 +33,19 @@ struct WindowModel {
 /// @pre the structure says where its unknowns are (dof_x). @throws ComputationError where a span is not held
 [[nodiscard]] WindowModel make_window(const StructureModel& structure, const ReductionParameters& parameters);
 
-/// Takes the part of the structure that takes part along with the train, in strides, whole spans at a time. Where the
-/// window is depends on the time alone, so that a resumed run finds it again.
+/// Moves the active window of degrees of freedom with the train, in strides, whole spans at a time. Its position
+/// depends on the time alone, so that a resumed run finds it again.
 class MovingWindow {
  public:
   MovingWindow(const VsiModel& model, double time_step);
 
-  /// The unknowns that take part in the step from state.time. What is outside is put to rest; spans that fall behind
-  /// vibrate on in their own modes, and those that come in bring the vibration that the ground has given them.
+  /// The degrees of freedom that are active in the step from state.time. Those outside are put to rest; spans that fall
+  /// behind continue to vibrate in their own modes, and those that enter bring the vibration that the ground has given
+  /// them.
   DofRange move(VsiState& state);
   /// One time step of the spans behind, and where the ground moves of those ahead; their nodes of interest are written
   /// into the state.
-  void vibrate(VsiState& state) const;
+  void step_inactive_spans(VsiState& state) const;
 
  private:
   struct Ends {

@@ -46,13 +46,6 @@ class RigidWheelResponse {
   Eigen::MatrixXd K_bc_, C_bc_, M_bc_, Z_, W_, A_;
 };
 
-/// Buffers of a step with rigid wheels.
-struct RigidWheelWorkspace {
-  std::vector<Eigen::VectorXd> R;  ///< per vehicle
-  Eigen::MatrixXd system;
-  Eigen::VectorXd force;
-};
-
 /// Wheelsets at rest on their rails: forces and displacements such that each wheelset's heave is the mean of its two
 /// rail heads', deviation included; both rails carry the same. @pre vehicles' wheelsets are free to move in z
 void rest_on_rails(const ContactProblem& problem, ContactSolution& solution);

@@ -26,8 +26,7 @@ struct RunObserver {
   std::function<void(const EnergyBalance&)> energy;
   bool contact_energy = false;  ///< whether the summary shall say what the account says of the contacts
   std::function<void(double fraction)> progress;                             ///< 0..1
-  std::function<void(long step, std::span<const double> state)> checkpoint;  ///< every `checkpoint_every` steps
-  long checkpoint_every = 2000;
+  std::function<void(long step, std::span<const double> state)> checkpoint;  ///< where the iteration begins anew
   std::function<bool()> stop;  ///< asked after every step: true ends the run there, with a checkpoint
 };
 

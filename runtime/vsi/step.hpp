@@ -1,97 +1,72 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 
 #include "railtab/runtime/algebra/divided_substitution.hpp"
-#include "railtab/runtime/vsi/local_flexibility.hpp"
-#include "railtab/runtime/vsi/rigid_wheels.hpp"
+#include "railtab/runtime/vsi/contact_state.hpp"
+#include "railtab/runtime/vsi/step_operators.hpp"
+#include "railtab/runtime/vsi/step_times.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
 
-/// What one time-step size needs: the factor of the structure and the inverse of a vehicle, made once, and the
-/// compliance of the rails where the train is.
-class StepOperators {
- public:
-  HhtScheme scheme;
-  Eigen::MatrixXd vehicle_damping;
-  VehicleResponse vehicle;
-  std::unique_ptr<StructureResponse> structure;    ///< null on rigid track
-  std::unique_ptr<LocalFlexibility> local;         ///< static correction of a modal structure; null without
-  std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
+class ContactLaw;
 
-  StepOperators(const VsiModel& model, const HhtScheme& hht);
-
-  /// For a step that ends at `time`: take the table of the rails' compliance along, so that it covers the train up to
-  /// there and some way ahead, the vehicle's gyroscopic terms to the speed there, and let the unknowns in `active` take
-  /// part.
-  void follow(const VsiModel& model, double time, const DofRange& active);
-
-  /// What one of them keeps for a vehicle [bytes].
-  [[nodiscard]] static double vehicle_bytes(const VsiModel& model);
-  /// The largest table of compliances of a run of `duration` [s] [bytes].
-  [[nodiscard]] static double largest_table(const VsiModel& model, double duration, double time_step);
-
- private:
-  double speed_;                                   ///< of the gyroscopic terms [m/s]
-  double covered_from_ = 0.0, covered_to_ = -1.0;  ///< positions along the track [m]; none at first
+/// Whether a step stands. Any but `accepted` leaves the state as it was.
+enum class StepOutcome {
+  accepted,
+  contact_state_changed,  ///< a wheel meets or leaves its rail, with tread or flange
+  force_jumped,           ///< the vertical force of a wheel changes by more than StepLimits::force_jump
+  diverged,               ///< Newton's method or the far-field correction does not converge
 };
 
+/// Events within a step that reject it.
+enum class RejectedEvents { none, contact_change, contact_change_and_force_jump };
+
+/// Where a step takes its contact geometry from.
+enum class GeometrySource {
+  model,   ///< as the scene has it
+  search,  ///< the online search in place of a table
+};
+
+/// How a step is solved and when it stands.
 struct StepLimits {
   NewtonLimits newton;
-  double far_field_tolerance = 1e-9;  ///< largest rail displacement the contact solution may miss [m, rad]
+  double far_field_tolerance = 1e-9;  ///< largest rail displacement missing in the contact solution [m, rad]
   int max_passes = 6;                 ///< contact solutions per step
-  /// Leave a step undone in which a wheel meets or leaves its rail, or in which a rail's vertical force on a wheel
-  /// changes by more than `largest_change` [N].
-  bool smooth_only = false;
-  double largest_change = std::numeric_limits<double>::infinity();
-  bool without_table = false;  ///< contact geometry by the online search
+  ContactForceRule contact_force = ContactForceRule::endpoint;
+  GeometrySource geometry = GeometrySource::model;
+  RejectedEvents rejected = RejectedEvents::none;
+  double force_jump = std::numeric_limits<double>::infinity();  ///< [N]
 };
 
-/// What happens to the wheels of a step that touch their rails, with tread or flange; one that meets it counts first.
-enum class TouchChange { none, left, met };
-
 struct StepReport {
-  bool converged = false;
-  TouchChange touch_change = TouchChange::none;
-  bool hits = false;  ///< a force changes by more than StepLimits::largest_change
+  StepOutcome outcome = StepOutcome::diverged;
+  ContactChange contact_change = ContactChange::none;
   int newton_iterations = 0;
   int back_substitutions = 0;  ///< forward and backward once through the whole factor of the structure
   ContactCounts counts;
-  /// Contact: all that its solution does besides looking up the geometry.
-  double seconds_contact = 0.0, seconds_structure = 0.0, seconds_vehicle = 0.0;
+  StepTimes times;
 };
 
-/// Buffers of a step, reused.
+/// Buffers of a step, reused; the next step needs nothing that is in them.
 struct StepWorkspace {
-  std::vector<Prediction> vehicle_prediction;
   Prediction structure_prediction;
-  std::vector<Eigen::VectorXd> vehicle_free, vehicle_increment;
-  Eigen::VectorXd vehicle_load;  ///< of one vehicle
-  WheelContactModel contact;     ///< at the speed of the step's end
   DividedSubstitution structure_solution;
-  std::vector<int> rail_dofs;          ///< unknowns of the structure that the wheels load
-  std::vector<RailCoupling> local;     ///< static correction
-  Eigen::VectorXd local_displacement;  ///< by it, 3 per wheel
+  std::vector<int> rail_dofs;    ///< degrees of freedom of the structure that the wheels load
+  Eigen::VectorXd vehicle_load;  ///< of one vehicle
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;
-  ContactProblem problem;
   ContactSolution solution;
-  NewtonWorkspace newton;
-  RigidWheelWorkspace rigid_wheels;
 
   explicit StepWorkspace(const VsiModel& model);
 };
 
-/// The contacts as the state has them at its time, for the step that begins there: needed with
-/// ContactForceRule::energy where that state does not come from a step.
-void remember_contact(const VsiModel& model, VsiState& state);
-
-/// One HHT step of the coupled system (Eqs. 12-16). If it does not converge, `state` is as before. Serves both kinds of
-/// normal contact; `advance_rigid_wheels` is the part for wheels that follow the rails.
+/// One HHT step of the coupled system (Eqs. 12-16) under the contact law of the model (make_contact_law()).
 [[nodiscard]] StepReport advance(const VsiModel& model, const StepOperators& operators, const StepLimits& limits,
-                                 VsiState& state, StepWorkspace& workspace);
-[[nodiscard]] StepReport advance_rigid_wheels(const VsiModel& model, const StepOperators& operators,
-                                              const StepLimits& limits, VsiState& state, StepWorkspace& workspace);
+                                 VsiState& state, ContactLaw& contacts, StepWorkspace& workspace);
+
+/// Evaluates the contacts as the state has them at its time, for the step that begins there: needed with
+/// ContactForceRule::energy where that state does not come from a step.
+void evaluate_contact_at(const VsiModel& model, VsiState& state);
 
 }  // namespace railtab

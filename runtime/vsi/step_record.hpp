@@ -92,9 +92,9 @@ struct RunSummary {
   bool interrupted = false;  ///< ended by RunObserver::stop; not stored
   std::string message;       ///< empty, or why the run ended early
   long steps = 0, newton_iterations = 0, halved_steps = 0;
-  long impact_steps = 0;                        ///< steps divided because a wheel met or left its rail, or was hit
-  long counted_from = 0;                        ///< step at which a resumed run's counts and times begin
-  long back_substitutions = 0;                  ///< of the structure's factor
+  long impact_steps = 0;        ///< steps divided because a wheel met or left its rail, or its force jumped
+  long counted_from = 0;        ///< step at which a resumed run's counts and times begin
+  long back_substitutions = 0;  ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
   long outside_creep_table = 0;                 ///< creep forces that the creep table left to Polach, wholly or in part
   /// Set-up; look-ups of the contact geometry; the contact solution besides (forces, tangents, Newton); and so on.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <string_view>
 
 #include "railtab/runtime/algebra/selected_solve.hpp"
@@ -36,11 +35,14 @@ void require_finite(const StructureModel& structure) {
   require_finite(structure.stiffness, "stiffness");
 }
 
+constexpr const char* not_positive_definite =
+    "the structure's effective matrix is not positive definite: check supports and stiffnesses";
+
 template <class Factor>
 std::unique_ptr<Factor> factorise(const Sparse& effective) {
   auto factor = std::make_unique<Factor>(effective);
   if (factor->info() != Eigen::Success || !(factor->vectorD().minCoeff() > 0.0)) {
-    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
+    throw ComputationError(not_positive_definite);
   }
   return factor;
 }
@@ -57,26 +59,11 @@ RailContact rail_contact(const StructureModel& structure, RailSide side, double 
   contact.element = static_cast<int>(interval_at(rail.x, x));
   contact.x = x;
   contact.rows = rail_interpolation(rail, x);
-  if (structure.basis.size() == 0) return contact;
-  contact.modal.setZero(5, structure.basis.cols());
-  for (std::size_t k = 0; k < 12; ++k) {
-    if (contact.rows.dof[k] == held) continue;
-    const RailInterpolation& r = contact.rows;
-    Eigen::Matrix<double, 5, 1> column;
-    column << r.y[k], r.z[k], r.roll[k], r.yaw[k], r.pitch[k];
-    contact.modal.noalias() += column * structure.basis.row(r.dof[k]);
-  }
   return contact;
 }
 
 void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
   if (!contact.on_rail) return;
-  if (contact.modal.cols() > 0) {
-    if (!dofs.empty()) return;  // they are all there
-    dofs.resize(static_cast<std::size_t>(contact.modal.cols()));
-    std::iota(dofs.begin(), dofs.end(), 0);
-    return;
-  }
   for (int dof : contact.rows.dof) {
     if (dof != held) dofs.push_back(dof);
   }
@@ -85,7 +72,6 @@ void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
 Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   if (!contact.on_rail) return value;
-  if (contact.modal.cols() > 0) return contact.modal.topRows<3>() * dofs;
   for (std::size_t k = 0; k < 12; ++k) {
     if (contact.rows.dof[k] == held) continue;
     value += dofs[contact.rows.dof[k]] * Eigen::Vector3d(contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k]);
@@ -96,7 +82,6 @@ Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dof
 Eigen::Vector2d rail_slopes(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   if (!contact.on_rail) return value;
-  if (contact.modal.cols() > 0) return contact.modal.bottomRows<2>() * dofs;
   for (std::size_t k = 0; k < 12; ++k) {
     if (contact.rows.dof[k] == held) continue;
     value += dofs[contact.rows.dof[k]] * Eigen::Vector2d(contact.rows.yaw[k], contact.rows.pitch[k]);
@@ -106,10 +91,6 @@ Eigen::Vector2d rail_slopes(const RailContact& contact, const Eigen::VectorXd& d
 
 void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept {
   if (!contact.on_rail) return;
-  if (contact.modal.cols() > 0) {
-    loads.noalias() += contact.modal.topRows<3>().transpose() * load;
-    return;
-  }
   for (std::size_t k = 0; k < 12; ++k) {
     if (contact.rows.dof[k] == held) continue;
     loads[contact.rows.dof[k]] +=
@@ -130,7 +111,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   require_finite(structure);
   effective_ = scheme.acceleration_rate() * structure.mass +
                scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
-  prepare(structure);
+  activate({0, dofs_});
   // The union of both patterns: a zero times one keeps an entry's place.
   const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
   entry_begin_.push_back(0);
@@ -158,21 +139,16 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  prepare(structure);
+  activate({0, dofs_});
 }
 
 StructureResponse::~StructureResponse() = default;
-
-void StructureResponse::prepare(const StructureModel& structure) {
-  if (structure.basis.size() > 0) modal_compliance_ = effective_.diagonal().cwiseInverse();
-  activate({0, dofs_});
-}
 
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
   factor_.reset();  // not two at a time
-  factor_ = std::make_unique<StructureFactor>(effective_, dofs);
+  factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);
 }
 
 StructureResponse::Entries& StructureResponse::entries() {
@@ -203,7 +179,6 @@ StructureResponse::Memory StructureResponse::memory() const {
 }
 
 double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) {
-  if (structure.basis.size() > 0) return 0.0;
   double bytes = 0.0;
   for (const RailLine& rail : structure.rail) {
     double longest = 0.0;
@@ -286,8 +261,6 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
 }
 
 void StructureResponse::tabulate_compliance(const StructureModel& structure, double window, double from, double to) {
-  modal_window_ = window;
-  if (modal_compliance_.size() > 0) return;
   for (std::size_t side = 0; side < 2; ++side) {
     const RailLine& rail = structure.rail[side];
     column_[side].resize(rail.x.size());
@@ -323,16 +296,7 @@ void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j,
   }
 }
 
-Eigen::Matrix3d StructureResponse::modal(const RailContact& i, const RailContact& j) const noexcept {
-  if (!i.on_rail || !j.on_rail) return Eigen::Matrix3d::Zero();
-  return i.modal.topRows<3>() * modal_compliance_.asDiagonal() * j.modal.topRows<3>().transpose();
-}
-
 Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
-  if (modal_compliance_.size() > 0) {
-    if (std::abs(i.x - j.x) > modal_window_) return Eigen::Matrix3d::Zero();
-    return modal(i, j);
-  }
   // Of the rows y, z and roll only these entries are not zero (rail_interpolation): y has the node's y, roll and yaw, z
   // its z and pitch, roll its roll.
   constexpr std::size_t y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
@@ -364,15 +328,6 @@ Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, con
 
 Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  if (modal_compliance_.size() > 0) {
-    Eigen::MatrixXd all(3 * n, 3 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j)
-        all.block<3, 3>(3 * i, 3 * j) =
-            modal(contacts[static_cast<std::size_t>(i)], contacts[static_cast<std::size_t>(j)]);
-    }
-    return all;
-  }
   Entries& e = entries();
   std::vector<int> rows;
   const auto append = [&](const RailContact& contact) {

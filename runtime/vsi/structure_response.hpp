@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "railtab/runtime/algebra/nested_dissection.hpp"
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
@@ -19,8 +19,6 @@ struct RailContact {
   int element = 0;  ///< left node of the beam element
   double x = 0.0;   ///< along the track [m]
   RailInterpolation rows{};
-  /// The rows y, z, roll, yaw and pitch over modal coordinates, where the structure is in them.
-  Eigen::Matrix<double, 5, Eigen::Dynamic> modal;
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
 
@@ -45,7 +43,7 @@ class StructureResponse {
   explicit StructureResponse(const StructureModel& structure);
   ~StructureResponse();
 
-  [[nodiscard]] const StructureFactor& factor() const noexcept { return *factor_; }
+  [[nodiscard]] const SparseLdlt& factor() const noexcept { return *factor_; }
 
   /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
   void activate(const DofRange& dofs);
@@ -73,7 +71,7 @@ class StructureResponse {
 
   /// Make the table of node-by-node compliances cover loads on the rails between positions `from` and `to` [m], coupled
   /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
-  /// dropped: a moving train takes its table along, at a price that does not depend on the track's length.
+  /// dropped: a moving train takes its table along, at a cost that does not depend on the track's length.
   void tabulate_compliance(const StructureModel& structure, double window, double from, double to);
   /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
@@ -102,12 +100,10 @@ class StructureResponse {
   /// three times as large, gives single entries of the inverse (SelectedSolve).
   using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
 
-  [[nodiscard]] Eigen::Matrix3d modal(const RailContact& i, const RailContact& j) const noexcept;
-  void prepare(const StructureModel& structure);
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
-  std::unique_ptr<StructureFactor> factor_;
+  std::unique_ptr<SparseLdlt> factor_;
   DofRange active_;
   /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
   struct Entry {
@@ -121,9 +117,6 @@ class StructureResponse {
   std::unique_ptr<Entries> entries_;
   Eigen::Index dofs_ = 0;
   std::array<std::vector<Column>, 2> column_;  ///< per rail and node
-  /// In modal coordinates, in place of the table: 1/K̄ by its diagonal, from which damping alone makes it differ.
-  Eigen::VectorXd modal_compliance_;
-  double modal_window_ = 0.0;  ///< [m]
 };
 
 }  // namespace railtab

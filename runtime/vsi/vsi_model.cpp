@@ -52,7 +52,6 @@ VsiState::VsiState(const VsiModel& model)
   contact.patches.resize(index(2 * wheelsets));
   contact.normal.resize(index(2 * wheelsets));
   far_field = Eigen::VectorXd::Zero(6 * wheelsets);
-  if (model.unreduced) local = Eigen::VectorXd::Zero(6 * wheelsets);
   if (model.window) left_behind = Eigen::VectorXd::Zero(model.window->numbers());
 }
 
@@ -72,7 +71,6 @@ void visit_numbers(State& state, Visitor&& visit) {
   };
   for (auto& motion : state.vehicle) visit_motion(motion);
   visit_motion(state.structure);
-  visit_vector(state.local);
   visit_vector(state.left_behind);
   visit_vector(state.contact.displacement);
   visit_vector(state.contact.force);
@@ -248,12 +246,6 @@ void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::Vect
   }
 }
 
-void add_local(const VsiState& state, Eigen::VectorXd& q) noexcept {
-  for (int wheel = 0; wheel < static_cast<int>(state.local.size()) / 3; ++wheel) {
-    q.segment<3>(rail_unknown(wheel)) += state.local.segment<3>(3 * wheel);
-  }
-}
-
 ContactProblem present_contact(const VsiModel& model, const VsiState& state) {
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   ContactProblem problem;
@@ -266,7 +258,6 @@ ContactProblem present_contact(const VsiModel& model, const VsiState& state) {
   }
   gather_rails(contacts, state.structure.displacement, problem.predicted);
   gather_rails(contacts, state.structure.velocity, problem.predicted_velocity);
-  add_local(state, problem.predicted);
   rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
   return problem;
 }

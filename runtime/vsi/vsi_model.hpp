@@ -41,12 +41,10 @@ struct DeviationHistory {
 /// A train of equal vehicles on a track, constant during a run. Without a structure the track is rigid.
 struct VsiModel {
   VehicleModel vehicle;
-  std::vector<double> vehicle_x;                  ///< of the vehicles' centres at t = 0, front first [m]
-  std::optional<StructureModel> structure;        ///< reduced, where a reduction is chosen
+  std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
+  std::optional<StructureModel> structure;
   std::vector<std::string> structure_warnings{};  ///< StructureModel::warnings of what was imported
-  /// Of a modal structure whose left-out modes answer without inertia: all of it.
-  std::shared_ptr<const StructureModel> unreduced;
-  std::optional<WindowModel> window;  ///< for Reduction::window
+  std::optional<WindowModel> window;              ///< for Reduction::window
   Irregularity irregularity;
   std::optional<SpanDeviation> span_deviation;        ///< besides `irregularity`
   std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`
@@ -86,9 +84,6 @@ struct VsiState {
   double time = 0.0;
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
-  /// Displacement of rail heads by the modes left out, 3 per wheel; empty without static correction. They have no
-  /// inertia, and Newmark's velocities of two steps would swing about their mean: none is kept.
-  Eigen::VectorXd local;
   Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
   ContactSolution contact;
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
@@ -124,9 +119,6 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
 /// speed; and the vertical motion of the ground there, which rails that are rigid follow.
 [[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
 [[nodiscard]] VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept;
-
-/// Adds what the static correction displaces the rail heads by to the contact unknowns.
-void add_local(const VsiState& state, Eigen::VectorXd& q) noexcept;
 
 /// The contact unknowns and their velocities as a state has them (`predicted`, with the track's deviation), nothing
 /// left to solve: for what is asked of the contacts outside the steps.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <iterator>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "railtab/tables/files/array_file_hdf5.hpp"
 #if H5_VERSION_GE(1, 13, 0)
@@ -16,16 +18,19 @@
 namespace railtab::hdf5 {
 namespace {
 
-/// A file as HDF5's own driver for POSIX has it, but for two rules. After a write that failed, nothing more is written:
-/// HDF5 keeps what it could not write and tries again when the file is closed, which would leave pieces of it. And
-/// values beyond the end of a file that is read are an error: HDF5's driver gives zeros.
+/// A file as HDF5's own driver for POSIX has it, but for two rules. After a write that failed, every other one fails
+/// too, until what HDF5 still has to write is kept in memory: it tries again when the file is closed, piece by piece,
+/// which would leave a mixture. And values beyond the end of a file that is read are an error: HDF5's driver gives
+/// zeros.
 struct DriverFile {
   H5FD_t base{};  ///< first: HDF5 knows the file by it
   int descriptor = -1;
   struct stat identity {};
   haddr_t end_of_addresses = 0;
   bool writable = false;
-  bool stopped = false;  ///< whatever HDF5 writes is dropped
+  int error = 0;                                            ///< of the write that failed: each later one fails too
+  bool stopped = false;                                     ///< what HDF5 writes stays in memory
+  std::vector<std::pair<haddr_t, std::vector<char>>> kept;  ///< oldest first
 };
 
 DriverFile& of(H5FD_t* file) { return *reinterpret_cast<DriverFile*>(file); }
@@ -36,9 +41,17 @@ herr_t report(const char* what) {
   return -1;
 }
 
-herr_t stop(DriverFile& file) {
-  file.stopped = true;
-  return report(std::strerror(errno));
+herr_t fail(DriverFile& file) {
+  if (file.error == 0) file.error = errno;
+  return report(std::strerror(file.error));
+}
+
+/// What was not written, as HDF5 expects to find it until it has closed the file.
+void read_kept(const DriverFile& file, haddr_t address, std::size_t size, char* bytes) {
+  for (const auto& [begin, values] : file.kept) {
+    const haddr_t first = std::max(begin, address), end = std::min(begin + values.size(), address + size);
+    if (first < end) std::memcpy(bytes + (first - address), values.data() + (first - begin), end - first);
+  }
 }
 
 H5FD_t* open(const char* name, unsigned flags, hid_t, haddr_t) {
@@ -90,30 +103,32 @@ herr_t get_handle(H5FD_t* file, hid_t, void** stopped) {
 }
 
 herr_t read(H5FD_t* base, H5FD_mem_t type, hid_t, haddr_t address, std::size_t size, void* buffer) {
-  auto* bytes = static_cast<char*>(buffer);
-  while (size > 0) {
-    const ssize_t count = ::pread(of(base).descriptor, bytes, size, static_cast<off_t>(address));
+  const DriverFile& file = of(base);
+  auto* const bytes = static_cast<char*>(buffer);
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = ::pread(file.descriptor, bytes + done, size - done, static_cast<off_t>(address + done));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return report(std::strerror(errno));
-    if (count == 0) {
-      if (type == H5FD_MEM_DRAW && !of(base).writable) return report("values beyond the end of the file");
-      std::memset(bytes, 0, size);
-      return 0;
-    }
-    bytes += count;
-    address += static_cast<haddr_t>(count);
-    size -= static_cast<std::size_t>(count);
+    if (count == 0 && type == H5FD_MEM_DRAW && !file.writable) return report("values beyond the end of the file");
+    if (count == 0) std::memset(bytes + done, 0, size - done);
+    done = count == 0 ? size : done + static_cast<std::size_t>(count);
   }
+  read_kept(file, address, size, bytes);
   return 0;
 }
 
 herr_t write(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, const void* buffer) {
   DriverFile& file = of(base);
   const auto* bytes = static_cast<const char*>(buffer);
-  while (size > 0 && !file.stopped) {
-    const ssize_t count = ::pwrite(file.descriptor, bytes, size, static_cast<off_t>(address));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return stop(file);
+  if (file.stopped) {
+    file.kept.emplace_back(address, std::vector<char>(bytes, bytes + size));
+    return 0;
+  }
+  while (size > 0) {
+    const ssize_t count = file.error != 0 ? -1 : ::pwrite(file.descriptor, bytes, size, static_cast<off_t>(address));
+    if (count < 0 && file.error == 0 && errno == EINTR) continue;
+    if (count < 0) return fail(file);
     bytes += count;
     address += static_cast<haddr_t>(count);
     size -= static_cast<std::size_t>(count);
@@ -124,8 +139,14 @@ herr_t write(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t address, std::size_t size,
 herr_t truncate(H5FD_t* base, hid_t, hbool_t) {
   DriverFile& file = of(base);
   if (file.stopped || get_eof(base, H5FD_MEM_DEFAULT) == file.end_of_addresses) return 0;
-  return ::ftruncate(file.descriptor, static_cast<off_t>(file.end_of_addresses)) == 0 ? 0 : stop(file);
+  if (file.error != 0 || ::ftruncate(file.descriptor, static_cast<off_t>(file.end_of_addresses)) != 0)
+    return fail(file);
+  return 0;
 }
+
+// Writers hold a WriterLock. HDF5 marks a file as being written only where its driver has locks.
+herr_t lock(H5FD_t*, hbool_t) { return 0; }
+herr_t unlock(H5FD_t*) { return 0; }
 
 H5FD_class_t driver() {
   H5FD_class_t rules{};
@@ -147,6 +168,8 @@ H5FD_class_t driver() {
   rules.read = read;
   rules.write = write;
   rules.truncate = truncate;
+  rules.lock = lock;
+  rules.unlock = unlock;
   constexpr H5FD_mem_t kinds[] = H5FD_FLMAP_DICHOTOMY;  // raw data apart from metadata
   std::copy(std::begin(kinds), std::end(kinds), rules.fl_map);
   return rules;

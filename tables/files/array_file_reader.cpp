@@ -64,19 +64,15 @@ void read_values(const Source& source, hid_t memory_type, void* values, const st
   if (source.count == 0) return;
   const hid_t dataset = source.dataset.get();
   const hdf5::Space file_space(H5Dget_space(dataset));
-  herr_t status = 0;
-  if (source.extent.empty()) {
-    status = H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-  } else {
-    const std::vector<hsize_t> start(source.extent.size(), 0);
-    const hdf5::Space memory_space(
-        H5Screate_simple(static_cast<int>(source.extent.size()), source.extent.data(), nullptr));
-    status =
-        H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, source.extent.data(), nullptr);
-    if (status >= 0) {
-      status = H5Dread(dataset, memory_type, memory_space.get(), file_space.get(), H5P_DEFAULT, values);
-    }
-  }
+  const bool scalar = source.extent.empty();
+  const std::vector<hsize_t> start(source.extent.size(), 0);
+  const hdf5::Space memory_space(
+      scalar ? H5Screate(H5S_SCALAR)
+             : H5Screate_simple(static_cast<int>(source.extent.size()), source.extent.data(), nullptr));
+  herr_t status = scalar ? 0
+                         : H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr,
+                                               source.extent.data(), nullptr);
+  if (status >= 0) status = H5Dread(dataset, memory_type, memory_space.get(), file_space.get(), H5P_DEFAULT, values);
   require(status >= 0, at, "readable values");
 }
 

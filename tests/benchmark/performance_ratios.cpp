@@ -29,7 +29,7 @@
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/runtime/vsi/step.hpp"
+#include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 
 namespace {
@@ -126,16 +126,17 @@ double step_to_back_substitution() {
   const HhtScheme scheme{.alpha = scene.integration.alpha, .time_step = scene.integration.time_step};
   StepOperators operators(model, scheme);
   StepWorkspace workspace(model);
+  const std::unique_ptr<ContactLaw> contacts = make_contact_law(model);
   const DofRange all{0, model.structure->dofs()};
-  const StructureFactor& factor = operators.structure->factor();
+  const SparseLdlt& factor = operators.structure->factor();
   const Eigen::VectorXd load = Eigen::VectorXd::Ones(model.structure->dofs());
   constexpr int repeated = 20;
   const auto steps = [&] {
     double iterations = 0.0;
     for (int i = 0; i < repeated; ++i) {
-      operators.follow(model, state.time + scheme.time_step, all);
-      const StepReport report = advance(model, operators, {}, state, workspace);
-      if (!report.converged) throw ComputationError("a step that does not converge");
+      operators.update_for_time(model, state.time + scheme.time_step, all);
+      const StepReport report = advance(model, operators, {}, state, *contacts, workspace);
+      if (report.outcome != StepOutcome::accepted) throw ComputationError("a step that does not converge");
       iterations += report.newton_iterations;
     }
     return iterations;

@@ -72,7 +72,7 @@ void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
   Eigen::VectorXd x(s.dofs()), y(s.dofs());
   const Eigen::SimplicialLDLT<Sparse> minimum_degree(effective);
   const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, NestedDissection> dissected(effective);
-  const StructureFactor blocks(effective);
+  const SparseLdlt blocks(effective);
   constexpr int repetitions = 21;
   const double scalar = median_seconds(repetitions, [&] { x = minimum_degree.solve(load); });
   const double scalar_dissected = median_seconds(repetitions, [&] { x = dissected.solve(load); });
@@ -104,8 +104,8 @@ int main(int argc, char** argv) {
   const VsiModel model = build_model(scene);
   const HhtScheme scheme{.alpha = scene.integration.alpha, .time_step = scene.integration.time_step};
   const double bandwidth = triad_bandwidth(std::size_t{768} << 20);
-  fmt::print("{} degrees of freedom of the structure, {} wheels, contact: {}\n", model.structure->dofs(), 2 * model.wheelsets(),
-             scene.contact.table.empty() ? "online" : "table");
+  fmt::print("{} degrees of freedom of the structure, {} wheels, contact: {}\n", model.structure->dofs(),
+             2 * model.wheelsets(), scene.contact.table.empty() ? "online" : "table");
   fmt::print("memory, triad of 768 MiB: {:.1f} GB/s\n", 1e-9 * bandwidth);
   compare_factors(model, scheme);
 

@@ -32,11 +32,9 @@ bool is_large(const SceneParameters& scene) {
     elements += span.elements;
   }
   const double bays = length / scene.track.sleeper_spacing;
-  const bool reduced = scene.reduction.kind == Reduction::modal || scene.reduction.kind == Reduction::craig_bampton;
   constexpr double most_rail_elements = 60.0, longest_random_track = 1000.0;
   return scene.train.count > 3 || elements > 200 ||
          (scene.track_kind == TrackKind::flexible && bays * scene.track.elements_per_bay > most_rail_elements) ||
-         (reduced && scene.reduction.modes > 50) ||
          (scene.spectrum && scene.integration.duration * scene.train.speed > longest_random_track);
 }
 

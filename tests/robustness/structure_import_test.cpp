@@ -186,7 +186,8 @@ TEST_F(StructureImport, RefusesAbsurdScales) {
   refused(matrix("m1.mtx", 1e3, 1e150, 0.0), stiffness,
           {"m1.mtx: row 2 (node b, z), column 2: found mass 1e+150, expected -1e+15 to 1e+15 in SI units"});
   refused(mass, matrix("k1.mtx", 1e300, 2e8, 0.0), {"k1.mtx: row 1 (node a, z), column 1", "stiffness 1e+300"});
-  refused(mass, matrix("k2.mtx", 1e24, 1.0, 0.0), {"k2.mtx: row 1", "stiffness 1e+24 beside 1 in row 2", "1e+20 times"});
+  refused(mass, matrix("k2.mtx", 1e24, 1.0, 0.0),
+          {"k2.mtx: row 1", "stiffness 1e+24 beside 1 in row 2", "1e+20 times"});
   refused(matrix("m2.mtx", 1e3, 1e14, 0.0), stiffness, {"m2.mtx: row 2", "0.000225 Hz", "0.001 to 1e+12 Hz"});
   refused(matrix("m3.mtx", 1e-12, 1e-3, 0.0), matrix("k3.mtx", 1e24, 1e24, 0.0), {"m3.mtx: row 1", "Hz"});
   refused(matrix("m4.mtx", 1e3, 2e3, 1e6), stiffness, {"m4.mtx: row 2", "column 1", "mass 1e+06 with 2000 and 1000"});

@@ -51,8 +51,7 @@ TEST(LowestModes, AreAsManyAsMasses) {
 
 TEST(LowestModes, ThatAreNotFoundAreAnError) {
   constexpr int n = 60;
-  EXPECT_THROW(static_cast<void>(lowest_modes(chain(n, 1e6), diagonal(Eigen::VectorXd::Zero(n)), 3)),
-               ComputationError);
+  EXPECT_THROW(static_cast<void>(lowest_modes(chain(n, 1e6), diagonal(Eigen::VectorXd::Zero(n)), 3)), ComputationError);
   for (const double absurd : {1e150, 1e300}) {
     Eigen::VectorXd mass = Eigen::VectorXd::Constant(n, 4.0);
     mass[7] = absurd;

@@ -43,7 +43,6 @@ std::string companion(const std::string& key) {
                                                                  : "";
   if (key.starts_with("irregularity."))
     return "irregularity.spectrum = \"" + spectrum_names().front() + "\"\n" + both_waves;
-  if (key == "structure.modes") return "structure.reduction = \"modal\"\n";
   if (key.starts_with("structure.window")) return "structure.reduction = \"window\"\n";
   if (key.starts_with("structure.rail_")) return imported_with(key) + "structure.damping_ratio = 0.01\n";
   if (key.starts_with("structure.") && key.find("damping") != std::string::npos) return imported_with(key);
@@ -210,14 +209,10 @@ TEST_F(Scene, KeysThatNothingWouldUseAreRejected) {
             "scene.toml:4: irregularity.seed: found no irregularity.spectrum, expected irregularity.spectrum, or no "
             "irregularity.seed");
   EXPECT_EQ(
-      rejected("[structure]\nmodes = 30\n"),
-      "scene.toml:4: structure.modes: found structure.reduction = \"none\", expected structure.reduction = \"modal\" "
-      "or \"craig-bampton\", or no structure.modes");
-  EXPECT_EQ(
-      rejected("[structure]\nreduction = \"modal\"\nwindow_ahead = 30\n"),
-      "scene.toml:5: structure.window_ahead: found structure.reduction = \"modal\", expected structure.reduction = "
+      rejected("[structure]\nwindow_ahead = 30\n"),
+      "scene.toml:4: structure.window_ahead: found structure.reduction = \"none\", expected structure.reduction = "
       "\"window\", or no structure.window_ahead");
-  EXPECT_EQ(rejected("[structure]\nreduction = \"none\"\nwindow_ahead = 30\nmodes = 20\n"), "no error");
+  EXPECT_EQ(rejected("[structure]\nreduction = \"none\"\nwindow_ahead = 30\n"), "no error");
   EXPECT_EQ(rejected("[structure]\ndamping_ratio = 0.01\n[[bridge]]\n"),
             "scene.toml:4: structure.damping_ratio: found no structure.stiffness, expected structure.stiffness, or no "
             "structure.damping_ratio");
@@ -225,6 +220,17 @@ TEST_F(Scene, KeysThatNothingWouldUseAreRejected) {
             std::string::npos);
   EXPECT_NE(rejected("[[ground_motion]]\nfile = \"pair.h5\"\nx = 3.0\n").find("ground_motion.x = 3 m of a single"),
             std::string::npos);
+}
+
+// Scenes written for earlier versions name reductions that were deleted.
+TEST_F(Scene, DeletedReductionsAreNamedWithWhatToTake) {
+  for (const std::string name : {"modal", "craig-bampton"}) {
+    EXPECT_EQ(message(std::string(online) + "[structure]\nreduction = \"" + name + "\"\nmodes = 200\n"),
+              "scene.toml:4: structure.reduction: found \"" + name +
+                  "\", a reduction that has been removed, expected \"none\" or \"window\": take \"window\" for a "
+                  "long line of built track, and \"none\" else; remove structure.modes and "
+                  "structure.static_correction");
+  }
 }
 
 // Wheels that follow the rails, rigid track and imported rails leave keys without use; what is left of them stays.
@@ -239,7 +245,7 @@ TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRejected) {
   EXPECT_EQ(message(rigid + "track.pad.kz = 1e8\n"),
             "scene.toml:3: track.pad.kz: found track.kind = \"rigid\", expected track.kind = \"flexible\", or no "
             "track.pad.kz");
-  EXPECT_EQ(message(rigid + "structure.reduction = \"modal\"\n"),
+  EXPECT_EQ(message(rigid + "structure.reduction = \"window\"\n"),
             "scene.toml:3: structure.reduction: found track.kind = \"rigid\", expected track.kind = \"flexible\" or "
             "\"imported\", or no structure.reduction");
   struct Case {
@@ -247,37 +253,27 @@ TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRejected) {
   };
   const std::string online_text = "contact.mode = \"online\"\n";
   for (const auto& [text, key, value] :
-       {Case{follow, "contact.table", "\"pair.h5\""},
-        Case{follow, "contact.mode", "\"online\""},
-        Case{follow, "contact.dimensions.track_gauge", "1.437"},
-        Case{follow, "train.initial_yaw", "0.001"},
-        Case{follow, "train.initial_lateral_shift", "0.001"},
-        Case{follow, "integration.contact_force", "\"energy\""},
-        Case{rigid, "track.length_before", "10.0"},
-        Case{rigid, "structure.mass", "\"pair.h5\""},
-        Case{rigid, "structure.modes", "10"},
-        Case{online_text, "track.ballast_deck.kz", "1e8"},
+       {Case{follow, "contact.table", "\"pair.h5\""}, Case{follow, "contact.mode", "\"online\""},
+        Case{follow, "contact.dimensions.track_gauge", "1.437"}, Case{follow, "train.initial_yaw", "0.001"},
+        Case{follow, "train.initial_lateral_shift", "0.001"}, Case{follow, "integration.contact_force", "\"energy\""},
+        Case{rigid, "track.length_before", "10.0"}, Case{rigid, "structure.mass", "\"pair.h5\""},
+        Case{rigid, "structure.window_ahead", "10.0"}, Case{online_text, "track.ballast_deck.kz", "1e8"},
         Case{online_text + "contact.creep_law = \"polach\"\n", "contact.creep_table", "\"pair.h5\""},
-        Case{online_text, "structure.units", "\"m-N-kg\""},
-        Case{online_text, "structure.rail_left.set", "\"LEFT\""},
-        Case{rails, "track.length_before", "10.0"},
-        Case{rails, "structure.deck.set", "\"DECK\""},
-        Case{rails, "structure.report", "[3.0]"},
-        Case{follow, "integration.impact_step", "1e-4"},
+        Case{online_text, "structure.units", "\"m-N-kg\""}, Case{online_text, "structure.rail_left.set", "\"LEFT\""},
+        Case{rails, "track.length_before", "10.0"}, Case{rails, "structure.deck.set", "\"DECK\""},
+        Case{rails, "structure.report", "[3.0]"}, Case{follow, "integration.impact_step", "1e-4"},
         Case{"contact.mode = \"paper\"\n", "integration.impact_step", "1e-4"},
-        Case{online_text + "integration.contact_force = \"energy\"\n", "integration.impact_step", "1e-4"},
-        Case{online_text + "structure.reduction = \"modal\"\n", "integration.impact_step", "1e-4"}}) {
+        Case{online_text + "integration.contact_force = \"energy\"\n", "integration.impact_step", "1e-4"}}) {
     const auto line = 1 + std::count(text.begin(), text.end(), '\n');
     const std::string place = fmt::format("scene.toml:{}: {}: found ", line, key);
     EXPECT_EQ(message(text + key + " = " + value + "\n").substr(0, place.size()), place);
   }
   EXPECT_EQ(message(follow + "track.pad.kz = 1e8\n"), "no error");
   const std::string impact = "integration.impact_step = 1e-4\n";
-  for (const char* reduction : {"", "structure.reduction = \"window\"\n",
-                                "structure.reduction = \"modal\"\nstructure.static_correction = false\n"}) {
+  for (const char* reduction : {"", "structure.reduction = \"window\"\n"}) {
     EXPECT_EQ(message(online_text + reduction + impact), "no error") << reduction;
   }
-  EXPECT_EQ(message(rigid + "structure.reduction = \"none\"\nstructure.modes = 20\n"), "no error");
+  EXPECT_EQ(message(rigid + "structure.reduction = \"none\"\nstructure.window_ahead = 20\n"), "no error");
   EXPECT_EQ(message(online_text + "track.ballast_deck.kz = 1e8\n[[bridge]]\n"), "no error");
   EXPECT_EQ(message(rails + "structure.deck.set = \"DECK\"\nstructure.report = [3.0]\n"), "no error");
 }

@@ -239,9 +239,9 @@ TEST(Impact, ARunResumedFromAnImpactIsTheUninterruptedOne) {
   VsiState state(model);
   state.vehicle[0].displacement[z] = touch_height(model) - 1e-3;
   IntegrationParameters integration;
+  integration.reinitialise_every = 7;
   std::vector<std::pair<long, std::vector<double>>> checkpoints;
   RunObserver observer;
-  observer.checkpoint_every = 7;
   observer.checkpoint = [&](long step, std::span<const double> numbers) {
     checkpoints.emplace_back(step, std::vector<double>(numbers.begin(), numbers.end()));
   };

@@ -11,7 +11,7 @@
 namespace railtab {
 
 void require_writable_place(const std::string& file, const std::string& option) {
-  const std::filesystem::path path(file);
+  const std::filesystem::path path = output_file(file);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const std::string place = fmt::format("{} {}", option, file);
   std::error_code refused;
@@ -21,7 +21,6 @@ void require_writable_place(const std::string& file, const std::string& option) 
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     throw input_error(place, fmt::format("no right to write in {}", folder.string()), "a folder that can be written");
   }
-  static_cast<void>(output_file(path));
   static_cast<void>(std::filesystem::status(path, refused));
   if (refused && refused != std::errc::no_such_file_or_directory) {
     throw input_error(place, refused.message(), "a name that a file can have");

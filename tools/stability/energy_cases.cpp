@@ -72,7 +72,7 @@ WatchedRun thrown_up(const VsiModel& model, const IntegrationParameters& integra
 CaseResult judged_flight(const WatchedRun& run, double least) {
   CaseResult result = judged(run);
   result.note +=
-      fmt::format("{}flight of {:.2f} s, {} impacts, wheel load up to {:.0f} kN", result.note.empty() ? "" : "; ",
+      fmt::format("{}flight of {:.2f} s, {} landings, wheel load up to {:.0f} kN", result.note.empty() ? "" : "; ",
                   run.longest_flight, result.energy.impacts, 1e-3 * run.largest_load);
   if (result.outcome == Outcome::converged && run.longest_flight < least) {
     result.outcome = Outcome::wrong;

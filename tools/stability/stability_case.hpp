@@ -22,9 +22,9 @@ struct EnergyResult {
   /// strain energy, potential and contact springs.
   double step = 0.0;
   double total = 0.0;  ///< of the run, relative to the same
-  long impacts = 0;    ///< RunSummary::contact_energy
-  /// Of the impact in which the contacts gain or lose most: the gain, relative to the most that the contact springs of
-  /// its wheelset store.
+  int impacts = 0;     ///< wheels that land after at least 2 ms in the air
+  /// Largest that the contacts gain in an impact, relative to the most that their springs take up in it; of impacts
+  /// with at least 1 % of the hardest one's energy.
   double impact = 0.0;
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "energy_watch.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 
 namespace railtab::stability {
@@ -66,7 +67,6 @@ class Watch {
   Watch(const VsiModel& model, WatchedRun& run) : model_(&model), run_(&run) {}
 
   void operator()(const StepRecord& record) {
-    add_step();
     run_->finite = run_->finite && all_finite(record);
     const double step = run_->records > 0 ? record.time - time_ : 0.0;
     const Pair force = wheel_forces(record);
@@ -92,13 +92,10 @@ class Watch {
 
   void operator()(const EnergyBalance& balance) {
     impulse_ = {-balance.contact_impulse[0], -balance.contact_impulse[1]};
-    if (!of_account_) first_ = balance;
-    now_ = balance;
     of_account_ = true;
   }
 
   void conclude(const Pair& change) {
-    run_->energy = energy();
     const Pair weight = load(*model_);
     const double vertical = weight.z * time_ - impulse_.z - change.z;
     const double lateral = weight.y * time_ - impulse_.y - change.y;
@@ -107,30 +104,8 @@ class Watch {
   }
 
  private:
-  /// The account at the end of a step.
-  void add_step() {
-    if (!of_account_) return;
-    largest_step_ = std::max(largest_step_, std::abs(now_.gain() - last_.gain()));
-    most_exchanged_ = std::max({most_exchanged_, now_.kinetic, std::abs(now_.strain - first_.strain),
-                                std::abs(now_.gravity - first_.gravity), std::abs(now_.contact - first_.contact)});
-    last_ = now_;
-  }
-
-  [[nodiscard]] EnergyResult energy() const {
-    constexpr double at_rest = 1e-9;  // J
-    if (!of_account_ || !(most_exchanged_ > at_rest)) return {};
-    EnergyResult result{.kept = true, .step = largest_step_ / most_exchanged_, .total = last_.gain() / most_exchanged_};
-    const ContactEnergy& contact = run_->summary.contact_energy.value();
-    result.impacts = contact.impacts;
-    if (contact.largest_impact_stored > 0.0)
-      result.impact = std::abs(contact.largest_impact) / contact.largest_impact_stored;
-    return result;
-  }
-
   const VsiModel* model_;
   WatchedRun* run_;
-  EnergyBalance first_, now_, last_;  // after the first step, now, and at the end of the last step; begins at zero gain
-  double largest_step_ = 0.0, most_exchanged_ = 0.0;
   double time_ = 0.0;
   Pair force_, impulse_;
   bool of_account_ = false;  // wheels that follow the rails have none
@@ -156,11 +131,18 @@ WatchedRun watched_run(const VsiModel& start, const VsiModel& model, const Integ
   if (disturb) disturb(state);
   const Pair before = momentum(model, state);
   Watch watch(model, run);
+  EnergyWatch energy;
   RunObserver observer;
-  observer.contact_energy = true;
-  observer.energy = [&](const EnergyBalance& balance) { watch(balance); };
-  observer.record = [&](const StepRecord& record) { watch(record); };
+  observer.energy = [&](const EnergyBalance& balance) {
+    watch(balance);
+    energy.take(balance);
+  };
+  observer.record = [&](const StepRecord& record) {
+    watch(record);
+    energy.record(record);
+  };
   run.summary = simulate(model, integration, duration, 1, state, observer);
+  run.energy = energy.result();
   const Pair after = momentum(model, state);
   watch.conclude({after.y - before.y, after.z - before.z});
   return run;

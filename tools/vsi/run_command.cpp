@@ -99,13 +99,6 @@ void warn_of_doubtful_forces(const report::Headline& headline, const SceneParame
         "lands again; contact.normal = \"hertz\" says with what force",
         1e-3 * least.value, where));
   }
-  if (scene.contact.normal == NormalContact::hertz && scene.reduction.kind == Reduction::modal && least.value <= 0.0) {
-    print_warning(fmt::format(
-        "a wheel left its rail ({}): the force of its landing is made by the track's own stiffness and mass under the "
-        "wheel, which structure.reduction = \"modal\" lacks, and largest values may be far off; take "
-        "\"craig-bampton\", \"window\" or \"none\"",
-        where));
-  }
 }
 
 /// Ctrl-C while steps are made: a first one asks the run to end after its step, a second one ends the program.

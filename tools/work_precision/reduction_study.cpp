@@ -1,5 +1,5 @@
-// Error against run time of the structure's reductions: a train on a viaduct of ten spans, every reduction beside the
-// same run without one.
+// Error against run time of the structure's active window: a train on a viaduct of ten spans, beside the same run
+// without a reduction.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "log_figure.hpp"
 #include "low_pass.hpp"
 #include "machine.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -22,8 +21,8 @@ namespace {
 
 constexpr const char* usage =
     "reduction_study TABLE.h5 -o FOLDER [--quick | --long | --steps]\n"
-    "Two coaches enter a viaduct of ten spans of 32 m at 200 km/h: runs with every reduction of the structure and "
-    "without.\nWrites FOLDER/reduction.csv, FOLDER/reduction_force.svg and FOLDER/reduction_deck.svg.\n"
+    "Two coaches enter a viaduct of ten spans of 32 m at 200 km/h: runs in windows of several lengths and "
+    "without a reduction.\nWrites FOLDER/reduction.csv.\n"
     "--long: eight coaches on a viaduct of 1 km, the window against the whole line; writes FOLDER/long_line.csv.\n"
     "--steps: they enter it at 72 km/h, time steps against one of 0.25 ms; writes FOLDER/crossing_steps.csv.\n";
 
@@ -63,25 +62,7 @@ std::vector<Setting> settings(bool quick) {
   for (double length : quick ? std::vector<double>{20.0} : std::vector<double>{5.0, 10.0, 20.0, 40.0})
     all.push_back(
         {"window", fmt::format("{} m", length), {.kind = Reduction::window, .ahead = length, .behind = length}});
-  for (int n : quick ? std::vector<int>{10, 400} : std::vector<int>{10, 60, 200, 400})
-    all.push_back({"Craig-Bampton", fmt::format("{} per part", n), {.kind = Reduction::craig_bampton, .modes = n}});
-  for (int n : quick ? std::vector<int>{10, 100} : std::vector<int>{10, 20, 50, 100, 200, 500}) {
-    for (bool correction : {true, false})
-      all.push_back({correction ? "modes with static correction" : "modes",
-                     fmt::format("{}", n),
-                     {.kind = Reduction::modal, .modes = n, .static_correction = correction}});
-  }
   return all;
-}
-
-WorkFigure figure(std::string name, std::string title, std::string label) {
-  WorkFigure result;
-  result.name = std::move(name);
-  result.title = std::move(title);
-  result.y_label = std::move(label);
-  result.least_error = 1e-6;
-  result.x_label = "processor time per step";
-  return result;
 }
 
 // What made the numbers, the first line of a CSV.
@@ -198,9 +179,6 @@ int run(const std::vector<std::string>& arguments) {
   const double duration = quick ? 0.4 : 1.0;
   SceneParameters scene = viaduct(arguments[0]);
   const ComparedHistory whole = compared_history(scene, duration);
-  WorkFigure force =
-      figure("reduction_force", "Vertical contact force", "largest error of Q [of its largest dynamic part]");
-  WorkFigure deck = figure("reduction_deck", "Deck acceleration", "largest error [of the largest acceleration]");
   std::string table =
       origin() +
       "# error against the run without reduction; times: processor time of one core, set-up: wall time\n"
@@ -219,16 +197,11 @@ int run(const std::vector<std::string>& arguments) {
       continue;
     }
     const ReductionError e = compare(reduced, whole);
-    const double time = 1e6 * per_step(reduced);
-    force.points.push_back({s.method, s.setting, time, e.force_max, e.force_rms, ""});
-    deck.points.push_back({s.method, s.setting, time, e.deck_max, e.deck_rms, ""});
     table += fmt::format("{},{},{},{:.2f},{:.4f},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n", s.method,
                          s.setting, reduced.summary.structure_dofs, reduced.summary.seconds_setup, per_step(reduced),
                          e.force_max, e.force_rms, e.force_static, e.deck_max, e.deck_rms, e.peak_force, e.peak_deck);
     fmt::print("{}", table.substr(table.rfind('\n', table.size() - 2) + 1));
     std::fflush(stdout);
-    write_text_file(folder / "reduction_force.svg", log_figure(force));
-    write_text_file(folder / "reduction_deck.svg", log_figure(deck));
     write_text_file(folder / "reduction.csv", table, "# railtab ");
   }
   return 0;

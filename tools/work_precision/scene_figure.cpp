@@ -56,7 +56,6 @@ std::vector<Variant> variants(const SceneParameters& base, const SceneTables& ta
   };
   add_reduced("window of 20 m", {.kind = Reduction::window});
   if (quick) return result;
-  add_reduced("200 modes", {.kind = Reduction::modal, .modes = 200});
   for (const char* law : {"table", "polach"}) {
     const std::string method = fmt::format("{}, other steps", law);
     for (const double other : {4 * step, 2 * step, step / 2, step / 4}) {

@@ -1,9 +1,10 @@
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <string>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -34,8 +35,8 @@ bool worth_merging(const Columns& merged) {
   return zeros <= (merged.count() <= small ? small_share : share);
 }
 
-// Neighbouring columns that become one block: every column's structure, less its first row, lies in that of the column
-// which this first row names; where that is the next one, both can share their rows.
+// Neighbouring columns that become one block: every column's structure, less its first row, lies in that of the
+// column which this first row names; where that is the next one, both can share their rows.
 std::vector<Columns> supernodes(const Sparse& L) {
   const int* const begin = L.outerIndexPtr();
   std::vector<Columns> blocks;
@@ -89,8 +90,8 @@ constexpr int narrow = 8;
 // Where the rows below a narrow block's triangle begin.
 constexpr int triangle_room(int columns) { return (columns * (columns - 1) / 2 + 3) & ~3; }
 
-/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by row,
-/// then the rows below, four of every column at a time.
+/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by
+/// row, then the rows below, four of every column at a time.
 struct NarrowBlock {
   const double* value;
   const int* row;
@@ -153,7 +154,7 @@ void add_columns(const double* column, int height, int begin, const double* fact
   }
 }
 
-/// Numbers and rows of all blocks, see StructureFactor::store().
+/// Numbers and rows of all blocks, see SparseLdlt::store().
 struct Room {
   std::size_t values = 0, rows = 0;
 };
@@ -185,12 +186,13 @@ void products(const double* column, int height, int begin, const double* vector,
 
 }  // namespace
 
-StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : first_(static_cast<int>(range.begin)) {
+SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_view message)
+    : first_(static_cast<int>(range.begin)) {
   // minimum degree: the fewest entries
   const Eigen::SimplicialLDLT<Sparse> simplicial(
       range.count == matrix.rows() ? matrix : Sparse(matrix.block(range.begin, range.begin, range.count, range.count)));
   if (simplicial.info() != Eigen::Success || !(simplicial.vectorD().minCoeff() > 0.0)) {
-    throw ComputationError("the structure's effective matrix is not positive definite: check supports and stiffnesses");
+    throw ComputationError(std::string(message));
   }
   inverse_D_ = simplicial.vectorD().cwiseInverse();
   const auto& order = simplicial.permutationP().indices();
@@ -210,8 +212,8 @@ StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : 
     const int last = columns.end - 1;
     const int* const begin = L.innerIndexPtr() + L.outerIndexPtr()[last];
     rows_.insert(rows_.end(), begin, begin + columns.below);
-    // The triangle's inverse in its place, and the rows below times that: substituting in a block is a product with no
-    // column waiting for another.
+    // The triangle's inverse in its place, and the rows below times that: substituting in a block is a product with
+    // no column waiting for another.
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(block.columns + block.below, block.columns);
     for (int j = columns.begin; j < columns.end; ++j) {
       int place = 0;
@@ -243,7 +245,7 @@ StructureFactor::StructureFactor(const Sparse& matrix, const DofRange& range) : 
 }
 
 // The block's numbers as its substitution reads them.
-void StructureFactor::store(const Eigen::MatrixXd& dense, const Block& block) {
+void SparseLdlt::store(const Eigen::MatrixXd& dense, const Block& block) {
   const int n = block.columns;
   const auto append = [&](int room) {
     values_.resize(values_.size() + static_cast<std::size_t>(room), 0.0);
@@ -265,42 +267,36 @@ void StructureFactor::store(const Eigen::MatrixXd& dense, const Block& block) {
   }
 }
 
-std::size_t StructureFactor::bytes() const noexcept {
+std::size_t SparseLdlt::bytes() const noexcept {
   return values_.size() * sizeof(double) + rows_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
 }
 
-std::size_t StructureFactor::stored_bytes() const noexcept {
+std::size_t SparseLdlt::stored_bytes() const noexcept {
   return bytes() + (block_of_.size() + position_.size()) * sizeof(int) +
          static_cast<std::size_t>(inverse_D_.size()) * sizeof(double);
 }
 
-void StructureFactor::find_path(std::span<const int> unknowns, Path& path) const {
-  path.mark_.resize(blocks_.size(), 0);
-  path.blocks_.clear();
-  ++path.collection_;
+void SparseLdlt::find_path(std::span<const int> unknowns, Path& path) const {
+  path.clear(blocks_.size());
   for (int unknown : unknowns) {
-    for (int b = block_of_[static_cast<std::size_t>(position(unknown))];
-         b >= 0 && path.mark_[static_cast<std::size_t>(b)] != path.collection_;
-         b = blocks_[static_cast<std::size_t>(b)].parent) {
-      path.mark_[static_cast<std::size_t>(b)] = path.collection_;
-      path.blocks_.push_back(b);
-    }
+    path.add(block_of_[static_cast<std::size_t>(position(unknown))],
+             [&](int b) { return blocks_[static_cast<std::size_t>(b)].parent; });
   }
-  std::sort(path.blocks_.begin(), path.blocks_.end());
+  path.sort();
 }
 
-void StructureFactor::into(const Vector& natural, Vector& ordered) const {
+void SparseLdlt::into(const Vector& natural, Vector& ordered) const {
   ordered.resize(room());
   for (Eigen::Index i = 0; i < size(); ++i) ordered[position_[static_cast<std::size_t>(i)]] = natural[first_ + i];
   ordered[size()] = 0.0;
 }
 
-void StructureFactor::out_of(const Vector& ordered, Vector& natural) const {
+void SparseLdlt::out_of(const Vector& ordered, Vector& natural) const {
   natural.conservativeResize(std::max(natural.size(), first_ + size()));
   for (Eigen::Index i = 0; i < size(); ++i) natural[first_ + i] = ordered[position_[static_cast<std::size_t>(i)]];
 }
 
-void StructureFactor::forward(double* y, const Block& block, double* scratch) const {
+void SparseLdlt::forward(double* y, const Block& block, double* scratch) const {
   double* const own = y + block.first;
   if (block.columns <= narrow) {
     forward_of[static_cast<std::size_t>(block.columns - 1)](
@@ -319,7 +315,7 @@ void StructureFactor::forward(double* y, const Block& block, double* scratch) co
   for (int i = 0; i < block.below; ++i) y[row[i]] -= change[i];
 }
 
-void StructureFactor::backward(double* x, const Block& block, double* scratch) const {
+void SparseLdlt::backward(double* x, const Block& block, double* scratch) const {
   double* const own = x + block.first;
   if (block.columns <= narrow) {
     backward_of[static_cast<std::size_t>(block.columns - 1)](
@@ -338,42 +334,42 @@ void StructureFactor::backward(double* x, const Block& block, double* scratch) c
   for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
-void StructureFactor::backward(const Vector& y, Vector& x, const Block& block, double* scratch) const {
+void SparseLdlt::backward(const Vector& y, Vector& x, const Block& block, double* scratch) const {
   for (int j = block.first; j < block.first + block.columns; ++j) x[j] = y[j] * inverse_D_[j];
   backward(x.data(), block, scratch);
 }
 
-void StructureFactor::forward(Vector& y) const {
+void SparseLdlt::forward(Vector& y) const {
   Vector scratch(most_height_);
   for (const Block& block : blocks_) forward(y.data(), block, scratch.data());
 }
 
-void StructureFactor::backward(Vector& x) const {
+void SparseLdlt::backward(Vector& x) const {
   Vector scratch(most_height_);
   x.head(size()).array() *= inverse_D_.array();
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x.data(), *block, scratch.data());
 }
 
-void StructureFactor::forward(Vector& y, const Path& path) const {
+void SparseLdlt::forward(Vector& y, const Path& path) const {
   Vector scratch(most_height_);
-  for (int b : path.blocks_) forward(y.data(), blocks_[static_cast<std::size_t>(b)], scratch.data());
+  for (int b : path.nodes()) forward(y.data(), blocks_[static_cast<std::size_t>(b)], scratch.data());
 }
 
-void StructureFactor::backward(const Vector& y, Vector& x, const Path& path) const {
+void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
   Vector scratch(most_height_);
-  for (auto b = path.blocks_.rbegin(); b != path.blocks_.rend(); ++b) {
+  for (auto b = path.nodes().rbegin(); b != path.nodes().rend(); ++b) {
     backward(y, x, blocks_[static_cast<std::size_t>(*b)], scratch.data());
   }
 }
 
-void StructureFactor::backward_off(const Path& path, const Vector& y, Vector& x) const {
+void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
   Vector scratch(most_height_);
   for (std::size_t b = blocks_.size(); b-- > 0;) {
-    if (path.mark_[b] != path.collection_) backward(y, x, blocks_[b], scratch.data());
+    if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b], scratch.data());
   }
 }
 
-StructureFactor::Vector StructureFactor::solve(const Vector& load) const {
+SparseLdlt::Vector SparseLdlt::solve(const Vector& load) const {
   Vector ordered, natural = Vector::Zero(load.size());
   into(load, ordered);
   forward(ordered);

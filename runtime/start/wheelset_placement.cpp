@@ -1,4 +1,4 @@
-#include "railtab/runtime/start/wheelset_seat.hpp"
+#include "railtab/runtime/start/wheelset_placement.hpp"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -33,10 +33,10 @@ const DofIndices& wheelset_dof(const VsiModel& model, int w) {
 }
 
 // A wheelset that stands on its rails with given loads on its two wheels [N].
-class Seat {
+class WheelsetPlacement {
  public:
-  Seat(const VsiModel& model, const WheelContactModel& contact, const ContactProblem& problem, int w,
-       const std::array<double, 2>& load, Eigen::VectorXd& displacement)
+  WheelsetPlacement(const VsiModel& model, const WheelContactModel& contact, const ContactProblem& problem, int w,
+                    const std::array<double, 2>& load, Eigen::VectorXd& displacement)
       : model_(model),
         contact_(contact),
         problem_(problem),
@@ -160,8 +160,8 @@ void set_down(const VsiModel& model, const WheelContactModel& contact, const Con
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
     const double load = static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle());
-    Seat seat(model, contact, problem, w, {load, load}, displacement);
-    const double difference = seat.settle();
+    WheelsetPlacement placement(model, contact, problem, w, {load, load}, displacement);
+    const double difference = placement.settle();
     if (dof[3] == held) continue;
     displacement[wheelset_unknowns * w + 3] = difference / (2.0 * model.geometry->pair().tape_circle_offset());
   }
@@ -169,10 +169,10 @@ void set_down(const VsiModel& model, const WheelContactModel& contact, const Con
 
 bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& state) {
   if (shift == 0.0 && yaw == 0.0) return true;
-  const bool seated = model.normal_contact == NormalContact::hertz;
+  const bool on_profiles = model.normal_contact == NormalContact::hertz;
   const WheelContactModel contact = contact_at_rest(model.contact);
   std::vector<std::array<double, 2>> load(index(model.wheelsets()));
-  if (seated) {
+  if (on_profiles) {
     const ContactProblem before = present_contact(model, state);
     for (int w = 0; w < model.wheelsets(); ++w) {
       for (int side = 0; side < 2; ++side) {
@@ -187,17 +187,17 @@ bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& s
       if (turned != held) motion.displacement[turned] += yaw;
     }
   }
-  if (!seated) return true;
+  if (!on_profiles) return true;
   const ContactProblem displaced = present_contact(model, state);
   Eigen::VectorXd displacement = displaced.predicted;
   for (int w = 0; w < model.wheelsets(); ++w) {
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
-    Seat seat(model, contact, displaced, w, load[index(w)], displacement);
+    WheelsetPlacement placement(model, contact, displaced, w, load[index(w)], displacement);
     if (dof[3] == held) {
-      seat.settle();
-      if (!seat.near_rails()) return false;
-    } else if (!seat.roll_level()) {
+      placement.settle();
+      if (!placement.near_rails()) return false;
+    } else if (!placement.roll_level()) {
       return false;
     }
     LinearMotion& motion = state.vehicle[index(w / model.wheelsets_per_vehicle())];

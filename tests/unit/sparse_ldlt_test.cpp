@@ -1,4 +1,4 @@
-#include "railtab/runtime/algebra/structure_factor.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,24 +22,24 @@ double difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-TEST(StructureFactor, SolvesAsAFactorisationWithoutSymmetryDoes) {
+TEST(SparseLdlt, SolvesAsAFactorisationWithoutSymmetryDoes) {
   const Eigen::SparseMatrix<double> matrix = effective_matrix();
-  const StructureFactor factor(matrix);
+  const SparseLdlt factor(matrix);
   const Eigen::VectorXd load = Eigen::VectorXd::Random(matrix.rows());
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
   EXPECT_LT(difference(factor.solve(load), lu.solve(load)), 1e-10);
 }
 
-TEST(StructureFactor, UnconnectedUnknownsAreBlocksOfTheirOwn) {
+TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {
   Eigen::SparseMatrix<double> diagonal(3, 3);
   for (int i = 0; i < 3; ++i) diagonal.insert(i, i) = i + 1.0;
-  const StructureFactor factor(diagonal);
+  const SparseLdlt factor(diagonal);
   EXPECT_TRUE(factor.solve(Eigen::Vector3d(1.0, 2.0, 3.0)).isApprox(Eigen::Vector3d::Ones(), 1e-15));
 }
 
 TEST(DividedSubstitution, AnswersAChangingLoadAndGivesTheWholeSolution) {
   const Eigen::SparseMatrix<double> matrix = effective_matrix();
-  const StructureFactor factor(matrix);
+  const SparseLdlt factor(matrix);
   const Eigen::Index n = matrix.rows();
   DividedSubstitution solution;
   for (const std::vector<int>& few : {std::vector<int>{700, 3, 3, 704, 12}, std::vector<int>{5}, std::vector<int>{}}) {

@@ -2,29 +2,36 @@
 
 #include <Eigen/SparseCore>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "railtab/runtime/algebra/tree_path.hpp"
 #include "railtab/runtime/base/dof_range.hpp"
 
 namespace railtab {
 
-/// Cholesky factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
+/// Factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
 /// factor's numbers and works on vectors [Davis2006, Sect. 4.8].
 ///
 /// The two halves of a back-substitution are apart, and either can be restricted to a path: the blocks of given
 /// unknowns and everything above them in the elimination tree. A load on the path changes the forward half there only,
-/// and the backward half needs nothing else to give the solution there. In a long and narrow structure paths are short.
+/// and the backward half needs nothing else to give the solution there. Where a system is long and narrow, paths are
+/// short.
 ///
 /// Vectors that the halves work on are in the factor's own order: into() and out_of().
-class StructureFactor {
+class SparseLdlt {
  public:
   using Vector = Eigen::VectorXd;
 
+  static constexpr std::string_view not_positive_definite = "the matrix of a linear system is not positive definite";
+
   /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
-  explicit StructureFactor(const Eigen::SparseMatrix<double>& matrix) : StructureFactor(matrix, {0, matrix.rows()}) {}
+  explicit SparseLdlt(const Eigen::SparseMatrix<double>& matrix, std::string_view message = not_positive_definite)
+      : SparseLdlt(matrix, {0, matrix.rows()}, message) {}
   /// The rows and columns in `range` alone: all other unknowns are held. Unknowns keep their numbers.
-  StructureFactor(const Eigen::SparseMatrix<double>& matrix, const DofRange& range);
+  SparseLdlt(const Eigen::SparseMatrix<double>& matrix, const DofRange& range,
+             std::string_view message = not_positive_definite);
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
   /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
@@ -36,18 +43,13 @@ class StructureFactor {
   /// Entries of L below the diagonal, which are there in column form too while the factor is made.
   [[nodiscard]] std::size_t entries() const noexcept { return entries_; }
 
-  /// Blocks of unknowns and everything above them, ascending.
-  class Path {
-    friend class StructureFactor;
-    std::vector<int> blocks_;
-    std::vector<int> mark_;  // of every block: the collection that met it last
-    int collection_ = 0;
-  };
+  /// Blocks of unknowns and everything above them.
+  using Path = TreePath;
   void find_path(std::span<const int> unknowns, Path& path) const;
   /// Calls visitor(first, number) for the neighbouring columns of every block of a path.
   template <class Visitor>
   void visit(const Path& path, Visitor&& visitor) const {
-    for (int b : path.blocks_) {
+    for (int b : path.nodes()) {
       visitor(blocks_[static_cast<std::size_t>(b)].first, blocks_[static_cast<std::size_t>(b)].columns);
     }
   }
@@ -55,7 +57,7 @@ class StructureFactor {
   [[nodiscard]] int position(int unknown) const noexcept {
     return position_[static_cast<std::size_t>(unknown - first_)];
   }
-  /// From and to a vector of all unknowns of the structure; those that are held are not touched.
+  /// From and to a vector of all unknowns of the system; those that are held are not touched.
   void into(const Vector& natural, Vector& ordered) const;
   void out_of(const Vector& ordered, Vector& natural) const;
 
@@ -69,7 +71,7 @@ class StructureFactor {
   void backward(const Vector& y, Vector& x, const Path& path) const;
   /// The entries of L⁻ᵀ D⁻¹ y off the path, for an x that has those on it.
   void backward_off(const Path& path, const Vector& y, Vector& x) const;
-  /// Full solution in the natural order, of all unknowns of the structure; 0 where they are held.
+  /// Full solution in the natural order, of all unknowns of the system; 0 where they are held.
   [[nodiscard]] Vector solve(const Vector& load) const;
 
  private:

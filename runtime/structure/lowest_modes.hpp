@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+
+namespace railtab {
+
+/// M-orthonormal modes, Φᵀ M Φ = I and Φᵀ K Φ = Λ, lowest first.
+struct ModalBasis {
+  Eigen::MatrixXd shape;   ///< Φ, degrees of freedom × modes
+  Eigen::VectorXd omega2;  ///< Λ [rad²/s²]
+};
+/// The lowest modes of K φ = ω² M φ by block Lanczos iteration with K⁻¹ and full orthogonalisation
+/// [GrimesLewisSimon1994]; fewer where the matrices have fewer. Starts from fixed pseudo-random numbers: the same call
+/// gives the same modes.
+/// @param tolerance residual of K⁻¹ M φ − φ/ω² relative to 1/ω²
+/// @return modes that have converged, at least one
+/// @throws ComputationError where K is not positive definite, and where modes do not converge
+[[nodiscard]] ModalBasis lowest_modes(const Eigen::SparseMatrix<double>& stiffness,
+                                      const Eigen::SparseMatrix<double>& mass, int modes, double tolerance = 1e-8);
+
+}  // namespace railtab

@@ -1,0 +1,171 @@
+// Hertz's contacts with creep forces as the contact law of a step (NormalContact::hertz).
+
+#include "railtab/runtime/vsi/contact_continuation.hpp"
+#include "railtab/runtime/vsi/contact_law.hpp"
+#include "railtab/runtime/vsi/contact_newton.hpp"
+#include "railtab/runtime/vsi/external_load.hpp"
+
+namespace railtab {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
+  const std::vector<RailContact>& contacts = step.contacts;
+  rail.clear();
+  const int wheels = static_cast<int>(contacts.size());
+  for (int j = 0; j < wheels; ++j) {
+    if (!contacts[index(j)].on_rail) continue;
+    // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
+    // symmetric.
+    for (int i = j; i < wheels; ++i) {
+      const Eigen::Matrix3d c =
+          step.hht.load_weight() * step.operators.structure->compliance(contacts[index(i)], contacts[index(j)]);
+      if (c.isZero(0.0)) break;
+      rail.push_back({i, j, c});
+      if (i != j) rail.push_back({j, i, c.transpose()});
+    }
+  }
+}
+
+// The contacts' part of Eq. 12 in the contact unknowns, for the next step.
+void close_step_load(const HhtScheme& hht, const ContactSolution& start, ContactSolution& end) {
+  end.step_load = hht.load_weight() * end.force;
+  if (hht.contact_force == ContactForceRule::endpoint) {
+    end.step_load -= hht.alpha * start.end_force;
+  } else {
+    end.step_load += (0.5 * start.end_force - (1.0 - hht.gamma()) * start.step_load) / hht.gamma();
+  }
+}
+
+class HertzContacts : public ContactLaw {
+ public:
+  explicit HertzContacts(const VsiModel& model) : contact_(model.contact) {
+    const std::size_t n = model.vehicle_x.size();
+    prediction_.resize(n);
+    free_.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
+    increment_ = free_;
+    problem_.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
+    problem_.wheelsets_per_group = 1;
+    problem_.free = problem_.predicted = problem_.predicted_velocity =
+        Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
+  }
+
+  void predict_vehicles(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
+    const HhtScheme& hht = step.hht;
+    for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
+      Prediction& p = prediction_[index(v)];
+      const LinearMotion& motion = state.vehicle[index(v)];
+      predict(hht, motion, p);
+      vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
+      step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht, ws.vehicle_load,
+                                            motion, p, free_[index(v)]);
+      // predictor, its velocity, the motion without contact forces, and where Newton starts (constant acceleration)
+      const Eigen::VectorXd free = p.displacement + free_[index(v)];
+      const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
+      gather_wheelsets(step.model, v, p.displacement, problem_.predicted);
+      gather_wheelsets(step.model, v, p.velocity, problem_.predicted_velocity);
+      gather_wheelsets(step.model, v, free, problem_.free);
+      gather_wheelsets(step.model, v, start, ws.solution.displacement);
+    }
+  }
+
+  // With q the contact unknowns, 𝐂 = (1+α) Bᵀ K̄⁻¹ B and T = ∂f/∂q, Eq. 16 condensed to the contacts is
+  //
+  //     [ I  −𝐂 ] [ δq ]   [ q_free + 𝐂 f − q ]
+  //     [ −T  I ] [ δf ] = [ 0                ]
+  //
+  // or (I − 𝐂 T) δq = q_free + 𝐂 f(q, v) − q.
+  // 𝐂: vehicle_compliance and rail; q_free: free; f and T: evaluate() and differentiate().
+  void present(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
+    contact_.speed = step.model.speed(step.end);
+    contact_.without_table = step.limits.geometry == GeometrySource::search;
+    if (step.model.structure) {
+      gather_structure(step, state, ws);
+      couple_rails(step, problem_.rail);
+    }
+    rail_deviation(step.model, step.contacts, step.end, ws.structure_prediction.displacement, problem_.deviation);
+    problem_.velocity_rate = Vector6::Constant(step.hht.velocity_rate());
+    problem_.rail_velocity_rate = step.hht.velocity_rate();
+    problem_.vehicle_compliance = step.hht.load_weight() * step.operators.vehicle.compliance();
+    const bool energy = step.hht.contact_force == ContactForceRule::energy;
+    problem_.start = energy ? &state.contact : nullptr;
+    problem_.mean_weight = energy ? 1.0 / (step.hht.gamma() * step.hht.load_weight()) : 1.0;
+  }
+
+  ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {
+    newton_.forces_known = pass > 0;  // the structure's response has moved nothing but q_free
+    NewtonReport newton;
+    {
+      const Stopwatch watch = report.times.measure(Phase::contact);
+      newton = solve_contact_by_continuation(contact_, problem_, step.limits.newton, ws.solution, newton_);
+    }
+    report.times.seconds(Phase::contact) -= newton.counts.seconds_lookup;
+    report.times.seconds(Phase::lookup) += newton.counts.seconds_lookup;
+    report.newton_iterations += newton.iterations;
+    report.counts += newton.counts;
+    if (!newton.converged) return ContactSolve::diverged;
+    return pass > 0 && newton.iterations == 0 ? ContactSolve::unchanged : ContactSolve::changed;
+  }
+
+  double correct_far_field(const StepContext& step, StepWorkspace& ws) override {
+    double largest = 0.0;
+    for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
+      const int k = rail_unknown(wheel);
+      // What the contact solution has the rail do under its forces: where Newton ended, and its residual.
+      const Vector3 expected = ws.solution.displacement.segment<3>(k) + newton_.residual.segment<3>(k);
+      const Vector3 missing =
+          problem_.predicted.segment<3>(k) + rail_head(step.contacts[index(wheel)], ws.structure_free) - expected;
+      largest = std::max(largest, missing.cwiseAbs().maxCoeff());
+      problem_.free.segment<3>(k) += missing;
+      ws.far_field.segment<3>(3 * wheel) += missing;
+    }
+    return largest;
+  }
+
+  void close(const StepContext& step, VsiState& state, StepWorkspace& ws) override {
+    const HhtScheme& hht = step.hht;
+    for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
+      LinearMotion& motion = state.vehicle[index(v)];
+      scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
+      increment_[index(v)] = free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
+      close_load(hht, ws.vehicle_load, {0, ws.vehicle_load.size()}, motion);
+      scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
+      update(hht, prediction_[index(v)], increment_[index(v)], motion);
+    }
+    close_step_load(hht, state.contact, ws.solution);
+    std::swap(state.contact, ws.solution);
+  }
+
+  void reinitialise() override { newton_.forget_tangents(); }
+
+ private:
+  void gather_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
+    const Prediction& p = ws.structure_prediction;
+    gather_rails(step.contacts, p.displacement, problem_.predicted);
+    gather_rails(step.contacts, p.velocity, problem_.predicted_velocity);
+    gather_rails(step.contacts, ws.structure_free, problem_.free);
+    gather_rails(step.contacts, state.structure.acceleration, ws.solution.displacement);
+    for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
+      const int k = rail_unknown(wheel);
+      const Vector3 predicted = problem_.predicted.segment<3>(k);
+      problem_.free.segment<3>(k) += predicted + state.far_field.segment<3>(3 * wheel);
+      ws.solution.displacement.segment<3>(k) =
+          predicted + ws.solution.displacement.segment<3>(k) / step.hht.acceleration_rate();
+    }
+  }
+
+  WheelContactModel contact_;  // at the speed of the step's end
+  ContactProblem problem_;
+  std::vector<Prediction> prediction_;             // per vehicle
+  std::vector<Eigen::VectorXd> free_, increment_;  // per vehicle
+  NewtonWorkspace newton_;                         // tangents and loads are kept from step to step,
+                                                   // until reinitialise()
+};
+
+}  // namespace
+
+std::unique_ptr<ContactLaw> make_hertz_contact(const VsiModel& model) { return std::make_unique<HertzContacts>(model); }
+
+}  // namespace railtab

@@ -1,0 +1,63 @@
+#include "railtab/runtime/vsi/step_operators.hpp"
+
+#include <algorithm>
+
+namespace railtab {
+
+namespace {
+
+// Rail coupling beyond this distance is left to the far-field correction: rail bending waves within one step have died
+// out.
+constexpr double compliance_window = 5.0;  // m
+constexpr double compliance_ahead = 10.0;  // m: covered before the train
+
+}  // namespace
+
+StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
+    : scheme(hht),
+      vehicle_damping(model.vehicle_damping(model.contact.speed)),
+      vehicle(model.vehicle, vehicle_damping, hht),
+      speed_(model.contact.speed) {
+  if (model.normal_contact == NormalContact::rigid) {
+    rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
+  }
+  if (!model.structure) return;
+  structure = std::make_unique<StructureResponse>(*model.structure, hht);
+}
+
+double StepOperators::vehicle_bytes(const VsiModel& model) {
+  constexpr double matrices = 3.0;  // damping, inverse and one to make it
+  return matrices * sizeof(double) * model.vehicle.dofs() * model.vehicle.dofs();
+}
+
+double StepOperators::largest_table(const VsiModel& model, double duration, double time_step) {
+  if (!model.structure) return 0.0;
+  constexpr int looks = 200;
+  double largest = 0.0;
+  for (int i = 0; i <= looks; ++i) {
+    const double time = duration * i / looks;
+    const double rear = model.wheelset_x(model.wheelsets() - 1, time - time_step);
+    largest = std::max(largest, StructureResponse::table_bytes(*model.structure, compliance_window, rear,
+                                                               model.wheelset_x(0, time) + compliance_ahead));
+  }
+  return largest;
+}
+
+void StepOperators::update_for_time(const VsiModel& model, double time, const DofRange& active) {
+  if (model.speed(time) != speed_) {
+    speed_ = model.speed(time);
+    vehicle_damping = model.vehicle_damping(speed_);
+    vehicle = VehicleResponse(model.vehicle, vehicle_damping, scheme);
+    if (rigid_wheels) rigid_wheels.emplace(model.vehicle, vehicle_damping, scheme);
+  }
+  const double front = model.wheelset_x(0, time);
+  const double rear = model.wheelset_x(model.wheelsets() - 1, time);
+  if (structure) structure->activate(active);
+  if (!structure || (rear >= covered_from_ && front <= covered_to_)) return;
+  // A step that is repeated as halves looks back by at most one step.
+  covered_from_ = model.wheelset_x(model.wheelsets() - 1, time - scheme.time_step);
+  covered_to_ = front + compliance_ahead;
+  structure->tabulate_compliance(*model.structure, compliance_window, covered_from_, covered_to_);
+}
+
+}  // namespace railtab
