@@ -18,9 +18,8 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
     if (members > 0.0) row_sizes.insert(row_sizes.end(), columns::motion.size(), 6.0 * members);
   }
   constexpr double number = sizeof(double);
-  // as in ArrayFileWriter: chunks of 16 KiB, at least 8 records, in pages of their own; five pages for a
-  // dataset: its header, and header, block and data blocks of its index
-  constexpr double chunk_values = 2048.0, fewest = 8.0, page = 4096.0, per_dataset = 20480.0, least = 131072.0;
+  // as in ArrayFileWriter: chunks of 16 KiB, at least 8 records, in pages of their own; indices, names, attributes
+  constexpr double chunk_values = 2048.0, fewest = 8.0, page = 4096.0, per_dataset = 16384.0, least = 262144.0;
   // HDF5 keeps chunks, and buffers for as many, of each dataset
   constexpr double cache = 2.0 * (1 << 20), library = 4e6;
   constexpr double between_flushes = 200.0;
@@ -31,6 +30,8 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
     size.file += bytes + per_dataset;
     size.memory += std::min(2.0 * bytes, cache) + number * row * std::min(records, between_flushes);
   }
+  constexpr double indices = 1.01;  // of chunks, and their checksums
+  size.file *= indices;
   for (const columns::HeaderColumn& column : columns::header) {
     size.file += number * static_cast<double>((header.*column.values).size());
   }

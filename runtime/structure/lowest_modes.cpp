@@ -33,6 +33,7 @@ class BlockLanczos {
 
   /// One more block; false where the space cannot grow.
   bool extend() {
+    if (added_ == 0) return false;  // no mass at all, or none that a number can hold
     const Eigen::Index last = size_ - added_, columns = added_;
     Matrix next(mass_.rows(), columns);
     for (Eigen::Index k = 0; k < columns; ++k) next.col(k) = factor_.solve(mass_basis_.col(last + k));
@@ -49,8 +50,9 @@ class BlockLanczos {
   /// Ritz vectors of the largest `modes` eigenvalues of K⁻¹ M, and whether their residuals are below the tolerance.
   bool ritz(Eigen::Index modes, double tolerance, ModalBasis& basis) const {
     const Eigen::Index known = size_ - added_;  // columns of the projection that are complete
+    if (known == 0) return false;
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(projection_.topLeftCorner(known, known));
-    if (known == 0 || eigen.info() != Eigen::Success) return false;
+    if (eigen.info() != Eigen::Success) return false;
     const Eigen::Index positive = (eigen.eigenvalues().array() > 0.0).count();  // others are rounding of no mass
     const Eigen::Index count = std::min(modes, positive);
     if (count == 0) return false;
@@ -103,7 +105,12 @@ class BlockLanczos {
         }
       }
       const Eigen::VectorXd weighted = mass_ * column;
-      const double norm = std::sqrt(std::max(0.0, column.dot(weighted)));
+      const double square = column.dot(weighted);
+      constexpr double rounding = 1e-9;
+      if (square < 0.0 && square < -rounding * column.cwiseAbs().dot(mass_.cwiseAbs() * column.cwiseAbs())) {
+        throw ComputationError("natural modes: a motion with negative mass: check the mass matrix");
+      }
+      const double norm = std::sqrt(std::max(0.0, square));
       if (!(norm > 1e-12 * scale) || before + added_ == mass_.rows()) continue;  // nothing new in this direction
       basis_.col(before + added_) = column / norm;
       mass_basis_.col(before + added_) = weighted / norm;

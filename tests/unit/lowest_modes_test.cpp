@@ -7,7 +7,6 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
-#include "railtab/runtime/structure/reduction.hpp"
 
 namespace railtab {
 namespace {
