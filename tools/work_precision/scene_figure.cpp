@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "run_error.hpp"
 #include "scenes.hpp"
 
