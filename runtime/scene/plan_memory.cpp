@@ -21,7 +21,6 @@ constexpr double state_vectors = 5.0;                        // LinearMotion
 constexpr double start_vectors = 6.0 * state_vectors + 8.0;  // states of steady_start(), loads and solutions
 constexpr double step_vectors = 2.0 * state_vectors + 14.0;  // StepWorkspace, and the state that the run begins with
 constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
-constexpr double small = 1 << 20;   // bytes: vectors that the allocator keeps when they are freed, in pieces
 constexpr double allocator = 1.03;  // of what is asked of it: ends of pages and pieces
 
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
@@ -59,7 +58,6 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
   const double start = number * n * start_vectors + m.kept + std::max(m.setup, m.low + m.low_setup);
   const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
-  const double pieces = number * n < small ? number * n * start_vectors : 0.0;  // what the start has left
   const double common = built + train;
   plan.undivided = std::max({peak, common + start, common + vectors + operators + while_made});
   plan.most =

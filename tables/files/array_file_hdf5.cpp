@@ -186,8 +186,6 @@ FileState inspect_file(const std::filesystem::path& file) {
   std::error_code error;
   if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "an HDF5 file");
   FileState state;
-  state.bytes = std::filesystem::file_size(file, error);
-
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw input_error(file.string(), std::strerror(errno), "a readable file");
   if (is_sealed(file)) {
@@ -196,6 +194,8 @@ FileState inspect_file(const std::filesystem::path& file) {
   }
   std::array<char, 36> head{};
   stream.read(head.data(), head.size());
+  // after the superblock: a writer that ends between the two has extended the file to what the superblock says
+  state.bytes = std::filesystem::file_size(file, error);
   if (std::string_view(head.data(), signature.size()) != signature) {
     throw input_error(file.string(), state.bytes == 0 ? "an empty file" : "no HDF5 signature", "an HDF5 file");
   }

@@ -17,7 +17,6 @@ struct Dual {
 };
 Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.rate + b.rate}; }
 Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.rate - b.rate}; }
-Dual operator-(const Dual& a) { return {-a.value, -a.rate}; }
 Dual operator*(const Dual& a, const Dual& b) { return {a.value * b.value, a.rate * b.value + a.value * b.rate}; }
 Dual operator/(const Dual& a, const Dual& b) {
   return {a.value / b.value, (a.rate * b.value - a.value * b.rate) / (b.value * b.value)};

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 
 namespace railtab {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iterator>
 
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "run_error.hpp"
 #include "scenes.hpp"
 

@@ -8,7 +8,11 @@
 
 #include "interleaved_timing.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 #include "run_error.hpp"
 
