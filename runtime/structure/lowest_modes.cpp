@@ -33,6 +33,7 @@ class BlockLanczos {
 
   /// One more block; false where the space cannot grow.
   bool extend() {
+    if (added_ == 0) return false;  // nothing to multiply: a mass matrix of zeros, or the whole space
     const Eigen::Index last = size_ - added_, columns = added_;
     Matrix next(mass_.rows(), columns);
     for (Eigen::Index k = 0; k < columns; ++k) next.col(k) = factor_.solve(mass_basis_.col(last + k));
