@@ -50,8 +50,9 @@ class BlockLanczos {
   /// Ritz vectors of the largest `modes` eigenvalues of K⁻¹ M, and whether their residuals are below the tolerance.
   bool ritz(Eigen::Index modes, double tolerance, ModalBasis& basis) const {
     const Eigen::Index known = size_ - added_;  // columns of the projection that are complete
+    if (known == 0) return false;
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(projection_.topLeftCorner(known, known));
-    if (known == 0 || eigen.info() != Eigen::Success) return false;
+    if (eigen.info() != Eigen::Success) return false;
     const Eigen::Index positive = (eigen.eigenvalues().array() > 0.0).count();  // others are rounding of no mass
     const Eigen::Index count = std::min(modes, positive);
     if (count == 0) return false;
