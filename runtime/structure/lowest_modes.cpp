@@ -17,6 +17,8 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
+constexpr double indefinite = 1e-8;  // of the product of norms: far above the rounding of a vector without mass
+
 /// Basis of the Krylov space of K⁻¹ M, M-orthonormal, with the projection of K⁻¹ M on it.
 class BlockLanczos {
  public:
@@ -105,7 +107,12 @@ class BlockLanczos {
         }
       }
       const Eigen::VectorXd weighted = mass_ * column;
-      const double norm = std::sqrt(std::max(0.0, column.dot(weighted)));
+      const double square = column.dot(weighted);
+      if (square < -indefinite * column.norm() * weighted.norm()) {
+        throw ComputationError(
+            "natural modes: the mass matrix has negative eigenvalues; check its entries off the diagonal");
+      }
+      const double norm = std::sqrt(std::max(0.0, square));
       if (!(norm > 1e-12 * scale) || before + added_ == mass_.rows()) continue;  // nothing new in this direction
       basis_.col(before + added_) = column / norm;
       mass_basis_.col(before + added_) = weighted / norm;
