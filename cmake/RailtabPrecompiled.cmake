@@ -1,5 +1,5 @@
 # Headers that nearly every source includes, parsed once: it halves the time of a whole build. Sources still include all
-# that they use: clang-tidy, which .ci/run runs without RAILTAB_PRECOMPILED, is the check.
+# that they use: clang-tidy, which tools/check runs without RAILTAB_PRECOMPILED, is the check.
 
 set(railtab_precompiled_headers
   <Eigen/Dense> <Eigen/SparseCholesky> <Eigen/SparseCore> <fmt/format.h>
