@@ -36,6 +36,9 @@ set(railtab_contact_files_headers
   tables/files/geometry_table_file.hpp
   tables/files/shipped_creep_table.hpp
   runtime/contact_files/creep_law_file.hpp)
+set(railtab_solver_headers
+  runtime/vsi/step_record.hpp
+  runtime/scene/scene.hpp)
 
 set(railtab_contact_layers base tables profile contact)
 set(railtab_contact_files_layers table_files contact_files)

@@ -231,7 +231,7 @@ TEST(Start, OnPadsThatSinkByCentimetres) {
   const RunSummary summary = run_scene(scene, observer);
   EXPECT_TRUE(summary.complete) << summary.message;
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
-    return warning.find("the run begins with the static equilibrium") != std::string::npos;
+    return warning.find("its first seconds are a transient") != std::string::npos;
   }));
 }
 
