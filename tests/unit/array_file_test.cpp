@@ -128,7 +128,8 @@ TEST_F(ArrayFile, MessagesNameFilePlaceFoundAndExpected) {
   expect_words(message_of([&] { ArrayFileReader(file(), "test-file", 4); }), {name, "version 3", "version 4"});
   expect_words(message_of([&] { ArrayFileReader(file("b.h5"), "test-file", 3); }), {"b.h5", "no such file"});
   expect_words(message_of([&] { ArrayFileReader(folder_, "test-file", 3); }), {folder_.string(), "a folder"});
-  expect_words(message_of([&] { ArrayFileWriter(folder_ / "no" / "a.h5", "test-file", 3); }), {"a.h5", "existing folder"});
+  expect_words(message_of([&] { ArrayFileWriter(folder_ / "no" / "a.h5", "test-file", 3); }),
+               {"a.h5", "existing folder"});
 }
 
 TEST_F(ArrayFile, RefusesWhatIsNotHdf5) {
