@@ -43,7 +43,7 @@ GeometryVerification certify(GeometryTableData& table) {
   return result;
 }
 
-bool keeps_its_word(const GeometryVerification& v, double tolerance) {
+bool meets_tolerance(const GeometryVerification& v, double tolerance) {
   return v.penetration.p999 <= tolerance && v.finer_mismatch_share == 0;
 }
 
@@ -56,12 +56,12 @@ std::string shortfall(const GeometryVerification& v, double tolerance) {
 
 using Sweep = std::function<GeometryTableData(const GeometrySweepOptions&, int refinement)>;
 
-GeometryTableData refined_until_it_keeps_its_word(const GeometrySweepOptions& options, const Sweep& sweep) {
+GeometryTableData refined_until_it_meets_tolerance(const GeometrySweepOptions& options, const Sweep& sweep) {
   GeometryVerification verification;
   for (int refinement = 0; refinement <= refinements; ++refinement) {
     GeometryTableData table = sweep(options.refined(refinement), refinement);
     verification = certify(table);
-    if (keeps_its_word(verification, options.tolerance)) return table;
+    if (meets_tolerance(verification, options.tolerance)) return table;
   }
   throw ComputationError(
       fmt::format("geometry table: after {} refinements {}. Ask for less (--tolerance), or start finer (--refinement)",
@@ -129,7 +129,7 @@ GeometrySweepOptions GeometrySweepOptions::refined(int times) const {
 
 void certify_merged_geometry_table(GeometryTableData& table) {
   const GeometryVerification verification = certify(table);
-  if (keeps_its_word(verification, table.tolerance)) return;
+  if (meets_tolerance(verification, table.tolerance)) return;
   throw ComputationError(
       fmt::format("{}. Make all shards anew with --refinement one higher, or the table in one piece, which refines "
                   "by itself",
@@ -139,7 +139,7 @@ void certify_merged_geometry_table(GeometryTableData& table) {
 GeometryTableData generate_geometry_table(const ContactSearch& search, const GeometrySweepOptions& options,
                                           const Progress& progress) {
   if (!options.shard.whole()) return sweep_geometry(search, options, progress);
-  return refined_until_it_keeps_its_word(
+  return refined_until_it_meets_tolerance(
       options, [&](const GeometrySweepOptions& current, int) { return sweep_geometry(search, current, progress); });
 }
 
@@ -148,7 +148,7 @@ void generate_geometry_table_file(const ContactSearch& search, const GeometrySwe
                                   const Progress& progress) {
   GeometryTableData table;
   if (options.shard.whole()) {
-    table = refined_until_it_keeps_its_word(options, [&](const GeometrySweepOptions& current, int refinement) {
+    table = refined_until_it_meets_tolerance(options, [&](const GeometrySweepOptions& current, int refinement) {
       return sweep_in_parts(search, current, refinement, file, progress);
     });
   } else {

@@ -185,7 +185,7 @@ TEST(PaperRun, IsTheOnlineSearchOnStraightTreadsAndArcs) {
   SceneParameters scene = led_by_flanges(track, ContactMode::paper);
   scene.contact.wheel = "conic-arc-stand-in";
   scene.integration.contact_force = ContactForceRule::endpoint;  // as the published method has it
-  scene.integration.tolerance = 1e-5;                            // the methods differ by no more than Newton leaves
+  scene.integration.tolerance = 1e-5;                            // the methods differ by no more than Newton's residual
   const Outcome paper = run(scene);
   scene.contact.mode = ContactMode::online;
   const Outcome online = run(scene);

@@ -146,7 +146,7 @@ TEST_F(VsiCommand, ForcesThatASceneCannotGiveAreSaidAtItsEnd) {
   const std::string online = "mode = \"online\"", rigid = "normal = \"rigid\"";
   EXPECT_EQ(output_of(online, "-2e5").find("warning"), std::string::npos);
   const std::string pull = output_of(rigid, "-2e5");
-  const char* const held_down = "vsi run: warning: rails pull at wheels (smallest Q -";
+  const char* const held_down = "vsi run: warning: negative contact force (smallest Q -";
   EXPECT_NE(pull.find(held_down), std::string::npos) << pull;
   EXPECT_NE(vsi("run scene.toml -o r.h5 --resume").output.find(held_down), std::string::npos);
   EXPECT_EQ(vsi("run scene.toml -o r.h5 -q").output, "");

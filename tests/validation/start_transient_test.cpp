@@ -75,7 +75,7 @@ double static_load(const std::vector<StepRecord>& steps) {
   return sum / static_cast<double>(steps.front().wheels.size());
 }
 
-// Creep forces of a slow train are stiff in its velocities: what Newton leaves of them would fade in tenths of a
+// Creep forces of a slow train are stiff in its velocities: the residual of Newton's method would fade in tenths of a
 // second.
 TEST(StartTransient, FirstForcesOfASlowTrainDoNotDependOnTheTolerance) {
   SceneParameters scene = coach_on(TrackKind::flexible);

@@ -56,10 +56,11 @@ void print_text(const SceneParameters& scene, const ReductionError& e) {
   }
   if (const double left = scene.integration.tolerance; e.force_static < left) {
     print_formatted(
-        "  {:<28} differ by less than Newton leaves of them (integration.tolerance, {:g} of the static load)\n",
+        "  {:<28} differ by less than the residual of Newton's method (integration.tolerance, {:g} of the static "
+        "load)\n",
         "the forces", left);
   }
-  print_formatted("  {:<28}{:>9.4g} ms with {} unknowns, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
+  print_formatted("  {:<28}{:>9.4g} ms with {} degrees of freedom, {:.4g} ms with {}\n", "a step", step_ms(e.reduced),
                   e.reduced.active_dofs, step_ms(e.whole), e.whole.active_dofs);
 }
 

@@ -89,14 +89,14 @@ void warn_of_uncovered_queries(const RunSummary& summary) {
 }
 
 /// Wheel forces that the scene's track or contact cannot give, wherever they come from.
-void warn_of_doubtful_forces(const report::Headline& headline, const SceneParameters& scene) {
+void warn_of_negative_force(const report::Headline& headline, const SceneParameters& scene) {
   const report::Extreme& least = headline.smallest_Q;
   if (!least.found()) return;
   const std::string where = fmt::format("{}, t = {:.3f} s", least.where, least.time);
   if (scene.contact.normal == NormalContact::rigid && least.value < 0.0) {
     print_warning(fmt::format(
-        "rails pull at wheels (smallest Q {:.4g} kN, {}), which they cannot: such a wheel leaves its rail and "
-        "lands again; contact.normal = \"hertz\" says with what force",
+        "negative contact force (smallest Q {:.4g} kN, {}): the wheel would lift off there, but contact.normal = "
+        "\"rigid\" holds it on its rail; contact.normal = \"hertz\" computes lift-off and landing",
         1e-3 * least.value, where));
   }
 }
@@ -139,7 +139,7 @@ int conclude(const SceneParameters& scene, const report::Headline& headline, con
   }
   if (!options.quiet) {
     warn_of_uncovered_queries(summary);
-    warn_of_doubtful_forces(headline, scene);
+    warn_of_negative_force(headline, scene);
   }
   if (summary.complete) return 0;
   if (summary.interrupted) {
