@@ -11,8 +11,8 @@
 
 #include "folder_fixture.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/vehicle/coach.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
 
 namespace railtab::testing {
 
@@ -53,7 +53,7 @@ struct FreeCoach {
 
 /// The built coach with its car body's x set free: springs know differences only, so that x of the car body does what
 /// the opposite x of all others does.
-inline FreeCoach free_coach(const CoachParameters& parameters = {}) {
+inline FreeCoach free_coach(const CoachParameters& parameters = coach_parameters("manchester-coach")) {
   const VehicleModel coach = build_coach(parameters);
   const int n = coach.dofs();
   const std::vector<std::string> names{"CAR", "bogie-1", "bogie-2", "WS1", "WS2", "WS3", "WS4"};

@@ -19,6 +19,11 @@ Vector generalised_eigenvalues(const Matrix& K, const Matrix& M) {
   return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(K, M, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
+GeneralSpectrum general_spectrum(const Matrix& A) {
+  const Eigen::EigenSolver<Matrix> eigen(A);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
 Matrix dense_inverse(const Matrix& A) { return A.partialPivLu().inverse(); }
 
 Matrix symmetric_solution(const Matrix& A, const Matrix& B) { return A.ldlt().solve(B); }

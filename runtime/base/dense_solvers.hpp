@@ -18,6 +18,13 @@ struct SymmetricSpectrum {
 /// λ of K v = λ M v in increasing order, K symmetric, M symmetric and positive definite.
 [[nodiscard]] Eigen::VectorXd generalised_eigenvalues(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M);
 
+/// Eigenvalues and eigenvectors of a square matrix, complex ones in pairs, in no order.
+struct GeneralSpectrum {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;  ///< of unit length, one per column
+};
+[[nodiscard]] GeneralSpectrum general_spectrum(const Eigen::MatrixXd& A);
+
 /// Inverse by LU decomposition with partial pivoting, of a regular matrix.
 [[nodiscard]] Eigen::MatrixXd dense_inverse(const Eigen::MatrixXd& A);
 

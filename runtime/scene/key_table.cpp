@@ -7,26 +7,11 @@
 #include <cmath>
 #include <map>
 
+#include "railtab/runtime/base/edit_distance.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 
 namespace railtab::scene {
 namespace {
-
-/// Edit distance of Levenshtein: insertions, deletions and substitutions.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
 
 std::string_view leaf(std::string_view path) {
   const std::size_t dot = path.rfind('.');
@@ -63,6 +48,9 @@ SceneKey describe(const KeyRow& key, SceneDraft& draft) {
                  [&](const FileKey&) { set("file", "an existing file", ""); },
                  [&](const ProfileKey& k) {
                    set("profile", joined(standard_profile_names(k.kind)) + " or a profile file", k.member(draft));
+                 },
+                 [&](const VehicleKey& k) {
+                   set("vehicle", "a name of `vsi vehicle`, a vehicle's TOML file, or imported", k.member(draft));
                  },
                  [&](const ChoiceKey& k) { set("choice", joined(k.names), k.names[k.get(draft)]); },
                  [&](const ReductionKey&) { set("choice", "none, window", "none"); },

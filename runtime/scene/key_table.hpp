@@ -82,6 +82,10 @@ struct ProfileKey {
   Member<std::string> member;
   ProfileKind kind;
 };
+/// A vehicle of the library, a vehicle's TOML file relative to the scene, or "imported".
+struct VehicleKey {
+  Member<std::string> member;
+};
 /// One of the names, each of which stands for a value of a type of its own.
 struct ChoiceKey {
   std::vector<std::string> names;
@@ -120,7 +124,7 @@ struct KeyRow {
   std::string_view path;
   std::string_view unit;
   std::string_view meaning;
-  std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, ChoiceKey,
+  std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, VehicleKey, ChoiceKey,
                ReductionKey, SwitchKey, TextListKey, PointKey, NumberListKey>
       value;
   std::vector<const Condition*> applies{};  ///< all of them hold where the key has an effect

@@ -25,8 +25,12 @@ std::string reduction_text(const ReductionParameters& reduction) {
 }
 
 void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
-  plan.built.push_back(
-      fmt::format("{} x {}, {} degrees of freedom each", scene.train.count, scene.train.vehicle, model.vehicle.dofs()));
+  plan.built.push_back(fmt::format("{} x {}, {} degrees of freedom each", scene.train.count,
+                                   scene.train.vehicle == imported_vehicle ? scene.train.vehicle : model.vehicle.name,
+                                   model.vehicle.dofs()));
+  for (const std::string& element : model.vehicle.left_out) {
+    plan.left_out.push_back(fmt::format("of {}: {}", model.vehicle.name, element));
+  }
   if (scene.train.vehicle != imported_vehicle) return;
   constexpr int modes = 6;
   VehicleSummary vehicle = summarise(model.vehicle, modes);

@@ -10,6 +10,7 @@
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
@@ -43,6 +44,20 @@ double spans_length(const SceneParameters& scene) {
   double length = 0.0;
   for (const BridgeParameters& span : scene.spans) length += span.length;
   return length;
+}
+
+VehicleModel scene_vehicle(const SceneParameters& scene) {
+  const MotionPlane plane = vehicle_plane(scene);
+  if (scene.train.vehicle == imported_vehicle) return import_vehicle(scene.vehicle, plane);
+  const VehicleData data = find_vehicle(scene.train.vehicle);
+  if (data.motion == MotionPlane::vertical && plane != MotionPlane::vertical) {
+    throw input_error(
+        "scene: train.vehicle", fmt::format("{}, whose data are vertical only", data.name),
+        "contact.normal = \"rigid\", or a copy of its file (vsi vehicle NAME --toml) with the lateral values "
+        "as named assumptions");
+  }
+  require_closing(data);
+  return build_vehicle(data, plane);
 }
 
 // The first wheelset stands at `start`; coaches follow each other at their length over couplers.
@@ -122,9 +137,7 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
-  model.vehicle = scene.train.vehicle == imported_vehicle
-                      ? import_vehicle(scene.vehicle, vehicle_plane(scene))
-                      : build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene));
+  model.vehicle = scene_vehicle(scene);
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;

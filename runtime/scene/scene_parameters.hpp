@@ -15,7 +15,6 @@
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/runtime/vehicle/coach.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vsi/integration_parameters.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
@@ -26,7 +25,7 @@ enum class ContactMode { table, online, paper };
 enum class TrackKind { rigid, flexible, imported };
 
 struct TrainParameters {
-  std::string vehicle = "manchester-coach";  ///< a published vehicle, or imported_vehicle
+  std::string vehicle = "manchester-coach";  ///< of the library, a file, or imported_vehicle
   int count = 1;                             ///< coaches, 1..100
   double speed = 200.0 / 3.6;                ///< [m/s], > 0
   std::filesystem::path speed_file;          ///< speed over time in place of `speed`; empty: constant

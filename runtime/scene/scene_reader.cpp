@@ -13,6 +13,8 @@
 #include "railtab/runtime/scene/toml_leaves.hpp"
 #include "railtab/runtime/scene/unused_keys.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/runtime/vehicle/toml_section.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
 
 namespace railtab::scene {
 namespace {
@@ -47,6 +49,7 @@ struct Assign {
     key.member(draft) = named;
   }
   void operator()(const ProfileKey& key) const { key.member(draft) = profile(key.kind); }
+  void operator()(const VehicleKey& key) const { key.member(draft) = vehicle(); }
   void operator()(const ChoiceKey& key) const {
     const std::string name = one_of(key.names);
     key.set(draft, static_cast<std::size_t>(std::find(key.names.begin(), key.names.end(), name) - key.names.begin()));
@@ -142,6 +145,20 @@ struct Assign {
       if (status == std::errc() && stop == end && divisor > 0.0 && range.accepts(1.0 / divisor)) return 1.0 / divisor;
     }
     throw error(expected);
+  }
+
+  [[nodiscard]] std::string vehicle() const {
+    std::vector<std::string> names = vehicle_names();
+    names.emplace_back(imported_vehicle);
+    const std::string expected =
+        fmt::format("a vehicle's TOML file, relative to the scene, or one of {}", joined(names));
+    const std::string name = text(expected);
+    if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+    const std::filesystem::path named = file.parent_path() / name;
+    if (!name.ends_with(".toml")) throw error(expected);
+    if (!is_file(named)) throw leaf_error(file, leaf, fmt::format("no file {}", named.string()), expected);
+    draft.parameters.files.push_back(named);
+    return named.string();
   }
 
   [[nodiscard]] std::string profile(ProfileKind kind) const {

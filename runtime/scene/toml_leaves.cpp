@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <sstream>
+
+#include "railtab/runtime/vehicle/toml_section.hpp"
 
 namespace railtab::scene {
 namespace {
@@ -85,16 +86,6 @@ std::string key_before(std::string_view text, toml::source_position place) {
   const std::string_view key = trimmed(before.substr(0, equals));
   if (equals == before.npos || key.empty() || key.front() == '#') return {};
   return section.empty() ? std::string(key) : fmt::format("{}.{}", section, key);
-}
-
-std::string found_text(const toml::node& node) {
-  if (const toml::value<std::string>* text = node.as_string()) return fmt::format("the text \"{}\"", text->get());
-  if (const toml::value<std::int64_t>* whole = node.as_integer()) return fmt::format("{}", whole->get());
-  if (const toml::value<double>* number = node.as_floating_point()) return fmt::format("{}", number->get());
-  if (const toml::value<bool>* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  std::ostringstream type;
-  type << node.type();
-  return "a value of type " + type.str();
 }
 
 }  // namespace railtab::scene

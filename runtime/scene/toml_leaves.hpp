@@ -37,7 +37,4 @@ struct Leaf {
 /// stands before it on its line.
 [[nodiscard]] std::string key_before(std::string_view text, toml::source_position place);
 
-/// What a message shows of a value.
-[[nodiscard]] std::string found_text(const toml::node& node);
-
 }  // namespace railtab::scene

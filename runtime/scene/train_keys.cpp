@@ -1,14 +1,7 @@
 #include "railtab/runtime/scene/key_table.hpp"
-#include "railtab/runtime/vehicle/coach.hpp"
 
 namespace railtab::scene {
 namespace {
-
-std::vector<std::string> train_vehicle_names() {
-  std::vector<std::string> names = vehicle_names();
-  names.emplace_back(imported_vehicle);
-  return names;
-}
 
 template <auto member>
 auto& of_train(SceneDraft& draft) {
@@ -25,8 +18,12 @@ std::vector<KeyRow> train_keys() {
   return {
       {"name", "", "name of the scene in results and reports; absent: the name of the file",
        TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.name; }, nullptr}},
-      {"train.vehicle", "", "a published vehicle, or \"imported\": that of [vehicle], the default where it has keys",
-       TextKey{of_train<&TrainParameters::vehicle>, train_vehicle_names}},
+      {"train.vehicle",
+       "",
+       "a vehicle of the library, or of a file; \"imported\": that of [vehicle], the default where it has keys",
+       VehicleKey{of_train<&TrainParameters::vehicle>},
+       {},
+       {&vehicle_above_top_speed, &vehicle_linearised}},
       {"train.count", "1", "number of coaches", IntegerKey{of_train<&TrainParameters::count>, 1, 100}},
       {"train.speed",
        "m/s",

@@ -9,6 +9,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
+#include "railtab/runtime/vehicle/series_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_terms.hpp"
 
 namespace railtab {
@@ -42,6 +43,7 @@ void check_connections(const std::string& name, size_t bodies, const std::vector
       require_not_negative(place + ".stiffness", suspension[s].stiffness[axis], "N/m");
       require_not_negative(place + ".damping", suspension[s].damping[axis], "N s/m");
       require_not_negative(place + ".rotational_stiffness", suspension[s].rotational_stiffness[axis], "N m/rad");
+      require_not_negative(place + ".series_stiffness", suspension[s].series_stiffness[axis], "N/m");
     }
   }
   for (size_t w = 0; w < wheelsets.size(); ++w) {
@@ -104,7 +106,7 @@ void add_suspension(VehicleModel& vehicle, const std::vector<Suspension>& suspen
     const DofIndices& a = vehicle.dof[unit.body_a];
     const DofIndices& b = vehicle.dof[unit.body_b];
     add_pair(vehicle.stiffness, a, b, spring_matrix(arm_a, arm_b, unit.stiffness, unit.rotational_stiffness));
-    add_pair(vehicle.damping, a, b, spring_matrix(arm_a, arm_b, unit.damping, Eigen::Vector3d::Zero()));
+    add_pair(vehicle.damping, a, b, spring_matrix(arm_a, arm_b, parallel_damping(unit), Eigen::Vector3d::Zero()));
   }
 }
 
@@ -164,7 +166,8 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   vehicle.wheelsets = parts.wheelsets;
   vehicle.nominal_radius = parts.nominal_radius;
   vehicle.length = parts.length;
-  const int n = number_dofs(vehicle, parts.held_dofs);
+  const int of_bodies = number_dofs(vehicle, parts.held_dofs);
+  const int n = of_bodies + count_series_dampers(parts.suspension);
   for (Eigen::MatrixXd* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness, &vehicle.gyroscopic}) {
     matrix->setZero(n, n);
   }
@@ -175,6 +178,7 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   }
   add_inertia(vehicle, parts.bodies);
   add_suspension(vehicle, parts.suspension);
+  add_series_dampers(vehicle, parts.suspension, of_bodies);
   for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, parts.bodies[w].inertia.y());
   vehicle.static_load = wheelset_reactions(vehicle, weight_of(vehicle, parts.bodies, parts.gravity));
   return vehicle;

@@ -24,6 +24,8 @@ struct Suspension {
   Eigen::Vector3d stiffness;                                       ///< along x, y, z [N/m]
   Eigen::Vector3d damping;                                         ///< [N s/m]
   Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();  ///< about x, y, z [N m/rad]
+  /// In series with the damper along x, y, z [N/m]; 0: the damper alone.
+  Eigen::Vector3d series_stiffness = Eigen::Vector3d::Zero();
 };
 
 /// A body of a vehicle as results and loads know it; position of the point whose motion its dofs are, vehicle frame.
@@ -50,7 +52,10 @@ struct VehicleModel {
   /// Load per acceleration of the train, of masses that are described in its frame, −m [kg], and of wheelsets whose
   /// nominal rotation changes with the speed, J_y/R0 [kg m].
   Eigen::VectorXd acceleration_load;
-  Eigen::VectorXd lateral_shift;  ///< what the dofs are when the whole vehicle has gone 1 m to the right
+  Eigen::VectorXd lateral_shift;        ///< what the dofs are when the whole vehicle has gone 1 m to the right
+  double top_speed = 0.0;               ///< that its data state [m/s]; 0: none
+  std::vector<std::string> linearised;  ///< force elements that run by a linear stand-in, a sentence for each
+  std::vector<std::string> left_out;    ///< force elements of its data that the model has not
 
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };

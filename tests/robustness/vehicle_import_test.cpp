@@ -75,7 +75,7 @@ void add_spring(const FreeCoach& coach, const std::string& a, const std::string&
 }
 
 TEST_F(VehicleImportFiles, GiveTheMatricesOfTheBuiltCoach) {
-  const VehicleModel coach = build_coach({});
+  const VehicleModel coach = build_coach(coach_parameters("manchester-coach"));
   for (const Written how : {Written::as_railtab, Written::turned_in_millimetres}) {
     write(free_coach(), how);
     const VehicleModel read = import_vehicle(scene(vehicle_section(how) + "[contact]\nmode = \"online\"\n").vehicle);
@@ -132,7 +132,7 @@ TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
   tied.stiffness(roll_row, roll_row) -= 3e5;
   expect_refused(tied, {"k.mtx: row", "(roll of CAR)", "resists roll"});
 
-  CoachParameters loose;
+  CoachParameters loose = coach_parameters("manchester-coach");
   loose.secondary.kx = loose.secondary.ky = 0.0;
   expect_refused(free_coach(loose), {"k.mtx: row", "a motion that no spring resists", "six rigid motions"});
 

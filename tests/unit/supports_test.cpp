@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "railtab/runtime/structure/track_bridge.hpp"
-#include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
@@ -103,8 +103,8 @@ TEST(VerticalPlane, TrackAndBridgeDeflectAsInThreeDimensions) {
 }
 
 TEST(VerticalPlane, CoachHasTheSameVerticalCompliance) {
-  const VehicleModel plane = build_coach(CoachParameters{}, MotionPlane::vertical);
-  const VehicleModel space = build_coach(CoachParameters{});
+  const VehicleModel plane = build_coach(coach_parameters("manchester-coach"), MotionPlane::vertical);
+  const VehicleModel space = build_coach(coach_parameters("manchester-coach"));
   EXPECT_EQ(plane.dofs(), 16);
   EXPECT_EQ(space.dofs(), 41);
   const HhtScheme scheme{.alpha = -0.05, .time_step = 1e-3};

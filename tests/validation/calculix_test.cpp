@@ -19,7 +19,7 @@
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
-#include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 

@@ -140,7 +140,7 @@ TEST_F(ImportedVehicle, InnerUnknownsTakePart) {
   constexpr double m = 3000.0;
   const std::string text =
       rigid_track + "[integration]\nduration = 0.1\n" + "[[load]]\nFz = 100e3\ngust_duration = 0.04\n";
-  CoachParameters heavy;
+  CoachParameters heavy = coach_parameters("manchester-coach");
   heavy.car_body.mass += m;
   write(free_coach(heavy));
   const std::vector<StepRecord> one_mass = run(scene(vehicle_section() + text));

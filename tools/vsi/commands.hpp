@@ -15,5 +15,6 @@ int run_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
 int report_command(const Arguments& arguments);
 int structure_command(const Arguments& arguments);
+int vehicle_command(const Arguments& arguments);
 
 }  // namespace railtab::vsi

@@ -18,7 +18,9 @@ constexpr const char* usage =
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
     "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
     "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n"
-    "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n";
+    "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
+    "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
+    "library\n";
 
 int dispatch(const Arguments& arguments) {
   if (arguments.empty()) throw InputError(fmt::format("no command\n{}", usage));
@@ -30,6 +32,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "sweep") return sweep_command(rest);
   if (name == "report") return report_command(rest);
   if (name == "structure") return structure_command(rest);
+  if (name == "vehicle") return vehicle_command(rest);
   if (name == "--help" || name == "-h") {
     print_formatted("{}", usage);
     return 0;

@@ -1,0 +1,11 @@
+# cmake -D OUTPUT=FILE.cpp -D FILES=a.toml;b.toml -P EmbedVehicleLibrary.cmake: the vehicle library as a source.
+set(source "// Generated from runtime/vehicle/library/*.toml.\n#include \"railtab/runtime/vehicle/vehicle_library.hpp\"\n\n")
+string(APPEND source "namespace railtab {\n\nconst std::vector<LibraryFile>& library_files() {\n")
+string(APPEND source "  static const std::vector<LibraryFile> files{\n")
+foreach(file IN LISTS FILES)
+  cmake_path(GET file STEM name)
+  file(READ ${file} text)
+  string(APPEND source "      {\"${name}\", R\"toml(${text})toml\"},\n")
+endforeach()
+string(APPEND source "  };\n  return files;\n}\n\n}  // namespace railtab\n")
+file(WRITE ${OUTPUT} "${source}")

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/vehicle/coach.hpp"
+#include "railtab/runtime/vehicle/provenance.hpp"
+#include "railtab/runtime/vehicle/vehicle_model.hpp"
+
+namespace railtab {
+
+/// What a vehicle file says that its numbers must add up to.
+struct StatedCheck {
+  std::string quantity;  ///< "mass", "axle load of wheelset-1", or a motion as natural_modes() names it
+  std::string unit;      ///< kg or Hz
+  double low, high;
+};
+
+/// A vehicle as a file describes it (docs/file_formats/vehicle.md).
+struct VehicleData {
+  std::string place;  ///< the file, for messages
+  std::string text;   ///< the TOML itself
+  std::string name, description;
+  Provenance provenance;                      ///< of all values without one of their own
+  MotionPlane motion = MotionPlane::spatial;  ///< vertical: the data say nothing of lateral motion
+  double top_speed = 0.0;                     ///< [m/s]; 0: not stated
+  std::optional<CoachParameters> coach;       ///< of the template "two-bogie"
+  VehicleDescription parts;                   ///< all bodies and force elements, nothing held
+  std::vector<std::string> linearised;        ///< as VehicleModel::linearised
+  std::vector<std::string> left_out;          ///< as VehicleModel::left_out
+  SourcedValues sourced;
+  std::vector<StatedCheck> checks;
+};
+
+/// Vertical data have no longitudinal stiffness: x of all bodies is then held too, and the vertical plane is z and
+/// pitch.
+/// @throws InputError where the data are vertical and `plane` is not
+[[nodiscard]] VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, double gravity = 9.81);
+
+/// A stated check with what the vehicle has.
+struct ClosingCheck {
+  StatedCheck stated;
+  std::optional<double> found;  ///< none: the vehicle has no such motion
+  [[nodiscard]] bool holds() const noexcept { return found && *found >= stated.low && *found <= stated.high; }
+};
+[[nodiscard]] std::vector<ClosingCheck> closing_checks(const VehicleData& data);
+
+/// @throws InputError naming the first check that does not hold
+void require_closing(const VehicleData& data);
+
+}  // namespace railtab

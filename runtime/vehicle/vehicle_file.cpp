@@ -1,0 +1,102 @@
+#include "railtab/runtime/vehicle/vehicle_file.hpp"
+
+#include <fmt/format.h>
+
+#include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/vehicle/toml_section.hpp"
+#include "railtab/runtime/vehicle/vehicle_sections.hpp"
+
+namespace railtab {
+
+namespace {
+
+void state_masses(TomlSection& check, VehicleData& data) {
+  const double tolerance = check.number("tolerance", ratio_kind, 0.005);
+  const auto state = [&](std::string quantity, double value) {
+    data.checks.push_back({std::move(quantity), "kg", value * (1.0 - tolerance), value * (1.0 + tolerance)});
+  };
+  if (check.has("mass")) state("mass", check.number("mass", mass_kind));
+  if (!check.has("axle_load")) return;
+  const std::vector<double> loads = check.numbers("axle_load", mass_kind);
+  const std::size_t wheelsets = data.parts.wheelsets.size();
+  if (loads.size() != 1 && loads.size() != wheelsets) {
+    throw check.error("axle_load", fmt::format("{} axle loads", loads.size()),
+                      fmt::format("one for all or {}, from the front [kg]", wheelsets));
+  }
+  for (std::size_t w = 0; w < wheelsets; ++w) {
+    state(fmt::format("axle load of wheelset-{}", w + 1), loads[loads.size() == 1 ? 0 : w]);
+  }
+}
+
+void read_checks(TomlSection& root, VehicleData& data) {
+  std::optional<TomlSection> check = root.find_section("check");
+  if (!check) return;
+  state_masses(*check, data);
+  constexpr std::pair<std::string_view, std::string_view> motions[] = {
+      {"bounce", "car body bounce"},         {"pitch", "car body pitch"},           {"yaw", "car body yaw"},
+      {"lower_sway", "car body lower sway"}, {"upper_sway", "car body upper sway"}, {"bogie_bounce", "bogie bounce"}};
+  for (const auto& [key, motion] : motions) {
+    if (!check->has(key)) continue;
+    const auto [low, high] = check->interval(key, frequency_kind);
+    data.checks.push_back({std::string(motion), "Hz", low, high});
+  }
+  check->reject_others();
+}
+
+void check_length(const TomlSection& root, const VehicleData& data) {
+  const VehicleDescription& parts = data.parts;
+  const auto x = [&](int body) { return parts.bodies[static_cast<std::size_t>(body)].position.x(); };
+  const double reach = x(parts.wheelsets.front()) - x(parts.wheelsets.back());
+  if (parts.length > reach) return;
+  throw root.error("length", fmt::format("{} m", parts.length),
+                   fmt::format("more than the distance of the outer wheelsets, {:.6g} m", reach));
+}
+
+VehicleData read_root(TomlSection& root, const std::string& text, const std::filesystem::path& place) {
+  VehicleData data;
+  data.place = place.string();
+  data.text = text;
+  data.name = root.text("name");
+  data.description = root.text("description");
+  data.provenance = root.provenance();
+  if (root.has("motion") && root.text_of("motion", {"spatial", "vertical"}) == "vertical") {
+    data.motion = MotionPlane::vertical;
+  }
+  data.parts.name = data.name;
+  data.parts.nominal_radius = root.number("nominal_radius", radius_kind);
+  data.parts.length = root.number("length", distance_kind);
+  data.top_speed = root.number("top_speed_kmh", speed_kind, 0.0) / 3.6;
+  if (root.has("template")) {
+    static_cast<void>(root.text_of("template", {"two-bogie"}));
+    read_two_bogie(root, data);
+  } else {
+    read_bodies(root, data);
+  }
+  read_connections(root, data);
+  read_checks(root, data);
+  root.reject_others();
+  check_length(root, data);
+  return data;
+}
+
+}  // namespace
+
+VehicleData parse_vehicle(const std::string& text, const std::filesystem::path& place) {
+  check_toml_bounds(text, place);
+  try {
+    const toml::table table = toml::parse(text, place.string());
+    SourcedValues sourced;
+    TomlSection root(place, "", table, {}, sourced);
+    VehicleData data = read_root(root, text, place);
+    data.sourced = std::move(sourced);
+    return data;
+  } catch (const toml::parse_error& wrong) {
+    throw InputError(fmt::format("{}:{}: {}", place.string(), wrong.source().begin.line, wrong.description()));
+  }
+}
+
+VehicleData read_vehicle_file(const std::filesystem::path& file) {
+  return parse_vehicle(read_toml_text(file, "a vehicle's TOML file"), file);
+}
+
+}  // namespace railtab

@@ -1,0 +1,252 @@
+#include "railtab/runtime/vehicle/vehicle_sections.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace railtab {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+
+// A key of an axis, "kx" of "k" and "x".
+std::string of(std::string_view quantity, std::string_view axis) { return fmt::format("{}{}", quantity, axis); }
+
+bool is_vertical(const VehicleData& data) { return data.motion == MotionPlane::vertical; }
+
+// Damping along one axis, with what is not linear about it.
+double read_damping(TomlSection& section, std::string_view axis, const std::string& name, VehicleData& data) {
+  const std::string key = of("c", axis), curve_key = of("damper_curve_", axis), friction_key = of("friction_", axis);
+  const bool stated = section.has(key);
+  double damping = section.number(key, damping_kind, 0.0);
+  if (section.has(curve_key)) {
+    const auto curve = section.points(curve_key, "m/s and N");
+    if (!stated) damping = curve.front()[1] / curve.front()[0];
+    data.linearised.push_back(fmt::format(
+        "{} along {}: its damper of {} points, up to {:.6g} N at {:.6g} m/s, runs linearly with {:.6g} N s/m", name,
+        axis, curve.size(), curve.back()[1], curve.back()[0], damping));
+  }
+  if (section.has(friction_key)) {
+    const double force = section.number(friction_key, force_kind);
+    if (damping > 0.0) {
+      data.linearised.push_back(fmt::format(
+          "{} along {}: dry friction of {:.6g} N runs as a linear damper of {:.6g} N s/m", name, axis, force, damping));
+    } else {
+      data.left_out.push_back(fmt::format("{} along {}: dry friction of {:.6g} N", name, axis, force));
+    }
+  }
+  return damping;
+}
+
+void read_stop(TomlSection& section, std::string_view axis, const std::string& name, VehicleData& data) {
+  const std::string key = of("stop_", axis);
+  if (!section.has(key)) return;
+  const auto points = section.points(key, "m and N");
+  data.left_out.push_back(fmt::format("{} along {}: its stop, from {:.6g} N at {:.3g} mm to {:.6g} N at {:.3g} mm",
+                                      name, axis, points.front()[1], 1e3 * points.front()[0], points.back()[1],
+                                      1e3 * points.back()[0]));
+}
+
+RigidBody make_body(std::string name, const BodyInertia& inertia, const Eigen::Vector3d& position) {
+  return {std::move(name), inertia.mass, {inertia.Jx, inertia.Jy, inertia.Jz}, position};
+}
+
+void add_body(TomlSection& section, VehicleData& data, RigidBody body) {
+  const auto same = [&](const RigidBody& other) { return other.name == body.name; };
+  if (std::any_of(data.parts.bodies.begin(), data.parts.bodies.end(), same)) {
+    throw section.error("name", fmt::format("a second body {}", body.name), "a name of its own for each body");
+  }
+  data.parts.bodies.push_back(std::move(body));
+}
+
+int body_index(const TomlSection& section, const VehicleData& data, const std::string& name) {
+  const std::vector<RigidBody>& bodies = data.parts.bodies;
+  const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const RigidBody& b) { return b.name == name; });
+  if (found != bodies.end()) return static_cast<int>(found - bodies.begin());
+  std::vector<std::string> names;
+  for (const RigidBody& body : bodies) names.push_back(body.name);
+  throw section.error("joins", fmt::format("body '{}'", name), fmt::format("one of {}", fmt::join(names, ", ")));
+}
+
+// "side-frame-1-left" of "side-frame-1-*".
+std::string on_side(std::string name, std::string_view side) {
+  const std::size_t star = name.find('*');
+  return star == name.npos ? name : name.replace(star, 1, side);
+}
+
+void read_connection(TomlSection& section, VehicleData& data) {
+  const bool vertical = is_vertical(data);
+  const std::string name = section.text("name");
+  const auto joins = section.pairs("joins");
+  const double ahead = section.number("x", position_kind, 0.0);
+  const double y = vertical ? 0.0 : section.number("y", position_kind, 0.0);
+  const double height =
+      vertical ? data.parts.nominal_radius : section.number("height", height_kind, data.parts.nominal_radius);
+  const bool both_sides = !vertical && section.flag("both_sides");
+  const SuspensionUnit unit = read_unit(section, name, data);
+  Eigen::Vector3d turning = Eigen::Vector3d::Zero();
+  if (!vertical) {
+    turning.x() = section.number("k_roll", bending_kind, 0.0);
+    turning.z() = section.number("k_yaw", bending_kind, 0.0);
+  }
+  turning.y() = section.number("k_pitch", bending_kind, 0.0);
+  if (section.has("stand_in_for")) {
+    data.linearised.push_back(fmt::format("{}: a linear stand-in for {}", name, section.text("stand_in_for")));
+  }
+  section.reject_others();
+  if (both_sides && y == 0.0) throw section.error("y", "0 with both_sides", "the distance from the track's centre");
+  for (const auto& [first, second] : joins) {
+    for (const double side : both_sides ? std::vector<double>{-1.0, 1.0} : std::vector<double>{1.0}) {
+      const std::string_view word = side < 0.0 ? "left" : "right";
+      Suspension joint;
+      joint.body_a = body_index(section, data, both_sides ? on_side(first, word) : first);
+      joint.body_b = body_index(section, data, both_sides ? on_side(second, word) : second);
+      if (joint.body_a == joint.body_b) throw section.error("joins", first + " twice", "two different bodies");
+      const double x = data.parts.bodies[static_cast<std::size_t>(joint.body_a)].position.x() + ahead;
+      joint.point = {x, side * y, -height};
+      joint.stiffness = {unit.kx, unit.ky, unit.kz};
+      joint.damping = {unit.cx, unit.cy, unit.cz};
+      joint.rotational_stiffness = turning;
+      joint.series_stiffness = {unit.series_kx, unit.series_ky, unit.series_kz};
+      data.parts.suspension.push_back(joint);
+    }
+  }
+}
+
+}  // namespace
+
+SuspensionUnit read_unit(TomlSection& section, const std::string& name, VehicleData& data) {
+  std::array<double, 3> k{}, c{}, series{};
+  for (std::size_t i = is_vertical(data) ? 2 : 0; i < 3; ++i) {
+    k[i] = section.number(of("k", axes[i]), stiffness_kind, 0.0);
+    c[i] = read_damping(section, axes[i], name, data);
+    series[i] = section.number(of("series_k", axes[i]), stiffness_kind, 0.0);
+    if (series[i] > 0.0 && c[i] == 0.0) {
+      throw section.error(of("series_k", axes[i]), "a stiffness in series without damper",
+                          fmt::format("{} too", of("c", axes[i])));
+    }
+    read_stop(section, axes[i], name, data);
+  }
+  return {k[0], k[1], k[2], c[0], c[1], c[2], series[0], series[1], series[2]};
+}
+
+BodyInertia read_inertia(TomlSection& section, const VehicleData& data) {
+  BodyInertia inertia;
+  inertia.mass = section.number("mass", mass_kind);
+  if (is_vertical(data)) {
+    inertia.Jx = inertia.Jy = inertia.Jz = section.number("Jy", inertia_kind);
+  } else {
+    inertia.Jx = section.number("Jx", inertia_kind);
+    inertia.Jy = section.number("Jy", inertia_kind);
+    inertia.Jz = section.number("Jz", inertia_kind);
+  }
+  return inertia;
+}
+
+BodyInertia read_wheelset(TomlSection& section, const VehicleData& data) {
+  if (!is_vertical(data)) return read_inertia(section, data);
+  const double mass = section.number("mass", mass_kind), radius = data.parts.nominal_radius;
+  const double J = mass * radius * radius;  // acts on nothing: the rotations of vertical wheelsets are held
+  return {mass, J, J, J};
+}
+
+void read_further_bodies(TomlSection& root, VehicleData& data) {
+  const bool vertical = is_vertical(data);
+  for (TomlSection& section : root.sections("body")) {
+    const std::string name = section.text("name");
+    if (name.find_first_of("/* \t,") != name.npos || name == "car-body" || name.starts_with("wheelset")) {
+      throw section.error("name", fmt::format("'{}'", name),
+                          "a name without blanks, commas, / and *, other than car-body and wheelset");
+    }
+    const std::vector<double> x = section.numbers("x", position_kind);
+    const double y = vertical ? 0.0 : section.number("y", position_kind, 0.0);
+    const double height = vertical ? data.parts.nominal_radius : section.number("height", height_kind);
+    const bool both_sides = !vertical && section.flag("both_sides");
+    const BodyInertia inertia = read_inertia(section, data);
+    section.reject_others();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::string numbered = x.size() == 1 ? name : fmt::format("{}-{}", name, i + 1);
+      if (both_sides) {
+        add_body(section, data, make_body(numbered + "-left", inertia, {x[i], -y, -height}));
+        add_body(section, data, make_body(numbered + "-right", inertia, {x[i], y, -height}));
+      } else {
+        add_body(section, data, make_body(numbered, inertia, {x[i], y, -height}));
+      }
+    }
+  }
+}
+
+void read_bodies(TomlSection& root, VehicleData& data) {
+  const double radius = data.parts.nominal_radius;
+  TomlSection car = root.section("car_body");
+  const double car_x = car.number("x", position_kind, 0.0);
+  const double height = is_vertical(data) ? radius : car.number("height", height_kind);
+  add_body(car, data, make_body("car-body", read_inertia(car, data), {car_x, 0.0, -height}));
+  car.reject_others();
+  read_further_bodies(root, data);
+
+  TomlSection wheelset = root.section("wheelset");
+  const BodyInertia inertia = read_wheelset(wheelset, data);
+  const std::vector<double> x = wheelset.numbers("x", position_kind);
+  wheelset.reject_others();
+  for (std::size_t w = 0; w < x.size(); ++w) {
+    if (w > 0 && !(x[w] < x[w - 1])) {
+      throw wheelset.error("x", fmt::format("{} m after {} m", x[w], x[w - 1]), "positions in order from the front");
+    }
+    data.parts.wheelsets.push_back(static_cast<int>(data.parts.bodies.size()));
+    add_body(wheelset, data, make_body(fmt::format("wheelset-{}", w + 1), inertia, {x[w], 0.0, -radius}));
+  }
+}
+
+void read_two_bogie(TomlSection& root, VehicleData& data) {
+  const bool vertical = is_vertical(data);
+  CoachParameters p;
+  p.name = data.name;
+  p.nominal_radius = data.parts.nominal_radius;
+  p.length = data.parts.length;
+  // a number that vertical data have not, and which then acts on nothing
+  const auto spatial = [&](TomlSection& section, std::string_view key, const NumberKind& kind, double& member) {
+    member = vertical ? p.nominal_radius : section.number(key, kind);
+  };
+  TomlSection car = root.section("car_body");
+  p.car_body = read_inertia(car, data);
+  spatial(car, "height", distance_kind, p.car_body_height);
+  TomlSection bogie = root.section("bogie");
+  p.bogie = read_inertia(bogie, data);
+  spatial(bogie, "height", distance_kind, p.bogie_height);
+  TomlSection wheelset = root.section("wheelset");
+  p.wheelset = read_wheelset(wheelset, data);
+  TomlSection layout = root.section("layout");
+  p.half_wheelbase = layout.number("half_wheelbase", distance_kind);
+  p.half_bogie_distance = layout.number("half_bogie_distance", distance_kind);
+  p.axles_per_bogie = layout.whole_number("axles_per_bogie", 2, 3, 2);
+  TomlSection primary = root.section("primary");
+  p.primary = read_unit(primary, "primary suspension", data);
+  spatial(primary, "half_distance", distance_kind, p.primary_half_distance);
+  TomlSection secondary = root.section("secondary");
+  p.secondary = read_unit(secondary, "secondary suspension", data);
+  spatial(secondary, "half_distance", distance_kind, p.secondary_half_distance);
+  spatial(secondary, "height", distance_kind, p.secondary_height);
+  if (!vertical) p.secondary_bending = secondary.number("bending", bending_kind, 0.0);
+  for (const TomlSection* section : {&car, &bogie, &wheelset, &layout, &primary, &secondary}) section->reject_others();
+  if (std::optional<TomlSection> bar = vertical ? std::nullopt : root.find_section("roll_bar")) {
+    p.roll_bar = bar->number("stiffness", bending_kind);
+    bar->reject_others();
+  }
+  try {
+    data.parts = describe_coach(p);
+  } catch (const InputError& wrong) {
+    throw InputError(fmt::format("{}: {}", data.place, wrong.what()));
+  }
+  data.coach = p;
+  read_further_bodies(root, data);
+}
+
+void read_connections(TomlSection& root, VehicleData& data) {
+  for (TomlSection& section : root.sections("connection")) read_connection(section, data);
+}
+
+}  // namespace railtab

@@ -1,0 +1,350 @@
+// Vehicle files: what they mean, and what is rejected with which words.
+#include "railtab/runtime/vehicle/vehicle_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "../folder_fixture.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/run_plan.hpp"
+#include "railtab/runtime/scene/scene.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_warnings.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
+#include "railtab/runtime/vehicle/vehicle_summary.hpp"
+
+namespace railtab {
+namespace {
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+std::string manchester() { return library_vehicle("manchester-coach").text; }
+
+std::string message_of(const std::string& text) {
+  try {
+    const VehicleData data = parse_vehicle(text, "coach.toml");
+    require_closing(data);
+  } catch (const InputError& wrong) {
+    return wrong.what();
+  }
+  return "no InputError";
+}
+
+void expect_rejected(const std::string& text, const std::vector<std::string>& words) {
+  const std::string message = message_of(text);
+  for (const std::string& word : words) EXPECT_NE(message.find(word), message.npos) << message << "\nwithout: " << word;
+}
+
+/// Two axles without bogies, of all that a file needs without template.
+const std::string wagon = R"(name = "wagon"
+description = "two axles"
+nominal_radius = 0.46
+length = 9.0
+
+[car_body]
+mass = 20000.0
+Jx = 2e4
+Jy = 1e5
+Jz = 1e5
+height = 1.5
+
+[wheelset]
+x = [2.5, -2.5]
+mass = 1500.0
+Jx = 900.0
+Jy = 100.0
+Jz = 900.0
+
+[[connection]]
+name = "springs"
+joins = [["wheelset-1", "car-body"], ["wheelset-2", "car-body"]]
+y = 1.0
+both_sides = true
+kx = 5e6
+ky = 4e6
+kz = 1e6
+cz = 3e4
+)";
+
+TEST(VehicleFile, OfBodiesAndConnectionsIsTheModelOfItsParts) {
+  const VehicleModel built = build_vehicle(parse_vehicle(wagon, "wagon.toml"), MotionPlane::spatial);
+  VehicleDescription parts;
+  parts.name = "wagon";
+  parts.bodies = {{"car-body", 20000.0, {2e4, 1e5, 1e5}, {0.0, 0.0, -1.5}},
+                  {"wheelset-1", 1500.0, {900.0, 100.0, 900.0}, {2.5, 0.0, -0.46}},
+                  {"wheelset-2", 1500.0, {900.0, 100.0, 900.0}, {-2.5, 0.0, -0.46}}};
+  for (const int w : {1, 2}) {
+    for (const double y : {-1.0, 1.0}) {
+      parts.suspension.push_back({w, 0, {w == 1 ? 2.5 : -2.5, y, -0.46}, {5e6, 4e6, 1e6}, {0.0, 0.0, 3e4}});
+    }
+  }
+  parts.wheelsets = {1, 2};
+  parts.held_dofs.assign(3, DofIndices{0, 0, 0, 0, 0, 0});
+  parts.held_dofs[0][0] = held;
+  parts.length = 9.0;
+  const VehicleModel expected = assemble_vehicle(parts);
+  EXPECT_EQ(built.stiffness, expected.stiffness);
+  EXPECT_EQ(built.damping, expected.damping);
+  EXPECT_EQ(built.mass, expected.mass);
+  EXPECT_EQ(built.static_load, expected.static_load);
+  EXPECT_EQ(built.length, 9.0);
+}
+
+TEST(VehicleFile, TemplateIsShortForBodiesAndConnections) {
+  const VehicleData coach = library_vehicle("manchester-coach");
+  std::string text = R"(name = "manchester-coach"
+description = "the same without template"
+nominal_radius = 0.46
+length = 26.4
+[car_body]
+mass = 32000.0
+Jx = 56800.0
+Jy = 1.97e6
+Jz = 1.97e6
+height = 1.8
+[[body]]
+name = "bogie"
+x = [9.5, -9.5]
+height = 0.6
+mass = 2615.0
+Jx = 1722.0
+Jy = 1476.0
+Jz = 3067.0
+[wheelset]
+x = [10.78, 8.22, -8.22, -10.78]
+mass = 1813.0
+Jx = 1120.0
+Jy = 112.0
+Jz = 1120.0
+[[connection]]
+name = "primary"
+joins = [["wheelset-1", "bogie-1"], ["wheelset-2", "bogie-1"], ["wheelset-3", "bogie-2"], ["wheelset-4", "bogie-2"]]
+y = 1.0
+both_sides = true
+kx = 31.391e6
+ky = 3.884e6
+kz = 1.220e6
+cx = 15e3
+cy = 2e3
+cz = 4e3
+[[connection]]
+name = "secondary"
+joins = [["bogie-1", "car-body"], ["bogie-2", "car-body"]]
+y = 1.0
+both_sides = true
+height = 0.8275
+kx = 0.160e6
+ky = 0.160e6
+kz = 0.430e6
+cy = 32e3
+cz = 20e3
+k_roll = 480.5e3
+k_pitch = 10.5e3
+)";
+  const VehicleModel general = build_vehicle(parse_vehicle(text, "coach.toml"), MotionPlane::spatial);
+  const VehicleModel built = build_vehicle(coach, MotionPlane::spatial);
+  EXPECT_LT((general.stiffness - built.stiffness).norm(), 1e-14 * built.stiffness.norm());
+  EXPECT_LT((general.damping - built.damping).norm(), 1e-14 * built.damping.norm());
+  EXPECT_EQ(general.mass, built.mass);
+}
+
+TEST(VehicleFile, ThreeAxlesStandAroundTheBogiesCentre) {
+  const VehicleData data = library_vehicle("c0c0-locomotive");
+  std::vector<double> x;
+  for (const int w : data.parts.wheelsets) x.push_back(data.parts.bodies[static_cast<std::size_t>(w)].position.x());
+  EXPECT_EQ(x, (std::vector<double>{5.642 + 2.15, 5.642, 5.642 - 2.15, -5.642 + 2.15, -5.642, -5.642 - 2.15}));
+}
+
+TEST(VehicleFile, ValuesInheritTheirProvenance) {
+  const VehicleData data =
+      parse_vehicle(replaced(replaced(wagon, "length = 9.0",
+                                      "length = { value = 9.0, standing = \"suspect\", note = \"once 8.5\" }\n"
+                                      "source = \"drawing 12\"\ndate = \"1987\"\nstanding = \"verified\""),
+                             "[wheelset]", "[wheelset]\nstanding = \"assumed\""),
+                    "wagon.toml");
+  const auto value = [&](std::string_view key) {
+    const auto found = std::find_if(data.sourced.values.begin(), data.sourced.values.end(),
+                                    [&](const auto& v) { return v.key == key; });
+    EXPECT_NE(found, data.sourced.values.end()) << key;
+    return *found;
+  };
+  EXPECT_EQ(value("length").provenance.standing, Standing::suspect);
+  EXPECT_EQ(value("length").provenance.note, "once 8.5");
+  EXPECT_EQ(value("length").provenance.source, "drawing 12");
+  EXPECT_EQ(value("car_body.mass").provenance.standing, Standing::verified);
+  EXPECT_EQ(value("wheelset.mass").provenance.standing, Standing::assumed);
+  EXPECT_EQ(value("connection[1].kz").provenance.date, "1987");
+  EXPECT_EQ(value("connection[1].kz").unit, "N/m");
+}
+
+TEST(VehicleFile, SaysWhatIsNotLinear) {
+  const VehicleData data = parse_vehicle(
+      wagon +
+          "damper_curve_y = [[0.1, 2500], [0.3, 3585]]\nstop_y = [[0.025, 0], [0.03, 600]]\nfriction_x = 4e3\n"
+          "friction_z = 2e3\nstand_in_for = \"leaf springs\"\n",
+      "wagon.toml");
+  EXPECT_EQ(data.parts.suspension[0].damping.y(), 25000.0);  // the slope of the first segment
+  ASSERT_EQ(data.linearised.size(), 3U);
+  EXPECT_EQ(data.linearised[0],
+            "springs along y: its damper of 2 points, up to 3585 N at 0.3 m/s, runs linearly with 25000 N s/m");
+  EXPECT_EQ(data.linearised[1], "springs along z: dry friction of 2000 N runs as a linear damper of 30000 N s/m");
+  EXPECT_EQ(data.linearised[2], "springs: a linear stand-in for leaf springs");
+  ASSERT_EQ(data.left_out.size(), 2U);
+  EXPECT_EQ(data.left_out[0], "springs along x: dry friction of 4000 N");
+  EXPECT_EQ(data.left_out[1], "springs along y: its stop, from 0 N at 25 mm to 600 N at 30 mm");
+}
+
+TEST(VehicleFile, RejectsKeysThatItDoesNotKnow) {
+  expect_rejected(replaced(manchester(), "half_wheelbase", "half_wheelbse"),
+                  {"coach.toml:", "layout.half_wheelbase", "found nothing", "expected a number, 0.05 to 100 m"});
+  expect_rejected(replaced(manchester(), "[roll_bar]\n", "[roll_bar]\nstifness = 1.0\n"),
+                  {"coach.toml:", "unknown key 'roll_bar.stifness'; did you mean 'roll_bar.stiffness'?"});
+  expect_rejected(replaced(manchester(), "[roll_bar]", "[rollbar]"),
+                  {"unknown key 'rollbar'; did you mean 'roll_bar'?"});
+  expect_rejected(wagon + "k = 1.0\n", {"unknown key 'connection[1].k'"});
+  expect_rejected(wagon + "[bogie]\nmass = 1.0\n", {"unknown key 'bogie'"});
+}
+
+TEST(VehicleFile, RejectsValuesWithFileLineAndKey) {
+  expect_rejected(replaced(manchester(), "mass = 32000.0", "mass = \"32 t\""),
+                  {"coach.toml:", "car_body.mass: found the text \"32 t\", expected a number, 1 to 1e+06 kg"});
+  expect_rejected(replaced(manchester(), "mass = 32000.0", "mass = -1.0"), {"car_body.mass: found -1"});
+  expect_rejected(replaced(manchester(), "mass = 32000.0", "mass = nan"), {"car_body.mass: found nan"});
+  expect_rejected(replaced(manchester(), "height = 0.6", "height = 600.0"),
+                  {"bogie.height: found 600, expected a number, 0.05 to 100 m"});
+  expect_rejected(replaced(manchester(), "mass = 32000.0", "mass = { value = 32000.0, sorce = \"x\" }"),
+                  {"car_body.mass: found { sorce = … }", "source, date, standing, note"});
+  expect_rejected(replaced(manchester(), "standing = \"verified\"", "standing = \"certain\""),
+                  {"standing: found the text \"certain\", expected one of verified, assumed, suspect"});
+  expect_rejected(replaced(manchester(), "template = \"two-bogie\"", "template = \"three-piece\""),
+                  {"template: found the text \"three-piece\", expected one of two-bogie"});
+  expect_rejected(replaced(manchester(), "0.46", "46.0"), {"nominal_radius: found 46, expected a number, 0.05 to 2 m"});
+  expect_rejected(replaced(wagon, "length = 9.0", "length = 4.0"),
+                  {"length: found 4 m, expected more than the distance of the outer wheelsets, 5 m"});
+  expect_rejected(replaced(wagon, "x = [2.5, -2.5]", "x = [-2.5, 2.5]"),
+                  {"wheelset.x: found 2.5 m after -2.5 m", "in order from the front"});
+  expect_rejected(wagon + "series_ky = 1e6\n",
+                  {"connection[1].series_ky: found a stiffness in series without damper, expected cy too"});
+  expect_rejected(wagon + "stop_y = [[0.03, 600], [0.02, 900]]\n", {"connection[1].stop_y", "points", "m and N"});
+  expect_rejected("name = ", {"coach.toml:1: "});
+}
+
+TEST(VehicleFile, RejectsBodiesThatAreNotThere) {
+  expect_rejected(replaced(wagon, "\"wheelset-2\", \"car-body\"", "\"wheelset-2\", \"car_body\""),
+                  {"connection[1].joins: found body 'car_body', expected one of car-body, wheelset-1, wheelset-2"});
+  expect_rejected(replaced(wagon, "\"wheelset-2\", \"car-body\"", "\"wheelset-2\""),
+                  {"connection[1].joins", "pairs of bodies"});
+  expect_rejected(replaced(wagon, "kz = 1e6\n", ""), {"a weight of", "that no spring carries"});
+}
+
+TEST(VehicleFile, MustCloseWithItself) {
+  expect_rejected(replaced(manchester(), "mass = 44482.0", "mass = 45000.0"),
+                  {"coach.toml: check: mass: found 44482 kg by the file's own values, expected 44775 to 45225 kg"});
+  expect_rejected(replaced(manchester(), "bounce = [1.0, 1.2]", "bounce = [1.3, 1.5]"),
+                  {"check: car body bounce: found 1.08016 Hz", "expected 1.3 to 1.5 Hz"});
+  expect_rejected(wagon + "[check]\naxle_load = [11500.0, 11500.0, 11500.0]\n",
+                  {"check.axle_load: found 3 axle loads, expected one for all or 2"});
+  expect_rejected(wagon + "[check]\nmass = 23000.0\naxle_load = 11500.0\n", {"no InputError"});
+}
+
+class VehicleInScene : public testing::InFolder {
+ protected:
+  [[nodiscard]] SceneParameters scene(const std::string& train, const std::string& contact) const {
+    write("scene.toml", "[train]\n" + train + "\n[contact]\n" + contact +
+                            "\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
+    return read_scene(folder_ / "scene.toml");
+  }
+  const std::string rigid = "normal = \"rigid\"", online = "mode = \"online\"";
+};
+
+TEST_F(VehicleInScene, IsAFileBesideIt) {
+  write("wagon.toml", wagon);
+  const SceneParameters parameters = scene("vehicle = \"wagon.toml\"", online);
+  ASSERT_EQ(parameters.files.size(), 1U);  // whose checksum the results keep
+  const VsiModel model = build_model(parameters);
+  EXPECT_EQ(model.vehicle.name, "wagon");
+  EXPECT_EQ(model.wheelsets(), 2);
+  const RunPlan plan = plan_run(parameters);
+  EXPECT_EQ(plan.built.front(), "1 x wagon, 17 degrees of freedom each");
+  EXPECT_TRUE(plan.warnings.empty());
+}
+
+TEST_F(VehicleInScene, IsRejectedByTheSceneWhereThereIsNone) {
+  const auto message = [&](const std::string& vehicle, const std::string& contact) -> std::string {
+    try {
+      (void)build_model(scene("vehicle = \"" + vehicle + "\"", contact));
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "no InputError";
+  };
+  EXPECT_NE(message("nowhere.toml", online).find("scene.toml:2: train.vehicle: found no file"), std::string::npos);
+  EXPECT_NE(
+      message("manchester", online).find("a vehicle's TOML file, relative to the scene, or one of c0c0-locomotive"),
+      std::string::npos);
+  const std::string vertical = message("velaro-e-coach", online);
+  EXPECT_NE(
+      vertical.find("train.vehicle: found velaro-e-coach, whose data are vertical only, expected contact.normal = "
+                    "\"rigid\", or a copy of its file"),
+      std::string::npos)
+      << vertical;
+  EXPECT_EQ(message("velaro-e-coach", rigid), "no InputError");
+}
+
+TEST_F(VehicleInScene, WarnsAboveItsTopSpeed) {
+  const auto warnings = [&](const std::string& train) {
+    const SceneParameters parameters = scene(train, rigid);
+    return scene_warnings(parameters, build_model(parameters));
+  };
+  write("fast.toml", "top_speed_kmh = 120.0\n" + wagon);
+  EXPECT_TRUE(warnings("vehicle = \"fast.toml\"\nspeed_kmh = 120").empty());
+  const std::vector<std::string> above = warnings("vehicle = \"fast.toml\"\nspeed_kmh = 121");
+  ASSERT_EQ(above.size(), 1U);
+  EXPECT_EQ(above[0],
+            "the train runs at 121 km/h, and the top speed of wagon is 120 km/h: its data do not describe it there");
+  write("speed.csv", "t[s],V[km/h]\n0,100\n0.1,130\n");
+  EXPECT_EQ(warnings("vehicle = \"fast.toml\"\nspeed_file = \"speed.csv\"").size(), 1U);
+}
+
+/// A run of each vehicle over the bridge of docs/examples/demo.toml: what it warns of is what its file says.
+class VehicleRun : public testing::InFolder, public ::testing::WithParamInterface<std::string> {};
+
+TEST_P(VehicleRun, CrossesTheDemoBridge) {
+  const VehicleData data = library_vehicle(GetParam());
+  const bool vertical = data.motion == MotionPlane::vertical;
+  const std::string contact = vertical ? "normal = \"rigid\""
+                                       : "mode = \"online\"\ncreep_law = \"linear\"\ndimensions.nominal_radius = " +
+                                             std::to_string(data.parts.nominal_radius);
+  write("scene.toml", "[train]\nvehicle = \"" + GetParam() + "\"\nspeed_kmh = 100\nstart = -10.0\n[contact]\n" +
+                          contact +
+                          "\n[track]\nlength_before = 40.0\nlength_after = 50.0\n[[bridge]]\nlength = 32.0\n"
+                          "damping_ratio = 0.01\n[integration]\ntime_step = 2e-3\nduration = 1.0\n");
+  const SceneParameters scene = read_scene(folder_ / "scene.toml");
+  const RunPlan plan = plan_run(scene);
+  EXPECT_EQ(plan.warnings.size(), data.linearised.empty() ? 0U : 1U);
+  for (const std::string& warning : plan.warnings) {
+    EXPECT_TRUE(warning.starts_with(GetParam() + " has force elements that are not linear: ")) << warning;
+  }
+  const double static_load = summarise(build_vehicle(data, data.motion), 0).wheel_load.front();
+  double highest = 0.0;
+  const RunSummary run = Scene(folder_ / "scene.toml").run([&](const StepRecord& step) {
+    for (const WheelRecord& wheel : step.wheels) highest = std::max(highest, wheel.Q);
+  });
+  EXPECT_TRUE(run.complete) << run.message;
+  EXPECT_GT(highest, static_load);
+  EXPECT_LT(highest, 1.5 * static_load);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, VehicleRun, ::testing::ValuesIn(vehicle_names()), [](const auto& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,240 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "commands.hpp"
+#include "railtab/runtime/vehicle/vehicle_library.hpp"
+#include "railtab/runtime/vehicle/vehicle_modes.hpp"
+#include "railtab/runtime/vehicle/vehicle_summary.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A vehicle with what follows from its data.
+struct Described {
+  VehicleData data;
+  VehicleModel model;
+  VehicleSummary summary;
+  std::vector<VehicleMode> modes;
+  std::vector<ClosingCheck> checks;
+};
+
+Described describe(const std::string& name, int modes) {
+  Described v;
+  v.data = find_vehicle(name);
+  v.model = build_vehicle(v.data, v.data.motion);
+  v.summary = summarise(v.model, 0);
+  v.modes = natural_modes(v.model, modes);
+  v.checks = closing_checks(v.data);
+  return v;
+}
+
+std::string_view motion_of(const VehicleData& data) {
+  return data.motion == MotionPlane::vertical ? "vertical" : "spatial";
+}
+
+void print_library() {
+  for (const std::string& name : vehicle_names()) {
+    const VehicleData data = library_vehicle(name);
+    print_formatted("{:24} {}\n", name, data.description);
+  }
+}
+
+Json library_as_json() {
+  Json vehicles = Json::array();
+  for (const std::string& name : vehicle_names()) {
+    const VehicleData data = library_vehicle(name);
+    vehicles.push_back({{"name", name},
+                        {"description", data.description},
+                        {"motion", motion_of(data)},
+                        {"standing", standing_name(data.provenance.standing)},
+                        {"source", data.provenance.source}});
+  }
+  return {{"vehicles", vehicles}};
+}
+
+void print_bodies(const Described& v) {
+  const bool vertical = v.data.motion == MotionPlane::vertical;
+  print_formatted("  {:24} {:>9} {:>10} {:>10} {:>10} {:>8} {:>7} {:>7}\n", "body", "mass kg", "Jx kg m²", "Jy kg m²",
+                  "Jz kg m²", "x m", "y m", "height m");
+  for (const RigidBody& body : v.data.parts.bodies) {
+    const std::string side = vertical ? "" : fmt::format("{:.6g}", body.inertia.x());
+    const std::string turn = vertical ? "" : fmt::format("{:.6g}", body.inertia.z());
+    print_formatted("  {:24} {:9.6g} {:>10} {:10.6g} {:>10} {:8.3f} {:7.3f} {:>7}\n", body.name, body.mass, side,
+                    body.inertia.y(), turn, body.position.x(), body.position.y(),
+                    vertical ? "" : fmt::format("{:.3f}", -body.position.z()));
+  }
+}
+
+/// "primary" of "primary.kz".
+std::string section_of(const std::string& key) { return key.substr(0, key.rfind('.')); }
+
+bool equal(const Provenance& a, const Provenance& b) {
+  return a.source == b.source && a.date == b.date && a.standing == b.standing && a.note == b.note;
+}
+
+/// The file's source, and what sections and values have of their own.
+void print_sources(const VehicleData& data) {
+  const Provenance& p = data.provenance;
+  print_formatted("  source: {}{}{}, {}\n", p.source.empty() ? "not stated" : p.source, p.date.empty() ? "" : ", ",
+                  p.date, standing_name(p.standing));
+  if (!p.note.empty()) print_formatted("    {}\n", p.note);
+  const auto print_own = [&](const std::string& what, const Provenance& own) {
+    print_formatted("    {}: {}{}{}\n", what, standing_name(own.standing),
+                    own.source == p.source ? "" : fmt::format(", source: {}", own.source),
+                    own.note.empty() ? "" : fmt::format(", {}", own.note));
+  };
+  for (const auto& [section, own] : data.sourced.sections) {
+    if (!own.note.empty() || own.source != p.source || own.standing != p.standing) print_own(section, own);
+  }
+  for (const SourcedValue& value : data.sourced.values) {
+    const auto of_section = data.sourced.sections.find(section_of(value.key));
+    if (equal(value.provenance, of_section == data.sourced.sections.end() ? p : of_section->second)) continue;
+    print_own(fmt::format("{} = {:.6g}{}{}", value.key, value.value, value.unit.empty() ? "" : " ", value.unit),
+              value.provenance);
+  }
+}
+
+void print(const Described& v) {
+  const VehicleData& data = v.data;
+  print_formatted("{}: {}\n", data.name, data.description);
+  if (data.motion == MotionPlane::vertical) {
+    print_formatted("  vertical data only: runs with contact.normal = \"rigid\"\n");
+  }
+  print_formatted("  {:.6g} kg, {:.6g} m over couplers, wheels of {:.6g} m radius{}\n", v.summary.mass, v.model.length,
+                  v.model.nominal_radius,
+                  data.top_speed > 0.0 ? fmt::format(", top speed {:.6g} km/h", 3.6 * data.top_speed) : "");
+  print_formatted("  {:24} {:>8} {:>12} {:>14}\n", "wheelset", "x m", "wheel kN", "axle load t");
+  for (std::size_t w = 0; w < v.summary.wheel_load.size(); ++w) {
+    const auto body = static_cast<std::size_t>(v.model.wheelsets[w]);
+    const double load = v.summary.wheel_load[w];
+    print_formatted("  {:24} {:8.3f} {:12.3f} {:14.3f}\n", v.model.bodies[body].name, v.model.bodies[body].position.x(),
+                    1e-3 * load, 2e-3 * load / 9.81);
+  }
+  print_bodies(v);
+  print_formatted("  natural frequencies on standing wheelsets\n");
+  for (const VehicleMode& mode : v.modes) {
+    print_formatted("    {:8.3f} Hz, damping ratio {:5.3f}  {}{}\n", mode.frequency, mode.damping, mode.motion,
+                    mode.damping < 1.0 ? "" : ", without oscillation");
+  }
+  for (const std::string& element : data.linearised) print_formatted("  linear stand-in: {}\n", element);
+  for (const std::string& element : data.left_out) print_formatted("  left out: {}\n", element);
+  for (const ClosingCheck& check : v.checks) {
+    print_formatted("  {}: {} {} {}, stated {:.6g} to {:.6g} {}\n", check.holds() ? "closes" : "does not close",
+                    check.stated.quantity, check.found ? fmt::format("{:.6g}", *check.found) : "none",
+                    check.stated.unit, check.stated.low, check.stated.high, check.stated.unit);
+  }
+  print_sources(data);
+}
+
+Json bodies_as_json(const VehicleData& data) {
+  Json bodies = Json::array();
+  for (const RigidBody& body : data.parts.bodies) {
+    Json entry{{"name", body.name}, {"mass", body.mass}};
+    if (data.motion == MotionPlane::spatial) entry["Jx"] = body.inertia.x();
+    entry["Jy"] = body.inertia.y();
+    if (data.motion == MotionPlane::spatial) entry["Jz"] = body.inertia.z();
+    entry["x"] = body.position.x();
+    if (data.motion == MotionPlane::spatial) {
+      entry["y"] = body.position.y();
+      entry["height"] = -body.position.z();
+    }
+    bodies.push_back(std::move(entry));
+  }
+  return bodies;
+}
+
+Json values_as_json(const VehicleData& data) {
+  Json values = Json::array();
+  for (const SourcedValue& value : data.sourced.values) {
+    values.push_back({{"key", value.key},
+                      {"unit", value.unit},
+                      {"value", value.value},
+                      {"standing", standing_name(value.provenance.standing)},
+                      {"source", value.provenance.source},
+                      {"date", value.provenance.date},
+                      {"note", value.provenance.note}});
+  }
+  return values;
+}
+
+Json as_json(const Described& v) {
+  const VehicleData& data = v.data;
+  Json wheelsets = Json::array(), modes = Json::array(), checks = Json::array();
+  for (std::size_t w = 0; w < v.summary.wheel_load.size(); ++w) {
+    const double load = v.summary.wheel_load[w];
+    wheelsets.push_back({{"x", v.model.bodies[static_cast<std::size_t>(v.model.wheelsets[w])].position.x()},
+                         {"wheel_load", load},
+                         {"axle_load", 2.0 * load / 9.81}});
+  }
+  for (const VehicleMode& mode : v.modes) {
+    modes.push_back({{"frequency", mode.frequency}, {"damping_ratio", mode.damping}, {"motion", mode.motion}});
+  }
+  for (const ClosingCheck& check : v.checks) {
+    checks.push_back({{"quantity", check.stated.quantity},
+                      {"unit", check.stated.unit},
+                      {"low", check.stated.low},
+                      {"high", check.stated.high},
+                      {"found", check.found ? Json(*check.found) : Json()},
+                      {"closes", check.holds()}});
+  }
+  return {{"name", data.name},
+          {"description", data.description},
+          {"motion", motion_of(data)},
+          {"mass", v.summary.mass},
+          {"length", v.model.length},
+          {"nominal_radius", v.model.nominal_radius},
+          {"top_speed", data.top_speed > 0.0 ? Json(data.top_speed) : Json()},
+          {"dofs", v.model.dofs()},
+          {"wheelsets", wheelsets},
+          {"bodies", bodies_as_json(data)},
+          {"modes", modes},
+          {"linearised", data.linearised},
+          {"left_out", data.left_out},
+          {"checks", checks},
+          {"values", values_as_json(data)}};
+}
+
+}  // namespace
+
+int vehicle_command(const Arguments& arguments) {
+  po::options_description own("Options");
+  own.add_options()("vehicle", text_value()->value_name("NAME|FILE.toml"),
+                    "a vehicle of the library or of a file; none: lists the library")  //
+      ("modes", text_value("8")->value_name("N"), "natural frequencies on standing wheelsets, 0 for none")(
+          "toml", "prints the vehicle's file, to start one's own from");
+  const CommandLine line("vsi vehicle [NAME|FILE.toml] [--modes N] [--toml]", own, {"vehicle"}, arguments);
+  if (line.help_printed()) return 0;
+  constexpr int most_modes = 500;
+  const int modes = static_cast<int>(line.whole_number("modes", 0, most_modes));
+  if (!line.given("vehicle")) {
+    if (line.json()) {
+      print_json_line(library_as_json());
+    } else {
+      print_library();
+    }
+    return 0;
+  }
+  const std::string name = line.text("vehicle");
+  if (line.given("toml")) {
+    print_formatted("{}", find_vehicle(name).text);
+    return 0;
+  }
+  const Described vehicle = describe(name, modes);
+  if (line.json()) {
+    print_json_line(as_json(vehicle));
+  } else {
+    print(vehicle);
+  }
+  return 0;
+}
+
+}  // namespace railtab::vsi
