@@ -54,6 +54,8 @@ foreach(component contact contact_files solver)
 endforeach()
 
 install(FILES ${PROJECT_SOURCE_DIR}/tables/data/creep_table_nu028.h5 DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab)
+# also compiled in; these are for users to read and to start their own from
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/vehicle/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab/vehicles)
 
 # Both commands in one folder of the build: build/<preset>/bin
 foreach(command tablegen_command vsi_command)

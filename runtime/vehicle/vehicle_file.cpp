@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/vehicle/series_damper.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
+#include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vehicle/vehicle_sections.hpp"
 
 namespace railtab {
@@ -52,6 +54,14 @@ void check_length(const TomlSection& root, const VehicleData& data) {
                    fmt::format("more than the distance of the outer wheelsets, {:.6g} m", reach));
 }
 
+void check_size(const TomlSection& root, const VehicleData& data) {
+  const std::size_t rows =
+      6 * data.parts.bodies.size() + static_cast<std::size_t>(count_series_dampers(data.parts.suspension));
+  if (rows <= static_cast<std::size_t>(most_vehicle_rows)) return;
+  throw root.error("name", fmt::format("a vehicle of {} degrees of freedom", rows),
+                   fmt::format("at most {}", most_vehicle_rows));
+}
+
 VehicleData read_root(TomlSection& root, const std::string& text, const std::filesystem::path& place) {
   VehicleData data;
   data.place = place.string();
@@ -76,6 +86,7 @@ VehicleData read_root(TomlSection& root, const std::string& text, const std::fil
   read_checks(root, data);
   root.reject_others();
   check_length(root, data);
+  check_size(root, data);
   return data;
 }
 

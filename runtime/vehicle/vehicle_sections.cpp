@@ -124,7 +124,7 @@ SuspensionUnit read_unit(TomlSection& section, const std::string& name, VehicleD
     k[i] = section.number(of("k", axes[i]), stiffness_kind, 0.0);
     c[i] = read_damping(section, axes[i], name, data);
     series[i] = section.number(of("series_k", axes[i]), stiffness_kind, 0.0);
-    if (series[i] > 0.0 && c[i] == 0.0) {
+    if (series[i] > 0.0 && c[i] < 1.0) {
       throw section.error(of("series_k", axes[i]), "a stiffness in series without damper",
                           fmt::format("{} too", of("c", axes[i])));
     }

@@ -5,7 +5,9 @@
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
+#include "railtab/runtime/vehicle/vehicle_file.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
+#include "railtab/runtime/vehicle/vehicle_modes.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 #include "reading.hpp"
 
@@ -82,5 +84,12 @@ void read_node_file(const Path& file) {
 
 void read_vehicle_file(const Path& file) { take_vehicle(beside(file, "vehicle_stiffness.mtx"), file); }
 void read_vehicle_stiffness(const Path& file) { take_vehicle(file, beside(file, "vehicle_dofs.csv")); }
+
+void read_vehicle_toml(const Path& file) {
+  const VehicleData data = railtab::read_vehicle_file(file);
+  const VehicleModel vehicle = build_vehicle(data, data.motion);
+  static_cast<void>(closing_checks(data));
+  for (const VehicleMode& mode : natural_modes(vehicle, 3)) require_finite({mode.frequency, mode.damping}, "a mode");
+}
 
 }  // namespace railtab::fuzz

@@ -57,6 +57,7 @@ const std::vector<Reader>& readers() {
       {"structure_dofs", ".csv", read_structure_table},
       {"vehicle_dofs", ".csv", read_vehicle_file},
       {"vehicle_stiffness", ".mtx", read_vehicle_stiffness},
+      {"vehicle_file", ".toml", read_vehicle_toml},
       {"irregularity", ".csv", read_irregularity_file},
       {"load_history", ".csv", read_load_file},
       {"ground_record", ".csv", read_ground_file},

@@ -41,6 +41,8 @@ void read_node_file(const Path& file);
 /// A vehicle by the table of its rows, or by its stiffness.
 void read_vehicle_file(const Path& file);
 void read_vehicle_stiffness(const Path& file);
+/// A vehicle's TOML file, its model and modes.
+void read_vehicle_toml(const Path& file);
 
 // table_files.cpp: HDF5
 void read_geometry_file(const Path& file);

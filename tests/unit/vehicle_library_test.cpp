@@ -1,11 +1,15 @@
 // Every vehicle of the library against its source's sums and against closed forms of its own.
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -158,6 +162,45 @@ INSTANTIATE_TEST_SUITE_P(Of, VehicleLibrary, ::testing::ValuesIn(vehicle_names()
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
+
+/// "| manchester-coach | 44.482 | 4 | 54.55 | 1.08 | 0.13 | spatial |" for each vehicle.
+std::string table_of_library() {
+  std::string table;
+  for (const std::string& name : vehicle_names()) {
+    const VehicleData data = library_vehicle(name);
+    const VehicleModel vehicle = build_vehicle(data, data.motion);
+    const VehicleSummary summary = summarise(vehicle, 0);
+    const std::vector<VehicleMode> modes = natural_modes(vehicle, vehicle.dofs());
+    // of a pair of motions without oscillation the slower one
+    const auto bounce = std::find_if(modes.begin(), modes.end(), [](const VehicleMode& mode) {
+      return mode.motion == "car body bounce" && mode.damping < 1.0;
+    });
+    EXPECT_NE(bounce, modes.end()) << name;
+    table += fmt::format("| `{}` | {:.3f} | {} | {:.2f} | {:.2f} | {:.2f} | {} |\n", name, 1e-3 * summary.mass,
+                         summary.wheel_load.size(), 1e-3 * summary.wheel_load.front(), bounce->frequency,
+                         bounce->damping, data.motion == MotionPlane::vertical ? "vertical" : "spatial");
+  }
+  return table;
+}
+
+/// With RAILTAB_UPDATE_GUIDE set, the test writes the table (tools/regenerate any) and passes.
+TEST(VehicleTable, IsThatOfTheTheoryPage) {
+  const std::string file = RAILTAB_SOURCE_DIR "/docs/theory/vehicle.md";
+  std::ifstream stream(file);
+  std::string page((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const std::size_t heading = page.find("| vehicle | mass in t |");
+  ASSERT_NE(heading, page.npos);
+  const std::size_t begin = page.find('\n', page.find('\n', heading) + 1) + 1;
+  std::size_t end = begin;
+  while (page[end] == '|') end = page.find('\n', end) + 1;
+  const std::string expected = table_of_library();
+  if (std::getenv("RAILTAB_UPDATE_GUIDE") != nullptr) {
+    page.replace(begin, end - begin, expected);
+    std::ofstream(file) << page;
+  } else {
+    EXPECT_EQ(page.substr(begin, end - begin), expected) << "tools/regenerate any writes this table";
+  }
+}
 
 TEST(VehicleModes, AreNamedAfterTheBodyThatMoves) {
   const VehicleData data = library_vehicle("manchester-coach");
