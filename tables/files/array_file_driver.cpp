@@ -1,4 +1,6 @@
-#include <set>
+#include <algorithm>
+#include <cstring>
+#include <map>
 
 #include "railtab/tables/files/array_file_hdf5.hpp"
 #if H5_VERSION_GE(1, 13, 0)
@@ -8,29 +10,53 @@
 namespace railtab::hdf5 {
 namespace {
 
-// A Section guards all three.
-H5FD_class_t posix{};            // HDF5's own driver
-std::set<const H5FD_t*> failed;  // open files that nothing more is written to
-bool failed_now = false;
+H5FD_class_t posix{};  // HDF5's own driver
 
-herr_t keep(H5FD_t* file, herr_t status) {
-  if (status >= 0) return status;
-  failed.insert(file);
-  failed_now = true;
-  return status;
+struct Failure {
+  std::string reason;
+  /// What was to be written since, oldest first: HDF5 reads it again until it has closed the file.
+  std::vector<std::pair<haddr_t, std::vector<char>>> kept;
+};
+std::map<const H5FD_t*, Failure> failures;  // of the open files; a Section guards it
+
+herr_t stop(const H5FD_t* file) {
+  failures[file].reason = last_error();
+  return -1;
+}
+
+herr_t read(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t address, std::size_t size, void* bytes) {
+  if (posix.read(file, kind, transfer, address, size, bytes) < 0) return -1;
+  const auto failure = failures.find(file);
+  if (failure == failures.end()) return 0;
+  for (const auto& [begin, values] : failure->second.kept) {
+    const haddr_t first = std::max(begin, address), end = std::min(begin + values.size(), address + size);
+    if (first < end) std::memcpy(static_cast<char*>(bytes) + (first - address), &values[first - begin], end - first);
+  }
+  return 0;
 }
 
 herr_t write(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t address, std::size_t size, const void* bytes) {
-  return failed.contains(file) ? 0 : keep(file, posix.write(file, kind, transfer, address, size, bytes));
+  if (const auto failure = failures.find(file); failure != failures.end()) {
+    const char* const begin = static_cast<const char*>(bytes);
+    failure->second.kept.emplace_back(address, std::vector<char>(begin, begin + size));
+    return 0;
+  }
+  return posix.write(file, kind, transfer, address, size, bytes) >= 0 ? 0 : stop(file);
 }
 
 herr_t truncate(H5FD_t* file, hid_t transfer, hbool_t closing) {
-  return failed.contains(file) ? 0 : keep(file, posix.truncate(file, transfer, closing));
+  if (failures.contains(file)) return 0;
+  return posix.truncate(file, transfer, closing) >= 0 ? 0 : stop(file);
 }
 
 herr_t close(H5FD_t* file) {
-  failed.erase(file);
+  failures.erase(file);
   return posix.close(file);
+}
+
+herr_t get_handle(H5FD_t* file, hid_t, void** handle) {
+  *handle = file;
+  return 0;
 }
 
 hid_t register_driver() {
@@ -46,9 +72,11 @@ hid_t register_driver() {
 #if H5_VERSION_GE(1, 13, 0)
   rules.value = 511;  // of those that HDF5 keeps for private use
 #endif
+  rules.read = read;
   rules.write = write;
   rules.truncate = truncate;
   rules.close = close;
+  rules.get_handle = get_handle;
   return H5FDregister(&rules);
 }
 
@@ -59,6 +87,11 @@ hid_t file_driver() {
   return id;
 }
 
-bool& write_failed() { return failed_now; }
+std::string write_failure(hid_t file) {
+  void* handle = nullptr;
+  if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) return {};
+  const auto failure = failures.find(static_cast<const H5FD_t*>(handle));
+  return failure == failures.end() ? std::string() : failure->second.reason;
+}
 
 }  // namespace railtab::hdf5

@@ -39,7 +39,6 @@ Section::Section() : lock_(library_mutex()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLget_loading_state(&plugins_);
   H5PLset_loading_state(0);
-  write_failed() = false;
 }
 
 Section::~Section() {

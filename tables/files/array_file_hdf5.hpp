@@ -114,8 +114,8 @@ class OpenFile {
 /// file, which stays as it is on the disk. HDF5 would try the rest when it closes the file, piece by piece, and leave a
 /// mixture.
 [[nodiscard]] hid_t file_driver();
-/// Whether a write has failed in this Section. HDF5 does not pass every failure on.
-[[nodiscard]] bool& write_failed();
+/// Why a write to this file has failed; empty where none has. HDF5 does not pass every failure on.
+[[nodiscard]] std::string write_failure(hid_t file);
 
 /// Fixed length: HDF5 keeps variable-length text in a heap without checksums.
 [[nodiscard]] Type text_type(std::size_t length);

@@ -24,7 +24,8 @@ void ArrayFileWriter::Impl::begin_records() {
          "records by the end of each block of rows, then the checksum of its rows in each growing dataset, in the "
          "column that its attribute checksum_column names"}));
   }
-  require_written(H5Fflush(file.get(), H5F_SCOPE_LOCAL) >= 0 && file.close(), file.place(""));
+  require_written(H5Fflush(file.get(), H5F_SCOPE_LOCAL) >= 0, file.place(""));
+  require_written(file.close(), file.place(""));
   const std::filesystem::path name = file.name();
   if (std::filesystem::exists(name)) static_cast<void>(WriterLock(name));
   // Readers find the file by its name only when it says that it is being written.

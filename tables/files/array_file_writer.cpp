@@ -19,10 +19,11 @@ ArrayFileWriter::Impl::~Impl() {
 }
 
 void ArrayFileWriter::Impl::require_written(bool done, const std::string& place) {
-  if (done && !hdf5::write_failed()) return;
-  const std::string text = hdf5::last_error();
+  std::string reason = file.valid() ? hdf5::write_failure(file.get()) : "";
+  if (done && reason.empty()) return;
+  if (reason.empty()) reason = hdf5::last_error();
   abandon();
-  throw ComputationError(fmt::format("{}: could not be written: {}", place, text));
+  throw ComputationError(fmt::format("{}: could not be written: {}", place, reason));
 }
 
 void ArrayFileWriter::Impl::abandon() noexcept {
@@ -187,8 +188,8 @@ void ArrayFileWriter::close() {
   impl_->growing.clear();
   impl_->blocks = {};
   // All that needs room first, while the file can still be abandoned.
-  impl_->require_written(H5Fflush(impl_->file.get(), H5F_SCOPE_LOCAL) >= 0 && impl_->file.close(),
-                         impl_->file.place(""));
+  impl_->require_written(H5Fflush(impl_->file.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.place(""));
+  impl_->require_written(impl_->file.close(), impl_->file.place(""));
   if (impl_->mode == Mode::whole_or_nothing) seal_file(impl_->temporary.name);
   if (!impl_->temporary.name.empty()) impl_->temporary.publish(impl_->file.name());
   impl_->temporary = {};
