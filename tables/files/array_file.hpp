@@ -59,11 +59,10 @@ class ArrayFileWriter {
              std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);
 
-  /// Create or overwrite an attribute of a group or dataset.
-  void attribute(std::string_view path, std::string_view name, double value);
-  void attribute(std::string_view path, std::string_view name, std::int64_t value);
-  /// Room is kept for `capacity` bytes. A text that overwrites one with less room is cut to it and ends in "...".
-  void attribute(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0);
+  /// Create or overwrite an attribute of a group or dataset. Room is kept for `capacity` bytes of a text. One that
+  /// overwrites another with less room is cut to it and ends in "...".
+  void attribute(std::string_view path, std::string_view name,
+                 const std::variant<double, std::int64_t, std::string_view>& value, std::size_t capacity = 0);
 
   /// A dataset that grows along its first dimension; `row_shape` is the rest, no extent zero. Chunked.
   void create_growing(std::string_view path, const Shape& row_shape, std::string_view unit,

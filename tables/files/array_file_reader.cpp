@@ -61,156 +61,147 @@ struct ArrayFileReader::Impl {
 
   explicit Impl(const std::filesystem::path& name) : bytes(inspect_file(name)), file(open_to_read(name)) {}
 
-  [[nodiscard]] Source open(std::string_view path, H5T_class_t expected) const;
-  void require_room(const Source& source) const;
+  /// Type and shape are checked before any value is read.
+  [[nodiscard]] Source open(std::string_view path, H5T_class_t expected) const {
+    Source source{std::string(path), file.place(path), file.object(path), {}, {}};
+    const hid_t dataset = source.dataset.get();
+    if (H5Iget_type(dataset) != H5I_DATASET) throw input_error(source.at, "a group", "a dataset");
+    source.type = hdf5::Type(H5Dget_type(dataset));
+    require(source.type.valid(), source.at, "a dataset with a type");
+    const H5T_class_t found = H5Tget_class(source.type.get());
+    if (found != expected || (found == H5T_STRING && H5Tis_variable_str(source.type.get()) != 0)) {
+      throw input_error(source.at, class_name(found), fmt::format("{} of fixed length", class_name(expected)));
+    }
+    source.value_bytes = H5Tget_size(source.type.get());
+    if (found != H5T_STRING && source.value_bytes != sizeof(double) && source.value_bytes != sizeof(float)) {
+      throw input_error(source.at, fmt::format("numbers of {} bytes", source.value_bytes), "numbers of 4 or 8 bytes");
+    }
+    source.extent = hdf5::extent_of(dataset, source.at);
+    source.grows = !source.extent.empty() && H5Aexists(dataset, hdf5::rows_attribute) > 0;
+    if (source.grows && source.extent[0] < records) {
+      throw input_error(source.at, fmt::format("{} rows", source.extent[0]),
+                        fmt::format("{}, the number in {}", records, hdf5::records_dataset));
+    }
+    if (source.grows) source.extent[0] = records;
+    require_room(source);
+    source.count = 1;
+    for (const hsize_t extent : source.extent) source.count *= extent;
+    return source;
+  }
+
+  /// No shape is believed that is larger than the file, nor more names for the same bytes than it has room for.
+  void require_room(const Source& source) const {
+    auto wanted = static_cast<double>(source.value_bytes);  // cannot overflow
+    for (const hsize_t extent : source.extent) wanted *= static_cast<double>(extent);
+    const std::string room = fmt::format("no more than the {} bytes of the file", bytes);
+    if (wanted > static_cast<double>(bytes)) {
+      throw input_error(source.at, fmt::format("the shape ({})", fmt::join(source.extent, ", ")), room);
+    }
+    std::uint64_t& own = bytes_of[source.path];
+    const std::uint64_t together = all_bytes - own + static_cast<std::uint64_t>(wanted);
+    if (together > bytes) {
+      throw input_error(source.at, fmt::format("{} bytes of values up to this dataset", together), room);
+    }
+    all_bytes = together;
+    own = static_cast<std::uint64_t>(wanted);
+  }
+
   /// The values as `memory` has them; of text, the bytes.
   template <typename Value>
-  [[nodiscard]] std::vector<Value> read(const Source& source, hid_t memory) const;
-  void check(const Source& source, std::span<const std::byte> values) const;
-  void check_type(std::string_view filetype, int format_version) const;
-  /// "records" and the blocks that make them up.
-  void read_records();
-  void read_blocks();
-};
+  [[nodiscard]] std::vector<Value> read(const Source& source, hid_t memory) const {
+    // As the file has them first, for the checksums, then converted in place.
+    const std::size_t in_file = source.count * source.value_bytes;
+    std::vector<Value> values(std::max(source.count, (in_file + sizeof(Value) - 1) / sizeof(Value)));
+    if (source.count > 0) {
+      const hdf5::Rows rows(source.dataset.get(), source.extent);
+      require(H5Dread(source.dataset.get(), source.type.get(), rows.memory.get(), rows.file.get(), H5P_DEFAULT,
+                      values.data()) >= 0,
+              source.at, "readable values");
+    }
+    check(source, std::as_bytes(std::span(values)).first(in_file));
+    if (memory == source.type.get()) return values;
+    require(H5Tconvert(source.type.get(), memory, source.count, values.data(), nullptr, H5P_DEFAULT) >= 0, source.at,
+            "numbers");
+    values.resize(source.count);
+    return values;
+  }
 
-/// Type and shape are checked before any value is read.
-Source ArrayFileReader::Impl::open(std::string_view path, H5T_class_t expected) const {
-  Source source{std::string(path), file.place(path), file.object(path), {}, {}};
-  const hid_t dataset = source.dataset.get();
-  if (H5Iget_type(dataset) != H5I_DATASET) throw input_error(source.at, "a group", "a dataset");
-  source.type = hdf5::Type(H5Dget_type(dataset));
-  require(source.type.valid(), source.at, "a dataset with a type");
-  const H5T_class_t found = H5Tget_class(source.type.get());
-  if (found != expected || (found == H5T_STRING && H5Tis_variable_str(source.type.get()) != 0)) {
-    throw input_error(source.at, class_name(found), fmt::format("{} of fixed length", class_name(expected)));
-  }
-  source.value_bytes = H5Tget_size(source.type.get());
-  if (found != H5T_STRING && source.value_bytes != sizeof(double) && source.value_bytes != sizeof(float)) {
-    throw input_error(source.at, fmt::format("numbers of {} bytes", source.value_bytes), "numbers of 4 or 8 bytes");
-  }
-  source.extent = hdf5::extent_of(dataset, source.at);
-  source.grows = !source.extent.empty() && H5Aexists(dataset, hdf5::rows_attribute) > 0;
-  if (source.grows && source.extent[0] < records) {
-    throw input_error(source.at, fmt::format("{} rows", source.extent[0]),
-                      fmt::format("{}, the number in {}", records, hdf5::records_dataset));
-  }
-  if (source.grows) source.extent[0] = records;
-  require_room(source);
-  source.count = 1;
-  for (const hsize_t extent : source.extent) source.count *= extent;
-  return source;
-}
-
-/// No shape is believed that is larger than the file, nor more names for the same bytes than it has room for.
-void ArrayFileReader::Impl::require_room(const Source& source) const {
-  auto wanted = static_cast<double>(source.value_bytes);  // cannot overflow
-  for (const hsize_t extent : source.extent) wanted *= static_cast<double>(extent);
-  const std::string room = fmt::format("no more than the {} bytes of the file", bytes);
-  if (wanted > static_cast<double>(bytes)) {
-    throw input_error(source.at, fmt::format("the shape ({})", fmt::join(source.extent, ", ")), room);
-  }
-  std::uint64_t& own = bytes_of[source.path];
-  const std::uint64_t together = all_bytes - own + static_cast<std::uint64_t>(wanted);
-  if (together > bytes) {
-    throw input_error(source.at, fmt::format("{} bytes of values up to this dataset", together), room);
-  }
-  all_bytes = together;
-  own = static_cast<std::uint64_t>(wanted);
-}
-
-template <typename Value>
-std::vector<Value> ArrayFileReader::Impl::read(const Source& source, hid_t memory) const {
-  // As the file has them first, for the checksums, then converted in place.
-  const std::size_t in_file = source.count * source.value_bytes;
-  std::vector<Value> values(std::max(source.count, (in_file + sizeof(Value) - 1) / sizeof(Value)));
-  if (source.count > 0) {
-    const hdf5::Rows rows(source.dataset.get(), source.extent);
-    require(H5Dread(source.dataset.get(), source.type.get(), rows.memory.get(), rows.file.get(), H5P_DEFAULT,
-                    values.data()) >= 0,
-            source.at, "readable values");
-  }
-  check(source, std::as_bytes(std::span(values)).first(in_file));
-  if (memory == source.type.get()) return values;
-  require(H5Tconvert(source.type.get(), memory, source.count, values.data(), nullptr, H5P_DEFAULT) >= 0, source.at,
-          "numbers");
-  values.resize(source.count);
-  return values;
-}
-
-/// Compares what was read with the checksums of a growing file.
-void ArrayFileReader::Impl::check(const Source& source, std::span<const std::byte> values) const {
-  const auto damaged = [](const std::string& at) {
-    return input_error(at, "values that do not agree with their checksum", "undamaged ones");
-  };
-  if (!source.grows || records == 0) {
-    if (!file.has(source.path, hdf5::checksum_attribute)) return;
-    const std::int64_t sum = file.number<std::int64_t>(source.path, hdf5::checksum_attribute);
-    if (word_checksum(values) != static_cast<std::uint64_t>(sum)) throw damaged(source.at);
-    return;
-  }
-  const std::int64_t column = file.number<std::int64_t>(source.path, hdf5::column_attribute);
-  if (column < 1 || static_cast<std::size_t>(column) >= block_width) {
-    throw input_error(source.at, fmt::format("{} {}", hdf5::column_attribute, column),
-                      fmt::format("1 to {}", block_width - 1));
-  }
-  const std::size_t row_bytes = values.size() / records;
-  std::size_t begin = 0;
-  for (std::size_t block = 0; block < block_ends.size(); begin = block_ends[block++]) {
-    const auto rows = values.subspan(begin * row_bytes, (block_ends[block] - begin) * row_bytes);
-    if (word_checksum(rows) != block_sums[block * block_width + static_cast<std::size_t>(column)]) {
-      throw damaged(fmt::format("{}, records {} to {}", source.at, begin, block_ends[block] - 1));
+  /// Compares what was read with the checksums of a growing file.
+  void check(const Source& source, std::span<const std::byte> values) const {
+    const auto damaged = [](const std::string& at) {
+      return input_error(at, "values that do not agree with their checksum", "undamaged ones");
+    };
+    if (!source.grows || records == 0) {
+      if (!file.has(source.path, hdf5::checksum_attribute)) return;
+      const std::int64_t sum = file.number<std::int64_t>(source.path, hdf5::checksum_attribute);
+      if (word_checksum(values) != static_cast<std::uint64_t>(sum)) throw damaged(source.at);
+      return;
+    }
+    const std::int64_t column = file.number<std::int64_t>(source.path, hdf5::column_attribute);
+    if (column < 1 || static_cast<std::size_t>(column) >= block_width) {
+      throw input_error(source.at, fmt::format("{} {}", hdf5::column_attribute, column),
+                        fmt::format("1 to {}", block_width - 1));
+    }
+    const std::size_t row_bytes = values.size() / records;
+    std::size_t begin = 0;
+    for (std::size_t block = 0; block < block_ends.size(); begin = block_ends[block++]) {
+      const auto rows = values.subspan(begin * row_bytes, (block_ends[block] - begin) * row_bytes);
+      if (word_checksum(rows) != block_sums[block * block_width + static_cast<std::size_t>(column)]) {
+        throw damaged(fmt::format("{}, records {} to {}", source.at, begin, block_ends[block] - 1));
+      }
     }
   }
-}
 
-void ArrayFileReader::Impl::check_type(std::string_view filetype, int format_version) const {
-  const std::string& name = file.name().string();
-  const std::string found = file.has("", "filetype") ? file.text("", "filetype") : "";
-  if (found != filetype) {
-    throw input_error(name, found.empty() ? "no attribute filetype" : fmt::format("a file of type {}", found),
-                      fmt::format("type {}", filetype));
+  void check_type(std::string_view filetype, int format_version) const {
+    const std::string& name = file.name().string();
+    const std::string found = file.has("", "filetype") ? file.text("", "filetype") : "";
+    if (found != filetype) {
+      throw input_error(name, found.empty() ? "no attribute filetype" : fmt::format("a file of type {}", found),
+                        fmt::format("type {}", filetype));
+    }
+    const std::int64_t version = file.number<std::int64_t>("", "format_version");
+    if (version == format_version) return;
+    throw input_error(name, fmt::format("format version {} of {}", version, filetype),
+                      fmt::format("version {}, the one that this program reads", format_version));
   }
-  const std::int64_t version = file.number<std::int64_t>("", "format_version");
-  if (version == format_version) return;
-  throw input_error(name, fmt::format("format version {} of {}", version, filetype),
-                    fmt::format("version {}, the one that this program reads", format_version));
-}
 
-void ArrayFileReader::Impl::read_records() {
-  const Source source = open(hdf5::records_dataset, H5T_INTEGER);
-  const auto found = read<std::int64_t>(source, H5T_NATIVE_INT64);
-  if (found.size() != 2 || found[0] < 0 || found[1] != -1 - found[0]) {
-    throw input_error(source.at, fmt::format("{}", fmt::join(found, ", ")), "a number N, not negative, and -1 - N");
+  /// "records" and the blocks that make them up.
+  void read_records() {
+    const Source source = open(hdf5::records_dataset, H5T_INTEGER);
+    const auto found = read<std::int64_t>(source, H5T_NATIVE_INT64);
+    if (found.size() != 2 || found[0] < 0 || found[1] != -1 - found[0]) {
+      throw input_error(source.at, fmt::format("{}", fmt::join(found, ", ")), "a number N, not negative, and -1 - N");
+    }
+    std::error_code error;  // the file may have grown since it was opened
+    const std::uint64_t now = std::filesystem::file_size(file.name(), error);
+    if (!error) bytes = std::max(bytes, now);
+    if (static_cast<std::uint64_t>(found[0]) > bytes / sizeof(double)) {  // of one growing dataset at least
+      throw input_error(source.at, fmt::format("{} records", found[0]),
+                        fmt::format("what a file of {} bytes can hold", bytes));
+    }
+    records = static_cast<std::size_t>(found[0]);
+    if (records > 0) read_blocks();
   }
-  std::error_code error;  // the file may have grown since it was opened
-  const std::uint64_t now = std::filesystem::file_size(file.name(), error);
-  if (!error) bytes = std::max(bytes, now);
-  if (static_cast<std::uint64_t>(found[0]) > bytes / sizeof(double)) {  // of one growing dataset at least
-    throw input_error(source.at, fmt::format("{} records", found[0]),
-                      fmt::format("what a file of {} bytes can hold", bytes));
-  }
-  records = static_cast<std::size_t>(found[0]);
-  if (records > 0) read_blocks();
-}
 
-void ArrayFileReader::Impl::read_blocks() {
-  const Source source = open(hdf5::blocks_dataset, H5T_INTEGER);
-  if (source.extent.size() != 2 || source.extent[1] < 2) {
-    throw input_error(source.at, fmt::format("the shape ({})", fmt::join(source.extent, ", ")), "rows of checksums");
+  void read_blocks() {
+    const Source source = open(hdf5::blocks_dataset, H5T_INTEGER);
+    if (source.extent.size() != 2 || source.extent[1] < 2) {
+      throw input_error(source.at, fmt::format("the shape ({})", fmt::join(source.extent, ", ")), "rows of checksums");
+    }
+    block_sums = read<std::uint64_t>(source, H5T_NATIVE_UINT64);
+    block_width = source.extent[1];
+    std::size_t end = 0;
+    for (std::size_t row = 0; end < records && row < source.extent[0]; ++row) {
+      const std::uint64_t next = block_sums[row * block_width];
+      if (next <= end || next > records) break;
+      end = next;
+      block_ends.push_back(end);
+    }
+    if (end == records) return;
+    throw input_error(source.at, fmt::format("blocks that end at record {}", end),
+                      fmt::format("the {} records", records));
   }
-  block_sums = read<std::uint64_t>(source, H5T_NATIVE_UINT64);
-  block_width = source.extent[1];
-  std::size_t end = 0;
-  for (std::size_t row = 0; end < records && row < source.extent[0]; ++row) {
-    const std::uint64_t next = block_sums[row * block_width];
-    if (next <= end || next > records) break;
-    end = next;
-    block_ends.push_back(end);
-  }
-  if (end == records) return;
-  throw input_error(source.at, fmt::format("blocks that end at record {}", end),
-                    fmt::format("the {} records", records));
-}
+};
 
 ArrayFileReader::ArrayFileReader(const std::filesystem::path& file, std::string_view filetype, int format_version) {
   const Section section;

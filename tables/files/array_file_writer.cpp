@@ -81,7 +81,7 @@ void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t type, std
 }
 
 hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std::string_view name, hid_t type) {
-  if (!path.empty() && !file.contains(path)) create_groups_of(std::string(path) + "/");
+  if (!path.empty()) create_groups_of(std::string(path) + "/");
   const hdf5::Object object = file.object(path);
   const std::string key(name);
   hdf5::Attribute attribute;
@@ -164,20 +164,18 @@ void ArrayFileWriter::write(std::string_view path, const std::vector<std::string
                        {"text", description});
 }
 
-void ArrayFileWriter::attribute(std::string_view path, std::string_view name, double value) {
-  const Section section;
-  impl_->write_attribute(path, name, value);
-}
-
-void ArrayFileWriter::attribute(std::string_view path, std::string_view name, std::int64_t value) {
-  const Section section;
-  impl_->write_attribute(path, name, value);
-}
-
-void ArrayFileWriter::attribute(std::string_view path, std::string_view name, std::string_view value,
+void ArrayFileWriter::attribute(std::string_view path, std::string_view name,
+                                const std::variant<double, std::int64_t, std::string_view>& value,
                                 std::size_t capacity) {
   const Section section;
-  impl_->write_text(path, name, value, capacity);
+  const auto write = [&]<typename Value>(Value content) {
+    if constexpr (std::is_same_v<Value, std::string_view>) {
+      impl_->write_text(path, name, content, capacity);
+    } else {
+      impl_->write_attribute(path, name, content);
+    }
+  };
+  std::visit(write, value);
 }
 
 void ArrayFileWriter::close() {
