@@ -2,13 +2,12 @@
 
 #include <utility>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 

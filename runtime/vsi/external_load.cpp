@@ -1,12 +1,11 @@
 #include "railtab/runtime/vsi/external_load.hpp"
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, double time, Eigen::VectorXd& load) {
   const double x = model.vehicle_x[index(vehicle)] + model.vehicle.bodies[index(acting.body)].position[0];

@@ -6,14 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 const DofIndices& wheelset_dofs(const VsiModel& model, int wheelset_of_vehicle) {
   return model.vehicle.dof[index(model.vehicle.wheelsets[index(wheelset_of_vehicle)])];
