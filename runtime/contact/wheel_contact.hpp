@@ -41,7 +41,6 @@ enum class GravitationalStiffness { included, neglected };
 /// Parameters of the contact forces that every wheel shares.
 struct WheelContactModel {
   const ContactGeometry* geometry = nullptr;
-  bool without_table = false;  ///< ContactGeometry::patches_without_table
   NormalContactModel normal;
   CreepLaw creep_law = PolachCreep{};
   double friction = 0.3;  ///< [-]

@@ -96,9 +96,9 @@ void limit_moves(const ContactProblem& problem, Eigen::Ref<Eigen::VectorXd> corr
 }
 
 // What a correction changes the contact forces of some wheelsets by, to first order: the largest [N, N m].
-double force_change(const NewtonWorkspace& ws, int first, int last) {
+double force_change(const NewtonWorkspace& ws, Wheelsets wheelsets) {
   double largest = 0.0;
-  for (int w = first; w < last; ++w) {
+  for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     const Eigen::Matrix<double, wheelset_unknowns, 1> change =
         ws.tangent[index(w)] * ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w);
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
@@ -111,7 +111,7 @@ double force_change(const NewtonWorkspace& ws, int first, int last) {
 class TrainNewton {
  public:
   TrainNewton(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
-              ContactSolution& solution, NewtonWorkspace& ws)
+              ContactSolution& solution, NewtonWorkspace& ws, InitialForces forces)
       : model_(model),
         problem_(problem),
         limits_(limits),
@@ -133,17 +133,17 @@ class TrainNewton {
     ws.inverse.resize(index(groups));
     ws.compliance.resize(index(groups));
     ws.group.resize(index(groups));
-    if (!ws.forces_known) assemble_compliances(problem, ws);
+    const bool known = forces == InitialForces::known;
+    if (!known) assemble_compliances(problem, ws);
     for (int g = 0; g < groups; ++g) {
       GroupNewton& n = ws.group[index(g)];
-      n = {.moved = !ws.forces_known, .new_tangent = fresh || n.new_tangent};
-      if (!n.new_tangent && !ws.forces_known) invert(problem, g, ws);
+      n = {.moved = !known, .new_tangent = fresh || n.new_tangent};
+      if (!n.new_tangent && !known) invert(problem, g, ws);
     }
     // In time steps, but not where forces are means over the step, nor with pairs that jump.
     can_predict_ =
-        !fresh && !ws.forces_known && problem.rail_velocity_rate > 0.0 && !problem.start && !model.geometry->is_paper();
+        !fresh && !known && problem.rail_velocity_rate > 0.0 && !problem.start && !model.geometry->is_paper();
     if (ws.loads.empty()) ws.loads.resize(2 * ws.tangent.size());
-    ws.forces_known = false;
   }
 
   NewtonReport solve() {
@@ -161,7 +161,9 @@ class TrainNewton {
   using Vector12 = Eigen::Matrix<double, wheelset_unknowns, 1>;
   using Turn = GroupNewton::Turn;
 
-  [[nodiscard]] int first_wheelset(int group) const { return group * problem_.wheelsets_per_group; }
+  [[nodiscard]] Wheelsets wheelsets(int group) const {
+    return {group * problem_.wheelsets_per_group, (group + 1) * problem_.wheelsets_per_group};
+  }
   [[nodiscard]] auto part_of(Eigen::VectorXd& vector, int group) const {
     const int size = wheelset_unknowns * problem_.wheelsets_per_group;
     return vector.segment(size * group, size);
@@ -188,8 +190,7 @@ class TrainNewton {
   void predict() {
     predicting_ = true;
     ws_.first = s_.displacement;
-    for (int g = 0; g < groups(); ++g)
-      evaluate_moved(model_, problem_, first_wheelset(g), first_wheelset(g + 1), s_, ws_);
+    evaluate_moved(model_, problem_, {0, static_cast<int>(ws_.tangent.size())}, s_, ws_);
     if (!correct()) s_.displacement = ws_.first;
     for (GroupNewton& group : ws_.group) group = {.new_tangent = group.new_tangent};
     predicting_ = false;
@@ -197,8 +198,7 @@ class TrainNewton {
 
   void evaluate_group(int g) {
     const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
-    evaluate(model_, problem_, searches ? Pairs::searched : Pairs::kept, first_wheelset(g), first_wheelset(g + 1), s_,
-             ws_, report_);
+    report_.counts += evaluate(model_, problem_, searches ? Pairs::searched : Pairs::kept, wheelsets(g), s_, ws_);
   }
 
   // Broyden's update of the tangent: the least change that explains what the last correction has changed the forces by,
@@ -241,7 +241,7 @@ class TrainNewton {
     n.turn = n.moved && size > 2.0 * n.previous && n.part > shortest_part ? Turn::goes_back : Turn::corrects;
     if (n.turn == Turn::goes_back) return;
     if (n.new_tangent || (n.moved && size > fast_enough * n.previous)) {
-      differentiate(model_, problem_, first_wheelset(g), first_wheelset(g + 1), s_, ws_);
+      differentiate(model_, problem_, wheelsets(g), s_, ws_);
       invert(problem_, g, ws_);
       n.new_tangent = false;
     } else if (n.moved && n.previous < std::numeric_limits<double>::infinity()) {
@@ -265,7 +265,7 @@ class TrainNewton {
       correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
       for (int k = 0; k < per_group; ++k) {
         change.template segment<12>(12 * k) =
-            ws_.tangent[index(first_wheelset(g) + k)] * correction.template segment<12>(12 * k);
+            ws_.tangent[index(per_group * g + k)] * correction.template segment<12>(12 * k);
       }
     }
     add_response(
@@ -290,10 +290,7 @@ class TrainNewton {
     correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.coupled, g);
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
-    if (change < first_order_ &&
-        force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
-      return true;
-    }
+    if (change < first_order_ && force_change(ws_, wheelsets(g)) < limits_.force_tolerance) return true;
     // A correction so small ends the iteration, and is made: the forces then are those of a far smaller one.
     n.last = change < limits_.tolerance || (!n.gains && change < limits_.rounding);
     if (n.last && !moved) return true;
@@ -320,8 +317,8 @@ class TrainNewton {
 }  // namespace
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
-                           ContactSolution& solution, NewtonWorkspace& workspace) {
-  return TrainNewton(model, problem, limits, solution, workspace).solve();
+                           ContactSolution& solution, NewtonWorkspace& workspace, InitialForces forces) {
+  return TrainNewton(model, problem, limits, solution, workspace, forces).solve();
 }
 
 }  // namespace railtab

@@ -99,6 +99,9 @@ struct GroupNewton {
   int evaluations = 0;
 };
 
+/// Whether a solution's forces are those at its displacement when its iteration begins.
+enum class InitialForces { unknown, known };
+
 /// What an evaluation of the contact forces has found at one wheel.
 struct WheelLoads {
   PatchLoads loads;
@@ -120,8 +123,6 @@ struct NewtonWorkspace {
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
   /// What the groups' own corrections change the forces by, and the residual with what that displaces other groups by.
   Eigen::VectorXd force_change, coupled;
-  /// Set before solve_contact() where the solution's forces are those at its displacement already.
-  bool forces_known = false;
   std::vector<WheelLoads> loads;      ///< per wheel, of the last evaluation
   std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
@@ -146,6 +147,6 @@ NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProbl
 /// below one of the limits; the forces are those at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
-                                         NewtonWorkspace& workspace);
+                                         NewtonWorkspace& workspace, InitialForces forces = InitialForces::unknown);
 
 }  // namespace railtab

@@ -109,8 +109,7 @@ struct StructureResponse::Entries {
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : dofs_(structure.dofs()) {
   require_finite(structure);
-  effective_ = scheme.acceleration_rate() * structure.mass +
-               scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
+  effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
   activate({0, dofs_});
   // The union of both patterns: a zero times one keeps an entry's place.
   const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();

@@ -32,8 +32,7 @@ void append_dofs(const RailContact& contact, std::vector<int>& dofs);
 /// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
 void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
 
-/// The structure for one time-step size: the Cholesky factor of its effective matrix
-/// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K), made once.
+/// The structure for one time-step size: the factor of its effective matrix, made once.
 class StructureResponse {
  public:
   /// @throws InputError naming the matrix and the entry that is not finite; ComputationError where the effective matrix
