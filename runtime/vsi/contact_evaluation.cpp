@@ -55,7 +55,6 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
       counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
       s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
-      if (!ws.loads.empty()) ws.loads[number] = {loads, s.memory[number]};
       if (problem.start) {
         const ContactMemory& start = problem.start->memory[number];
         const Vector9 share = problem.mean_weight *
@@ -69,24 +68,6 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
     }
   }
   return counts;
-}
-
-void evaluate_moved(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
-                    ContactSolution& s, const NewtonWorkspace& ws) {
-  for (int w = wheelsets.first; w < wheelsets.end; ++w) {
-    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
-    auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
-    force.setZero();
-    for (int side = 0; side < 2; ++side) {
-      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
-      const WheelLoads& was = ws.loads[index(2 * w + side)];
-      const WheelsetPose pose = relative_pose(model.geometry->pair(), sides[index(side)], motion, rail);
-      const WheelForce wheel =
-          wheel_force(model, sides[index(side)], motion, rail, moved_loads(was.loads, was.contact, pose));
-      force.head<6>() += wheel.wheelset;
-      force.segment<3>(6 + 3 * side) = wheel.rail;
-    }
-  }
 }
 
 void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,

@@ -16,11 +16,6 @@ struct Wheelsets {
 ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& solution, NewtonWorkspace& workspace);
 
-/// The forces alone, of the last evaluation's loads, moved along (moved_loads()): near to evaluate(), for a fraction of
-/// its cost.
-void evaluate_moved(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
-                    ContactSolution& solution, const NewtonWorkspace& workspace);
-
 /// df/dq where evaluate() has found the patches.
 void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
                    const ContactSolution& solution, NewtonWorkspace& workspace);
