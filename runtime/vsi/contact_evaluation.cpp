@@ -1,5 +1,6 @@
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/contact/wheel_contact.hpp"
 
@@ -10,8 +11,6 @@ namespace {
 using Matrix12 = NewtonWorkspace::Matrix12;
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
                              NewtonWorkspace& ws) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 
 namespace railtab {
@@ -11,8 +12,6 @@ namespace railtab {
 namespace {
 
 using Matrix12 = NewtonWorkspace::Matrix12;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Evaluations of one contact solution in which the published method searches its pairs.
 constexpr int paper_searches = 4;

@@ -1,5 +1,6 @@
 // Hertz's contacts with creep forces as the contact law of a step (NormalContact::hertz).
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
@@ -8,8 +9,6 @@
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   const std::vector<RailContact>& contacts = step.contacts;
@@ -26,16 +25,6 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
     }
-  }
-}
-
-// The contacts' part of Eq. 12 in the contact unknowns, for the next step.
-void close_step_load(const HhtScheme& hht, const ContactSolution& start, ContactSolution& end) {
-  end.step_load = hht.load_weight() * end.force;
-  if (hht.contact_force == ContactForceRule::endpoint) {
-    end.step_load -= hht.alpha * start.end_force;
-  } else {
-    end.step_load += (0.5 * start.end_force - (1.0 - hht.gamma()) * start.step_load) / hht.gamma();
   }
 }
 
@@ -130,11 +119,12 @@ class HertzContacts : public ContactLaw {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
       increment_[index(v)] = free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
-      close_load(hht, ws.vehicle_load, {0, ws.vehicle_load.size()}, motion);
+      close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
       update(hht, prediction_[index(v)], increment_[index(v)], motion);
     }
-    close_step_load(hht, state.contact, ws.solution);
+    ws.solution.step_load = state.contact.step_load;
+    close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
     std::swap(state.contact, ws.solution);
   }
 

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
+
+#include "railtab/runtime/base/dense_solvers.hpp"
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -9,8 +13,6 @@ namespace railtab {
 namespace {
 
 constexpr int heave = 2;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -24,7 +26,7 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
                                     scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
   const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
-  inverse_bb_ = b_.empty() ? effective_bb : Eigen::MatrixXd(effective_bb.partialPivLu().inverse());
+  inverse_bb_ = b_.empty() ? effective_bb : dense_inverse(effective_bb);
   if (!inverse_bb_.allFinite()) {
     throw ComputationError(
         "the vehicle's effective matrix has no inverse: check masses and stiffnesses of the vehicle");
