@@ -60,6 +60,12 @@ struct ArrayFileReader::Impl {
   mutable std::uint64_t all_bytes = 0;
 
   explicit Impl(const std::filesystem::path& name) : bytes(inspect_file(name)), file(open_to_read(name)) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    const Section section;
+    static_cast<void>(file.close());
+  }
 
   /// Type and shape are checked before any value is read.
   [[nodiscard]] Source open(std::string_view path, H5T_class_t expected) const {
@@ -210,12 +216,7 @@ ArrayFileReader::ArrayFileReader(const std::filesystem::path& file, std::string_
   if (impl_->file.contains(hdf5::records_dataset)) impl_->read_records();
 }
 
-ArrayFileReader::~ArrayFileReader() {
-  if (!impl_) return;
-  const Section section;
-  impl_.reset();
-}
-
+ArrayFileReader::~ArrayFileReader() = default;
 ArrayFileReader::ArrayFileReader(ArrayFileReader&&) noexcept = default;
 
 bool ArrayFileReader::contains(std::string_view path) const {

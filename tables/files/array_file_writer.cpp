@@ -14,6 +14,7 @@ namespace railtab {
 using hdf5::Section;
 
 ArrayFileWriter::Impl::~Impl() {
+  const Section section;
   if (mode == Mode::growing && file.valid()) static_cast<void>(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
   abandon();
 }
@@ -129,18 +130,9 @@ ArrayFileWriter::ArrayFileWriter(const std::filesystem::path& file, std::string_
 
 ArrayFileWriter::ArrayFileWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-ArrayFileWriter::~ArrayFileWriter() {
-  if (!impl_) return;
-  const Section section;
-  impl_.reset();
-}
-
+ArrayFileWriter::~ArrayFileWriter() = default;
 ArrayFileWriter::ArrayFileWriter(ArrayFileWriter&&) noexcept = default;
-
-ArrayFileWriter& ArrayFileWriter::operator=(ArrayFileWriter&& other) noexcept {
-  std::swap(impl_, other.impl_);
-  return *this;
-}
+ArrayFileWriter& ArrayFileWriter::operator=(ArrayFileWriter&&) noexcept = default;
 
 void ArrayFileWriter::write(std::string_view path, const Numbers& numbers, const Shape& shape, std::string_view unit,
                             std::string_view description) {

@@ -33,7 +33,8 @@ struct Statement {
   std::string_view unit, description;
 };
 
-/// State of a file being written. Its members call HDF5 without taking a Section: the public functions do.
+/// State of a file being written. Its members call HDF5 without taking a Section: the public functions do, and the
+/// destructor.
 struct ArrayFileWriter::Impl {
   TemporaryFile temporary;  ///< the name now, empty once the file has its own; the lock stays
   Mode mode = Mode::whole_or_nothing;
