@@ -18,8 +18,8 @@ constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
   merge      put the shards of a table together
   contact    one exact rolling-contact solution: creep force and its proof
   conicity   rolling radius difference and equivalent conicity (EN 15302) from a geometry table
-  info       tell what a table holds
-  verify     hold a table against the online search: errors, share of fallback, time per query
+  info       print what a table holds
+  verify     compare a table with the online search: errors, share of fallback, time per query
 
 tablegen COMMAND --help tells the options; tablegen --version the version.
 Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
