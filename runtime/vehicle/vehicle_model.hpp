@@ -83,7 +83,7 @@ struct VehicleDescription {
   std::vector<DofIndices> held_dofs;
   double nominal_radius = 0.46;  ///< [m]
   double length = 26.4;          ///< over couplers [m]
-  VehicleWeight weight;
+  VehicleWeight weight{};
 };
 
 /// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points, and the

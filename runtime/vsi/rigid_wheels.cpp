@@ -1,8 +1,7 @@
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
-#include <algorithm>
-
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "railtab/runtime/base/index.hpp"
 

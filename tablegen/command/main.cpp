@@ -8,6 +8,8 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 
+namespace railtab {
+
 namespace {
 
 constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
@@ -26,7 +28,6 @@ Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
 )";
 
 int run(const std::vector<std::string>& arguments) {
-  using namespace railtab;
   const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
       {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command},
       {"creep", creep_command}, {"geometry", geometry_command}, {"info", info_command},
@@ -51,6 +52,8 @@ int run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
+}  // namespace railtab
+
 int main(int argc, char** argv) {
-  return railtab::run_process("tablegen", [&] { return run({argv + 1, argv + argc}); });
+  return railtab::run_process("tablegen", [&] { return railtab::run({argv + 1, argv + argc}); });
 }
