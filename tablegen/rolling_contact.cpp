@@ -28,14 +28,10 @@ void RollingContactOptions::validate() const {
 }
 
 struct RollingContact::Impl {
-  Impl(double ratio, double poisson, const RollingContactOptions& o)
-      : options(o),
-        nu(poisson),
-        grid(ratio, o.elements, o.size),
-        newton(grid, nu),
-        rigid_slip(ElementField::Zero(2 * grid.n * grid.n)) {}
+  Impl(RollingContactGrid elements, double poisson, const RollingContactOptions& o)
+      : options(o), nu(poisson), grid(std::move(elements)), newton(grid, nu) {}
 
-  void set_rigid_slip(const Creepage& creepage);
+  [[nodiscard]] RigidSlip rigid_slip(const Creepage& creepage) const;
   [[nodiscard]] ElementField start(const std::vector<double>* given) const;
   void describe(const ElementField& traction, const ElementField& slip, RollingContactSolution& solution) const;
 
@@ -44,20 +40,21 @@ struct RollingContact::Impl {
   RollingContactGrid grid;
   RollingContactNewton newton;
   std::optional<RollingContactTransient> transient;  // created at first use
-  ElementField rigid_slip;
 };
 
-void RollingContact::Impl::set_rigid_slip(const Creepage& creepage) {
-  const int n = grid.n, m = n * n;
+RigidSlip RollingContact::Impl::rigid_slip(const Creepage& creepage) const {
+  const int n = grid.nx, m = grid.count();
+  RigidSlip rigid{ElementField::Zero(2 * m), creepage.spin};
   for (const int k : grid.inside) {
     const double x = grid.x[k % n] + options.slip_ahead * grid.dx;
-    rigid_slip[k] = (creepage.x - creepage.spin * grid.y[k / n]) * grid.dx;
-    rigid_slip[m + k] = (creepage.y + creepage.spin * x) * grid.dx;
+    rigid.w[k] = creepage.x - creepage.spin * grid.y[k / n];
+    rigid.w[m + k] = creepage.y + creepage.spin * x;
   }
+  return rigid;
 }
 
 ElementField RollingContact::Impl::start(const std::vector<double>* given) const {
-  const int m = grid.n * grid.n;
+  const int m = grid.count();
   ElementField traction = ElementField::Zero(2 * m);
   if (!given) return traction;
   assert(static_cast<int>(given->size()) == 2 * m);
@@ -73,13 +70,13 @@ ElementField RollingContact::Impl::start(const std::vector<double>* given) const
 
 void RollingContact::Impl::describe(const ElementField& traction, const ElementField& slip,
                                     RollingContactSolution& solution) const {
-  const int n = grid.n, m = n * n;
+  const int n = grid.nx, m = grid.count();
   double against = 0.0, work = 0.0;
   for (const int k : grid.inside) {
     const double px = traction[k], py = traction[m + k];
-    solution.force.x += px * grid.area;
-    solution.force.y += py * grid.area;
-    solution.force.moment += (grid.x[k % n] * py - grid.y[k / n] * px) * grid.area;
+    solution.force.x += px * grid.area();
+    solution.force.y += py * grid.area();
+    solution.force.moment += (grid.x[k % n] * py - grid.y[k / n] * px) * grid.area();
     const double excess = std::hypot(px, py) / grid.bound[k] - 1.0;
     solution.bound_excess = std::max(solution.bound_excess, excess);
     ++(excess > -1e-9 ? solution.slip : solution.adhesion);
@@ -95,7 +92,13 @@ RollingContact::RollingContact(double ratio, double nu, const RollingContactOpti
   options.validate();
   if (!(ratio >= 1e-4 && ratio <= 1e4)) throw input_error("ratio a/b", fmt::format("{}", ratio), "1e-4..1e4");
   if (!(nu >= 0.0 && nu <= 0.5)) throw input_error("Poisson's ratio", fmt::format("{}", nu), "0..0.5");
-  impl_ = std::make_unique<Impl>(ratio, nu, options);
+  impl_ = std::make_unique<Impl>(ellipse_grid(ratio, options.elements, options.size), nu, options);
+}
+RollingContact::RollingContact(RollingContactGrid grid, double nu, const RollingContactOptions& options) {
+  options.validate();
+  assert(!grid.inside.empty());
+  if (!(nu >= 0.0 && nu <= 0.5)) throw input_error("Poisson's ratio", fmt::format("{}", nu), "0..0.5");
+  impl_ = std::make_unique<Impl>(std::move(grid), nu, options);
 }
 RollingContact::~RollingContact() = default;
 RollingContact::RollingContact(RollingContact&&) noexcept = default;
@@ -103,21 +106,26 @@ RollingContact& RollingContact::operator=(RollingContact&&) noexcept = default;
 
 RollingContactSolution RollingContact::solve(const Creepage& creepage, const std::vector<double>* start) {
   assert(std::isfinite(creepage.x) && std::isfinite(creepage.y) && std::isfinite(creepage.spin));
+  return solve(impl_->rigid_slip(creepage), start);
+}
+
+RollingContactSolution RollingContact::solve(const RigidSlip& rigid, const std::vector<double>* start) {
   const RollingContactOptions& options = impl_->options;
-  impl_->set_rigid_slip(creepage);
+  assert(rigid.w.size() == 2 * impl_->grid.count() && rigid.w.allFinite());
+  const ElementField rigid_slip = rigid.w * impl_->grid.dx;
   RollingContactSolution solution;
   ElementField traction = impl_->start(nullptr);
-  const double untouched = impl_->newton.residual(traction, impl_->rigid_slip);
+  const double untouched = impl_->newton.residual(traction, rigid_slip);
   const double tolerance = options.tolerance * untouched;
   // Without creepage p = 0 is the solution, and no residual but 0 would do: Newton from another start may only near it.
   if (untouched == 0.0) start = nullptr;
   traction = impl_->start(start);
-  auto outcome = impl_->newton.solve(impl_->rigid_slip, traction, tolerance, options.max_iterations);
+  auto outcome = impl_->newton.solve(rigid_slip, traction, tolerance, options.max_iterations);
   if (!outcome.converged) {
     if (!impl_->transient) impl_->transient.emplace(impl_->grid, impl_->nu);
     solution.safe_method = true;
     traction = impl_->start(start);
-    outcome = impl_->transient->solve(impl_->rigid_slip, traction, tolerance, impl_->newton);
+    outcome = impl_->transient->solve(rigid_slip, traction, tolerance, impl_->newton);
   }
   solution.residual = untouched > 0.0 ? outcome.residual / untouched : 0.0;
   solution.iterations = outcome.iterations;
@@ -125,10 +133,10 @@ RollingContactSolution RollingContact::solve(const Creepage& creepage, const std
   solution.converged = outcome.converged;
   ElementField slip(traction.size());
   impl_->newton.product().apply(traction, slip);
-  slip += impl_->rigid_slip;
+  slip += rigid_slip;
   impl_->describe(traction, slip, solution);
   if (options.direction == RollingContactOptions::SlipDirection::averaged) {
-    const double rigid_gradient = creepage.spin * impl_->grid.dx;
+    const double rigid_gradient = rigid.spin * impl_->grid.dx;
     const CreepForce correction = slip_average_correction(impl_->grid, traction, slip, rigid_gradient);
     solution.force.x += correction.x;
     solution.force.y += correction.y;
@@ -139,9 +147,9 @@ RollingContactSolution RollingContact::solve(const Creepage& creepage, const std
 
 std::vector<double> RollingContact::refined(const std::vector<double>& half_traction) const {
   const RollingContactGrid& grid = impl_->grid;
-  const int n = grid.n, half = n / 2;
-  assert(n % 2 == 0 && static_cast<int>(half_traction.size()) == 2 * half * half);
-  const RollingContactGrid coarse(1.0, half, RollingContactOptions::ElementSize::equal_area);
+  const int n = grid.nx, half = n / 2;
+  assert(n == grid.ny && n % 2 == 0 && static_cast<int>(half_traction.size()) == 2 * half * half);
+  const RollingContactGrid coarse = ellipse_grid(1.0, half, ElementSize::equal_area);
   std::vector<double> traction(static_cast<std::size_t>(2 * n * n), 0.0);
   for (const int k : grid.inside) {
     const int from = k / n / 2 * half + k % n / 2;

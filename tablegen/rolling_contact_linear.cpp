@@ -14,7 +14,7 @@ constexpr int kBasis = 60;  // GMRES vectors; it is not restarted
 
 RollingContactLinear::RollingContactLinear(const RollingContactGrid& grid, const RollingContactProduct& product)
     : grid_(grid), product_(product), hessenberg_(kBasis + 1, kBasis), rotated_(kBasis + 1), cosine_(kBasis) {
-  const int n = grid.n;
+  const int n = grid.nx, m = grid.count();
   for (int c = 0; c < 2; ++c) {
     diagonal_[c] = product.in_row(c, 0);
     ahead_[c] = static_cast<float>(product.in_row(c, 1));
@@ -26,9 +26,9 @@ RollingContactLinear::RollingContactLinear(const RollingContactGrid& grid, const
       run_inverse_[c].emplace_back(dense_inverse(row.topLeftCorner(length, length)).cast<float>());
     }
   }
-  state_.assign(static_cast<std::size_t>(n * n), State::outside);
-  tangent_x_ = tangent_y_ = scale_ = stiffness_ = Eigen::VectorXf::Zero(n * n);
-  unknown_ = traction_ = slip_ = ElementFieldSingle::Zero(2 * n * n);
+  state_.assign(static_cast<std::size_t>(m), State::outside);
+  tangent_x_ = tangent_y_ = scale_ = stiffness_ = Eigen::VectorXf::Zero(m);
+  unknown_ = traction_ = slip_ = ElementFieldSingle::Zero(2 * m);
   basis_.assign(kBasis + 1, unknown_);
   sine_ = cosine_;
 }
@@ -44,7 +44,7 @@ void RollingContactLinear::slip(int element, double tx, double ty, double stiffn
 
 /// basis_[0], of length one. @returns its length before
 double RollingContactLinear::set_right_side(const ElementField& slip) {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   ElementField right = ElementField::Zero(2 * m);
   for (const int k : grid_.inside) {
     if (state_[k] == State::adhesion) {
@@ -62,7 +62,7 @@ double RollingContactLinear::set_right_side(const ElementField& slip) {
 
 /// Traction change of the unknowns (both components in adhesion, along the tangent in slip), and the scaled equations.
 void RollingContactLinear::multiply(const ElementFieldSingle& unknown, ElementFieldSingle& result) {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   traction_ = unknown;
   for (const int k : grid_.inside) {
     if (state_[k] != State::slip) continue;
@@ -84,9 +84,9 @@ void RollingContactLinear::multiply(const ElementFieldSingle& unknown, ElementFi
 
 /// Row by row from the leading edge: exact on runs of adhering elements, two-diagonal on slipping ones.
 void RollingContactLinear::precondition(const ElementFieldSingle& residual, ElementFieldSingle& unknown) const {
-  const int n = grid_.n, m = n * n;
+  const int n = grid_.nx, m = grid_.count();
   unknown.setZero();
-  for (int j = 0; j < n; ++j) {
+  for (int j = 0; j < grid_.ny; ++j) {
     for (int i = n - 1; i >= 0; --i) {
       const int k = j * n + i;
       if (state_[k] == State::outside) continue;
@@ -152,7 +152,7 @@ int RollingContactLinear::iterate(float tolerance) {
 }
 
 int RollingContactLinear::solve(const ElementField& slip, double tolerance, ElementField& step) {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   step.setZero();
   const double length = set_right_side(slip);
   if (length == 0.0) return 0;

@@ -13,14 +13,14 @@ double length(double x, double y) { return std::sqrt(x * x + y * y); }
 }  // namespace
 
 RollingContactNewton::RollingContactNewton(const RollingContactGrid& grid, double nu)
-    : grid_(grid), product_(grid.n, grid.dx, grid.dy, nu), linear_(grid, product_) {
-  const int m = grid.n * grid.n;
+    : grid_(grid), product_(grid.nx, grid.ny, grid.dx, grid.dy, nu), linear_(grid, product_) {
+  const int m = grid.count();
   slips_.assign(static_cast<std::size_t>(m), false);
   slip_ = step_ = ElementField::Zero(2 * m);
 }
 
 double RollingContactNewton::residual(const ElementField& traction, const ElementField& slip) const {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   const double flexibility = 1.0 / product_.in_row(0, 0);
   double sum = 0.0;
   for (const int k : grid_.inside) {
@@ -30,12 +30,12 @@ double RollingContactNewton::residual(const ElementField& traction, const Elemen
     const double shrink = q > grid_.bound[k] ? grid_.bound[k] / q : 1.0;
     sum += length(px - shrink * qx, py - shrink * qy);
   }
-  return sum * grid_.area;
+  return sum * grid_.area();
 }
 
 /// Elements at the bound slip while slip opposes them.
 void RollingContactNewton::classify(const ElementField& traction, const ElementField& slip) {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   for (const int k : grid_.inside) {
     const double px = traction[k], py = traction[m + k], g = grid_.bound[k];
     const double against = -(px * slip[k] + py * slip[m + k]);
@@ -50,7 +50,7 @@ void RollingContactNewton::classify(const ElementField& traction, const ElementF
 
 /// Take the step; whatever leaves the friction circle comes back to it radially.
 void RollingContactNewton::update(ElementField& traction) const {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   traction += step_;
   for (const int k : grid_.inside) {
     const double p = length(traction[k], traction[m + k]), g = grid_.bound[k];

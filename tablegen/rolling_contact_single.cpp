@@ -16,26 +16,28 @@ std::complex<float>* allocate(int count) {
 }  // namespace
 
 RollingContactSingle::RollingContactSingle(const RollingContactProduct& product)
-    : n_(product.elements()),
-      padded_(product.padded()),
-      rows_(allocate(n_ * padded_)),
-      spectrum_(allocate(padded_ * padded_)),
-      product_(allocate(padded_ * padded_)) {
+    : nx_(product.along()),
+      ny_(product.across()),
+      padded_x_(product.padded_along()),
+      padded_y_(product.padded_across()),
+      rows_(allocate(ny_ * padded_x_)),
+      spectrum_(allocate(padded_x_ * padded_y_)),
+      product_(allocate(padded_x_ * padded_y_)) {
   const std::lock_guard lock(fftw_planner());
   const unsigned flags = FFTW_ESTIMATE;  // a timed plan could sum in another order on the next run
-  const int n = n_, wide = padded_;
+  const int px = padded_x_, py = padded_y_, ny = ny_;
   // Transforms along x leave their results transposed, so that those across are on contiguous numbers.
-  along_ = fftwf_plan_many_dft(1, &wide, n, raw(rows_), nullptr, 1, wide, raw(spectrum_), nullptr, wide, 1,
-                               FFTW_FORWARD, flags);
-  across_ = fftwf_plan_many_dft(1, &wide, wide, raw(spectrum_), nullptr, 1, wide, raw(spectrum_), nullptr, 1, wide,
+  along_ =
+      fftwf_plan_many_dft(1, &px, ny, raw(rows_), nullptr, 1, px, raw(spectrum_), nullptr, py, 1, FFTW_FORWARD, flags);
+  across_ = fftwf_plan_many_dft(1, &py, px, raw(spectrum_), nullptr, 1, py, raw(spectrum_), nullptr, 1, py,
                                 FFTW_FORWARD, flags);
-  across_back_ = fftwf_plan_many_dft(1, &wide, wide, raw(product_), nullptr, 1, wide, raw(product_), nullptr, 1, wide,
+  across_back_ = fftwf_plan_many_dft(1, &py, px, raw(product_), nullptr, 1, py, raw(product_), nullptr, 1, py,
                                      FFTW_BACKWARD, flags);
-  along_back_ = fftwf_plan_many_dft(1, &wide, n, raw(product_), nullptr, wide, 1, raw(spectrum_), nullptr, 1, wide,
+  along_back_ = fftwf_plan_many_dft(1, &px, ny, raw(product_), nullptr, py, 1, raw(spectrum_), nullptr, 1, px,
                                     FFTW_BACKWARD, flags);
-  std::fill(rows_, rows_ + n * wide, Complex{});
-  for (int kx = 0; kx < wide; ++kx) {
-    for (int ky = 0; ky < wide; ++ky) {
+  std::fill(rows_, rows_ + ny * px, Complex{});
+  for (int kx = 0; kx < px; ++kx) {
+    for (int ky = 0; ky < py; ++ky) {
       const RollingContactProduct::Spectrum b = product.spectrum(kx, ky);
       const std::complex<double> i(0.0, 1.0);
       alpha_.emplace_back(0.5 * (b.xx + b.yy));
@@ -62,36 +64,36 @@ void RollingContactSingle::multiply() {
     }
   };
   const auto numbers = [](const Complex* p) { return reinterpret_cast<const float*>(p); };
-  for (int kx = 0; kx < padded_; ++kx) {
-    const int row = kx * padded_, mirrored = (padded_ - kx) % padded_ * padded_;
+  for (int kx = 0; kx < padded_x_; ++kx) {
+    const int row = kx * padded_y_, mirrored = (padded_x_ - kx) % padded_x_ * padded_y_;
     const auto part = [&](int first, int from, int count) {
       line(numbers(spectrum_ + row + first), numbers(spectrum_ + mirrored + from), numbers(&alpha_[row + first]),
            numbers(&beta_[row + first]), reinterpret_cast<float*>(product_ + row + first), count);
     };
     part(0, 0, 1);
-    part(1, padded_ - 1, padded_ - 1);
+    part(1, padded_y_ - 1, padded_y_ - 1);
   }
 }
 
 void RollingContactSingle::apply(const ElementFieldSingle& traction, ElementFieldSingle& slip) {
-  const int m = n_ * n_;
-  for (int j = 0; j < n_; ++j) {
-    const float* x = traction.data() + j * n_;
-    Complex* row = rows_ + j * padded_;
-    for (int i = 0; i < n_; ++i) row[i] = {x[i], x[m + i]};
+  const int m = nx_ * ny_;
+  for (int j = 0; j < ny_; ++j) {
+    const float* x = traction.data() + j * nx_;
+    Complex* row = rows_ + j * padded_x_;
+    for (int i = 0; i < nx_; ++i) row[i] = {x[i], x[m + i]};
   }
   fftwf_execute(along_);
-  for (int kx = 0; kx < padded_; ++kx) {
-    std::fill(spectrum_ + kx * padded_ + n_, spectrum_ + (kx + 1) * padded_, Complex{});
+  for (int kx = 0; kx < padded_x_; ++kx) {
+    std::fill(spectrum_ + kx * padded_y_ + ny_, spectrum_ + (kx + 1) * padded_y_, Complex{});
   }
   fftwf_execute(across_);
   multiply();
   fftwf_execute(across_back_);
   fftwf_execute(along_back_);
-  for (int j = 0; j < n_; ++j) {
-    float* x = slip.data() + j * n_;
-    const Complex* row = spectrum_ + j * padded_;
-    for (int i = 0; i < n_; ++i) {
+  for (int j = 0; j < ny_; ++j) {
+    float* x = slip.data() + j * nx_;
+    const Complex* row = spectrum_ + j * padded_x_;
+    for (int i = 0; i < nx_; ++i) {
       x[i] = row[i].real();
       x[m + i] = row[i].imag();
     }

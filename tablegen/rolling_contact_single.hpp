@@ -25,16 +25,16 @@ class RollingContactSingle {
   RollingContactSingle(const RollingContactSingle&) = delete;
   RollingContactSingle& operator=(const RollingContactSingle&) = delete;
 
-  /// slip = B p, all n×n elements.
+  /// slip = B p, all nx×ny elements.
   void apply(const ElementFieldSingle& traction, ElementFieldSingle& slip);
 
  private:
   using Complex = std::complex<float>;
   void multiply();
 
-  int n_, padded_;
+  int nx_, ny_, padded_x_, padded_y_;
   std::vector<Complex> alpha_, beta_;     ///< with the wave number along x first
-  Complex *rows_, *spectrum_, *product_;  ///< rows_: n×padded along x; the others along y, transposed
+  Complex *rows_, *spectrum_, *product_;  ///< rows_: ny×padded along x; the others along y, transposed
   fftwf_plan along_, across_, across_back_, along_back_;
 };
 

@@ -35,8 +35,8 @@ Traction friction_circle(double free_x, double free_y, double axx, double ayy, d
 
 RollingContactTransient::RollingContactTransient(const RollingContactGrid& grid, double nu)
     : grid_(grid), self_(influence_number(0.0, 0.0, grid.dx, grid.dy, nu)) {
-  for (int j = -grid.n; j <= grid.n; ++j) {
-    for (int i = -grid.n; i <= grid.n; ++i) {
+  for (int j = -grid.ny; j <= grid.ny; ++j) {
+    for (int i = -grid.nx; i <= grid.nx; ++i) {
       const InfluenceNumber a = influence_number(i * grid.dx, j * grid.dy, grid.dx, grid.dy, nu);
       xx_.push_back(a.xx);
       xy_.push_back(a.xy);
@@ -47,12 +47,12 @@ RollingContactTransient::RollingContactTransient(const RollingContactGrid& grid,
 
 /// Displacement of all elements, observed `ahead` elements further forward, by a traction on one.
 void RollingContactTransient::add(int element, double px, double py, int ahead, ElementField& field) const {
-  const int n = grid_.n, wide = 2 * n + 1;
+  const int n = grid_.nx, wide = 2 * n + 1;
   const int i = element % n, j = element / n;
-  for (int row = 0; row < n; ++row) {
-    const int first = (row - j + n) * wide + n - i + ahead;
+  for (int row = 0; row < grid_.ny; ++row) {
+    const int first = (row - j + grid_.ny) * wide + n - i + ahead;
     double* x = field.data() + row * n;
-    double* y = x + n * n;
+    double* y = x + grid_.count();
     for (int k = 0; k < n; ++k) {
       x[k] += xx_[first + k] * px + xy_[first + k] * py;
       y[k] += xy_[first + k] * px + yy_[first + k] * py;
@@ -62,7 +62,7 @@ void RollingContactTransient::add(int element, double px, double py, int ahead, 
 
 /// One pass of Gauss-Seidel. @returns Σ|Δp| dA
 double RollingContactTransient::sweep(ElementField& traction, ElementField& slip) const {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   double change = 0.0;
   for (const int k : grid_.inside) {
     const double px = traction[k], py = traction[m + k];
@@ -72,17 +72,17 @@ double RollingContactTransient::sweep(ElementField& traction, ElementField& slip
     add(k, p.x - px, p.y - py, 0, slip);
     traction[k] = p.x;
     traction[m + k] = p.y;
-    change += std::hypot(p.x - px, p.y - py) * grid_.area;
+    change += std::hypot(p.x - px, p.y - py) * grid_.area();
   }
   return change;
 }
 
 RollingContactNewton::Outcome RollingContactTransient::solve(const ElementField& rigid_slip, ElementField& traction,
                                                              double tolerance, RollingContactNewton& newton) {
-  const int m = grid_.n * grid_.n;
+  const int m = grid_.count();
   RollingContactNewton::Outcome outcome{0.0, 0, 0, false};
   ElementField slip(traction.size());
-  while (outcome.iterations < kContactLengths * grid_.n) {
+  while (outcome.iterations < kContactLengths * grid_.nx) {
     slip = rigid_slip;
     for (const int k : grid_.inside) {
       add(k, traction[k], traction[m + k], 0, slip);

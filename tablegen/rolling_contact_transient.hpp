@@ -25,7 +25,7 @@ class RollingContactTransient {
 
   const RollingContactGrid& grid_;
   InfluenceNumber self_;
-  std::vector<double> xx_, xy_, yy_;  ///< A at the offsets −n..n along, −n..n across
+  std::vector<double> xx_, xy_, yy_;  ///< A at the offsets −nx..nx along, −ny..ny across
 };
 
 }  // namespace railtab

@@ -32,8 +32,8 @@ Vector mean_direction(const Vector& slip, const Vector& by_x, const Vector& by_y
 class SlipField {
  public:
   SlipField(const RollingContactGrid& grid, const ElementField& traction, const ElementField& slip)
-      : grid_(grid), slip_(slip), slips_(static_cast<std::size_t>(grid.n * grid.n), 0) {
-    const int m = grid.n * grid.n;
+      : grid_(grid), slip_(slip), slips_(static_cast<std::size_t>(grid.count()), 0) {
+    const int m = grid.count();
     for (const int k : grid.inside) {
       slips_[static_cast<std::size_t>(k)] = std::hypot(traction[k], traction[m + k]) > grid.bound[k] * (1.0 - 1e-9);
     }
@@ -42,16 +42,16 @@ class SlipField {
   [[nodiscard]] bool slips(int k) const { return slips_[static_cast<std::size_t>(k)] != 0; }
   /// Whether the element or one next to it adheres. There the slip grows from zero without turning.
   [[nodiscard]] bool borders_on_adhesion(int k) const {
-    const int n = grid_.n, i = k % n, j = k / n;
+    const int n = grid_.nx, i = k % n, j = k / n;
     const auto adheres = [this](int l) { return grid_.bound[l] > 0.0 && !slips(l); };
     return adheres(k) || (i > 0 && adheres(k - 1)) || (i + 1 < n && adheres(k + 1)) || (j > 0 && adheres(k - n)) ||
-           (j + 1 < n && adheres(k + n));
+           (j + 1 < grid_.ny && adheres(k + n));
   }
-  [[nodiscard]] Vector at(int k) const { return {slip_[k], slip_[grid_.n * grid_.n + k]}; }
+  [[nodiscard]] Vector at(int k) const { return {slip_[k], slip_[grid_.count() + k]}; }
 
   /// Largest 1 - cos of the angle between the slip of the element and that of one next to it.
   [[nodiscard]] double turn(int k) const {
-    const int n = grid_.n, i = k % n, j = k / n;
+    const int n = grid_.nx, i = k % n, j = k / n;
     const Vector here = at(k).normalized();
     double largest = 0.0;
     const auto compare = [&](int l) {
@@ -60,16 +60,16 @@ class SlipField {
     if (i > 0) compare(k - 1);
     if (i + 1 < n) compare(k + 1);
     if (j > 0) compare(k - n);
-    if (j + 1 < n) compare(k + n);
+    if (j + 1 < grid_.ny) compare(k + n);
     return largest;
   }
 
   /// Change over one element towards growing x (axis 0) or y (axis 1); `otherwise` where no neighbour slips.
   [[nodiscard]] Vector change(int k, int axis, const Vector& otherwise) const {
-    const int place = axis == 0 ? k % grid_.n : k / grid_.n, stride = axis == 0 ? 1 : grid_.n;
+    const int place = axis == 0 ? k % grid_.nx : k / grid_.nx, stride = axis == 0 ? 1 : grid_.nx;
     Vector sum = Vector::Zero();
     int neighbours = 0;
-    if (place + 1 < grid_.n && slips(k + stride)) {
+    if (place + 1 < (axis == 0 ? grid_.nx : grid_.ny) && slips(k + stride)) {
       sum += at(k + stride) - at(k);
       ++neighbours;
     }
@@ -91,7 +91,7 @@ class SlipField {
 CreepForce slip_average_correction(const RollingContactGrid& grid, const ElementField& traction,
                                    const ElementField& slip, double rigid_gradient) {
   const SlipField field(grid, traction, slip);
-  const int n = grid.n, m = n * n;
+  const int n = grid.nx, m = grid.count();
   CreepForce correction;
   for (const int k : grid.inside) {
     if (field.borders_on_adhesion(k)) continue;
@@ -102,10 +102,10 @@ CreepForce slip_average_correction(const RollingContactGrid& grid, const Element
     const Vector here = field.at(k);
     const Vector mean = -grid.bound[k] * mean_direction(here, by_x, by_y);
     const double px = share * (mean[0] - traction[k]), py = share * (mean[1] - traction[m + k]);
-    correction.x += px * grid.area;
-    correction.y += py * grid.area;
+    correction.x += px * grid.area();
+    correction.y += py * grid.area();
     correction.moment +=
-        (grid.x[static_cast<std::size_t>(k % n)] * py - grid.y[static_cast<std::size_t>(k / n)] * px) * grid.area;
+        (grid.x[static_cast<std::size_t>(k % n)] * py - grid.y[static_cast<std::size_t>(k / n)] * px) * grid.area();
   }
   return correction;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/tablegen/rolling_contact_grid.hpp"
 #include "railtab/tablegen/rolling_contact_product.hpp"
 

@@ -46,9 +46,20 @@ double spans_length(const SceneParameters& scene) {
   return length;
 }
 
+// Along the track's plane to the right, and normal to it.
+double lateral_acceleration(const TrainParameters& train) {
+  const double sine = train.cant_sine();
+  return train.lateral_acceleration * std::sqrt(1.0 - sine * sine) - standard_gravity * sine;
+}
+double normal_gravity(const TrainParameters& train) {
+  const double sine = train.cant_sine();
+  return standard_gravity * std::sqrt(1.0 - sine * sine) + train.lateral_acceleration * sine;
+}
+
 VehicleModel scene_vehicle(const SceneParameters& scene) {
   const MotionPlane plane = vehicle_plane(scene);
-  if (scene.train.vehicle == imported_vehicle) return import_vehicle(scene.vehicle, plane);
+  const VehicleWeight weight{normal_gravity(scene.train), scene.train.geometric_stiffness};
+  if (scene.train.vehicle == imported_vehicle) return import_vehicle(scene.vehicle, plane, weight);
   const VehicleData data = find_vehicle(scene.train.vehicle);
   if (data.motion == MotionPlane::vertical && plane != MotionPlane::vertical) {
     throw input_error(
@@ -57,7 +68,7 @@ VehicleModel scene_vehicle(const SceneParameters& scene) {
         "as named assumptions");
   }
   require_closing(data);
-  return build_vehicle(data, plane);
+  return build_vehicle(data, plane, weight);
 }
 
 // The first wheelset stands at `start`; coaches follow each other at their length over couplers.
@@ -138,6 +149,7 @@ VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
   model.vehicle = scene_vehicle(scene);
+  model.lateral_acceleration = lateral_acceleration(scene.train);
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;

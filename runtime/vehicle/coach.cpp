@@ -114,9 +114,10 @@ std::vector<DofIndices> held_motions(const VehicleDescription& parts, MotionPlan
   return dofs;
 }
 
-VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane) {
+VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane, const VehicleWeight& weight) {
   VehicleDescription parts = describe_coach(parameters);
   parts.held_dofs = held_motions(parts, plane);
+  parts.weight = weight;
   return assemble_vehicle(parts);
 }
 

@@ -51,6 +51,7 @@ struct CoachParameters {
 [[nodiscard]] std::vector<DofIndices> held_motions(const VehicleDescription& parts, MotionPlane plane);
 
 /// describe_coach() as a model: 41 dofs with four wheelsets, or 16 in the vertical plane. @throws InputError
-[[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial);
+[[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial,
+                                       const VehicleWeight& weight = {});
 
 }  // namespace railtab

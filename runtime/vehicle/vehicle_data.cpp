@@ -10,14 +10,14 @@
 
 namespace railtab {
 
-VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, double gravity) {
+VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight) {
   const bool vertical_data = data.motion == MotionPlane::vertical;
   if (vertical_data && plane != MotionPlane::vertical) {
     throw input_error(fmt::format("{}: motion", data.place), "\"vertical\", and a model with lateral motion",
                       "a vertical model, or a file with the lateral values too");
   }
   VehicleDescription parts = data.parts;
-  parts.gravity = gravity;
+  parts.weight = weight;
   parts.held_dofs = held_motions(parts, plane);
   if (vertical_data) {
     for (DofIndices& dof : parts.held_dofs) dof[0] = held;
@@ -31,9 +31,8 @@ VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, double gr
 
 std::vector<ClosingCheck> closing_checks(const VehicleData& data) {
   if (data.checks.empty()) return {};
-  constexpr double gravity = 9.81;  // cancels
-  const VehicleModel vehicle = build_vehicle(data, data.motion, gravity);
-  const VehicleSummary summary = summarise(vehicle, 0, gravity);
+  const VehicleModel vehicle = build_vehicle(data, data.motion);
+  const VehicleSummary summary = summarise(vehicle, 0);
   const std::vector<VehicleMode> modes = natural_modes(vehicle, vehicle.dofs());
   std::vector<ClosingCheck> checks;
   for (const StatedCheck& stated : data.checks) {
@@ -44,7 +43,7 @@ std::vector<ClosingCheck> closing_checks(const VehicleData& data) {
     }
     for (std::size_t w = 0; w < summary.wheel_load.size(); ++w) {
       if (stated.quantity == fmt::format("axle load of wheelset-{}", w + 1)) {
-        check.found = 2.0 * summary.wheel_load[w] / gravity;
+        check.found = 2.0 * summary.wheel_load[w] / vehicle.gravity;
       }
     }
     if (check.found) continue;

@@ -36,7 +36,7 @@ struct VehicleData {
 /// Vertical data have no longitudinal stiffness: x of all bodies is then held too, and the vertical plane is z and
 /// pitch.
 /// @throws InputError where the data are vertical and `plane` is not
-[[nodiscard]] VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, double gravity = 9.81);
+[[nodiscard]] VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight = {});
 
 /// A stated check with what the vehicle has.
 struct ClosingCheck {

@@ -93,6 +93,7 @@ void read_connection(TomlSection& section, VehicleData& data) {
     turning.z() = section.number("k_yaw", bending_kind, 0.0);
   }
   turning.y() = section.number("k_pitch", bending_kind, 0.0);
+  const double couple_share = section.number("couple_share", ratio_kind, Suspension{}.couple_share);
   if (section.has("stand_in_for")) {
     data.linearised.push_back(fmt::format("{}: a linear stand-in for {}", name, section.text("stand_in_for")));
   }
@@ -111,6 +112,7 @@ void read_connection(TomlSection& section, VehicleData& data) {
       joint.damping = {unit.cx, unit.cy, unit.cz};
       joint.rotational_stiffness = turning;
       joint.series_stiffness = {unit.series_kx, unit.series_ky, unit.series_kz};
+      joint.couple_share = couple_share;
       data.parts.suspension.push_back(joint);
     }
   }

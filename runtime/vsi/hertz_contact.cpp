@@ -1,5 +1,7 @@
 // Hertz's contacts with creep forces as the contact law of a step (NormalContact::hertz).
 
+#include <optional>
+
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
@@ -34,7 +36,6 @@ class HertzContacts : public ContactLaw {
     const std::size_t n = model.vehicle_x.size();
     prediction_.resize(n);
     free_.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
-    increment_ = free_;
     problem_.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
     problem_.wheelsets_per_group = 1;
     problem_.free = problem_.predicted = problem_.predicted_velocity =
@@ -48,8 +49,8 @@ class HertzContacts : public ContactLaw {
       const LinearMotion& motion = state.vehicle[index(v)];
       predict(hht, motion, p);
       vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
-      step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht, ws.vehicle_load,
-                                            motion, p, free_[index(v)]);
+      free_[index(v)] = step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht,
+                                                              ws.vehicle_load, motion, p);
       // predictor, its velocity, the motion without contact forces, and where Newton starts (constant acceleration)
       const Eigen::VectorXd free = p.displacement + free_[index(v)];
       const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
@@ -69,7 +70,9 @@ class HertzContacts : public ContactLaw {
   // 𝐂: vehicle_compliance and rail; q_free: free; f and T: evaluate() and differentiate().
   void present(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
     contact_.speed = step.model.speed(step.end);
-    contact_.without_table = step.limits.geometry == GeometrySource::search;
+    const bool search = step.limits.geometry == GeometrySource::search;
+    if (search && !search_) search_.emplace(step.model.contact.geometry->without_table());
+    contact_.geometry = search ? &*search_ : step.model.contact.geometry;
     if (step.model.structure) {
       gather_structure(step, state, ws);
       couple_rails(step, problem_.rail);
@@ -84,11 +87,12 @@ class HertzContacts : public ContactLaw {
   }
 
   ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {
-    newton_.forces_known = pass > 0;  // the structure's response has moved nothing but q_free
+    // the structure's response has moved nothing but q_free
+    const InitialForces forces = pass > 0 ? InitialForces::known : InitialForces::unknown;
     NewtonReport newton;
     {
       const Stopwatch watch = report.times.measure(Phase::contact);
-      newton = solve_contact_by_continuation(contact_, problem_, step.limits.newton, ws.solution, newton_);
+      newton = solve_contact_by_continuation(contact_, problem_, step.limits.newton, ws.solution, newton_, forces);
     }
     report.times.seconds(Phase::contact) -= newton.counts.seconds_lookup;
     report.times.seconds(Phase::lookup) += newton.counts.seconds_lookup;
@@ -118,10 +122,11 @@ class HertzContacts : public ContactLaw {
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
-      increment_[index(v)] = free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
+      const Eigen::VectorXd increment =
+          free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
       close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
-      update(hht, prediction_[index(v)], increment_[index(v)], motion);
+      update(hht, prediction_[index(v)], increment, motion);
     }
     ws.solution.step_load = state.contact.step_load;
     close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
@@ -146,12 +151,12 @@ class HertzContacts : public ContactLaw {
     }
   }
 
-  WheelContactModel contact_;  // at the speed of the step's end
+  std::optional<ContactGeometry> search_;  // made when first needed
+  WheelContactModel contact_;              // at the speed of the step's end
   ContactProblem problem_;
-  std::vector<Prediction> prediction_;             // per vehicle
-  std::vector<Eigen::VectorXd> free_, increment_;  // per vehicle
-  NewtonWorkspace newton_;                         // tangents and loads are kept from step to step,
-                                                   // until reinitialise()
+  std::vector<Prediction> prediction_;  // per vehicle
+  std::vector<Eigen::VectorXd> free_;   // per vehicle: increment without contact forces
+  NewtonWorkspace newton_;              // tangents and loads are kept from step to step, until reinitialise()
 };
 
 }  // namespace

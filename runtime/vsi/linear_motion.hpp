@@ -7,6 +7,12 @@
 
 namespace railtab {
 
+/// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K) (Eq. 13), dense or sparse.
+template <class Matrix>
+[[nodiscard]] Matrix effective_matrix(const HhtScheme& scheme, const Matrix& M, const Matrix& C, const Matrix& K) {
+  return scheme.acceleration_rate() * M + scheme.load_weight() * (scheme.velocity_rate() * C + K);
+}
+
 /// State of a linear subsystem (one vehicle, or the structure) at the end of a step.
 struct LinearMotion {
   Eigen::VectorXd displacement, velocity, acceleration;

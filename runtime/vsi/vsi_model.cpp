@@ -100,7 +100,7 @@ void unpack(std::span<const double> numbers, VsiState& state) {
   visit_numbers(state, [&](const auto*, std::size_t n) { expected += n; });
   if (numbers.size() != expected) {
     throw input_error("checkpoint", fmt::format("{} numbers", numbers.size()),
-                      fmt::format("{}, the unknowns of this scene", expected));
+                      fmt::format("{}, the state of this scene", expected));
   }
   visit_numbers(state, [&](auto* data, std::size_t n) {
     std::copy_n(numbers.begin(), n, data);

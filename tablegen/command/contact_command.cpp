@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
+#include "loaded_contact_command.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/rolling_contact.hpp"
 #include "table_command_line.hpp"
@@ -20,22 +20,10 @@ namespace po = boost::program_options;
 
 /// "X,Y,PHI". @throws InputError
 Creepage parse_creepage(const std::string& text) {
-  std::vector<double> values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    double value = 0.0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc{} || !std::isfinite(value) || (stop != end && (*stop != ',' || stop + 1 == end))) break;
-    values.push_back(value);
-    at = stop == end ? stop : stop + 1;
-  }
+  const std::vector<double> values = parse_numbers("--creepage", text, 3, "X,Y,PHI, three normalised creepages");
   constexpr double most = 1e100;  // its square is still a number
   for (const double value : values) {
     if (std::abs(value) > most) throw input_error("--creepage", text, fmt::format("normalised creepages to {}", most));
-  }
-  if (at != end || values.size() != 3) {
-    throw input_error("--creepage", fmt::format("\"{}\"", text), "X,Y,PHI, three normalised creepages");
   }
   return {values[0], values[1], values[2]};
 }
@@ -56,14 +44,25 @@ std::string grid_text(const RollingContactSolution& s, int elements) {
 }  // namespace
 
 void contact_command(const std::vector<std::string>& arguments) {
-  po::options_description own("Options (normalised: G = 1, mu F_n = 1, sqrt(ab) = 1)");
+  po::options_description own("An ellipse (normalised: G = 1, mu F_n = 1, sqrt(ab) = 1)");
   own.add_options()("ratio", po::value<std::string>()->value_name("A/B"), "ratio of the semi-axes, a along x")  //
-      ("creepage", po::value<std::string>()->value_name("X,Y,PHI"), "longitudinal, lateral and spin creepage")  //
-      ("poisson", text_value("0.28")->value_name("NU"), "Poisson's ratio")                                      //
+      ("creepage", po::value<std::string>()->value_name("X,Y,PHI"), "longitudinal, lateral and spin creepage");
+  po::options_description both("Both");
+  both.add_options()("poisson", text_value("0.28")->value_name("NU"), "Poisson's ratio")  //
       ("elements", text_value("40")->value_name("N"),
-       "along each axis, even; the result is extrapolated from N/2 and N");
-  const TableCommandLine line("tablegen contact --ratio A/B --creepage X,Y,PHI [options]", own, {}, arguments);
+       "along each axis of an ellipse, even (the result is extrapolated from N/2 and N); across the narrowest overlap "
+       "of "
+       "a wheel and its rail");
+  own.add(loaded_contact_options()).add(both);
+  const TableCommandLine line(
+      "tablegen contact --ratio A/B --creepage X,Y,PHI [options]\n"
+      "       tablegen contact --wheel P --rail P | --table FILE.h5 --pose Y,YAW,ROLL --load N | --dz M [options]",
+      own, {}, arguments);
   if (line.help_printed()) return;
+  if (line.given("pose")) return loaded_contact_command(line);
+  for (const char* other : {"wheel", "rail", "table", "load", "dz", "pitch-rate", "output"}) {
+    if (line.given(other)) throw input_error(fmt::format("--{}", other), line.text(other), "only with a --pose");
+  }
   RollingContactOptions options;
   options.elements = static_cast<int>(line.whole_number("elements", 8, 240));
   const std::string creepage_text = line.required("creepage");
@@ -73,7 +72,7 @@ void contact_command(const std::vector<std::string>& arguments) {
   ExtrapolatedRollingContact contact(ratio, line.number("poisson"), options);
   const ExtrapolatedContactSolution s = contact.solve(creepage);
   if (!s.coarse.converged || !s.fine.converged) {
-    throw std::runtime_error(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; asked for {:.2g}",
+    throw std::runtime_error(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; tolerance {:.2g}",
                                          s.coarse.residual, options.elements / 2, s.fine.residual, options.elements,
                                          options.tolerance));
   }

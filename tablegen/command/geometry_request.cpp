@@ -25,6 +25,15 @@ PairDimensions dimensions(const TableCommandLine& line) {
 
 }  // namespace
 
+WheelRailPair requested_pair(const TableCommandLine& line) {
+  const double inclination = line.slope("rail-inclination");
+  const double noise = line.number("smoothing");
+  if (!(noise >= 0.0)) throw input_error("--smoothing", line.text("smoothing"), "a length, 0 or above");
+  ProfileCurve wheel(load_profile(line.required("wheel"), ProfileKind::wheel, inclination, noise));
+  ProfileCurve rail(load_profile(line.required("rail"), ProfileKind::rail, inclination, noise));
+  return WheelRailPair(std::move(wheel), std::move(rail), dimensions(line));
+}
+
 GeometryRequest geometry_request(const TableCommandLine& line) {
   const std::string file = line.required("output");
   const std::string wheel_name = line.required("wheel");
@@ -43,13 +52,7 @@ GeometryRequest geometry_request(const TableCommandLine& line) {
   options = options.refined(static_cast<int>(refinement));
   if (line.given("shard")) options.shard = line.shard("shard");
   options.validate();
-
-  const double inclination = line.slope("rail-inclination");
-  const double noise = line.number("smoothing");
-  if (!(noise >= 0.0)) throw input_error("--smoothing", line.text("smoothing"), "a length, 0 or above");
-  ProfileCurve wheel(load_profile(wheel_name, ProfileKind::wheel, inclination, noise));
-  ProfileCurve rail(load_profile(rail_name, ProfileKind::rail, inclination, noise));
-  return {file, options, ContactSearch(WheelRailPair(std::move(wheel), std::move(rail), dimensions(line)))};
+  return {file, options, ContactSearch(requested_pair(line))};
 }
 
 void print_notes(const GeometryRequest& request) {

@@ -17,6 +17,9 @@ struct GeometryRequest {
   ContactSearch search;
 };
 
+/// The pair that pair_options() ask for, its profiles loaded. @throws InputError
+[[nodiscard]] WheelRailPair requested_pair(const TableCommandLine& line);
+
 /// @throws InputError
 [[nodiscard]] GeometryRequest geometry_request(const TableCommandLine& line);
 

@@ -3,7 +3,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "railtab/tablegen/rolling_contact.hpp"
@@ -71,6 +74,87 @@ TEST(ContactCommand, RefusesBadInput) {
   expect_refused("--ratio 1 --creepage 1e155,0,0", "creepages to");
   expect_refused("--ratio 1 --creepage 0,0,0 --elements 41", "an even number");
   expect_refused("--ratio 1 --creepage 0,0,0 --poisson 0.6", "0..0.5");
+}
+
+constexpr const char* pair = "--wheel S1002 --rail 60E1 ";
+
+TEST(ContactCommand, AWheelCarriesItsLoad) {
+  const Outcome outcome = contact(std::string(pair) + "--pose 0.005,0.012,-1e-4 --load 75000 --elements 20 --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
+  const nlohmann::json j = nlohmann::json::parse(outcome.text);
+  EXPECT_EQ(j["kind"], "loaded contact");
+  EXPECT_NEAR(j["force_on_rail"][2].get<double>(), 75e3, 0.1);
+  EXPECT_EQ(j["force_on_rail"][0].get<double>(), 0.0);
+  ASSERT_EQ(j["bands"].size(), 2u);
+  EXPECT_NEAR(j["bands"][0]["normal_force"].get<double>() + j["bands"][1]["normal_force"].get<double>(),
+              j["normal_force"].get<double>(), 1e-6);
+  EXPECT_LE(j["residual"].get<double>(), 1e-6);
+  EXPECT_FALSE(j.contains("friction"));
+  // the same height by --dz gives the same force
+  const Outcome lowered = contact(std::string(pair) + "--pose 0.005,0.012,-1e-4 --elements 20 --json --dz " +
+                                  std::to_string(1e6 * j["dz"].get<double>()) + "e-6");
+  ASSERT_EQ(lowered.exit_code, 0) << lowered.text;
+  EXPECT_NEAR(nlohmann::json::parse(lowered.text)["force_on_rail"][2].get<double>(), 75e3, 20.0);
+}
+
+TEST(ContactCommand, FrictionAndTheFileOfPressures) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "contact_command_pressure.csv";
+  std::filesystem::remove(file);
+  const Outcome outcome =
+      contact(std::string(pair) + "--pose 0.007,0.005,0 --load 20000 --friction 0.25 --velocity 30 " +
+              "--motion 0.01,0,0,0 --json -o '" + file.string() + "'");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
+  const nlohmann::json j = nlohmann::json::parse(outcome.text);
+  EXPECT_NEAR(j["force_on_rail"][2].get<double>(), 20e3, 0.1);
+  EXPECT_NEAR(j["friction"]["pitch_rate"].get<double>(), -30.0 / 0.46, 1e-9);
+  EXPECT_LE(j["friction"]["residual"].get<double>(), 1e-6);
+  EXPECT_EQ(j["friction"]["force_on_wheel"][0].get<double>(), -j["force_on_rail"][0].get<double>());
+  EXPECT_GT(j["friction"]["force_on_wheel"][0].get<double>(), 0.0) << "a flange of larger radius drives the wheel";
+  const Outcome text = contact(std::string(pair) + "--pose 0,0,0 --load 1e4 --friction 0.3 --elements 20");
+  EXPECT_EQ(text.exit_code, 0) << text.text;
+  EXPECT_NE(text.text.find("creepages"), std::string::npos) << text.text;
+  // the file holds the pressures: they add up to the normal force, and no traction exceeds friction
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "x,s_rail,y,z,angle,overlap,pressure,traction_x,traction_y,band");
+  double sum = 0.0;
+  for (double v[10]; std::getline(in, line);) {
+    std::istringstream fields(line);
+    std::string field;
+    for (double& value : v) {
+      ASSERT_TRUE(std::getline(fields, field, ','));
+      value = std::stod(field);
+    }
+    sum += v[6];
+    EXPECT_LE(std::hypot(v[7], v[8]), 0.25 * v[6] * (1 + 1e-9));
+  }
+  const double area = j["elements"]["dx"].get<double>() * j["elements"]["ds"].get<double>();
+  EXPECT_NEAR(sum * area / j["normal_force"].get<double>(), 1.0, 1e-9);
+  std::filesystem::remove(file);
+}
+
+TEST(ContactCommand, RefusesALoadedContactThatIsWrong) {
+  const std::string at = std::string(pair) + "--pose 0,0,0 ";
+  expect_refused(std::string(pair) + "--pose 0,0 --load 1e4", "Y,YAW,ROLL");
+  expect_refused(std::string(pair) + "--pose 0,0,nan --load 1e4", "Y,YAW,ROLL");
+  expect_refused(std::string(pair) + "--pose 0.5,0,0 --load 1e4", "0.1");
+  expect_refused(at, "neither --load nor --dz");
+  expect_refused(at + "--load 1e4 --dz 1e-4", "both --load and --dz");
+  expect_refused(at + "--load 0", "load");
+  expect_refused(at + "--dz 1", "0..2e-3");
+  expect_refused(at + "--load 1e4 --ratio 2", "--ratio");
+  expect_refused(at + "--load 1e4 --pitch-rate -60", "--friction");
+  expect_refused(at + "--load 1e4 --friction 0.3 --motion 1,2", "VY,VZ,ROLL,YAW");
+  expect_refused(at + "--load 1e4 --friction 3", "friction");
+  expect_refused(at + "--load 1e4 --friction 0.3 --velocity 0", "speed");
+  expect_refused(at + "--load 1e4 --elements 2", "elements");
+  expect_refused(at + "--load 1e4 --table x.h5", "--wheel");
+  expect_refused("--pose 0,0,0 --load 1e4 --wheel S1002", "rail is missing");
+  expect_refused("--ratio 2 --creepage 0,0,0 --load 1e4", "--pose");
+  const Outcome many = contact(at + "--dz 1e-4 --most-elements 100");
+  EXPECT_EQ(many.exit_code, 1);
+  EXPECT_NE(many.text.find("--most-elements"), std::string::npos) << many.text;
 }
 
 }  // namespace

@@ -401,5 +401,37 @@ TEST_F(VsiCommand, ResultsThatARunReplacesAreNamed) {
   EXPECT_EQ(wrong.output.find("note:"), std::string::npos) << wrong.output;
 }
 
+TEST_F(VsiCommand, VehicleShowsWhatFollowsFromItsFile) {
+  const Outcome list = vsi("vehicle");
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_TRUE(list.output.find("manchester-coach") != std::string::npos) << list.output;
+  const Outcome shown = vsi("vehicle metro-gz18");
+  EXPECT_EQ(shown.exit_code, 0);
+  for (const char* part : {"55685 kg, 22.8 m over couplers, wheels of 0.42 m radius", "68.284         13.921",
+                           "car body bounce", "linear stand-in: yaw damper along x", "closes: mass 55685 kg",
+                           "bogie.height = 0.5 m: assumed, source: none", "SIMPACK"}) {
+    EXPECT_NE(shown.output.find(part), std::string::npos) << part << "\n" << shown.output;
+  }
+  const Outcome json = vsi("vehicle velaro-e-coach --json --modes 2");
+  EXPECT_EQ(json.exit_code, 0);
+  for (const char* part : {"{\"name\": \"velaro-e-coach\"", "\"motion\": \"vertical\"", "\"top_speed\": null",
+                           "\"dofs\": 10", "\"axle_load\": 155", "\"standing\": \"verified\""}) {
+    EXPECT_NE(json.output.find(part), std::string::npos) << part << "\n" << json.output;
+  }
+}
+
+TEST_F(VsiCommand, VehicleWritesAFileThatScenesAndItselfTake) {
+  EXPECT_EQ(vsi("vehicle ordinary-coach --toml > mine.toml").exit_code, 0);
+  EXPECT_EQ(vsi("vehicle mine.toml").output, vsi("vehicle ordinary-coach").output);
+  write("scene.toml",
+        "[train]\nvehicle = \"mine.toml\"\n[contact]\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n"
+        "[integration]\nduration = 0.05\n");
+  EXPECT_EQ(vsi("run scene.toml -o r.h5 --quiet").exit_code, 0);
+  expect_refused("vehicle nowhere.toml", "nowhere.toml");
+  expect_refused("vehicle nothing", "vehicle: found 'nothing', expected a file that ends with .toml, or one of ");
+  write("torn.toml", "name = \"torn\"\n");
+  expect_refused("vehicle torn.toml", "torn.toml:1: description: found nothing, expected a text");
+}
+
 }  // namespace
 }  // namespace railtab

@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/influence_numbers.hpp"
 #include "railtab/tablegen/rolling_contact_product.hpp"
+#include "railtab/tablegen/rolling_contact_single.hpp"
 
 namespace railtab {
 namespace {
@@ -54,12 +57,12 @@ TEST(InfluenceNumbers, AnElementIsTheSumOfItsQuarters) {
 }
 
 /// Slip per step by elastic deformation, summed element by element.
-ElementField direct_product(int n, double dx, double dy, const ElementField& p) {
-  const int m = n * n;
+ElementField direct_product(int nx, int ny, double dx, double dy, const ElementField& p) {
+  const int m = nx * ny;
   ElementField slip = ElementField::Zero(2 * m);
   for (int k = 0; k < m; ++k) {
     for (int l = 0; l < m; ++l) {
-      const double x = (k % n - l % n) * dx, y = (k / n - l / n) * dy;
+      const double x = (k % nx - l % nx) * dx, y = (k / nx - l / nx) * dy;
       const InfluenceNumber here = influence_number(x, y, dx, dy, kNu);
       const InfluenceNumber ahead = influence_number(x + dx, y, dx, dy, kNu);
       slip[k] += (here.xx - ahead.xx) * p[l] + (here.xy - ahead.xy) * p[m + l];
@@ -70,16 +73,77 @@ ElementField direct_product(int n, double dx, double dy, const ElementField& p) 
 }
 
 TEST(RollingContactProduct, IsTheDirectSum) {
-  for (const int n : {7, 12}) {
+  for (const auto& [nx, ny] : {std::pair{7, 7}, {12, 12}, {5, 9}, {11, 4}}) {
     const double dx = 0.13, dy = 0.31;
-    RollingContactProduct product(n, dx, dy, kNu);
-    ElementField p(2 * n * n), slip(2 * n * n);
+    RollingContactProduct product(nx, ny, dx, dy, kNu);
+    ElementField p(2 * nx * ny), slip(2 * nx * ny);
     for (int i = 0; i < p.size(); ++i) p[i] = std::sin(1.7 * i * i + 0.3);
     product.apply(p, slip);
-    const ElementField direct = direct_product(n, dx, dy, p);
-    EXPECT_LT((slip - direct).cwiseAbs().maxCoeff(), 1e-14 * n * n);
+    const ElementField direct = direct_product(nx, ny, dx, dy, p);
+    EXPECT_LT((slip - direct).cwiseAbs().maxCoeff(), 1e-14 * nx * ny);
     EXPECT_GT(direct.cwiseAbs().maxCoeff(), 0.01);
+    RollingContactSingle single(product);
+    ElementFieldSingle single_slip(2 * nx * ny);
+    single.apply(p.cast<float>(), single_slip);
+    EXPECT_LT((single_slip.cast<double>() - direct).cwiseAbs().maxCoeff(), 1e-6 * nx * ny);
   }
+}
+
+// A rectangle of more elements across than along, with two separate bands, obeys the same law.
+TEST(RollingContact, AnyContactAreaObeysCoulombsLaw) {
+  RollingContactGrid grid;
+  grid.nx = 14;
+  grid.ny = 23;
+  grid.dx = 0.1;
+  grid.dy = 0.07;
+  for (int i = 0; i < grid.nx; ++i) grid.x.push_back((i - 6.5) * grid.dx);
+  for (int j = 0; j < grid.ny; ++j) grid.y.push_back((j - 11.0) * grid.dy);
+  grid.bound = Eigen::VectorXd::Zero(grid.count());
+  for (int k = 0; k < grid.count(); ++k) {
+    const double x = grid.x[k % grid.nx], y = grid.y[k / grid.nx];
+    const double left = 1.0 - x * x / 0.4 - (y + 0.45) * (y + 0.45) / 0.08,
+                 right = 1.0 - x * x / 0.2 - (y - 0.5) * (y - 0.5) / 0.03;
+    grid.bound[k] = 0.3 * std::sqrt(std::max({0.0, left, right}));
+    if (grid.bound[k] > 0.0) grid.inside.push_back(k);
+  }
+  const int m = grid.count();
+  RigidSlip rigid{ElementField::Zero(2 * m), 0.3};
+  for (int k = 0; k < m; ++k) {
+    rigid.w[k] = 0.05 - 0.3 * grid.y[k / grid.nx];
+    rigid.w[m + k] = -0.1 + 0.3 * grid.x[k % grid.nx];
+  }
+  RollingContact contact(grid, kNu, {});
+  const RollingContactSolution s = contact.solve(rigid);
+  ASSERT_TRUE(s.converged);
+  EXPECT_FALSE(s.safe_method);
+  EXPECT_GT(s.adhesion, 10);
+  EXPECT_GT(s.slip, 10);
+  const ElementField p = Eigen::Map<const ElementField>(s.traction.data(), 2 * m);
+  const ElementField slip = direct_product(grid.nx, grid.ny, grid.dx, grid.dy, p) + rigid.w * grid.dx;
+  const double scale = rigid.w.cwiseAbs().maxCoeff() * grid.dx;
+  CreepForce force;
+  for (int k = 0; k < m; ++k) {
+    const double size = std::hypot(p[k], p[m + k]);
+    EXPECT_LE(size, grid.bound[k] * (1 + 1e-12));
+    force.x += p[k] * grid.area();
+    force.y += p[m + k] * grid.area();
+    if (grid.bound[k] == 0.0) continue;
+    const double slips = std::hypot(slip[k], slip[m + k]);
+    if (size < grid.bound[k] * (1 - 1e-6)) {
+      EXPECT_LT(slips, 1e-4 * scale);
+    } else {
+      EXPECT_GT(-(p[k] * slip[k] + p[m + k] * slip[m + k]), size * slips * (1 - 1e-4) - 1e-7);
+    }
+  }
+  EXPECT_NEAR(s.force.x, force.x, 1e-14);
+  EXPECT_NEAR(s.force.y, force.y, 1e-14);
+  // the safe method finds the same
+  RollingContactOptions options;
+  options.max_iterations = 0;
+  const RollingContactSolution safe = RollingContact(grid, kNu, options).solve(rigid);
+  ASSERT_TRUE(safe.converged && safe.safe_method);
+  EXPECT_NEAR(safe.force.x, s.force.x, 1e-5);
+  EXPECT_NEAR(safe.force.y, s.force.y, 1e-5);
 }
 
 TEST(RollingContact, ObeysCoulombsLaw) {
@@ -94,7 +158,7 @@ TEST(RollingContact, ObeysCoulombsLaw) {
       ASSERT_TRUE(s.converged);
       EXPECT_LT(s.bound_excess, 1e-12);
       const ElementField p = Eigen::Map<const ElementField>(s.traction.data(), 2 * m);
-      const ElementField elastic = direct_product(n, dx, dy, p);
+      const ElementField elastic = direct_product(n, n, dx, dy, p);
       double weight = 0.0;
       const auto depth = [&](int k) {
         return 1.0 - std::pow((2.0 * (k % n) + 1 - n) / n, 2) - std::pow((2.0 * (k / n) + 1 - n) / n, 2);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <complex>
 
-#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
@@ -59,21 +58,13 @@ TEST(SeriesDamper, HasTheDynamicStiffnessOfAMaxwellElement) {
 TEST(SeriesDamper, RestsWhereTheWholeVehicleMoves) {
   VehicleDescription parts;
   parts.name = "two";
-  parts.bodies = {{"car-body", m, {100.0, 100.0, 100.0}, {1.0, 0.2, -1.5}},
+  parts.bodies = {{"car-body", m, {100.0, 100.0, 100.0}, {0.0, 0.2, -1.5}},
                   {"wheelset-1", 100.0, {10.0, 10.0, 10.0}, {0.0, 0.0, -0.46}}};
-  Suspension unit{0, 1, {0.3, -0.7, -0.9}, {1e5, 1e5, 1e5}, {1e3, 2e3, 3e3}};
+  Suspension unit{0, 1, {0.0, -0.7, -0.9}, {1e5, 1e5, 1e5}, {1e3, 2e3, 3e3}, {1e6, 1e6, 1e6}};
   unit.series_stiffness = {1e6, 2e6, 3e6};
   parts.suspension = {unit};
   parts.wheelsets = {1};
-  parts.held_dofs.assign(2, DofIndices{0, 0, 0, 0, 0, 0});
-  VehicleModel vehicle;
-  try {
-    vehicle = assemble_vehicle(parts);
-  } catch (const InputError&) {
-    parts.bodies[0].position.x() = 0.3;  // above its spring, which otherwise does not carry it
-    parts.bodies[0].position.y() = -0.7;
-    vehicle = assemble_vehicle(parts);
-  }
+  const VehicleModel vehicle = assemble_vehicle(parts);
   ASSERT_EQ(vehicle.dofs(), 15);
   const Eigen::Vector3d angles[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (const Eigen::Vector3d& theta : angles) {
@@ -117,13 +108,13 @@ double error_of_steps(double time_step, double alpha) {
   motion.displacement[0] = start[0];
   motion.acceleration[0] = -k / m * start[0];
   Prediction prediction;
-  Eigen::VectorXd increment(2);
   const Eigen::VectorXd load = Eigen::VectorXd::Zero(2);
   double largest = 0.0;
   const int steps = static_cast<int>(std::lround(0.6 / time_step));
   for (int i = 1; i <= steps; ++i) {
     predict(scheme, motion, prediction);
-    response.free_increment(vehicle, vehicle.damping, scheme, load, motion, prediction, increment);
+    const Eigen::VectorXd increment =
+        response.free_increment(vehicle, vehicle.damping, scheme, load, motion, prediction);
     update(scheme, prediction, increment, motion);
     largest = std::max(largest, std::abs(motion.displacement[0] - closed_form(start, i * time_step)[0]));
   }

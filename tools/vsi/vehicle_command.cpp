@@ -117,7 +117,7 @@ void print(const Described& v) {
     const auto body = static_cast<std::size_t>(v.model.wheelsets[w]);
     const double load = v.summary.wheel_load[w];
     print_formatted("  {:24} {:8.3f} {:12.3f} {:14.3f}\n", v.model.bodies[body].name, v.model.bodies[body].position.x(),
-                    1e-3 * load, 2e-3 * load / 9.81);
+                    1e-3 * load, 2e-3 * load / v.model.gravity);
   }
   print_bodies(v);
   print_formatted("  natural frequencies on standing wheelsets\n");
@@ -173,7 +173,7 @@ Json as_json(const Described& v) {
     const double load = v.summary.wheel_load[w];
     wheelsets.push_back({{"x", v.model.bodies[static_cast<std::size_t>(v.model.wheelsets[w])].position.x()},
                          {"wheel_load", load},
-                         {"axle_load", 2.0 * load / 9.81}});
+                         {"axle_load", 2.0 * load / v.model.gravity}});
   }
   for (const VehicleMode& mode : v.modes) {
     modes.push_back({{"frequency", mode.frequency}, {"damping_ratio", mode.damping}, {"motion", mode.motion}});

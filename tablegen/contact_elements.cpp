@@ -1,0 +1,173 @@
+#include "railtab/tablegen/contact_elements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "railtab/runtime/base/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr double walk_step = 5e-5;  // along the rail profile [m]
+constexpr double margin = 0.01;     // of the box, on each side: the contact lies well inside the overlap
+constexpr double no_wheel = -5e-3;  // overlap where no wheel surface was found [m]
+
+void include(OverlapRegion& region, const RailLine& line, double width) {
+  const double half = std::sqrt(2.0 * std::max(0.0, line.overlap) / line.curvature);
+  region.s_low = std::min(region.s_low, line.s);
+  region.s_high = std::max(region.s_high, line.s);
+  region.x_low = std::min(region.x_low, line.x - half);
+  region.x_high = std::max(region.x_high, line.x + half);
+  region.length = std::max(region.length, 2.0 * half);
+  region.depth = std::max(region.depth, line.overlap);
+  region.volume += 4.0 / 3.0 * half * std::max(0.0, line.overlap) * width;
+}
+
+/// Follows the overlap from one line to its end; sign ±1 along s.
+void walk(const UndeformedDistance& distance, RailLine line, double sign, OverlapRegion& region) {
+  const ProfileCurve& rail = distance.pair().rail();
+  while (true) {
+    const double s = line.s + sign * walk_step;
+    if (!rail.contains(s)) return;
+    const std::optional<RailLine> next = distance.line(s, line.s_wheel);
+    if (!next) return;
+    if (next->overlap <= 0.0) {
+      // the end, from the overlap on both sides of it
+      RailLine end = line;
+      end.s += sign * walk_step * line.overlap / (line.overlap - next->overlap);
+      end.overlap = 0.0;
+      include(region, end, 0.0);
+      return;
+    }
+    include(region, *next, walk_step);
+    line = *next;
+  }
+}
+
+}  // namespace
+
+std::vector<OverlapRegion> overlap_regions(const ContactSearch& search, const WheelsetPose& pose,
+                                           const UndeformedDistance& distance) {
+  std::vector<OverlapRegion> regions;
+  for (const ContactPatch& patch : search.patches(pose)) {
+    const bool known = std::any_of(regions.begin(), regions.end(), [&](const OverlapRegion& r) {
+      return patch.s_rail >= r.s_low && patch.s_rail <= r.s_high;
+    });
+    const std::optional<RailLine> line = distance.line(patch.s_rail, patch.s_wheel);
+    if (known || !line || line->overlap <= 0.0) continue;
+    OverlapRegion region{line->s, line->s, line->x, line->x, 0.0, 0.0, 0.0};
+    include(region, *line, walk_step);
+    walk(distance, *line, -1.0, region);
+    walk(distance, *line, 1.0, region);
+    regions.push_back(region);
+  }
+  std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.s_low < b.s_low; });
+  return regions;
+}
+
+void ContactElementOptions::validate() const {
+  if (across_narrowest < 4 || across_narrowest > 1000) {
+    throw input_error("elements", fmt::format("{}", across_narrowest), "4..1000");
+  }
+  if (most < 64 || most > 4000000)
+    throw input_error("largest number of elements", fmt::format("{}", most), "64..4000000");
+  if (!(negligible_volume >= 0.0 && negligible_volume <= 0.5)) {
+    throw input_error("negligible_volume", fmt::format("{}", negligible_volume), "0..0.5");
+  }
+}
+
+namespace {
+
+OverlapRegion bounding_box(const std::vector<OverlapRegion>& regions) {
+  OverlapRegion box = regions.front();
+  for (const OverlapRegion& r : regions) {
+    box.s_low = std::min(box.s_low, r.s_low);
+    box.s_high = std::max(box.s_high, r.s_high);
+    box.x_low = std::min(box.x_low, r.x_low);
+    box.x_high = std::max(box.x_high, r.x_high);
+  }
+  return box;
+}
+
+/// Overlap of the row's elements: from where the wheel is deepest to both sides.
+void fill_row(const UndeformedDistance& distance, const RailLine& line, int row, ContactElements& e) {
+  const auto fill = [&](int first, int step) {
+    OverlapDepth point{line.overlap, line.s_wheel};
+    for (int i = first; i >= 0 && i < e.nx; i += step) {
+      const std::optional<OverlapDepth> found = distance.at(line, e.x[static_cast<std::size_t>(i)], point);
+      if (!found) return;
+      point = *found;
+      e.overlap[row * e.nx + i] = point.overlap;
+      e.s_wheel[static_cast<std::size_t>(row * e.nx + i)] = point.s_wheel;
+    }
+  };
+  const double place = (line.x - e.x.front()) / e.dx;
+  const int middle = static_cast<int>(std::clamp(std::floor(place), -1.0, e.nx - 1.0));
+  fill(middle, -1);
+  fill(middle + 1, 1);
+}
+
+}  // namespace
+
+ContactElements contact_elements(const UndeformedDistance& distance, const std::vector<OverlapRegion>& regions, int nx,
+                                 int ns) {
+  const OverlapRegion box = bounding_box(regions);
+  const double length = (1.0 + 2.0 * margin) * (box.x_high - box.x_low);
+  const double width = (1.0 + 2.0 * margin) * (box.s_high - box.s_low);
+  ContactElements e;
+  e.nx = nx;
+  e.ns = ns;
+  e.dx = length / nx;
+  e.ds = width / ns;
+  const double x_first = 0.5 * (box.x_low + box.x_high - length), s_first = 0.5 * (box.s_low + box.s_high - width);
+  for (int i = 0; i < nx; ++i) e.x.push_back(x_first + (i + 0.5) * e.dx);
+  e.overlap = Eigen::VectorXd::Constant(e.count(), no_wheel);
+  e.s_wheel.assign(static_cast<std::size_t>(e.count()), 0.0);
+  std::optional<RailLine> before;
+  for (int j = 0; j < ns; ++j) {
+    const double s = s_first + (j + 0.5) * e.ds;
+    const bool overlaps = std::any_of(regions.begin(), regions.end(), [&](const OverlapRegion& r) {
+      return s > r.s_low - 2.0 * e.ds && s < r.s_high + 2.0 * e.ds;
+    });
+    std::optional<RailLine> line;
+    if (overlaps && before) line = distance.line(s, before->s_wheel);
+    if (overlaps && !line) line = distance.line(s);
+    if (line) {
+      e.line.push_back(*line);
+      fill_row(distance, *line, j, e);
+    } else {
+      e.line.push_back(distance.rail_point(s));
+    }
+    before = line;
+  }
+  return e;
+}
+
+ContactElements contact_elements(const UndeformedDistance& distance, const std::vector<OverlapRegion>& regions,
+                                 const ContactElementOptions& options) {
+  double volume = 0.0, length = 1.0, width = 1.0;
+  for (const OverlapRegion& r : regions) volume += r.volume;
+  for (const OverlapRegion& r : regions) {
+    if (r.volume < options.negligible_volume * volume) continue;
+    length = std::min(length, r.length);
+    width = std::min(width, r.s_high - r.s_low);
+  }
+  const OverlapRegion box = bounding_box(regions);
+  const double nx = std::ceil(options.across_narrowest * (box.x_high - box.x_low) / length - 1e-9);
+  const double ns = std::ceil(options.across_narrowest * (box.s_high - box.s_low) / width - 1e-9);
+  if (nx * ns > options.most) {
+    throw TooManyElements(
+        fmt::format("{:.0f} x {:.0f} elements are needed for {} across the narrowest overlap region ({:.3g} x {:.3g} "
+                    "mm in a box of "
+                    "{:.3g} x {:.3g} mm); at most {} are allowed. Ask for fewer across it or allow more.",
+                    nx, ns, options.across_narrowest, 1e3 * length, 1e3 * width, 1e3 * (box.x_high - box.x_low),
+                    1e3 * (box.s_high - box.s_low), options.most));
+  }
+  return contact_elements(distance, regions, static_cast<int>(nx), static_cast<int>(ns));
+}
+
+}  // namespace railtab

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <vector>
+
+#include "railtab/runtime/contact/contact_search.hpp"
+#include "railtab/tablegen/undeformed_distance.hpp"
+
+namespace railtab {
+
+/// A connected region in which the undeformed surfaces overlap.
+struct OverlapRegion {
+  double s_low, s_high;  ///< arc lengths on the rail profile [m]
+  double x_low, x_high;  ///< relative to the wheelset centre [m]
+  double length;         ///< largest along x at one s [m]; with yaw less than x_high − x_low
+  double depth;          ///< largest overlap [m]
+  double volume;         ///< integral of the overlap over the region [m³]
+};
+
+/// Overlap regions of a wheel and its rail, in increasing s. Every region has a deepest point, which is a contact patch
+/// of the search: from each patch the overlap is followed to both sides along the rail profile.
+/// @param search of the pair of `distance`, at whose pose it is asked
+[[nodiscard]] std::vector<OverlapRegion> overlap_regions(const ContactSearch& search, const WheelsetPose& pose,
+                                                         const UndeformedDistance& distance);
+
+/// How the overlap is divided.
+struct ContactElementOptions {
+  int across_narrowest = 40;  ///< elements along and across the narrowest region, 4..1000
+  int most = 60000;           ///< elements altogether, 64..4000000
+  /// Regions with a smaller share of the overlap's volume do not determine the elements' size, 0..0.5.
+  double negligible_volume = 1e-3;
+
+  /// @throws InputError
+  void validate() const;
+};
+
+/// The narrowest region needs more elements than allowed.
+class TooManyElements : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Rectangles dx × ds of the developed rail surface over the bounding box of all overlap regions, ns rows of nx.
+struct ContactElements {
+  int nx = 0, ns = 0;
+  double dx = 0.0, ds = 0.0;    ///< sides [m]
+  std::vector<double> x;        ///< centres along the rail, relative to the wheelset centre [m]
+  std::vector<RailLine> line;   ///< of each row; overlap is −reach where no wheel surface was found
+  Eigen::VectorXd overlap;      ///< undeformed, at the centres [m]; negative: a gap
+  std::vector<double> s_wheel;  ///< of the wheel's point at the centres [m]
+
+  [[nodiscard]] double area() const noexcept { return dx * ds; }
+  [[nodiscard]] int count() const noexcept { return nx * ns; }
+};
+
+/// @param regions not empty @throws TooManyElements
+[[nodiscard]] ContactElements contact_elements(const UndeformedDistance& distance,
+                                               const std::vector<OverlapRegion>& regions,
+                                               const ContactElementOptions& options);
+
+/// The same with given numbers of elements.
+[[nodiscard]] ContactElements contact_elements(const UndeformedDistance& distance,
+                                               const std::vector<OverlapRegion>& regions, int nx, int ns);
+
+}  // namespace railtab
