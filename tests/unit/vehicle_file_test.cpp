@@ -29,6 +29,7 @@ std::string message_of(const std::string& text) {
   try {
     const VehicleData data = parse_vehicle(text, "coach.toml");
     require_closing(data);
+    static_cast<void>(build_vehicle(data, data.motion));
   } catch (const InputError& wrong) {
     return wrong.what();
   }
