@@ -144,7 +144,7 @@ class Study {
       differences_.add("B", kind, "contact angle",
                        std::atan2(c.on_rail.force.y(), c.on_rail.force.z()) - std::atan2(row["fy"], row["fz"]));
       const double halved = loaded_contact(search_, pose, fine_).normal_force;
-      differences_.add("B", kind, "normal force, halved elements", c.normal_force / halved - 1.0);
+      differences_.add("B", kind, "normal force of halved elements", c.normal_force / halved - 1.0);
     }
   }
 
@@ -170,11 +170,11 @@ class Study {
            "load.\n"
            "# D2: CONTACT's planar, D4: its curved reference; made by tests/validation/loaded_contact_study, " +
            fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))) +
-           "\nset,class,quantity,cases,mean,p95,largest\n" + differences_.csv();
+           "\nset,kind,quantity,cases,mean,p95,largest\n" + differences_.csv();
   }
   [[nodiscard]] std::string cases() const {
     return "# Set A one by one: as loaded_contact.csv\n"
-           "case,class,y_mm,load_kN,bands,approach,pressure,force_D2,planar_slip_D2,force_D4,D2_D4,angle_mrad\n" +
+           "case,kind,y_mm,load_kN,bands,approach,pressure,force_D2,planar_slip_D2,force_D4,D2_D4,angle_mrad\n" +
            cases_;
   }
 
@@ -237,9 +237,9 @@ class Study {
               const std::string& kind) {
     const LoadedContact fine = loaded_contact(search_, c.pose, fine_);
     const LoadedRolling rolling = loaded_rolling(search_.pair(), fine, fine_, motion, curved_);
-    differences_.add("A", kind, "normal force, halved elements", c.normal_force / fine.normal_force - 1.0);
+    differences_.add("A", kind, "normal force of halved elements", c.normal_force / fine.normal_force - 1.0);
     differences_.add(
-        "A", kind, "creep force, halved elements",
+        "A", kind, "creep force of halved elements",
         (curved.on_rail.force / c.normal_force - rolling.on_rail.force / fine.normal_force).norm() / friction);
   }
 
