@@ -29,7 +29,7 @@ ArrayFileWriter open_partial(const std::filesystem::path& partial, const CreepSh
   if (!std::filesystem::exists(partial)) return create_creep_partial(partial, header);
   CreepShard found = read_creep_shard(partial, creep_partial_filetype);
   require_same_job(found.header, partial, header,
-                   "asked for now; delete the file to begin again, or choose another output", true);
+                   "requested now; delete the file to begin again, or choose another output", true);
   std::size_t rows = 0;
   while (done < own.size() && rows + own[done].count <= found.solved.size()) rows += own[done++].count;
   auto out = ArrayFileWriter::reopen(partial, creep_partial_filetype, creep_shard_format_version);

@@ -69,7 +69,7 @@ inline void over_beta(const Pack* places, const Pack* weights, Pack& sum) noexce
 /// @param corner of place (0, 0, 0, 0); three functions to a place, β fastest. @param stride of a/b, t, α, in floats
 inline void creep_spline_jet(const float* corner, const std::array<std::size_t, 3>& stride, const CreepSplineWeights& w,
                              CreepSplineJet& jet) noexcept {
-  using namespace creep_spline_detail;
+  using creep_spline_detail::over_beta, creep_spline_detail::separate, creep_spline_detail::widen;
   enum Axis { ratio, t, alpha };
   constexpr int packs = 3;  // four places of β, three functions
   Pack value[packs]{}, by_t[packs]{}, by_alpha[packs]{};

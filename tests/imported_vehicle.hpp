@@ -51,10 +51,12 @@ struct FreeCoach {
   }
 };
 
+inline constexpr VehicleWeight without_geometric_stiffness{standard_gravity, GeometricStiffness::omitted};
+
 /// The built coach with its car body's x set free: springs know differences only, so that x of the car body does what
 /// the opposite x of all others does.
 inline FreeCoach free_coach(const CoachParameters& parameters = {}) {
-  const VehicleModel coach = build_coach(parameters);
+  const VehicleModel coach = build_coach(parameters, MotionPlane::spatial, without_geometric_stiffness);
   const int n = coach.dofs();
   const std::vector<std::string> names{"CAR", "bogie-1", "bogie-2", "WS1", "WS2", "WS3", "WS4"};
   FreeCoach free;
@@ -149,9 +151,12 @@ class ImportedVehicle : public InFolder {
     return import;
   }
 
+  /// Without geometric stiffness, which an import distributes by an assumption.
   [[nodiscard]] SceneParameters scene(const std::string& text) const {
     write("scene.toml", text);
-    return read_scene(folder_ / "scene.toml");
+    SceneParameters scene = read_scene(folder_ / "scene.toml");
+    scene.train.geometric_stiffness = GeometricStiffness::omitted;
+    return scene;
   }
 };
 

@@ -3,14 +3,16 @@
 namespace railtab {
 
 void DividedSubstitution::begin(const SparseLdlt& factor, const Eigen::VectorXd& known, std::span<const int> few) {
-  few_.assign(few.begin(), few.end());
-  factor.find_path(few_, path_);
+  begin(factor, few);
   factor.into(known, known_);
   factor.forward(known_);
-  if (work_.size() != factor.room()) {
-    work_.setZero(factor.room());
-    solved_.setZero(factor.room());
-  }
+}
+
+void DividedSubstitution::begin(const SparseLdlt& factor, std::span<const int> few) {
+  few_.assign(few.begin(), few.end());
+  factor.find_path(few_, path_);
+  if (work_.size() == factor.room()) return;
+  for (Eigen::VectorXd* vector : {&known_, &work_, &solved_}) vector->setZero(factor.room());
 }
 
 void DividedSubstitution::respond(const SparseLdlt& factor, Eigen::VectorXd& solution) {

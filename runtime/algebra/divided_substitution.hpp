@@ -20,6 +20,8 @@ class DividedSubstitution {
  public:
   /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
   void begin(const SparseLdlt& factor, const Eigen::VectorXd& known, std::span<const int> few);
+  /// The same without known load: for few entries of solutions under loads on few unknowns.
+  void begin(const SparseLdlt& factor, std::span<const int> few);
   /// The solution at the few unknowns under the known load. Writes only their entries.
   void respond(const SparseLdlt& factor, Eigen::VectorXd& solution);
   /// Under known + weight·extra. Reads and writes only their entries.

@@ -10,6 +10,12 @@
 
 namespace railtab {
 
+/// Which unknowns a factor eliminates first.
+enum class EliminationOrder {
+  fewest_entries,  ///< minimum degree: for whole substitutions
+  lowest_tree,     ///< nested dissection: for few entries of a solution, whose paths are then short
+};
+
 /// Factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
 /// factor's numbers and works on vectors [Davis2006, Sect. 4.8].
@@ -31,7 +37,10 @@ class SparseLdlt {
       : SparseLdlt(matrix, {0, matrix.rows()}, message) {}
   /// The rows and columns in `range` alone: all other unknowns are held. Unknowns keep their numbers.
   SparseLdlt(const Eigen::SparseMatrix<double>& matrix, const DofRange& range,
-             std::string_view message = not_positive_definite);
+             std::string_view message = not_positive_definite,
+             EliminationOrder order = EliminationOrder::fewest_entries);
+  /// Entries of L below the diagonal in the order of the lowest tree, counted without making them.
+  [[nodiscard]] static std::size_t entries_of_lowest_tree(const Eigen::SparseMatrix<double>& matrix);
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
   /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
@@ -81,6 +90,8 @@ class SparseLdlt {
     std::size_t value;   // place of the first column in values_, see there
     int parent;          // block of the first row below; -1: a root
   };
+  template <class Simplicial>
+  void factorise(const Eigen::SparseMatrix<double>& matrix, std::string_view message);
   void store(const Eigen::MatrixXd& dense, const Block& block);
   void forward(double* y, const Block& block, double* scratch) const;
   void backward(double* x, const Block& block, double* scratch) const;

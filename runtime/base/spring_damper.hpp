@@ -20,4 +20,15 @@ using SpringKinematics = Eigen::Matrix<double, 6, 12>;
 [[nodiscard]] PairMatrix spring_matrix(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b,
                                        const Eigen::Vector3d& along, const Eigen::Vector3d& about);
 
+/// Stiffness of a spring that carries the force f between a and b at rest, besides that of its elasticity. The spring's
+/// axes turn by the mean θ_m of the rotations of its ends, so that turning a and b together costs nothing:
+///   V = f·(½ θ_b×(θ_b×r_b) − ½ θ_a×(θ_a×r_a) − θ_m×e),  e = u_b + θ_b×r_b − u_a − θ_a×r_a.
+/// A vertical load N that an upper body b has moved aside by e_y thereby turns both bodies by N·e_y, shared as θ_m is,
+/// and its own height over the spring by N·h φ.
+/// @param force on a, as the spring exerts it at rest, that on b is its negative [N]
+/// @param share_b part of b in θ_m about x, y, z, 0..1 each; that of a is the rest
+/// @return second derivative of V, symmetric, 12 × 12 [N], [N], [N m]
+[[nodiscard]] PairMatrix preload_matrix(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b,
+                                        const Eigen::Vector3d& force, const Eigen::Vector3d& share_b);
+
 }  // namespace railtab

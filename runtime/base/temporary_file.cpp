@@ -54,6 +54,26 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+TemporaryFile::~TemporaryFile() {
+  std::error_code ignored;
+  if (!name.empty()) std::filesystem::remove(name, ignored);
+}
+
+void TemporaryFile::publish(const std::filesystem::path& file) {
+  // To the disk itself, so that the new name never stands for a file that a power failure emptied. Some file systems
+  // find only here that they are full; others cannot do it.
+  if (::fsync(lock.descriptor()) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT)) refuse(file, errno);
+  std::error_code failed;
+  std::filesystem::rename(name, file, failed);
+  if (failed) throw input_error(file.string(), failed.message(), "a file that can be replaced");
+  name.clear();
+  const int folder = ::open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) {
+    ::fsync(folder);
+    ::close(folder);
+  }
+}
+
 TemporaryFile create_temporary(const std::filesystem::path& file) {
   remove_abandoned(file);
   constexpr int most_names = 1000;  // one that is taken, or that a remover takes away before it is locked, is rare

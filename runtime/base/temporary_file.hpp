@@ -3,15 +3,35 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "railtab/runtime/base/writer_lock.hpp"
 
 namespace railtab {
 
 /// What an output is written to before it gets its name: an empty file beside it, FILE.part-<12 random characters>.
+/// Removed with this object, unless it got its name.
 struct TemporaryFile {
-  std::filesystem::path name;
+  std::filesystem::path name;  ///< empty where there is none, or it has got its name
   WriterLock lock;  ///< of the file, as long as it is written: one without is left over from a process that was ended
+
+  TemporaryFile() = default;
+  TemporaryFile(std::filesystem::path file, WriterLock writer) : name(std::move(file)), lock(std::move(writer)) {}
+  TemporaryFile(TemporaryFile&& other) noexcept { swap(other); }
+  TemporaryFile& operator=(TemporaryFile other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~TemporaryFile();
+  /// Hands the contents to the disk and renames the file to `file`; the lock stays.
+  /// @throws ComputationError where the disk is full, InputError where `file` cannot be replaced
+  void publish(const std::filesystem::path& file);
+
+ private:
+  void swap(TemporaryFile& other) noexcept {
+    name.swap(other.name);
+    std::swap(lock, other.lock);
+  }
 };
 
 /// Creates the temporary file of an output, anew (nothing under that name is overwritten, and no link followed) and

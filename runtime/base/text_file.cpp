@@ -78,16 +78,13 @@ std::string beginning(const std::filesystem::path& file, std::size_t bytes) {
 std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
 
 void write_all(int descriptor, std::string_view text, const std::filesystem::path& file) {
-  const auto fail = [&] {
-    throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(errno)));
-  };
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
-    if (written < 0 && errno != EINTR) fail();
+    if (written < 0 && errno != EINTR) {
+      throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(errno)));
+    }
     if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
   }
-  // some file systems find only here that they are full; others cannot do it
-  if (::fsync(descriptor) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT)) fail();
 }
 
 }  // namespace
@@ -110,17 +107,9 @@ void require_replaceable_text(const std::filesystem::path& file, std::string_vie
 void write_text_file(const std::filesystem::path& file, std::string_view text, std::string_view mark) {
   require_replaceable_text(file, mark.empty() ? text.substr(0, first_line(text).size() + 1) : mark);
   const std::filesystem::path target = output_file(file);
-  const TemporaryFile temporary = create_temporary(target);
-  try {
-    write_all(temporary.lock.descriptor(), text, target);
-    std::error_code failed;
-    std::filesystem::rename(temporary.name, target, failed);
-    if (failed) throw ComputationError(fmt::format("{}: could not be written: {}", target.string(), failed.message()));
-  } catch (const ComputationError&) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary.name, ignored);
-    throw;
-  }
+  TemporaryFile temporary = create_temporary(target);
+  write_all(temporary.lock.descriptor(), text, target);
+  temporary.publish(target);
 }
 
 void require_no_input(const std::filesystem::path& output, std::initializer_list<std::filesystem::path> inputs) {

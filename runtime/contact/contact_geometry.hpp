@@ -21,10 +21,10 @@ class ContactGeometry {
   }
 
   [[nodiscard]] bool is_table() const noexcept { return std::holds_alternative<TableContact>(source_); }
-  /// patches() by the online search where a table is the source.
-  [[nodiscard]] ContactPatches patches_without_table(const WheelsetPose& pose) const noexcept {
+  /// The online search in place of a table.
+  [[nodiscard]] ContactGeometry without_table() const {
     const auto* const table = std::get_if<TableContact>(&source_);
-    return table ? table->search().patches(pose) : patches(pose);
+    return table ? ContactGeometry(table->search()) : *this;
   }
 
   [[nodiscard]] const WheelRailPair& pair() const noexcept {

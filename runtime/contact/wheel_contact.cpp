@@ -155,20 +155,6 @@ ContactPatches moved_patches(const ContactGeometry& geometry, const ContactPatch
   return moved;
 }
 
-PatchLoads moved_loads(const PatchLoads& loads, const ContactMemory& from, const WheelsetPose& to) noexcept {
-  PatchLoads moved = loads;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    PatchLoad& load = moved[i];
-    const double change = from.patch[i].gradient.change(from.pose, to);
-    load.contact.penetration += change;
-    // The depth of a spring with this force: patches that have merged share theirs.
-    const double ratio = std::max(load.elastic_force, 0.0) / load.hertz.stiffness;
-    const double depth = std::max(std::cbrt(ratio * ratio) + change, 0.0);
-    load.elastic_force = load.hertz.stiffness * depth * std::sqrt(depth);
-  }
-  return moved;
-}
-
 namespace {
 
 // A step of a difference, so small that the creepage changes by far less than the creepage of sliding. At walking pace

@@ -41,7 +41,6 @@ enum class GravitationalStiffness { included, neglected };
 /// Parameters of the contact forces that every wheel shares.
 struct WheelContactModel {
   const ContactGeometry* geometry = nullptr;
-  bool without_table = false;  ///< ContactGeometry::patches_without_table
   NormalContactModel normal;
   CreepLaw creep_law = PolachCreep{};
   double friction = 0.3;  ///< [-]
@@ -88,12 +87,6 @@ enum class WheelSide { left, right };
                                            const WheelsetPose& from, const WheelsetPose& to) noexcept;
 
 struct ContactMemory;
-
-/// The loads of patches after a small motion: pairs and ellipses as they were, forces by the penetrations to first
-/// order. Off by what the geometry changes with the motion: for where Newton's method starts.
-/// @param from the pose of `loads` and the gradients of its patches
-[[nodiscard]] PatchLoads moved_loads(const PatchLoads& loads, const ContactMemory& from,
-                                     const WheelsetPose& to) noexcept;
 
 /// What a time step does with a displacement: velocities follow it, and the force counts as that of an instant or as
 /// the mean over the step.

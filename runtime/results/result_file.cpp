@@ -359,12 +359,6 @@ void read_motions(FieldReader& fields, const columns::MotionGroup& group, std::s
 
 }  // namespace
 
-ResultHeader read_result_header(const std::filesystem::path& file) {
-  const ArrayFileReader in = open_results(file);
-  FieldReader fields(in);
-  return read_header(in, fields);
-}
-
 RunSummary read_run_summary(const std::filesystem::path& file) {
   const ArrayFileReader in = open_results(file);
   FieldReader fields(in);

@@ -61,8 +61,7 @@ struct RunResults {
 /// @throws InputError with file and place: missing, not a results file, of another version, truncated.
 [[nodiscard]] RunResults read_results(const std::filesystem::path& file);
 
-/// The header and the summary alone, without the time histories. @throws InputError as read_results.
-[[nodiscard]] ResultHeader read_result_header(const std::filesystem::path& file);
+/// The summary alone, without the time histories. @throws InputError as read_results.
 [[nodiscard]] RunSummary read_run_summary(const std::filesystem::path& file);
 
 }  // namespace railtab

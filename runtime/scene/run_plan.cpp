@@ -20,8 +20,9 @@ namespace railtab {
 namespace {
 
 std::string reduction_text(const ReductionParameters& reduction) {
-  return fmt::format("reduction of the structure: {}, {:g} m ahead of the train and {:g} m behind take part",
-                     reduction_name(reduction.kind), reduction.ahead, reduction.behind);
+  return fmt::format(
+      "reduction of the structure: {}, the window reaches {:g} m ahead of the train and {:g} m behind it",
+      reduction_name(reduction.kind), reduction.ahead, reduction.behind);
 }
 
 void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
@@ -100,7 +101,7 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   describe_structure(scene, model, plan);
   describe_track(scene, model, plan);
   for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
-  if (setup) setup(fmt::format("memory of a factor of {} unknowns", plan.structure_dofs));
+  if (setup) setup(fmt::format("memory of a factor of {} degrees of freedom", plan.structure_dofs));
   plan.memory = planned_memory(scene, model, plan.duration);
   if (plan.memory.entries_per_dof > wide) {
     plan.warnings.push_back(fmt::format(

@@ -45,6 +45,22 @@ double spans_length(const SceneParameters& scene) {
   return length;
 }
 
+// Along the track's plane to the right, and normal to it.
+double lateral_acceleration(const TrainParameters& train) {
+  const double sine = train.cant_sine();
+  return train.lateral_acceleration * std::sqrt(1.0 - sine * sine) - standard_gravity * sine;
+}
+double normal_gravity(const TrainParameters& train) {
+  const double sine = train.cant_sine();
+  return standard_gravity * std::sqrt(1.0 - sine * sine) + train.lateral_acceleration * sine;
+}
+
+VehicleModel scene_vehicle(const SceneParameters& scene) {
+  const VehicleWeight weight{normal_gravity(scene.train), scene.train.geometric_stiffness};
+  if (scene.train.vehicle == imported_vehicle) return import_vehicle(scene.vehicle, vehicle_plane(scene), weight);
+  return build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene), weight);
+}
+
 // The first wheelset stands at `start`; coaches follow each other at their length over couplers.
 std::vector<double> vehicle_positions(const TrainParameters& train, const VehicleModel& vehicle) {
   const double first_wheelset = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position[0];
@@ -122,9 +138,8 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
-  model.vehicle = scene.train.vehicle == imported_vehicle
-                      ? import_vehicle(scene.vehicle, vehicle_plane(scene))
-                      : build_coach(coach_parameters(scene.train.vehicle), vehicle_plane(scene));
+  model.vehicle = scene_vehicle(scene);
+  model.lateral_acceleration = lateral_acceleration(scene.train);
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;

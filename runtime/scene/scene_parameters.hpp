@@ -34,6 +34,13 @@ struct TrainParameters {
   /// Initial lateral shift [m] and yaw [rad] of every wheelset (hunting studies).
   double initial_lateral_shift = 0.0;
   double initial_yaw = 0.0;
+  GeometricStiffness geometric_stiffness = GeometricStiffness::included;
+  double lateral_acceleration = 0.0;  ///< V²/R of a curve to the left, horizontal: pushes the vehicles right [m/s²]
+  double cant = 0.0;                  ///< height of the right rail above the left one, over cant_base [m]
+  static constexpr double cant_base = 1.5;  ///< [m]
+
+  /// Sine of the angle by which the track is rolled to the left.
+  [[nodiscard]] double cant_sine() const noexcept { return cant / cant_base; }
 };
 
 struct ContactParameters {

@@ -67,7 +67,7 @@ std::string start(const SceneParameters& scene, const VsiModel& model, const War
     VsiState early(model);
     early.time = -static_cast<double>(before) * scene.integration.time_step;
     const EquilibriumReport rest = steady_start(at_rest, early);
-    if (rest.converged && simulate(model, pre_roll, 0.0, 1, early, {}, -before).complete) {
+    if (rest.converged && simulate(model, pre_roll, 0.0, 1, early, {}).complete) {
       warn(steady_start_warning(rest));
       state = std::move(early);
       return {};
@@ -150,8 +150,7 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   }
   setup("factorising");
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  summary =
-      simulate(model, scene.integration, duration, scene.output.every, state, selected, resume ? resume->step : 0);
+  summary = simulate(model, scene.integration, duration, scene.output.every, state, selected);
   if (!scene.output.wheels) summary.wheel_extremes = {};
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;

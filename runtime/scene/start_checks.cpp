@@ -128,8 +128,7 @@ std::string displacement_warning(const SceneParameters& scene, const VsiModel& m
   if (largest <= steepest * load && lift <= highest) return {};
   return fmt::format(
       "the train begins {:.3g} mm aside with a yaw of {:.3g} mrad, where flanges carry wheels, lifted by up to {:.2g} "
-      "mm, "
-      "and push against their rails with {:.3g} kN (static wheel load {:.3g} kN): the run begins with an impact",
+      "mm, and push against their rails with {:.3g} kN (static wheel load {:.3g} kN): the run begins with an impact",
       1e3 * scene.train.initial_lateral_shift, 1e3 * scene.train.initial_yaw, 1e3 * std::max(lift, 0.0), 1e-3 * largest,
       1e-3 * load);
 }

@@ -162,10 +162,10 @@ std::vector<KeyRow> span_keys() {
 
 std::vector<KeyRow> reduction_rows() {
   return {
-      {"structure.reduction", "", "how the structure is made smaller for the steps", ReductionKey{}},
-      {"structure.window_ahead", "m", "window: track that takes part before the first wheelset",
+      {"structure.reduction", "", "active degrees of freedom: all, or those around the train", ReductionKey{}},
+      {"structure.window_ahead", "m", "active track ahead of the first wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.ahead; }, {5.0, 1e5}}},
-      {"structure.window_behind", "m", "window: track that takes part behind the last wheelset",
+      {"structure.window_behind", "m", "active track behind the last wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.behind; }, {5.0, 1e5}}},
   };
 }

@@ -57,6 +57,22 @@ std::vector<KeyRow> train_keys() {
        "yaw of every wheelset at t = 0, about z (down)",
        NumberKey{of_train<&TrainParameters::initial_yaw>, {-0.1, 0.1}},
        {&with_hertz_contact}},
+      {"train.lateral_acceleration",
+       "m/s²",
+       "uniform horizontal acceleration that pushes the vehicles to the right, V²/R of a curve to the left",
+       NumberKey{of_train<&TrainParameters::lateral_acceleration>, {-5.0, 5.0}},
+       {&with_hertz_contact}},
+      {"train.cant",
+       "m",
+       "cant: height of the right rail above the left one, over 1.5 m between the rails",
+       NumberKey{of_train<&TrainParameters::cant>, {-0.5, 0.5}},
+       {&with_hertz_contact}},
+      {"train.geometric_stiffness", "",
+       "what the weight of a vehicle that leans adds to its stiffness; in-matrices: an imported stiffness holds it",
+       choice<GeometricStiffness>(of_train<&TrainParameters::geometric_stiffness>,
+                                  {{"included", GeometricStiffness::included},
+                                   {"omitted", GeometricStiffness::omitted},
+                                   {"in-matrices", GeometricStiffness::in_matrices}})},
   };
 }
 

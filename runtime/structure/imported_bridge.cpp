@@ -38,9 +38,9 @@ void append_supports(const StructureSupports::Columns& matrix, std::vector<Eigen
 }
 
 /// What the ground does to the structure where it moves.
-StructureSupports settled_supports(const FeStructure& structure, FeDampingMatrix damping) {
+StructureSupports settled_supports(const FeStructure& structure, const FeDampingMatrix& damping) {
   StructureSupports supports = structure.supports;
-  supports.damping = std::move(damping.of_supports);
+  supports.damping = damping.of_supports;
   const auto name = [&](Eigen::Index row) {
     const auto r = static_cast<std::size_t>(row);
     return fmt::format("node {} along {}", structure.node_of_row[r],
@@ -115,7 +115,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   append(damping.of_unknowns, bridge.matrices.damping);
   bridge.warnings = plausibility_warnings(mass_per_length(structure), damping.first_frequency);
-  StructureSupports supports = settled_supports(structure, std::move(damping));
+  StructureSupports supports = settled_supports(structure, damping);
   stand_on_ground(deck, structure, supports);
   bridge.attach = deck_function(structure, deck);
   append_supports(supports.mass, bridge.matrices.mass);
@@ -285,7 +285,7 @@ StructureModel import_with_rails(const ImportParameters& parameters) {
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   model.damping = damping.of_unknowns;
   model.warnings = plausibility_warnings(mass_per_length(structure), damping.first_frequency);
-  model.supports = settled_supports(structure, std::move(damping));
+  model.supports = settled_supports(structure, damping);
   model.rail[0] = rail_line(structure, parameters.rail_left, "structure.rail_left");
   model.rail[1] = rail_line(structure, parameters.rail_right, "structure.rail_right");
   if (parameters.deck.given()) {

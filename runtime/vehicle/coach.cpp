@@ -97,7 +97,7 @@ CoachParameters coach_parameters(std::string_view name) {
   throw input_error("vehicle", fmt::format("'{}'", name), fmt::format("one of {}", fmt::join(vehicle_names(), ", ")));
 }
 
-VehicleModel build_coach(const CoachParameters& p, MotionPlane plane) {
+VehicleModel build_coach(const CoachParameters& p, MotionPlane plane, const VehicleWeight& weight) {
   p.validate();
   constexpr int car = 0;
   std::vector<RigidBody> bodies{make_body("car-body", p.car_body, 0.0, p.car_body_height)};
@@ -131,7 +131,7 @@ VehicleModel build_coach(const CoachParameters& p, MotionPlane plane) {
     for (DofIndices& dof : dofs) dof[1] = dof[3] = dof[5] = held;
     for (const int wheelset : wheelsets) dofs[static_cast<size_t>(wheelset)][4] = held;
   }
-  return assemble_vehicle({p.name, bodies, suspension, std::move(wheelsets), dofs, p.nominal_radius, p.length});
+  return assemble_vehicle({p.name, bodies, suspension, std::move(wheelsets), dofs, p.nominal_radius, p.length, weight});
 }
 
 }  // namespace railtab

@@ -52,6 +52,7 @@ struct CoachParameters {
 /// 41 dofs, or 16 where only the vertical plane is built: x, z and pitch, the wheelsets' rotation left out, which no
 /// spring and no rail turns there. Its vertical motion is that of the 41 while nothing acts out of the plane.
 /// @throws InputError
-[[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial);
+[[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial,
+                                       const VehicleWeight& weight = {});
 
 }  // namespace railtab

@@ -43,38 +43,25 @@ Index largest(const Vector& v) {
   return row;
 }
 
-std::vector<int> inner_rows(const FreeVehicle& vehicle) {
-  std::vector<bool> named(static_cast<std::size_t>(vehicle.mass.rows()), false);
-  for (const TableBody& body : vehicle.bodies) {
-    for (int row : body.row) {
-      if (row != held) named[static_cast<std::size_t>(row)] = true;
-    }
-  }
-  std::vector<int> inner;
-  for (std::size_t r = 0; r < named.size(); ++r) {
-    if (!named[r]) inner.push_back(static_cast<int>(r));
-  }
-  return inner;
-}
-
 // Energy against what its parts have: 0 where nothing resists, of the order of 1 where single springs do.
 double resistance(const Matrix& matrix, const Vector& v) {
   const double parts = v.cwiseAbs().dot(matrix.cwiseAbs() * v.cwiseAbs());
   return parts > 0.0 ? v.dot(matrix * v) / parts : 0.0;
 }
 
-void check_rigid_motions(const FreeVehicle& vehicle, const Matrix& matrix, const std::filesystem::path& file) {
+void check_rigid_motions(const FreeVehicle& vehicle, const Matrix& matrix, const std::filesystem::path& file,
+                         GeometricStiffness geometric) {
   // of rotations what positions leave that are written in whole millimetres
   constexpr double ties = 1e-9, ties_of_rotations = 1e-6;
   for (int k = 0; k < 6; ++k) {
+    if (geometric == GeometricStiffness::in_matrices && (k == roll || k == pitch)) continue;
     const Vector v = vehicle.rigid.col(k);
     if (std::abs(resistance(matrix, v)) <= (k < roll ? ties : ties_of_rotations)) continue;
-    throw input_error(
-        fmt::format("{}: {}", file.string(), row_text(vehicle, largest(matrix * v))),
-        fmt::format("{:.3g} that resists {} of the whole vehicle", v.dot(matrix * v), motion_names[k]),
-        fmt::format("0: a vehicle that nothing ties to the ground (no track, contact or gravity), with its bodies "
-                    "where {} says",
-                    vehicle.import.dofs.string()));
+    throw input_error(fmt::format("{}: {}", file.string(), row_text(vehicle, largest(matrix * v))),
+                      fmt::format("{:.3g} that resists {} of the whole vehicle", v.dot(matrix * v), motion_names[k]),
+                      fmt::format("0: a vehicle that nothing ties to the ground (no track, contact or gravity, or "
+                                  "train.geometric_stiffness = \"in-matrices\"), with its bodies where {} says",
+                                  vehicle.import.dofs.string()));
   }
 }
 
@@ -168,6 +155,20 @@ void check_total_mass(const FreeVehicle& vehicle) {
 
 }  // namespace
 
+std::vector<int> inner_rows(const FreeVehicle& vehicle) {
+  std::vector<bool> named(static_cast<std::size_t>(vehicle.mass.rows()), false);
+  for (const TableBody& body : vehicle.bodies) {
+    for (int row : body.row) {
+      if (row != held) named[static_cast<std::size_t>(row)] = true;
+    }
+  }
+  std::vector<int> inner;
+  for (std::size_t r = 0; r < named.size(); ++r) {
+    if (!named[r]) inner.push_back(static_cast<int>(r));
+  }
+  return inner;
+}
+
 void check_wheelsets(const FreeVehicle& vehicle) {
   constexpr double accuracy = 1e-6;  // m
   const TableBody& first = vehicle.wheelset(0);
@@ -253,9 +254,9 @@ Matrix rigid_motions(const FreeVehicle& vehicle) {
   return rigid;
 }
 
-void check_free_motions(const FreeVehicle& vehicle) {
-  check_rigid_motions(vehicle, vehicle.stiffness, vehicle.import.stiffness);
-  check_rigid_motions(vehicle, vehicle.damping, vehicle.import.damping);
+void check_free_motions(const FreeVehicle& vehicle, GeometricStiffness geometric) {
+  check_rigid_motions(vehicle, vehicle.stiffness, vehicle.import.stiffness, geometric);
+  check_rigid_motions(vehicle, vehicle.damping, vehicle.import.damping, GeometricStiffness::omitted);
   for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) check_rotation(vehicle, vehicle.wheelset(w));
   check_total_mass(vehicle);
   const CholeskyFactor mass(vehicle.mass);

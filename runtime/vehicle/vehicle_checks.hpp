@@ -34,8 +34,12 @@ void check_mass(const FreeVehicle& vehicle);
 /// @throws InputError where an inner degree of freedom is not held by springs
 [[nodiscard]] Eigen::MatrixXd rigid_motions(const FreeVehicle& vehicle);
 
+/// Rows that no body has.
+[[nodiscard]] std::vector<int> inner_rows(const FreeVehicle& vehicle);
+
 /// What a free vehicle is: rigid motions and rotations of wheelsets without resistance, all other motions with; mass
-/// the same in all directions. @throws InputError naming file and row
-void check_free_motions(const FreeVehicle& vehicle);
+/// the same in all directions. A stiffness that holds that of gravity may resist roll and pitch.
+/// @throws InputError naming file and row
+void check_free_motions(const FreeVehicle& vehicle, GeometricStiffness geometric);
 
 }  // namespace railtab

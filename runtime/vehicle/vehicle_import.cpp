@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
 #include "railtab/runtime/fe/fe_frame.hpp"
 #include "railtab/runtime/fe/fe_matrix.hpp"
+#include "railtab/runtime/vehicle/geometric_stiffness.hpp"
 #include "railtab/runtime/vehicle/vehicle_checks.hpp"
 #include "railtab/runtime/vehicle/vehicle_table.hpp"
 #include "railtab/runtime/vehicle/vehicle_terms.hpp"
@@ -59,7 +61,7 @@ void convert(FreeVehicle& vehicle) {
   }
 }
 
-FreeVehicle read_free_vehicle(const VehicleImport& import) {
+FreeVehicle read_free_vehicle(const VehicleImport& import, GeometricStiffness geometric) {
   FreeVehicle vehicle(import);
   vehicle.stiffness = read_dense(import.stiffness, 0);
   const Eigen::Index rows = vehicle.stiffness.rows();
@@ -75,7 +77,7 @@ FreeVehicle read_free_vehicle(const VehicleImport& import) {
   check_numbers(vehicle);
   check_mass(vehicle);
   vehicle.rigid = rigid_motions(vehicle);
-  check_free_motions(vehicle);
+  check_free_motions(vehicle, geometric);
   return vehicle;
 }
 
@@ -122,6 +124,32 @@ double length_over_couplers(const FreeVehicle& vehicle) {
                     fmt::format("more than the distance of the outer wheelsets, {:.6g} m", reach));
 }
 
+// Weights of the bodies besides the wheelsets, each with that of the inner degrees of freedom it carries: what unit
+// motions of the bodies, which the inner ones follow without strain, move against gravity.
+std::vector<CarriedWeight> carried_weights(const FreeVehicle& vehicle, double gravity) {
+  const Eigen::VectorXd weight = gravity * (vehicle.mass * vehicle.rigid.col(z_dof));
+  const std::vector<int> inner = inner_rows(vehicle);
+  Eigen::VectorXd followed;  // K_ii⁻¹ w_i
+  if (!inner.empty()) {
+    followed = symmetric_solution(vehicle.stiffness(inner, inner), Eigen::VectorXd(weight(inner)));
+  }
+  std::vector<CarriedWeight> weights;
+  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    const TableBody& body = vehicle.bodies[b];
+    const int y = body.row[y_dof], z = body.row[z_dof], roll = body.row[roll_dof];
+    const bool is_wheelset =
+        std::find(vehicle.wheelsets.begin(), vehicle.wheelsets.end(), static_cast<int>(b)) != vehicle.wheelsets.end();
+    if (is_wheelset || z == held) continue;
+    double carried = weight[z];
+    if (!inner.empty()) carried -= vehicle.stiffness(z, inner).dot(followed);
+    // where a lateral force does not turn the body: the height of its springs, if they are all at one
+    const double ky = y == held ? 0.0 : vehicle.stiffness(y, y);
+    const double below = ky > 0.0 && roll != held ? -vehicle.stiffness(y, roll) / ky : 0.0;
+    weights.push_back({static_cast<int>(b), carried, body.position.z() + below});
+  }
+  return weights;
+}
+
 void check_wheel_loads(const FreeVehicle& free, const VehicleModel& vehicle) {
   for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
     const double load = vehicle.static_load[vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[w])][z_dof]];
@@ -151,9 +179,9 @@ void VehicleImport::validate(int vehicles) const {
   }
 }
 
-VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, double gravity) {
+VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, const VehicleWeight& weight) {
   import.validate(1);
-  const FreeVehicle free = read_free_vehicle(import);
+  const FreeVehicle free = read_free_vehicle(import, weight.geometric_stiffness);
   VehicleModel vehicle;
   vehicle.name = fmt::format("the vehicle of {}", import.stiffness.string());
   vehicle.bodies = named_bodies(free);
@@ -184,7 +212,12 @@ VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, doub
     const int row = free.bodies[static_cast<std::size_t>(w)].row[pitch_dof];
     add_rolling(vehicle, w, free.mass(row, row));
   }
-  vehicle.static_load = wheelset_reactions(vehicle, gravity * inertia.col(z_dof)(kept));
+  vehicle.lateral_load = inertia.col(y_dof)(kept);
+  vehicle.gravity = weight.gravity;
+  vehicle.static_load = standing(vehicle, weight.gravity * inertia.col(z_dof)(kept)).reaction;
+  if (weight.geometric_stiffness == GeometricStiffness::included) {
+    add_geometric_stiffness(vehicle, carried_weights(free, weight.gravity));
+  }
   check_wheel_loads(free, vehicle);
   return vehicle;
 }

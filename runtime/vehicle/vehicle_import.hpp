@@ -35,10 +35,12 @@ inline constexpr int most_vehicle_rows = 1000;
 /// "wheelset-1" …; other bodies keep their names. The nominal radius is the height of the axles. Static load: what the
 /// wheelsets carry of M·g times a unit fall; J_y of a wheelset is the mass matrix' entry of its rotation. In the
 /// vertical plane y, roll and yaw of all bodies and the wheelsets' rotation are held.
+/// @param weight its geometric stiffness: `included` adds one with an assumption (geometric_stiffness.hpp); with
+///        `in_matrices` the stiffness may resist roll and pitch of the whole vehicle
 /// @throws InputError with file and line, row or key: what the readers of its files reject; matrices that are not
 ///         symmetric, not positive (semi)definite, tied to the ground or free in more than the six rigid motions and
 ///         the wheelsets' rotations; mass that differs between x, y and z; wheelsets or a car body without their rows
 [[nodiscard]] VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane = MotionPlane::spatial,
-                                          double gravity = 9.81);
+                                          const VehicleWeight& weight = {});
 
 }  // namespace railtab

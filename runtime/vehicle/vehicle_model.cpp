@@ -9,6 +9,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
+#include "railtab/runtime/vehicle/geometric_stiffness.hpp"
 #include "railtab/runtime/vehicle/vehicle_terms.hpp"
 
 namespace railtab {
@@ -43,6 +44,10 @@ void check_connections(const std::string& name, size_t bodies, const std::vector
       require_not_negative(place + ".damping", suspension[s].damping[axis], "N s/m");
       require_not_negative(place + ".rotational_stiffness", suspension[s].rotational_stiffness[axis], "N m/rad");
     }
+    const double share = suspension[s].couple_share;
+    if (!(share >= 0.0 && share <= 1.0)) {
+      throw input_error(place + ".couple_share", fmt::format("{}", share), "0 to 1");
+    }
   }
   for (size_t w = 0; w < wheelsets.size(); ++w) {
     check_index(fmt::format("{}.wheelsets[{}]", name, w), wheelsets[w], bodies);
@@ -64,17 +69,6 @@ int number_dofs(VehicleModel& vehicle, const std::vector<DofIndices>& held_dofs)
     }
   }
   return count;
-}
-
-void add_pair(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b, const PairMatrix& pair) {
-  for (int i = 0; i < 12; ++i) {
-    const int row = i < 6 ? a[i] : b[i - 6];
-    if (row == held) continue;
-    for (int j = 0; j < 12; ++j) {
-      const int column = j < 6 ? a[j] : b[j - 6];
-      if (column != held) matrix(row, column) += pair(i, j);
-    }
-  }
 }
 
 void add_inertia(VehicleModel& vehicle, const std::vector<RigidBody>& bodies) {
@@ -103,12 +97,23 @@ void add_suspension(VehicleModel& vehicle, const std::vector<Suspension>& suspen
     const Eigen::Vector3d arm_b = unit.point - vehicle.bodies[unit.body_b].position;
     const DofIndices& a = vehicle.dof[unit.body_a];
     const DofIndices& b = vehicle.dof[unit.body_b];
-    add_pair(vehicle.stiffness, a, b, spring_matrix(arm_a, arm_b, unit.stiffness, unit.rotational_stiffness));
-    add_pair(vehicle.damping, a, b, spring_matrix(arm_a, arm_b, unit.damping, Eigen::Vector3d::Zero()));
+    add_pair_matrix(vehicle.stiffness, a, b, spring_matrix(arm_a, arm_b, unit.stiffness, unit.rotational_stiffness));
+    add_pair_matrix(vehicle.damping, a, b, spring_matrix(arm_a, arm_b, unit.damping, Eigen::Vector3d::Zero()));
   }
 }
 
 }  // namespace
+
+void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b, const PairMatrix& pair) {
+  for (int i = 0; i < 12; ++i) {
+    const int row = i < 6 ? a[i] : b[i - 6];
+    if (row == held) continue;
+    for (int j = 0; j < 12; ++j) {
+      const int column = j < 6 ? a[j] : b[j - 6];
+      if (column != held) matrix(row, column) += pair(i, j);
+    }
+  }
+}
 
 /// Forward rolling at Ω > 0 turns a wheelset by ω_y = -Ω: with z down, the bottom at r = (0, 0, R) then moves by
 /// ω × r = (-ΩR, 0, 0) against the vehicle. The axle direction is e_y + θ × e_y = (-yaw, 1, roll), hence the angular
@@ -125,7 +130,7 @@ void add_rolling(VehicleModel& vehicle, int wheelset, double Jy) {
 
 /// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
 /// of the singular system is an equilibrium; a residual means that something is not carried.
-Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::VectorXd& weight) {
+StandingVehicle standing(const VehicleModel& vehicle, const Eigen::VectorXd& weight) {
   const int n = vehicle.dofs();
   std::vector<bool> is_supported(n, false);
   for (const int w : vehicle.wheelsets) {
@@ -135,7 +140,8 @@ Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::Vec
   }
   std::vector<int> supported, carried;
   for (int i = 0; i < n; ++i) (is_supported[i] ? supported : carried).push_back(i);
-  if (carried.empty()) return weight;  // wheelsets alone
+  StandingVehicle rest{weight, Eigen::VectorXd::Zero(n)};
+  if (carried.empty()) return rest;  // wheelsets alone
 
   const Eigen::MatrixXd K = vehicle.stiffness(carried, carried);
   const Eigen::VectorXd load = weight(carried);
@@ -145,9 +151,10 @@ Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::Vec
     throw input_error(vehicle.name, fmt::format("a weight of {:.3g} N that no spring carries", residual.norm()),
                       "every body carried by the wheelsets through springs");
   }
-  Eigen::VectorXd reaction = Eigen::VectorXd::Zero(n);
-  reaction(supported) = weight(supported) - vehicle.stiffness(supported, carried) * sag;
-  return reaction;
+  rest.reaction.setZero();
+  rest.reaction(supported) = weight(supported) - vehicle.stiffness(supported, carried) * sag;
+  rest.displacement(carried) = sag;
+  return rest;
 }
 
 VehicleModel assemble_vehicle(const VehicleDescription& parts) {
@@ -156,7 +163,7 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   check_connections(name, parts.bodies.size(), parts.suspension, parts.wheelsets);
   require_positive(name + ".nominal_radius", parts.nominal_radius, "m");
   require_positive(name + ".length", parts.length, "m");
-  require_not_negative(name + ".gravity", parts.gravity, "m/s²");
+  require_not_negative(name + ".gravity", parts.weight.gravity, "m/s²");
 
   VehicleModel vehicle;
   vehicle.name = name;
@@ -176,7 +183,13 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   add_inertia(vehicle, parts.bodies);
   add_suspension(vehicle, parts.suspension);
   for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, parts.bodies[w].inertia.y());
-  vehicle.static_load = wheelset_reactions(vehicle, weight_of(vehicle, parts.bodies, parts.gravity));
+  vehicle.lateral_load = vehicle.mass * vehicle.lateral_shift;
+  const StandingVehicle rest = standing(vehicle, weight_of(vehicle, parts.bodies, parts.weight.gravity));
+  vehicle.gravity = parts.weight.gravity;
+  vehicle.static_load = rest.reaction;
+  if (parts.weight.geometric_stiffness == GeometricStiffness::included) {
+    add_geometric_stiffness(vehicle, parts.suspension, rest.displacement);
+  }
   return vehicle;
 }
 

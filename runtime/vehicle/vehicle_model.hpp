@@ -17,6 +17,19 @@ struct RigidBody {
   Eigen::Vector3d position;  ///< [m]
 };
 
+/// What the weight of a vehicle that leans adds to its stiffness: the couples of preloaded springs whose ends have
+/// moved apart and the loads' own heights (preload_matrix). Omitted for comparison with models that have none; matrices
+/// of an imported vehicle may hold it.
+enum class GeometricStiffness { included, omitted, in_matrices };
+
+inline constexpr double standard_gravity = 9.81;  ///< [m/s²]
+
+/// How the weight acts on a vehicle.
+struct VehicleWeight {
+  double gravity = standard_gravity;  ///< normal to the track [m/s²]
+  GeometricStiffness geometric_stiffness = GeometricStiffness::included;
+};
+
 /// Spring-damper between two bodies at one point of the nominal position.
 struct Suspension {
   int body_a, body_b;                                              ///< indices
@@ -24,6 +37,9 @@ struct Suspension {
   Eigen::Vector3d stiffness;                                       ///< along x, y, z [N/m]
   Eigen::Vector3d damping;                                         ///< [N s/m]
   Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();  ///< about x, y, z [N m/rad]
+  /// Part of body b, 0..1, in the couple that the unit's preload exerts where its ends have moved apart: half for a
+  /// coil spring that shears. About the axle of a wheelset the other body takes the whole couple.
+  double couple_share = 0.5;
 };
 
 /// A body of a vehicle as results and loads know it; position of the point whose motion its dofs are, vehicle frame.
@@ -33,8 +49,8 @@ struct VehicleBody {
 };
 
 /// A vehicle with linear suspension, running at constant speed (the car body's x is held). Small displacements from the
-/// vehicle's own static equilibrium, so that gravity acts as the static axle loads only. Rows of the matrices that no
-/// body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
+/// vehicle's own static equilibrium: gravity acts as the static axle loads and as geometric stiffness. Rows of the
+/// matrices that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
 struct VehicleModel {
   std::string name;
   std::vector<VehicleBody> bodies;
@@ -46,10 +62,12 @@ struct VehicleModel {
   /// Velocity matrix at a wheelset rotation of 1 rad/s in the sense of forward rolling (ω_y = -1 rad/s, z being down)
   /// [kg m²]; antisymmetric. Damping of the running vehicle: damping + (V/R0)·gyroscopic.
   Eigen::MatrixXd gyroscopic;
+  double gravity = standard_gravity;  ///< under which it stands, normal to the track [m/s²]
   Eigen::VectorXd static_load;  ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
   /// Load per acceleration of the train, of masses that are described in its frame, −m [kg], and of wheelsets whose
   /// nominal rotation changes with the speed, J_y/R0 [kg m].
   Eigen::VectorXd acceleration_load;
+  Eigen::VectorXd lateral_load;   ///< per lateral acceleration of the track to the left, +m to the right [kg]
   Eigen::VectorXd lateral_shift;  ///< what the dofs are when the whole vehicle has gone 1 m to the right
 
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
@@ -65,10 +83,11 @@ struct VehicleDescription {
   std::vector<DofIndices> held_dofs;
   double nominal_radius = 0.46;  ///< [m]
   double length = 26.4;          ///< over couplers [m]
-  double gravity = 9.81;         ///< [m/s²]
+  VehicleWeight weight{};
 };
 
-/// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points).
+/// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points, and the
+/// geometric stiffness of what the units carry under gravity).
 /// Dofs are numbered body by body. Static load: the reactions of the wheelsets' z and roll under gravity, so that zero
 /// displacement is the equilibrium on a rigid level track; z parts [N] add up to the weight, roll parts [N m] vanish on
 /// a vehicle that is loaded symmetrically.

@@ -8,7 +8,7 @@
 
 namespace railtab {
 
-VehicleSummary summarise(const VehicleModel& vehicle, int modes, double gravity) {
+VehicleSummary summarise(const VehicleModel& vehicle, int modes) {
   constexpr std::size_t vertical = 2;
   VehicleSummary summary;
   std::vector<bool> rests(static_cast<std::size_t>(vehicle.dofs()), false);
@@ -16,7 +16,7 @@ VehicleSummary summarise(const VehicleModel& vehicle, int modes, double gravity)
     const DofIndices& dof = vehicle.dof[static_cast<std::size_t>(w)];
     const double load = dof[vertical] == held ? 0.0 : vehicle.static_load[dof[vertical]];
     summary.wheel_load.push_back(0.5 * load);
-    summary.mass += load / gravity;
+    summary.mass += load / vehicle.gravity;
     for (const int row : dof) {
       if (row != held) rests[static_cast<std::size_t>(row)] = true;
     }

@@ -14,6 +14,6 @@ struct VehicleSummary {
 };
 
 /// @param modes at most, >= 0
-[[nodiscard]] VehicleSummary summarise(const VehicleModel& vehicle, int modes, double gravity = 9.81);
+[[nodiscard]] VehicleSummary summarise(const VehicleModel& vehicle, int modes);
 
 }  // namespace railtab

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 
 namespace railtab {
@@ -9,8 +10,17 @@ namespace railtab {
 /// @param wheelset index of its body; matrices and acceleration_load have their sizes
 void add_rolling(VehicleModel& vehicle, int wheelset, double Jy);
 
-/// Supports the wheelsets in z and roll and takes their reactions to the weight [N] of all dofs.
+/// Adds what joins bodies a and b to a matrix of the vehicle's dofs; held ones are left out.
+void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b, const PairMatrix& pair);
+
+/// A vehicle at rest under its weight, its wheelsets held in z and roll; both vectors over all dofs.
+struct StandingVehicle {
+  Eigen::VectorXd reaction;      ///< of the wheelsets' z [N] and roll [N m], zero elsewhere
+  Eigen::VectorXd displacement;  ///< [m], [rad]
+};
+
+/// @param weight over all dofs [N]
 /// @throws InputError where a weight is not carried by the wheelsets through springs
-[[nodiscard]] Eigen::VectorXd wheelset_reactions(const VehicleModel& vehicle, const Eigen::VectorXd& weight);
+[[nodiscard]] StandingVehicle standing(const VehicleModel& vehicle, const Eigen::VectorXd& weight);
 
 }  // namespace railtab

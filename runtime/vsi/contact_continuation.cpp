@@ -18,11 +18,12 @@ void add(const NewtonReport& attempt, NewtonReport& total) {
 }  // namespace
 
 NewtonReport solve_contact_by_continuation(const WheelContactModel& model, const ContactProblem& problem,
-                                           const NewtonLimits& limits, ContactSolution& solution, NewtonWorkspace& ws) {
+                                           const NewtonLimits& limits, ContactSolution& solution, NewtonWorkspace& ws,
+                                           InitialForces forces) {
   constexpr std::array first_shares{1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0};
   constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
   const Eigen::VectorXd start = solution.displacement;
-  NewtonReport report = solve_contact(model, problem, limits, solution, ws);
+  NewtonReport report = solve_contact(model, problem, limits, solution, ws, forces);
   if (report.converged || model.friction <= 0.0) return report;
 
   WheelContactModel part = model;

@@ -11,6 +11,7 @@ namespace railtab {
 /// @return iterations and look-ups of all attempts together
 [[nodiscard]] NewtonReport solve_contact_by_continuation(const WheelContactModel& model, const ContactProblem& problem,
                                                          const NewtonLimits& limits, ContactSolution& solution,
-                                                         NewtonWorkspace& workspace);
+                                                         NewtonWorkspace& workspace,
+                                                         InitialForces forces = InitialForces::unknown);
 
 }  // namespace railtab

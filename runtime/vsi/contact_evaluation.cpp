@@ -1,5 +1,6 @@
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/contact/wheel_contact.hpp"
 
@@ -11,11 +12,8 @@ using Matrix12 = NewtonWorkspace::Matrix12;
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
                              NewtonWorkspace& ws) {
-  if (model.without_table) return model.geometry->patches_without_table(pose);
   if (ws.found.empty()) return model.geometry->patches(pose);
   if (pairs == Pairs::kept) return moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
   ws.found[wheel] = model.geometry->patches(pose);
@@ -25,9 +23,10 @@ ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, 
 
 }  // namespace
 
-void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, int first, int last,
-              ContactSolution& s, NewtonWorkspace& ws, NewtonReport& report) {
-  for (int w = first; w < last; ++w) {
+ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
+                       ContactSolution& s, NewtonWorkspace& ws) {
+  ContactCounts counts;
+  for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
     auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
     auto end_force = s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w);
@@ -40,12 +39,12 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       ContactPatches& patches = s.patches[number];
       const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
       {
-        const Stopwatch watch(report.counts.seconds_lookup);
+        const Stopwatch watch(counts.seconds_lookup);
         patches = wheel_patches(model, number, pose, pairs, ws);
       }
       if (pairs == Pairs::searched) {
-        ++report.counts.queries;
-        if (patches.from_table) ++report.counts.table_queries;
+        ++counts.queries;
+        if (patches.from_table) ++counts.table_queries;
       }
       const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, loads);
@@ -53,10 +52,9 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       end_force.head<6>() += wheel.wheelset;
       end_force.segment<3>(r) = wheel.rail;
       s.rail_x[number] = wheel.rail_x;
-      report.counts.outside_creep_table += wheel.outside_creep_table;
+      counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
       s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
-      if (!ws.loads.empty()) ws.loads[number] = {loads, s.memory[number]};
       if (problem.start) {
         const ContactMemory& start = problem.start->memory[number];
         const Vector9 share = problem.mean_weight *
@@ -69,29 +67,12 @@ void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pai
       }
     }
   }
+  return counts;
 }
 
-void evaluate_moved(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
-                    ContactSolution& s, const NewtonWorkspace& ws) {
-  for (int w = first; w < last; ++w) {
-    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
-    auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
-    force.setZero();
-    for (int side = 0; side < 2; ++side) {
-      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
-      const WheelLoads& was = ws.loads[index(2 * w + side)];
-      const WheelsetPose pose = relative_pose(model.geometry->pair(), sides[index(side)], motion, rail);
-      const WheelForce wheel =
-          wheel_force(model, sides[index(side)], motion, rail, moved_loads(was.loads, was.contact, pose));
-      force.head<6>() += wheel.wheelset;
-      force.segment<3>(6 + 3 * side) = wheel.rail;
-    }
-  }
-}
-
-void differentiate(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
+void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
                    const ContactSolution& s, NewtonWorkspace& ws) {
-  for (int w = first; w < last; ++w) {
+  for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     Matrix12& tangent = ws.tangent[index(w)];
     tangent.setZero();
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
@@ -141,7 +122,7 @@ NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProbl
   NewtonReport report;
   NewtonWorkspace workspace;
   const int wheelsets = static_cast<int>(solution.displacement.size()) / wheelset_unknowns;
-  evaluate(model, problem, Pairs::searched, 0, wheelsets, solution, workspace, report);
+  report.counts = evaluate(model, problem, Pairs::searched, {0, wheelsets}, solution, workspace);
   return report;
 }
 

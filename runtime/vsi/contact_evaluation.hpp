@@ -7,17 +7,17 @@ namespace railtab {
 /// Where the published method has its pairs from: its search, or the last one, each pair moving with its bodies.
 enum class Pairs { searched, kept };
 
-/// Contact forces at the solution's displacement of the wheelsets first, ..., last - 1, and what they are made of.
-void evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, int first, int last,
-              ContactSolution& solution, NewtonWorkspace& workspace, NewtonReport& report);
+/// Neighbouring wheelsets of the train.
+struct Wheelsets {
+  int first, end;
+};
 
-/// The forces alone, of the last evaluation's loads, moved along (moved_loads()): near to evaluate(), for a fraction of
-/// its cost.
-void evaluate_moved(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
-                    ContactSolution& solution, const NewtonWorkspace& workspace);
+/// Contact forces at the solution's displacement, and what they are made of.
+ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
+                       ContactSolution& solution, NewtonWorkspace& workspace);
 
-/// df/dq of the wheelsets first, ..., last - 1, where evaluate() has found their patches.
-void differentiate(const WheelContactModel& model, const ContactProblem& problem, int first, int last,
+/// df/dq where evaluate() has found the patches.
+void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
                    const ContactSolution& solution, NewtonWorkspace& workspace);
 
 }  // namespace railtab

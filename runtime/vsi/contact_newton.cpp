@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 
 namespace railtab {
@@ -12,37 +13,27 @@ namespace {
 
 using Matrix12 = NewtonWorkspace::Matrix12;
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 // Evaluations of one contact solution in which the published method searches its pairs.
 constexpr int paper_searches = 4;
 
 // K_h of F_n = K_h d^{3/2}, rounded up [N/m^{3/2}]: a wheel's on a rail is 1e11 at most.
 constexpr double stiffest_contact = 1e11;
 
-// r + C f, of what joins(i, j) says of two wheelsets.
-template <class Joins>
-void add_response(const ContactProblem& problem, const Eigen::VectorXd& f, Joins&& joins, Eigen::VectorXd& r) {
+// q_free + C f − q
+void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
+  r = problem.free - s.displacement;
   const int wheelsets = static_cast<int>(r.size()) / wheelset_unknowns;
   const int per_vehicle = problem.wheelsets_per_vehicle;
   for (int w = 0; w < wheelsets; ++w) {
     const int first = w - w % per_vehicle;
     for (int v = first; v < first + per_vehicle; ++v) {
-      if (!joins(w, v)) continue;
       r.segment<6>(wheelset_unknowns * w) += problem.vehicle_compliance.block<6, 6>(6 * (w - first), 6 * (v - first)) *
-                                             f.segment<6>(wheelset_unknowns * v);
+                                             s.force.segment<6>(wheelset_unknowns * v);
     }
   }
   for (const RailCoupling& c : problem.rail) {
-    if (joins(c.i / 2, c.j / 2)) r.segment<3>(rail_unknown(c.i)) += c.compliance * f.segment<3>(rail_unknown(c.j));
+    r.segment<3>(rail_unknown(c.i)) += c.compliance * s.force.segment<3>(rail_unknown(c.j));
   }
-}
-
-// q_free + C f − q
-void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
-  r = problem.free - s.displacement;
-  add_response(
-      problem, s.force, [](int, int) { return true; }, r);
 }
 
 // C of every group.
@@ -97,9 +88,9 @@ void limit_moves(const ContactProblem& problem, Eigen::Ref<Eigen::VectorXd> corr
 }
 
 // What a correction changes the contact forces of some wheelsets by, to first order: the largest [N, N m].
-double force_change(const NewtonWorkspace& ws, int first, int last) {
+double force_change(const NewtonWorkspace& ws, Wheelsets wheelsets) {
   double largest = 0.0;
-  for (int w = first; w < last; ++w) {
+  for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     const Eigen::Matrix<double, wheelset_unknowns, 1> change =
         ws.tangent[index(w)] * ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w);
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
@@ -112,7 +103,7 @@ double force_change(const NewtonWorkspace& ws, int first, int last) {
 class TrainNewton {
  public:
   TrainNewton(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
-              ContactSolution& solution, NewtonWorkspace& ws)
+              ContactSolution& solution, NewtonWorkspace& ws, InitialForces forces)
       : model_(model),
         problem_(problem),
         limits_(limits),
@@ -125,7 +116,6 @@ class TrainNewton {
     ws.start.resize(s_.displacement.size());
     ws.start_force.resize(s_.displacement.size());
     ws.correction.resize(s_.displacement.size());
-    ws.force_change.resize(s_.displacement.size());
     ws.found.resize(model.geometry->is_paper() ? 2 * ws.tangent.size() : 0);
     ws.found_at.resize(ws.found.size());
     // The tangents of the step before serve as long as they are good enough, with the compliance of this one. A group
@@ -134,21 +124,16 @@ class TrainNewton {
     ws.inverse.resize(index(groups));
     ws.compliance.resize(index(groups));
     ws.group.resize(index(groups));
-    if (!ws.forces_known) assemble_compliances(problem, ws);
+    const bool known = forces == InitialForces::known;
+    if (!known) assemble_compliances(problem, ws);
     for (int g = 0; g < groups; ++g) {
       GroupNewton& n = ws.group[index(g)];
-      n = {.moved = !ws.forces_known, .new_tangent = fresh || n.new_tangent};
-      if (!n.new_tangent && !ws.forces_known) invert(problem, g, ws);
+      n = {.moved = !known, .new_tangent = fresh || n.new_tangent};
+      if (!n.new_tangent && !known) invert(problem, g, ws);
     }
-    // In time steps, but not where forces are means over the step, nor with pairs that jump.
-    can_predict_ =
-        !fresh && !ws.forces_known && problem.rail_velocity_rate > 0.0 && !problem.start && !model.geometry->is_paper();
-    if (ws.loads.empty()) ws.loads.resize(2 * ws.tangent.size());
-    ws.forces_known = false;
   }
 
   NewtonReport solve() {
-    if (can_predict_) predict();
     for (report_.iterations = 0; report_.iterations <= limits_.max_iterations; ++report_.iterations) {
       for (int g = 0; g < groups(); ++g) {
         if (ws_.group[index(g)].moved) evaluate_group(g);
@@ -162,7 +147,9 @@ class TrainNewton {
   using Vector12 = Eigen::Matrix<double, wheelset_unknowns, 1>;
   using Turn = GroupNewton::Turn;
 
-  [[nodiscard]] int first_wheelset(int group) const { return group * problem_.wheelsets_per_group; }
+  [[nodiscard]] Wheelsets wheelsets(int group) const {
+    return {group * problem_.wheelsets_per_group, (group + 1) * problem_.wheelsets_per_group};
+  }
   [[nodiscard]] auto part_of(Eigen::VectorXd& vector, int group) const {
     const int size = wheelset_unknowns * problem_.wheelsets_per_group;
     return vector.segment(size * group, size);
@@ -175,7 +162,6 @@ class TrainNewton {
     residual(problem_, s_, ws_.residual);
     if (!ws_.residual.allFinite()) return false;
     for (int g = 0; g < groups(); ++g) examine(g);
-    couple();
     report_.correction = 0.0;
     report_.converged = true;
     for (int g = 0; g < groups(); ++g) {
@@ -184,22 +170,9 @@ class TrainNewton {
     return true;
   }
 
-  // Where to start: one correction with the loads of the last evaluation, whose pairs and ellipses hardly change in a
-  // step. (A second one saves as many evaluations as it costs.)
-  void predict() {
-    predicting_ = true;
-    ws_.first = s_.displacement;
-    for (int g = 0; g < groups(); ++g)
-      evaluate_moved(model_, problem_, first_wheelset(g), first_wheelset(g + 1), s_, ws_);
-    if (!correct()) s_.displacement = ws_.first;
-    for (GroupNewton& group : ws_.group) group = {.new_tangent = group.new_tangent};
-    predicting_ = false;
-  }
-
   void evaluate_group(int g) {
     const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
-    evaluate(model_, problem_, searches ? Pairs::searched : Pairs::kept, first_wheelset(g), first_wheelset(g + 1), s_,
-             ws_, report_);
+    report_.counts += evaluate(model_, problem_, searches ? Pairs::searched : Pairs::kept, wheelsets(g), s_, ws_);
   }
 
   // Broyden's update of the tangent: the least change that explains what the last correction has changed the forces by,
@@ -235,14 +208,10 @@ class TrainNewton {
     const double size = part_of(ws_.residual, g).cwiseAbs().maxCoeff();
     n.turn = Turn::rests;
     if (size < limits_.tolerance || (n.moved && n.last)) return;
-    if (predicting_) {  // by other forces than tangents are made of
-      if (!n.new_tangent) n.turn = Turn::corrects;
-      return;
-    }
     n.turn = n.moved && size > 2.0 * n.previous && n.part > shortest_part ? Turn::goes_back : Turn::corrects;
     if (n.turn == Turn::goes_back) return;
     if (n.new_tangent || (n.moved && size > fast_enough * n.previous)) {
-      differentiate(model_, problem_, first_wheelset(g), first_wheelset(g + 1), s_, ws_);
+      differentiate(model_, problem_, wheelsets(g), s_, ws_);
       invert(problem_, g, ws_);
       n.new_tangent = false;
     } else if (n.moved && n.previous < std::numeric_limits<double>::infinity()) {
@@ -251,26 +220,6 @@ class TrainNewton {
     n.gains = size < 0.5 * n.previous;
     n.previous = size;
     n.part = 1.0;
-  }
-
-  // The residuals with what the groups' own corrections displace each other by.
-  void couple() {
-    ws_.coupled = ws_.residual;
-    const int per_group = problem_.wheelsets_per_group;
-    if (groups() == 1) return;
-    for (int g = 0; g < groups(); ++g) {
-      auto change = part_of(ws_.force_change, g);
-      change.setZero();
-      if (ws_.group[index(g)].turn != Turn::corrects) continue;
-      auto correction = part_of(ws_.correction, g);
-      correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
-      for (int k = 0; k < per_group; ++k) {
-        change.template segment<12>(12 * k) =
-            ws_.tangent[index(first_wheelset(g) + k)] * correction.template segment<12>(12 * k);
-      }
-    }
-    add_response(
-        problem_, ws_.force_change, [&](int i, int j) { return i / per_group != j / per_group; }, ws_.coupled);
   }
 
   // Whether a group may stay where it is; if not, it has been moved on.
@@ -288,13 +237,10 @@ class TrainNewton {
       n.moved = true;
       return false;
     }
-    correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.coupled, g);
+    correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
-    if (change < first_order_ &&
-        force_change(ws_, first_wheelset(g), first_wheelset(g + 1)) < limits_.force_tolerance) {
-      return true;
-    }
+    if (change < first_order_ && force_change(ws_, wheelsets(g)) < limits_.force_tolerance) return true;
     // A correction so small ends the iteration, and is made: the forces then are those of a far smaller one.
     n.last = change < limits_.tolerance || (!n.gains && change < limits_.rounding);
     if (n.last && !moved) return true;
@@ -311,8 +257,6 @@ class TrainNewton {
   const NewtonLimits& limits_;
   /// A wheel in the air, whose tangent is zero, gains no more than the tolerance by such a correction [m, rad].
   double first_order_;
-  bool can_predict_ = false;  ///< from the loads of the last evaluation
-  bool predicting_ = false;
   ContactSolution& s_;
   NewtonWorkspace& ws_;
   NewtonReport report_;
@@ -321,8 +265,8 @@ class TrainNewton {
 }  // namespace
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
-                           ContactSolution& solution, NewtonWorkspace& workspace) {
-  return TrainNewton(model, problem, limits, solution, workspace).solve();
+                           ContactSolution& solution, NewtonWorkspace& workspace, InitialForces forces) {
+  return TrainNewton(model, problem, limits, solution, workspace, forces).solve();
 }
 
 }  // namespace railtab

@@ -99,15 +99,12 @@ struct GroupNewton {
   int evaluations = 0;
 };
 
-/// What an evaluation of the contact forces has found at one wheel.
-struct WheelLoads {
-  PatchLoads loads;
-  ContactMemory contact;
-};
+/// Whether a solution's forces are those at its displacement when its iteration begins.
+enum class InitialForces { unknown, known };
 
 /// Tangents and inverses, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {
-  /// The next solution makes its tangents anew, without a prediction: nothing then depends on earlier ones.
+  /// The next solution makes its tangents anew: nothing then depends on earlier ones.
   void forget_tangents() { inverse.clear(); }
 
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
@@ -116,14 +113,8 @@ struct NewtonWorkspace {
   std::vector<Eigen::MatrixXd> inverse;     ///< per group, of I − C df/dq
   std::vector<GroupNewton> group;
   Eigen::VectorXd residual, correction;
-  Eigen::VectorXd first;               ///< displacement before the prediction
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
-  /// What the groups' own corrections change the forces by, and the residual with what that displaces other groups by.
-  Eigen::VectorXd force_change, coupled;
-  /// Set before solve_contact() where the solution's forces are those at its displacement already.
-  bool forces_known = false;
-  std::vector<WheelLoads> loads;      ///< per wheel, of the last evaluation
-  std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
+  std::vector<ContactPatches> found;   ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
 };
 
@@ -136,7 +127,7 @@ struct NewtonWorkspace {
 NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is inverted group by group of wheelsets;
-/// their coupling through vehicles and rails enters the residual, and the corrections by one sweep over the groups.
+/// their coupling through vehicles and rails enters the residual.
 /// Each group keeps its tangent while it halves the residual per iteration, from one step to the next too: a tangent
 /// costs five evaluations of the forces. Where a group is one wheelset, the tangent learns from every correction what
 /// that has changed the forces by [Broyden1965]. Without inverses in the workspace it is made first of all. A group
@@ -146,6 +137,6 @@ NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProbl
 /// below one of the limits; the forces are those at the displacement.
 [[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
-                                         NewtonWorkspace& workspace);
+                                         NewtonWorkspace& workspace, InitialForces forces = InitialForces::unknown);
 
 }  // namespace railtab

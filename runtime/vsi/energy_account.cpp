@@ -2,13 +2,12 @@
 
 #include <utility>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
@@ -51,7 +50,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
     now.structure_velocity = m.velocity;
   }
   contact_.speed = frictionless_.speed = model_.speed(state.time);
-  if (!model_.loads.empty() || model_.speed_profile) {
+  if (!model_.loads.empty() || model_.speed_profile || model_.lateral_acceleration != 0.0) {
     now.vehicle_load.resize(state.vehicle.size());
     for (std::size_t v = 0; v < state.vehicle.size(); ++v)
       vehicle_load(model_, static_cast<int>(v), state.time, now.vehicle_load[v]);

@@ -1,12 +1,11 @@
 #include "railtab/runtime/vsi/external_load.hpp"
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, double time, Eigen::VectorXd& load) {
   const double x = model.vehicle_x[index(vehicle)] + model.vehicle.bodies[index(acting.body)].position[0];
@@ -27,6 +26,7 @@ void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::Vector
       add_body_load(model, acting, vehicle, time, load);
     }
   }
+  if (model.lateral_acceleration != 0.0) load += model.lateral_acceleration * model.vehicle.lateral_load;
   // the car body, whose x is held, is what pulls the rest
   if (model.speed_profile) load += model.acceleration(time) * model.vehicle.acceleration_load;
 }
@@ -34,7 +34,7 @@ void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::Vector
 void vehicle_step_load(const VsiModel& model, const HhtScheme& scheme, int vehicle, double time,
                        const LinearMotion& motion, Eigen::VectorXd& load) {
   load = model.vehicle.static_load;
-  if (model.loads.empty() && !model.speed_profile) return;
+  if (model.loads.empty() && !model.speed_profile && model.lateral_acceleration == 0.0) return;
   Eigen::VectorXd acting;
   const double end = time + scheme.time_step;
   vehicle_load(model, vehicle, end, acting);

@@ -1,5 +1,8 @@
 // Hertz's contacts with creep forces as the contact law of a step (NormalContact::hertz).
 
+#include <optional>
+
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
@@ -8,8 +11,6 @@
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   const std::vector<RailContact>& contacts = step.contacts;
@@ -29,23 +30,12 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   }
 }
 
-// The contacts' part of Eq. 12 in the contact unknowns, for the next step.
-void close_step_load(const HhtScheme& hht, const ContactSolution& start, ContactSolution& end) {
-  end.step_load = hht.load_weight() * end.force;
-  if (hht.contact_force == ContactForceRule::endpoint) {
-    end.step_load -= hht.alpha * start.end_force;
-  } else {
-    end.step_load += (0.5 * start.end_force - (1.0 - hht.gamma()) * start.step_load) / hht.gamma();
-  }
-}
-
 class HertzContacts : public ContactLaw {
  public:
   explicit HertzContacts(const VsiModel& model) : contact_(model.contact) {
     const std::size_t n = model.vehicle_x.size();
     prediction_.resize(n);
     free_.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
-    increment_ = free_;
     problem_.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
     problem_.wheelsets_per_group = 1;
     problem_.free = problem_.predicted = problem_.predicted_velocity =
@@ -59,8 +49,8 @@ class HertzContacts : public ContactLaw {
       const LinearMotion& motion = state.vehicle[index(v)];
       predict(hht, motion, p);
       vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
-      step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht, ws.vehicle_load,
-                                            motion, p, free_[index(v)]);
+      free_[index(v)] = step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht,
+                                                              ws.vehicle_load, motion, p);
       // predictor, its velocity, the motion without contact forces, and where Newton starts (constant acceleration)
       const Eigen::VectorXd free = p.displacement + free_[index(v)];
       const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
@@ -80,7 +70,9 @@ class HertzContacts : public ContactLaw {
   // 𝐂: vehicle_compliance and rail; q_free: free; f and T: evaluate() and differentiate().
   void present(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
     contact_.speed = step.model.speed(step.end);
-    contact_.without_table = step.limits.geometry == GeometrySource::search;
+    const bool search = step.limits.geometry == GeometrySource::search;
+    if (search && !search_) search_.emplace(step.model.contact.geometry->without_table());
+    contact_.geometry = search ? &*search_ : step.model.contact.geometry;
     if (step.model.structure) {
       gather_structure(step, state, ws);
       couple_rails(step, problem_.rail);
@@ -95,11 +87,12 @@ class HertzContacts : public ContactLaw {
   }
 
   ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {
-    newton_.forces_known = pass > 0;  // the structure's response has moved nothing but q_free
+    // the structure's response has moved nothing but q_free
+    const InitialForces forces = pass > 0 ? InitialForces::known : InitialForces::unknown;
     NewtonReport newton;
     {
       const Stopwatch watch = report.times.measure(Phase::contact);
-      newton = solve_contact_by_continuation(contact_, problem_, step.limits.newton, ws.solution, newton_);
+      newton = solve_contact_by_continuation(contact_, problem_, step.limits.newton, ws.solution, newton_, forces);
     }
     report.times.seconds(Phase::contact) -= newton.counts.seconds_lookup;
     report.times.seconds(Phase::lookup) += newton.counts.seconds_lookup;
@@ -129,12 +122,14 @@ class HertzContacts : public ContactLaw {
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
-      increment_[index(v)] = free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
-      close_load(hht, ws.vehicle_load, {0, ws.vehicle_load.size()}, motion);
+      const Eigen::VectorXd increment =
+          free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
+      close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
-      update(hht, prediction_[index(v)], increment_[index(v)], motion);
+      update(hht, prediction_[index(v)], increment, motion);
     }
-    close_step_load(hht, state.contact, ws.solution);
+    ws.solution.step_load = state.contact.step_load;
+    close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
     std::swap(state.contact, ws.solution);
   }
 
@@ -156,12 +151,12 @@ class HertzContacts : public ContactLaw {
     }
   }
 
-  WheelContactModel contact_;  // at the speed of the step's end
+  std::optional<ContactGeometry> search_;  // made when first needed
+  WheelContactModel contact_;              // at the speed of the step's end
   ContactProblem problem_;
-  std::vector<Prediction> prediction_;             // per vehicle
-  std::vector<Eigen::VectorXd> free_, increment_;  // per vehicle
-  NewtonWorkspace newton_;                         // tangents and loads are kept from step to step,
-                                                   // until reinitialise()
+  std::vector<Prediction> prediction_;  // per vehicle
+  std::vector<Eigen::VectorXd> free_;   // per vehicle: increment without contact forces
+  NewtonWorkspace newton_;              // tangents and loads are kept from step to step, until reinitialise()
 };
 
 }  // namespace

@@ -7,6 +7,12 @@
 
 namespace railtab {
 
+/// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K) (Eq. 13), dense or sparse.
+template <class Matrix>
+[[nodiscard]] Matrix effective_matrix(const HhtScheme& scheme, const Matrix& M, const Matrix& C, const Matrix& K) {
+  return scheme.acceleration_rate() * M + scheme.load_weight() * (scheme.velocity_rate() * C + K);
+}
+
 /// State of a linear subsystem (one vehicle, or the structure) at the end of a step.
 struct LinearMotion {
   Eigen::VectorXd displacement, velocity, acceleration;
@@ -78,17 +84,15 @@ inline void past_contact_load(const HhtScheme& scheme, const LinearMotion& motio
   }
 }
 
-/// The contacts' part p of Eq. 12 in a step that ends with the contact forces `load`; for the next step. Before the
-/// contact forces at the step's beginning, motion.contact_load, are replaced.
-inline void close_load(const HhtScheme& scheme, const Eigen::VectorXd& load, const DofRange& range,
-                       LinearMotion& motion) {
+/// The contacts' part p of Eq. 12 in a step that ends with the contact forces `load`; for the next step.
+/// @param f the contact forces at the step's beginning @param p that of the step before; is replaced
+inline void close_load(const HhtScheme& scheme, const ConstVector& load, const ConstVector& f,
+                       Eigen::Ref<Eigen::VectorXd> p) {
   const double g = scheme.gamma();
-  auto p = range.of(motion.step_load);
-  const auto f = range.of(motion.contact_load);
   if (scheme.contact_force == ContactForceRule::endpoint) {
-    p = scheme.load_weight() * range.of(load) - scheme.alpha * f;
+    p = scheme.load_weight() * load - scheme.alpha * f;
   } else {
-    p = scheme.load_weight() * range.of(load) + (0.5 * f - (1.0 - g) * p) / g;
+    p = scheme.load_weight() * load + (0.5 * f - (1.0 - g) * p) / g;
   }
 }
 

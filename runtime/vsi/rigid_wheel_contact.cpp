@@ -1,7 +1,9 @@
 // Wheels that follow the rails as the contact law of a step (NormalContact::rigid).
 
+#include <Eigen/LU>
 #include <algorithm>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
@@ -11,8 +13,6 @@ namespace railtab {
 namespace {
 
 using Eigen::Vector3d;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Mean over the two rails under a wheelset of displacement, slope and curvature from structure dofs.
 Vector3d mean_line(const RailContact* contact, const Eigen::VectorXd& dofs) {
@@ -86,8 +86,8 @@ class RigidWheels : public ContactLaw {
       Eigen::VectorXd& R = remainder_[index(v)];
       const LinearMotion& motion = state.vehicle[index(v)];
       vehicle_step_load(step.model, step.hht, v, step.begin, motion, ws.vehicle_load);
-      wheels(step).remainder(step.model.vehicle, step.operators.vehicle_damping, step.hht, ws.vehicle_load, motion,
-                             prediction_[index(v)], R);
+      R = wheels(step).remainder(step.model.vehicle, step.operators.vehicle_damping, step.hht, ws.vehicle_load, motion,
+                                 prediction_[index(v)]);
       free_force_.segment(per_vehicle_ * v, per_vehicle_) = wheels(step).free_force(R);
     }
   }

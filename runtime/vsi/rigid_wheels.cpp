@@ -1,16 +1,15 @@
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 
-#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/index.hpp"
 
 namespace railtab {
 
 namespace {
 
 constexpr int heave = 2;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -21,14 +20,9 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   for (int i = 0; i < vehicle.dofs(); ++i) {
     if (std::find(c_.begin(), c_.end(), i) == c_.end()) b_.push_back(i);
   }
-  const Eigen::MatrixXd effective = scheme.acceleration_rate() * vehicle.mass +
-                                    scheme.load_weight() * (scheme.velocity_rate() * damping + vehicle.stiffness);
+  const Eigen::MatrixXd effective = effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness);
   const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
-  inverse_bb_ = b_.empty() ? effective_bb : Eigen::MatrixXd(effective_bb.partialPivLu().inverse());
-  if (!inverse_bb_.allFinite()) {
-    throw ComputationError(
-        "the vehicle's effective matrix has no inverse: check masses and stiffnesses of the vehicle");
-  }
+  inverse_bb_ = b_.empty() ? effective_bb : effective_inverse(effective_bb);
   E_inverse_ = effective(c_, b_) * inverse_bb_;
   K_bc_ = vehicle.stiffness(b_, c_);
   C_bc_ = damping(b_, c_);
@@ -38,17 +32,18 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   A_ = (vehicle.mass(c_, c_) - E_inverse_ * M_bc_) / load_weight_;
 }
 
-void RigidWheelResponse::remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme,
-                                   const Eigen::VectorXd& load, const LinearMotion& motion, Prediction& p,
-                                   Eigen::VectorXd& R) const {
+Eigen::VectorXd RigidWheelResponse::remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
+                                              const HhtScheme& scheme, const Eigen::VectorXd& load,
+                                              const LinearMotion& motion, Prediction& p) const {
   predict(scheme, motion, p);
   for (int i : c_) {
     p.weighted_displacement[i] = -scheme.alpha * motion.displacement[i];
     p.weighted_velocity[i] = -scheme.alpha * motion.velocity[i];
   }
-  R = load - scheme.alpha * motion.contact_load;
+  Eigen::VectorXd R = load - scheme.alpha * motion.contact_load;
   R.noalias() -= damping * p.weighted_velocity;
   R.noalias() -= vehicle.stiffness * p.weighted_displacement;
+  return R;
 }
 
 Eigen::VectorXd RigidWheelResponse::free_force(const Eigen::VectorXd& R) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <vector>
 
 #include "railtab/runtime/vsi/contact_newton.hpp"
@@ -25,9 +24,9 @@ class RigidWheelResponse {
   /// R of the step: loads, damping and stiffness forces known before the wheelsets' heave. Changes the prediction of
   /// the wheelsets' heave, which is prescribed.
   /// @param load of the step on the vehicle besides the contacts: vehicle_step_load()
-  void remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme,
-                 const Eigen::VectorXd& load, const LinearMotion& motion, Prediction& prediction,
-                 Eigen::VectorXd& R) const;
+  [[nodiscard]] Eigen::VectorXd remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
+                                          const HhtScheme& scheme, const Eigen::VectorXd& load,
+                                          const LinearMotion& motion, Prediction& prediction) const;
   /// Contact forces on the wheelsets (down) [N] where these end the step with no heave, velocity and acceleration.
   [[nodiscard]] Eigen::VectorXd free_force(const Eigen::VectorXd& R) const;
   /// Closes the step with the wheelsets' heave and the forces that it needs.

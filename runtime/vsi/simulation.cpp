@@ -115,12 +115,13 @@ class Run {
 }  // namespace
 
 RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration, int record_every,
-                    VsiState& state, const RunObserver& observer, long first_step) {
+                    VsiState& state, const RunObserver& observer) {
   RunSummary summary;
+  const long first = std::lround(state.time / integration.time_step);
   const long steps = std::lround(duration / integration.time_step);
   {
     const Stopwatch watch(summary.seconds_total);
-    Run(model, integration, record_every, state, observer).steps(first_step, steps, summary);
+    Run(model, integration, record_every, state, observer).steps(first, steps, summary);
   }
   summary.complete = summary.steps == steps && summary.message.empty();
   summary.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());

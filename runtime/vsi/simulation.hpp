@@ -34,9 +34,9 @@ struct RunObserver {
 inline constexpr int most_operators = 3;
 
 /// Time integration of a model from time 0 to `duration` [s], with steps halved where Newton fails: the core of
-/// run_scene, for models built in code. `state` is that of step `first_step`.
+/// run_scene, for models built in code. The first step begins at state.time, a multiple of the time step.
 [[nodiscard]] RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration,
-                                  int record_every, VsiState& state, const RunObserver& observer, long first_step = 0);
+                                  int record_every, VsiState& state, const RunObserver& observer);
 
 /// The record of a state.
 void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record);

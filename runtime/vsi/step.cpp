@@ -76,7 +76,7 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
     const DofRange& active = step.operators.structure->active();
     LinearMotion& motion = state.structure;
     ws.structure_solution.finish(step.operators.structure->factor(), ws.structure_increment);
-    close_load(step.hht, ws.structure_load, active, motion);
+    close_load(step.hht, active.of(ws.structure_load), active.of(motion.contact_load), active.of(motion.step_load));
     active.of(motion.contact_load).setZero();
     add_rail_forces(step.contacts, ws.solution.end_force, motion.contact_load);
     update(step.hht, ws.structure_prediction, ws.structure_increment, active, motion);

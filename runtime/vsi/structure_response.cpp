@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "railtab/runtime/algebra/selected_solve.hpp"
+#include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
 
@@ -37,15 +37,6 @@ void require_finite(const StructureModel& structure) {
 
 constexpr const char* not_positive_definite =
     "the structure's effective matrix is not positive definite: check supports and stiffnesses";
-
-template <class Factor>
-std::unique_ptr<Factor> factorise(const Sparse& effective) {
-  auto factor = std::make_unique<Factor>(effective);
-  if (factor->info() != Eigen::Success || !(factor->vectorD().minCoeff() > 0.0)) {
-    throw ComputationError(not_positive_definite);
-  }
-  return factor;
-}
 
 }  // namespace
 
@@ -98,19 +89,26 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
   }
 }
 
-struct StructureResponse::Entries {
-  std::unique_ptr<LowFactor> factor;
-  SelectedSolve solve;  // refers to the factor's numbers
-  explicit Entries(const Sparse& effective)
-      : factor(factorise<LowFactor>(effective)), solve(factor->matrixL().nestedExpression(), factor->vectorD()) {}
-  [[nodiscard]] int row(int dof) const { return factor->permutationP().indices()[dof]; }
+struct StructureResponse::Selected {
+  SparseLdlt factor;
+  DividedSubstitution solution{};
+  Eigen::VectorXd load, displacement;  // of all unknowns; the load is zero between uses
+
+  Selected(const Sparse& effective, Eigen::Index dofs)
+      : factor(effective, {0, dofs}, not_positive_definite, EliminationOrder::lowest_tree),
+        load(Eigen::VectorXd::Zero(dofs)),
+        displacement(load) {}
+  /// Displacement of the unknowns named in DividedSubstitution::begin() under the load.
+  const Eigen::VectorXd& respond() {
+    solution.respond(factor, 1.0, load, displacement);
+    return displacement;
+  }
 };
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : dofs_(structure.dofs()) {
   require_finite(structure);
-  effective_ = scheme.acceleration_rate() * structure.mass +
-               scheme.load_weight() * (scheme.velocity_rate() * structure.damping + structure.stiffness);
+  effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
   activate({0, dofs_});
   // The union of both patterns: a zero times one keeps an entry's place.
   const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
@@ -151,16 +149,12 @@ void StructureResponse::activate(const DofRange& dofs) {
   factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);
 }
 
-StructureResponse::Entries& StructureResponse::entries() {
-  if (!entries_) entries_ = std::make_unique<Entries>(effective_);
-  return *entries_;
+StructureResponse::Selected& StructureResponse::selected() {
+  if (!selected_) selected_ = std::make_unique<Selected>(effective_, dofs_);
+  return *selected_;
 }
 
 StructureResponse::Memory StructureResponse::memory() const {
-  /// Counts its entries without making them.
-  struct Symbolic : LowFactor {
-    [[nodiscard]] double entries() const { return static_cast<double>(m_matrix.nonZeros()); }
-  };
   constexpr double entry = sizeof(double) + sizeof(int);
   const auto n = static_cast<double>(dofs_), nonzeros = static_cast<double>(effective_.nonZeros());
   Memory memory;
@@ -169,12 +163,10 @@ StructureResponse::Memory StructureResponse::memory() const {
   // The ordering works on four copies of the pattern; then there are the permuted upper triangle and L by columns.
   const double ordering = 4.0 * entry * nonzeros;
   memory.setup = std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->entries())));
-  Symbolic low;
-  low.analyzePattern(effective_);
-  constexpr double per_dof = SelectedSolve::bytes_per_row + 2.0 * sizeof(double) + 6.0 * sizeof(int);
-  memory.low_entries = low.entries();
-  memory.low = entry * memory.low_entries + per_dof * n;
-  memory.low_setup = entry * nonzeros;
+  constexpr double per_entry = 12.5, per_dof = 6.0 * sizeof(double);  // stored in blocks; vectors of a substitution
+  memory.low_entries = static_cast<double>(SparseLdlt::entries_of_lowest_tree(effective_));
+  memory.low = per_entry * memory.low_entries + per_dof * n;
+  memory.low_setup = entry * (0.5 * nonzeros + memory.low_entries);
   return memory;
 }
 
@@ -220,41 +212,39 @@ void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& m
 
 StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,
                                                        std::size_t node) {
-  Entries& e = entries();
+  Selected& s = selected();
   const RailLine& rail = structure.rail[side];
   Column column;
-  std::array<std::size_t, 2> last{};  // of the window on each rail
-  std::vector<int> loaded, wanted;
+  std::vector<int> involved;
+  const auto involve = [&](const DofIndices& dofs) {
+    for (int dof : dofs) {
+      if (dof != held) involved.push_back(dof);
+    }
+  };
+  involve(rail.dof[node]);
   for (std::size_t other = 0; other < 2; ++other) {
     const RailLine& to = structure.rail[other];
     const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window) - to.x.begin();
-    last[other] =
-        static_cast<std::size_t>(std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin());
+    const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin();
     column.first[other] = static_cast<int>(begin);
-    column.rows[other].reserve(last[other] - static_cast<std::size_t>(begin));
-    for (auto n = static_cast<std::size_t>(begin); n < last[other]; ++n) {
-      for (int dof : to.dof[n]) {
-        if (dof != held) wanted.push_back(e.row(dof));
-      }
-    }
+    column.rows[other].assign(static_cast<std::size_t>(end - begin), Block::Zero());
+    for (auto n = begin; n < end; ++n) involve(to.dof[static_cast<std::size_t>(n)]);
   }
-  SelectedSolve::Columns loads = SelectedSolve::Columns::Zero(6, 6);
-  for (int k = 0; k < 6; ++k) {
-    const int dof = rail.dof[node][static_cast<std::size_t>(k)];
-    if (dof == held) continue;
-    loads(static_cast<Eigen::Index>(loaded.size()), k) = 1.0;
-    loaded.push_back(e.row(dof));
-  }
-  e.solve.want(wanted);
-  e.solve.solve(loaded, loads);
-  for (std::size_t other = 0; other < 2; ++other) {
-    for (auto n = static_cast<std::size_t>(column.first[other]); n < last[other]; ++n) {
-      Block block = Block::Zero();
-      for (std::size_t k = 0; k < 6; ++k) {
-        const int dof = structure.rail[other].dof[n][k];
-        if (dof != held) block.row(static_cast<Eigen::Index>(k)) = e.solve.x(e.row(dof));
+  s.solution.begin(s.factor, involved);
+  for (std::size_t load = 0; load < 6; ++load) {
+    const int loaded = rail.dof[node][load];
+    if (loaded == held) continue;
+    s.load[loaded] = 1.0;
+    const Eigen::VectorXd& moved = s.respond();
+    s.load[loaded] = 0.0;
+    for (std::size_t other = 0; other < 2; ++other) {
+      const DofIndices* const dofs = &structure.rail[other].dof[static_cast<std::size_t>(column.first[other])];
+      for (std::size_t n = 0; n < column.rows[other].size(); ++n) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          if (dofs[n][k] == held) continue;
+          column.rows[other][n](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(load)) = moved[dofs[n][k]];
+        }
       }
-      column.rows[other].push_back(block);
     }
   }
   return column;
@@ -328,36 +318,19 @@ Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, con
 
 Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  Entries& e = entries();
-  std::vector<int> rows;
-  const auto append = [&](const RailContact& contact) {
-    if (!contact.on_rail) return;
-    for (int dof : contact.rows.dof) {
-      if (dof != held) rows.push_back(e.row(dof));
-    }
-  };
-  for (const RailContact& contact : contacts) append(contact);
-  e.solve.want(rows);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  SelectedSolve::Columns loads;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const RailContact& from = contacts[static_cast<std::size_t>(j)];
-    rows.clear();
-    append(from);
-    loads.setZero(static_cast<Eigen::Index>(rows.size()), 6);
-    for (std::size_t k = 0, i = 0; k < 12 && from.on_rail; ++k) {
-      if (from.rows.dof[k] == held) continue;
-      loads.row(static_cast<Eigen::Index>(i++)).head<3>() << from.rows.y[k], from.rows.z[k], from.rows.roll[k];
-    }
-    e.solve.solve(rows, loads);
+  Selected& s = selected();
+  std::vector<int> involved;
+  for (const RailContact& contact : contacts) append_dofs(contact, involved);
+  s.solution.begin(s.factor, involved);
+  Eigen::MatrixXd result(3 * n, 3 * n);
+  for (Eigen::Index j = 0; j < 3 * n; ++j) {
+    const RailContact& loaded = contacts[static_cast<std::size_t>(j / 3)];
+    add_rail_load(loaded, Eigen::Vector3d::Unit(j % 3), s.load);
+    const Eigen::VectorXd& moved = s.respond();
     for (Eigen::Index i = 0; i < n; ++i) {
-      const RailContact& to = contacts[static_cast<std::size_t>(i)];
-      for (std::size_t k = 0; k < 12 && to.on_rail; ++k) {
-        if (to.rows.dof[k] == held) continue;
-        result.block<3, 3>(3 * i, 3 * j) +=
-            Eigen::Vector3d(to.rows.y[k], to.rows.z[k], to.rows.roll[k]) * e.solve.x(e.row(to.rows.dof[k])).head<3>();
-      }
+      result.block<3, 1>(3 * i, j) = rail_head(contacts[static_cast<std::size_t>(i)], moved);
     }
+    for (int dof : involved) s.load[dof] = 0.0;
   }
   return result;
 }

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <array>
 #include <memory>
 #include <vector>
 
-#include "railtab/runtime/algebra/nested_dissection.hpp"
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
@@ -32,8 +30,7 @@ void append_dofs(const RailContact& contact, std::vector<int>& dofs);
 /// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
 void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
 
-/// The structure for one time-step size: the Cholesky factor of its effective matrix
-/// K̄ = M·acceleration_rate + (1+α)(C·velocity_rate + K), made once.
+/// The structure for one time-step size: the factor of its effective matrix, made once.
 class StructureResponse {
  public:
   /// @throws InputError naming the matrix and the entry that is not finite; ComputationError where the effective matrix
@@ -96,10 +93,6 @@ class StructureResponse {
   /// and j; row and column within the 12 unknowns of either element.
   template <class Visitor>
   void visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept;
-  /// The factor with the fewest entries serves the steps' back-substitutions; the one with the lowest elimination tree,
-  /// three times as large, gives single entries of the inverse (SelectedSolve).
-  using LowFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, NestedDissection>;
-
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
@@ -111,10 +104,11 @@ class StructureResponse {
   };
   std::vector<Entry> entry_;
   std::vector<int> entry_row_, entry_begin_;
-  /// Made when first needed.
-  struct Entries;
-  [[nodiscard]] Entries& entries();
-  std::unique_ptr<Entries> entries_;
+  /// Gives few entries of solutions, with a factor of its own in the order of the lowest tree: three times as large as
+  /// that of the steps.
+  struct Selected;
+  [[nodiscard]] Selected& selected();
+  std::unique_ptr<Selected> selected_;  ///< made when first needed
   Eigen::Index dofs_ = 0;
   std::array<std::vector<Column>, 2> column_;  ///< per rail and node
 };

@@ -6,14 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 
 namespace railtab {
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 const DofIndices& wheelset_dofs(const VsiModel& model, int wheelset_of_vehicle) {
   return model.vehicle.dof[index(model.vehicle.wheelsets[index(wheelset_of_vehicle)])];
@@ -101,7 +100,7 @@ void unpack(std::span<const double> numbers, VsiState& state) {
   visit_numbers(state, [&](const auto*, std::size_t n) { expected += n; });
   if (numbers.size() != expected) {
     throw input_error("checkpoint", fmt::format("{} numbers", numbers.size()),
-                      fmt::format("{}, the unknowns of this scene", expected));
+                      fmt::format("{}, the state of this scene", expected));
   }
   visit_numbers(state, [&](auto* data, std::size_t n) {
     std::copy_n(numbers.begin(), n, data);

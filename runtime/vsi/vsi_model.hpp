@@ -53,6 +53,7 @@ struct VsiModel {
   WheelContactModel contact;                  ///< its geometry points to `geometry`, its speed is that at t = 0
   std::optional<SpeedProfile> speed_profile;  ///< speed over time; without it contact.speed throughout
   std::vector<BodyLoad> loads;                ///< on the vehicles' bodies, besides gravity
+  double lateral_acceleration = 0.0;          ///< that pushes the vehicles to the right, in the track's plane [m/s²]
   std::optional<GroundMotion> ground_motion;  ///< under the structure's supports and of rails that are rigid
   GyroscopicMoments gyroscopic_moments = GyroscopicMoments::included;
 

@@ -157,7 +157,7 @@ po::options_description batch_options() {
   own.add_options()("list", po::value<std::string>()->value_name("LIST.toml"), "one [[pair]] per table, [defaults]")  //
       ("only", po::value<std::string>()->value_name("I/N"), "every N-th pair only, from the I-th on (job arrays)")    //
       ("overwrite", "make every table anew, also where one stands")                                                   //
-      ("plan", "tell what there is to do, and do nothing");
+      ("plan", "print what would be generated; generate nothing");
   return own;
 }
 

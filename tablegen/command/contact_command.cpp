@@ -72,7 +72,7 @@ void contact_command(const std::vector<std::string>& arguments) {
   ExtrapolatedRollingContact contact(ratio, line.number("poisson"), options);
   const ExtrapolatedContactSolution s = contact.solve(creepage);
   if (!s.coarse.converged || !s.fine.converged) {
-    throw std::runtime_error(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; asked for {:.2g}",
+    throw std::runtime_error(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; tolerance {:.2g}",
                                          s.coarse.residual, options.elements / 2, s.fine.residual, options.elements,
                                          options.tolerance));
   }

@@ -25,7 +25,7 @@ po::options_description geometry_options() {
   own.add_options()("lateral", text_value("-0.012:0.012")->value_name("LO:HI"), "wheelset lateral shift")  //
       ("yaw", text_value("-0.030:0.030")->value_name("LO:HI"), "wheelset yaw")                             //
       ("roll", text_value("0:0")->value_name("LO:HI"), "wheelset roll against the rail head")              //
-      ("tolerance", text_value("1e-8")->value_name("M"), "penetration error asked for")                    //
+      ("tolerance", text_value("1e-8")->value_name("M"), "tolerance of the penetration")                   //
       ("refinement", text_value("0")->value_name("N"),
        "finer cells from the start, each time as after a missed tolerance (0..4)")                            //
       ("shard", po::value<std::string>()->value_name("I/N"), "make one of N parts only, for tablegen merge")  //

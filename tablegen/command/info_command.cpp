@@ -92,7 +92,7 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
                   milliradians(table.yaw_squared.low), milliradians(table.yaw_squared.high), table.yaw_squared.cells);
   text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} root cells\n", 1e3 * table.roll.low,
                       1e3 * table.roll.high, table.roll.cells);
-  text += fmt::format("  cells        {}, with {} branches; {} limited in the height of the wheel\n",
+  text += fmt::format("  leaves       {}, with {} branches; {} valid up to a height of the wheel\n",
                       table.leaf_branch.size(), branches_of(table), limited_leaves(table));
   text += fmt::format("  size         {:.2f} MiB on disk\n",
                       static_cast<double>(std::filesystem::file_size(file)) / 1048576.0);
@@ -102,12 +102,12 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
     return text;
   }
   text += fmt::format(
-      "  certified    on {:.0f} queries: fallback {:.2f} %, patches missed or invented {:.3f} %,\n"
-      "               penetration error {:.2g} m (99.9 %), {:.2g} m (largest); asked for {:.2g} m\n",
+      "  verified     on {:.0f} queries: fallback {:.2f} %, missing or additional patches {:.3f} %,\n"
+      "               penetration error {:.2g} m (99.9 %), {:.2g} m (largest); tolerance {:.2g} m\n",
       statistic(table, "certified.samples"), 100 * statistic(table, "certified.fallback_share"),
       100 * statistic(table, "certified.patch_mismatch_share"), statistic(table, "certified.error.penetration.p999"),
       statistic(table, "certified.error.penetration.max"), table.tolerance);
-  text += fmt::format("  made         {} by version {}: {}\n", table.provenance.created,
+  text += fmt::format("  generated    {} by version {}: {}\n", table.provenance.created,
                       table.provenance.program_version, table.provenance.command_line);
   for (const std::string& note : profile_notes(table)) text += fmt::format("  profile      {}\n", note);
   return text;

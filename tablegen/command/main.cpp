@@ -8,6 +8,8 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 
+namespace railtab {
+
 namespace {
 
 constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
@@ -18,15 +20,14 @@ constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
   merge      put the shards of a table together
   contact    one exact rolling-contact solution: creep force and its proof
   conicity   rolling radius difference and equivalent conicity (EN 15302) from a geometry table
-  info       tell what a table holds
-  verify     hold a table against the online search: errors, share of fallback, time per query
+  info       print what a table holds
+  verify     compare a table with the online search: errors, share of fallback, time per query
 
 tablegen COMMAND --help tells the options; tablegen --version the version.
 Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
 )";
 
 int run(const std::vector<std::string>& arguments) {
-  using namespace railtab;
   const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
       {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command},
       {"creep", creep_command}, {"geometry", geometry_command}, {"info", info_command},
@@ -51,6 +52,8 @@ int run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
+}  // namespace railtab
+
 int main(int argc, char** argv) {
-  return railtab::run_process("tablegen", [&] { return run({argv + 1, argv + argc}); });
+  return railtab::run_process("tablegen", [&] { return railtab::run({argv + 1, argv + argc}); });
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace railtab {
@@ -40,33 +41,28 @@ class ArrayFileWriter {
   /// replace() or flush(), which gives the file its name; from then on nothing more can be created, only appended and
   /// overwritten. Writes the attributes "filetype" and "format_version" on the root group.
   /// @throws InputError where the file cannot be created, or another process is writing the growing file of that name.
-  ArrayFileWriter(std::filesystem::path file, std::string_view filetype, int format_version,
+  ArrayFileWriter(const std::filesystem::path& file, std::string_view filetype, int format_version,
                   Mode mode = Mode::whole_or_nothing);
   /// Open an existing growing file again, to continue it after its last flushed record, also where its writer was
   /// killed. @throws InputError as ArrayFileReader, and where another process is writing it.
-  static ArrayFileWriter reopen(std::filesystem::path file, std::string_view filetype, int format_version);
+  static ArrayFileWriter reopen(const std::filesystem::path& file, std::string_view filetype, int format_version);
   ~ArrayFileWriter();
   ArrayFileWriter(ArrayFileWriter&&) noexcept;
   ArrayFileWriter& operator=(ArrayFileWriter&&) noexcept;
 
   using Shape = std::vector<std::size_t>;
+  /// 32-bit numbers are for large tables; read() and read_integers() read them as any others.
+  using Numbers = std::variant<std::span<const double>, std::span<const float>, std::span<const std::int64_t>,
+                               std::span<const std::uint32_t>>;
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
-  void write(std::string_view path, std::span<const double> values, const Shape& shape, std::string_view unit,
-             std::string_view description);
-  void write(std::string_view path, std::span<const std::int64_t> values, const Shape& shape, std::string_view unit,
-             std::string_view description);
-  /// 32-bit numbers, for large tables; read() and read_integers() read them as any others.
-  void write(std::string_view path, std::span<const float> values, const Shape& shape, std::string_view unit,
-             std::string_view description);
-  void write(std::string_view path, std::span<const std::uint32_t> values, const Shape& shape, std::string_view unit,
+  void write(std::string_view path, const Numbers& numbers, const Shape& shape, std::string_view unit,
              std::string_view description);
   void write(std::string_view path, const std::vector<std::string>& values, std::string_view description);
 
-  /// Create or overwrite an attribute of a group or dataset.
-  void attribute(std::string_view path, std::string_view name, double value);
-  void attribute(std::string_view path, std::string_view name, std::int64_t value);
-  /// Room is kept for `capacity` bytes. A text that overwrites one with less room is cut to it and ends in "...".
-  void attribute(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0);
+  /// Create or overwrite an attribute of a group or dataset. Room is kept for `capacity` bytes of a text. One that
+  /// overwrites another with less room is cut to it and ends in "...".
+  void attribute(std::string_view path, std::string_view name,
+                 const std::variant<double, std::int64_t, std::string_view>& value, std::size_t capacity = 0);
 
   /// A dataset that grows along its first dimension; `row_shape` is the rest, no extent zero. Chunked.
   void create_growing(std::string_view path, const Shape& row_shape, std::string_view unit,
@@ -101,7 +97,7 @@ class ArrayFileWriter {
 class ArrayFileReader {
  public:
   /// Checks that the file exists, is HDF5 and whole, then its filetype, then its format version.
-  ArrayFileReader(std::filesystem::path file, std::string_view filetype, int format_version);
+  ArrayFileReader(const std::filesystem::path& file, std::string_view filetype, int format_version);
   ~ArrayFileReader();
   ArrayFileReader(ArrayFileReader&&) noexcept;
 
@@ -109,8 +105,6 @@ class ArrayFileReader {
   [[nodiscard]] bool contains(std::string_view path) const;
   /// Of a growing dataset, the rows that were flushed.
   [[nodiscard]] Array read(std::string_view path) const;
-  /// As read, and checks the shape; -1 stands for any extent.
-  [[nodiscard]] std::vector<double> read(std::string_view path, const std::vector<long>& expected_shape) const;
   [[nodiscard]] std::vector<std::int64_t> read_integers(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> read_strings(std::string_view path) const;
   [[nodiscard]] double number(std::string_view path, std::string_view name) const;
@@ -122,6 +116,8 @@ class ArrayFileReader {
   [[nodiscard]] std::vector<std::string> attribute_names(std::string_view path) const;
   /// Flushed records of a growing file, 0 of any other.
   [[nodiscard]] std::size_t records() const noexcept;
+  /// The number of records by the end of each flush.
+  [[nodiscard]] const std::vector<std::size_t>& flushes() const noexcept;
 
  private:
   struct Impl;

@@ -2,24 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <system_error>
 #include <type_traits>
-#include <utility>
 
-#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/tables/files/array_file_seal.hpp"
 
 namespace railtab::hdf5 {
 namespace {
 
-// Files are little-endian; the checksum and the superblock are read as the bytes stand.
+// Files are little-endian; numbers, the checksum and the superblock are read and written as the bytes stand.
 static_assert(std::endian::native == std::endian::little);
 
 std::mutex& library_mutex() {
@@ -30,12 +23,6 @@ std::mutex& library_mutex() {
 herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
   if (error->desc != nullptr && *error->desc != '\0') *static_cast<std::string*>(text) = error->desc;
   return 0;
-}
-
-std::string innermost_error() {
-  std::string text;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
-  return text;
 }
 
 // HDF5 before 1.14.5 loses memory where an object's header is damaged, although nothing of it is open, and says at the
@@ -59,183 +46,45 @@ Section::~Section() {
   H5Eset_auto2(H5E_DEFAULT, print_, print_data_);
 }
 
-InputError failure(const std::string& place, std::string_view expected) {
+std::string last_error() {
   let_process_end_quietly();
-  const std::string text = innermost_error();
-  return input_error(place, text.empty() ? "an error of HDF5" : fmt::format("\"{}\"", text), expected);
-}
-
-ComputationError write_failure(const std::string& place) {
-  const std::string text = innermost_error();
-  return ComputationError(fmt::format("{}: could not be written: {}", place, text.empty() ? "an error of HDF5" : text));
-}
-
-std::string place(const std::filesystem::path& file, std::string_view path) {
-  return path.empty() ? file.string() : fmt::format("{}: {}", file.string(), path);
-}
-
-std::string place(const std::filesystem::path& file, std::string_view path, std::string_view attribute) {
-  return fmt::format("{}, attribute {}", place(file, path), attribute);
-}
-
-bool contains(hid_t file, const std::filesystem::path& name, std::string_view path) {
-  for (std::size_t end = 0; end != std::string_view::npos;) {
-    end = path.find('/', end + 1);
-    const std::string prefix(path.substr(0, end));
-    if (H5Lexists(file, prefix.c_str(), H5P_DEFAULT) <= 0) return false;
-    H5L_info_t link{};
-    require(H5Lget_info(file, prefix.c_str(), &link, H5P_DEFAULT) >= 0, place(name, prefix), "a readable link");
-    if (link.type == H5L_TYPE_HARD) continue;
-    throw input_error(place(name, prefix),
-                      link.type == H5L_TYPE_EXTERNAL ? "a link to another file" : "a link to another place",
-                      "a dataset or group of this file, without links");
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_innermost, &text);
+  // Of a file that cannot be written or read, HDF5 quotes the system among addresses and times.
+  constexpr std::string_view quote = "error message = '";
+  if (const std::size_t begin = text.find(quote); begin != std::string::npos) {
+    text = text.substr(begin + quote.size(), text.find('\'', begin + quote.size()) - begin - quote.size());
   }
-  return true;
+  return text.empty() ? "an error of HDF5" : text;
+}
+
+void require(bool done, const std::string& place, std::string_view expected) {
+  if (!done) throw input_error(place, fmt::format("\"{}\"", last_error()), expected);
+}
+
+std::vector<hsize_t> extent_of(hid_t dataset, const std::string& place) {
+  const Space space(H5Dget_space(dataset));
+  const int rank = space.valid() ? H5Sget_simple_extent_ndims(space.get()) : -1;
+  require(rank >= 0, place, "a dataset with a shape");
+  std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
+  return extent;
+}
+
+Rows::Rows(hid_t dataset, const std::vector<hsize_t>& extent, hsize_t first)
+    : file(H5Dget_space(dataset)),
+      memory(extent.empty() ? H5Screate(H5S_SCALAR)
+                            : H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr)) {
+  if (extent.empty()) return;
+  std::vector<hsize_t> start(extent.size(), 0);
+  start[0] = first;
+  if (H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) < 0) file = {};
 }
 
 namespace {
 
-void require_plain(hid_t dataset, const std::string& at) {
-  const Properties properties(H5Dget_create_plist(dataset));
-  require(properties.valid(), at, "a dataset with a layout");
-  constexpr const char* expected = "a dataset that lies in this file as it is, without filters";
-  if (H5Pget_layout(properties.get()) == H5D_VIRTUAL) throw input_error(at, "a virtual dataset", expected);
-  if (H5Pget_external_count(properties.get()) != 0) throw input_error(at, "values in other files", expected);
-  if (H5Pget_nfilters(properties.get()) == 0) return;
-  std::array<char, 64> filter{};
-  std::size_t values = 0;
-  unsigned flags = 0;
-  const H5Z_filter_t id =
-      H5Pget_filter2(properties.get(), 0, &flags, &values, nullptr, filter.size() - 1, filter.data(), nullptr);
-  throw input_error(at, fmt::format("values behind the filter {} ({})", id, filter.data()), expected);
-}
-
-}  // namespace
-
-Object open_object(hid_t file, const std::filesystem::path& name, std::string_view path) {
-  const std::string at = place(name, path);
-  if (!path.empty() && !contains(file, name, path)) {
-    throw input_error(at, "no such dataset or group", "one of that name");
-  }
-  Object object(H5Oopen(file, path.empty() ? "/" : std::string(path).c_str(), H5P_DEFAULT));
-  require(object.valid(), at, "a readable dataset or group");
-  if (H5Iget_type(object.get()) == H5I_DATASET) require_plain(object.get(), at);
-  return object;
-}
-
-namespace {
-
-Attribute open_attribute(hid_t object, const std::string& at, const char* name) {
-  if (H5Aexists(object, name) <= 0) throw input_error(at, "no such attribute", "one of that name");
-  Attribute attribute(H5Aopen(object, name, H5P_DEFAULT));
-  require(attribute.valid(), at, "a readable attribute");
-  const Space space(H5Aget_space(attribute.get()));
-  if (!space.valid() || H5Sget_simple_extent_npoints(space.get()) != 1) {
-    throw input_error(at, "an array", "a single value");
-  }
-  return attribute;
-}
-
-}  // namespace
-
-namespace {
-
-/// Of an integer; where `Number` is floating-point, also of a floating-point attribute.
-template <typename Number>
-Number scalar_attribute(hid_t object, const std::string& at, std::string_view name) {
-  constexpr bool integer = std::is_integral_v<Number>;
-  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
-  const Type type(H5Aget_type(attribute.get()));
-  const H5T_class_t found = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
-  if (found != H5T_INTEGER && (integer || found != H5T_FLOAT)) {
-    throw input_error(at, integer ? "no integer" : "no number", integer ? "an integer" : "a number");
-  }
-  Number value{};
-  require(H5Aread(attribute.get(), integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, &value) >= 0, at, "readable");
-  return value;
-}
-
-}  // namespace
-
-std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name) {
-  return scalar_attribute<std::int64_t>(object, at, name);
-}
-
-double number_attribute(hid_t object, const std::string& at, std::string_view name) {
-  return scalar_attribute<double>(object, at, name);
-}
-
-std::string text_attribute(hid_t object, const std::string& at, std::string_view name) {
-  const Attribute attribute = open_attribute(object, at, std::string(name).c_str());
-  const Type type(H5Aget_type(attribute.get()));
-  if (!type.valid() || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) {
-    throw input_error(at, "no text of fixed length", "a text of fixed length");
-  }
-  constexpr std::size_t longest = 1U << 20U;  // a header of an object, where railtab keeps them, has 64 KiB
-  if (H5Tget_size(type.get()) > longest) {
-    throw input_error(at, fmt::format("a text of {} bytes", H5Tget_size(type.get())),
-                      fmt::format("{} bytes at most", longest));
-  }
-  std::string value(H5Tget_size(type.get()), '\0');
-  require(H5Aread(attribute.get(), type.get(), value.data()) >= 0, at, "a readable text");
-  value.resize(value.find_last_not_of('\0') + 1);
-  return value;
-}
-
-FileState inspect_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), "an HDF5 file");
-  FileState state;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw input_error(file.string(), std::strerror(errno), "a readable file");
-  if (is_sealed(file)) {
-    check_seal(file);
-    stream.seekg(seal_bytes);
-  }
-  std::array<char, 36> head{};
-  stream.read(head.data(), head.size());
-  // after the superblock: a writer that ends between the two has extended the file to what the superblock says
-  state.bytes = std::filesystem::file_size(file, error);
-  if (std::string_view(head.data(), signature.size()) != signature) {
-    throw input_error(file.string(), state.bytes == 0 ? "an empty file" : "no HDF5 signature", "an HDF5 file");
-  }
-  constexpr unsigned char written_format = 3, eight_byte_offsets = 8;
-  if (static_cast<unsigned char>(head[8]) != written_format || head[9] != eight_byte_offsets) {
-    throw input_error(file.string(),
-                      fmt::format("an HDF5 superblock of version {}", static_cast<unsigned char>(head[8])),
-                      fmt::format("version {} with 8-byte offsets, as railtab writes it", written_format));
-  }
-  constexpr unsigned open_for_writing = 1;
-  state.being_written = (static_cast<unsigned char>(head[11]) & open_for_writing) != 0;
-  std::uint64_t end_of_file = 0;
-  std::memcpy(&end_of_file, head.data() + 28, sizeof end_of_file);
-  // While a file is written, its end runs ahead of the superblock or behind it; reading then checks dataset by dataset.
-  if (!state.being_written && state.bytes < end_of_file) {
-    throw input_error(file.string(), fmt::format("{} bytes", state.bytes),
-                      fmt::format("{} bytes: the file is cut short", end_of_file));
-  }
-  return state;
-}
-
-Type text_type(std::size_t length) {
-  Type type(H5Tcopy(H5T_C_S1));
-  const bool done = H5Tset_size(type.get(), length) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
-                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
-  require(done, "HDF5 text", "its type");
-  return type;
-}
-
-Properties group_properties(hid_t kind) {
-  Properties properties(H5Pcreate(kind));
-  constexpr unsigned always_compact = 65535;
-  const bool done = H5Pset_attr_creation_order(properties.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0 &&
-                    H5Pset_attr_phase_change(properties.get(), always_compact, 0) >= 0;
-  require(done, "HDF5 group creation", "its properties");
-  return properties;
-}
-
-File open_file(const std::filesystem::path& file, Access access) {
-  const Properties properties(H5Pcreate(H5P_FILE_ACCESS));
+Properties access_properties(const std::filesystem::path& file, Access access) {
+  Properties properties(H5Pcreate(H5P_FILE_ACCESS));
   const hid_t id = properties.get();
   // Where a checksum of metadata fails, HDF5 reads again, each pause twice the one before: from 1 ns, these many come
   // to 4 ms, which a running writer takes. Its own 100 attempts would wait for ever on a damaged file.
@@ -255,46 +104,143 @@ File open_file(const std::filesystem::path& file, Access access) {
   done = done && (access != Access::write_growing ||
                   (H5Pset(id, "clear_status_flags", &yes) >= 0 && H5Pset(id, "skip_eof_check", &yes) >= 0));
   require(done, file.string(), "HDF5 1.10.7 or later");
-  switch (access) {
-    case Access::read:
-      return File(H5Fopen(file.c_str(), H5F_ACC_RDONLY, id));
-    case Access::read_growing:
-      return File(H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, id));
-    case Access::write_growing:
-      return File(H5Fopen(file.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, id));
-    default:
-      break;
-  }
-  const Properties creation = group_properties(H5P_FILE_CREATE);
-  require(growing || H5Pset_userblock(creation.get(), seal_bytes) >= 0, file.string(), "room for the seal");
-  return File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), id));
+  return properties;
 }
 
-File open_for_reading(const std::filesystem::path& file, FileState& state) {
-  constexpr int most_changes = 100;
-  for (int attempt = 0;; ++attempt) {
-    File handle = open_file(file, state.being_written ? Access::read_growing : Access::read);
-    if (handle.valid()) return handle;
-    const InputError refused = failure(file.string(), "a whole HDF5 file");
-    const bool was_written = std::exchange(state, inspect_file(file)).being_written;
-    if (state.being_written == was_written || attempt == most_changes) throw refused;
+}  // namespace
+
+OpenFile::OpenFile(std::filesystem::path name, const std::filesystem::path& file, Access access)
+    : name_(std::move(name)) {
+  const Properties properties = access_properties(name_, access);
+  if (access == Access::read) {  // as one that a writer may have open; others can be read so too
+    handle_ = File(H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, properties.get()));
+    require(valid(), name_.string(), "a whole HDF5 file");
+  } else if (access == Access::write_growing) {
+    handle_ = File(H5Fopen(file.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, properties.get()));
+    require(valid() && H5Fincrement_filesize(get(), 0) >= 0, name_.string(), "a file that can be written");
+  } else {
+    const Properties creation = group_properties(H5P_FILE_CREATE);
+    const bool room = access == Access::create_growing || H5Pset_userblock(creation.get(), seal_bytes) >= 0;
+    if (room) handle_ = File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), properties.get()));
+    require(valid(), name_.string(), "a file that can be created");
   }
 }
 
-void check_type(hid_t file, const std::filesystem::path& name, std::string_view filetype, int format_version) {
-  const Object root = open_object(file, name, "");
-  if (H5Aexists(root.get(), "filetype") <= 0) {
-    throw input_error(name.string(), "no attribute filetype", fmt::format("a file of type {}", filetype));
+std::string OpenFile::place(std::string_view path) const {
+  return path.empty() ? name_.string() : fmt::format("{}: {}", name_.string(), path);
+}
+
+std::string OpenFile::place(std::string_view path, std::string_view attribute) const {
+  return fmt::format("{}, attribute {}", place(path), attribute);
+}
+
+bool OpenFile::contains(std::string_view path) const {
+  for (std::size_t end = 0; end != std::string_view::npos;) {
+    end = path.find('/', end + 1);
+    const std::string prefix(path.substr(0, end));
+    if (H5Lexists(get(), prefix.c_str(), H5P_DEFAULT) <= 0) return false;
+    H5L_info_t link{};
+    require(H5Lget_info(get(), prefix.c_str(), &link, H5P_DEFAULT) >= 0, place(prefix), "a readable link");
+    if (link.type == H5L_TYPE_HARD) continue;
+    throw input_error(place(prefix),
+                      link.type == H5L_TYPE_EXTERNAL ? "a link to another file" : "a link to another place",
+                      "a dataset or group of this file, without links");
   }
-  const std::string found = text_attribute(root.get(), place(name, "", "filetype"), "filetype");
-  if (found != filetype) {
-    throw input_error(name.string(), fmt::format("a file of type {}", found), fmt::format("type {}", filetype));
+  return true;
+}
+
+namespace {
+
+void require_plain(hid_t dataset, const std::string& at) {
+  const Properties properties(H5Dget_create_plist(dataset));
+  require(properties.valid(), at, "a dataset with a layout");
+  constexpr const char* expected = "a dataset that lies in this file as it is, without filters";
+  if (H5Pget_layout(properties.get()) == H5D_VIRTUAL) throw input_error(at, "a virtual dataset", expected);
+  if (H5Pget_external_count(properties.get()) != 0) throw input_error(at, "values in other files", expected);
+  if (H5Pget_nfilters(properties.get()) == 0) return;
+  std::array<char, 64> filter{};
+  std::size_t values = 0;
+  const H5Z_filter_t id =
+      H5Pget_filter2(properties.get(), 0, nullptr, &values, nullptr, filter.size() - 1, filter.data(), nullptr);
+  throw input_error(at, fmt::format("values behind the filter {} ({})", id, filter.data()), expected);
+}
+
+}  // namespace
+
+Object OpenFile::object(std::string_view path) const {
+  const std::string at = place(path);
+  if (!path.empty() && !contains(path)) throw input_error(at, "no such dataset or group", "one of that name");
+  Object object(H5Oopen(get(), path.empty() ? "/" : std::string(path).c_str(), H5P_DEFAULT));
+  require(object.valid(), at, "a readable dataset or group");
+  if (H5Iget_type(object.get()) == H5I_DATASET) require_plain(object.get(), at);
+  return object;
+}
+
+bool OpenFile::has(std::string_view path, const char* attribute) const {
+  return H5Aexists(object(path).get(), attribute) > 0;
+}
+
+Attribute OpenFile::open_attribute(std::string_view path, const char* name) const {
+  const std::string at = place(path, name);
+  if (!has(path, name)) throw input_error(at, "no such attribute", "one of that name");
+  Attribute attribute(H5Aopen(object(path).get(), name, H5P_DEFAULT));
+  require(attribute.valid(), at, "a readable attribute");
+  const Space space(H5Aget_space(attribute.get()));
+  if (space.valid() && H5Sget_simple_extent_npoints(space.get()) == 1) return attribute;
+  throw input_error(at, "an array", "a single value");
+}
+
+template <typename Number>
+Number OpenFile::number(std::string_view path, const char* name) const {
+  constexpr bool integer = std::is_integral_v<Number>;
+  const Attribute attribute = open_attribute(path, name);
+  const Type type(H5Aget_type(attribute.get()));
+  const H5T_class_t found = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
+  if (found != H5T_INTEGER && (integer || found != H5T_FLOAT)) {
+    throw input_error(place(path, name), integer ? "no integer" : "no number", integer ? "an integer" : "a number");
   }
-  const std::int64_t version = integer_attribute(root.get(), place(name, "", "format_version"), "format_version");
-  if (version != format_version) {
-    throw input_error(name.string(), fmt::format("format version {} of {}", version, filetype),
-                      fmt::format("version {}, the one that this program reads", format_version));
+  Number value{};
+  const hid_t memory = integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
+  require(H5Aread(attribute.get(), memory, &value) >= 0, place(path, name), "a readable attribute");
+  return value;
+}
+
+template std::int64_t OpenFile::number(std::string_view path, const char* name) const;
+template double OpenFile::number(std::string_view path, const char* name) const;
+
+std::string OpenFile::text(std::string_view path, const char* name) const {
+  const Attribute attribute = open_attribute(path, name);
+  const std::string at = place(path, name);
+  const Type type(H5Aget_type(attribute.get()));
+  if (!type.valid() || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) {
+    throw input_error(at, "no text of fixed length", "a text of fixed length");
   }
+  constexpr std::size_t longest = 1U << 20U;  // a header of an object, where railtab keeps them, has 64 KiB
+  const std::size_t bytes = H5Tget_size(type.get());
+  if (bytes > longest) {
+    throw input_error(at, fmt::format("a text of {} bytes", bytes), fmt::format("{} bytes at most", longest));
+  }
+  std::string value(bytes, '\0');
+  require(H5Aread(attribute.get(), type.get(), value.data()) >= 0, at, "a readable text");
+  value.resize(value.find_last_not_of('\0') + 1);
+  return value;
+}
+
+Type text_type(std::size_t length) {
+  Type type(H5Tcopy(H5T_C_S1));
+  const bool done = H5Tset_size(type.get(), length) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
+                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
+  require(done, "HDF5 text", "its type");
+  return type;
+}
+
+Properties group_properties(hid_t kind) {
+  Properties properties(H5Pcreate(kind));
+  constexpr unsigned always_compact = 65535;
+  const bool done = H5Pset_attr_creation_order(properties.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0 &&
+                    H5Pset_attr_phase_change(properties.get(), always_compact, 0) >= 0;
+  require(done, "HDF5 group creation", "its properties");
+  return properties;
 }
 
 }  // namespace railtab::hdf5

@@ -12,7 +12,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 
-/// What the reader and the writer of array files share: handles, errors, the checks before a file is believed.
+/// What the reader and the writer of array files share: handles, errors, opening, the checks before a file is believed.
 namespace railtab::hdf5 {
 
 /// Held around every call into HDF5: one thread at a time, since not every build of HDF5 is thread-safe; its error
@@ -43,9 +43,7 @@ class Handle {
     std::swap(id_, other.id_);
     return *this;
   }
-  ~Handle() {
-    if (id_ >= 0) close(id_);
-  }
+  ~Handle() { static_cast<void>(reset()); }
   [[nodiscard]] hid_t get() const noexcept { return id_; }
   [[nodiscard]] bool valid() const noexcept { return id_ >= 0; }
   /// Close now; false where HDF5 could not.
@@ -61,62 +59,69 @@ using Space = Handle<H5Sclose>;
 using Type = Handle<H5Tclose>;
 using Properties = Handle<H5Pclose>;
 
+/// What HDF5 said last, the innermost of its messages.
+[[nodiscard]] std::string last_error();
+
 /// InputError at `place` with what HDF5 said last.
-[[nodiscard]] InputError failure(const std::string& place, std::string_view expected);
-inline void require(bool done, const std::string& place, std::string_view expected) {
-  if (!done) throw failure(place, expected);
-}
+void require(bool done, const std::string& place, std::string_view expected);
 
-/// ComputationError at `place` with what the system said: an output could not be written.
-[[nodiscard]] ComputationError write_failure(const std::string& place);
+/// Shape of a dataset; none of a scalar.
+[[nodiscard]] std::vector<hsize_t> extent_of(hid_t dataset, const std::string& place);
 
-[[nodiscard]] std::string place(const std::filesystem::path& file, std::string_view path);
-[[nodiscard]] std::string place(const std::filesystem::path& file, std::string_view path, std::string_view attribute);
-
-/// Whether "a/b" exists. Hard links alone are followed. @throws InputError at any other link: it may leave the file.
-[[nodiscard]] bool contains(hid_t file, const std::filesystem::path& name, std::string_view path);
-
-/// Opens a group or a plain dataset: one that lies in this file as it is. @throws InputError where there is none, and
-/// where a dataset is virtual, lies in other files or needs filters, whose plug-ins are code of others and which can
-/// inflate without bound; railtab writes none of these.
-[[nodiscard]] Object open_object(hid_t file, const std::filesystem::path& name, std::string_view path);
-
-[[nodiscard]] std::int64_t integer_attribute(hid_t object, const std::string& at, std::string_view name);
-/// Of an integer or floating-point attribute.
-[[nodiscard]] double number_attribute(hid_t object, const std::string& at, std::string_view name);
-[[nodiscard]] std::string text_attribute(hid_t object, const std::string& at, std::string_view name);
-
-/// The first eight bytes of an HDF5 file.
-inline constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
-
-/// What the first bytes of a file say ([HDF5 file format specification 3.0, section II.A]).
-struct FileState {
-  std::uint64_t bytes = 0;
-  bool being_written = false;  ///< a writer has it open, or was killed
+/// Values of shape `extent` in memory, and their place in a dataset, from row `first` on.
+struct Rows {
+  Rows(hid_t dataset, const std::vector<hsize_t>& extent, hsize_t first = 0);
+  Space file, memory;
 };
-/// Checks that the file exists, is HDF5 and, unless it is being written, not cut short. @throws InputError
-[[nodiscard]] FileState inspect_file(const std::filesystem::path& file);
 
-/// HDF5's view of files on a disk, with the rules for failed writes and for what is beyond a file's end.
+enum class Access { create_whole, create_growing, read, write_growing };
+
+/// An open file and its name, which every error names. Paths are as in ArrayFileReader.
+class OpenFile {
+ public:
+  OpenFile() = default;
+  /// The one place where files are opened. A new one must be there already, empty (create_temporary).
+  /// @throws InputError where HDF5 cannot open it
+  OpenFile(std::filesystem::path name, const std::filesystem::path& file, Access access);
+
+  [[nodiscard]] const std::filesystem::path& name() const noexcept { return name_; }
+  [[nodiscard]] hid_t get() const noexcept { return handle_.get(); }
+  [[nodiscard]] bool valid() const noexcept { return handle_.valid(); }
+  [[nodiscard]] bool close() noexcept { return handle_.reset(); }
+  [[nodiscard]] std::string place(std::string_view path) const;
+  [[nodiscard]] std::string place(std::string_view path, std::string_view attribute) const;
+
+  /// Whether "a/b" exists. Hard links alone are followed. @throws InputError at any other link: it may leave the file.
+  [[nodiscard]] bool contains(std::string_view path) const;
+  /// Opens a group or a plain dataset: one that lies in this file as it is. @throws InputError where there is none, and
+  /// where a dataset is virtual, lies in other files or needs filters, whose plug-ins are code of others and which can
+  /// inflate without bound; railtab writes none of these.
+  [[nodiscard]] Object object(std::string_view path) const;
+  [[nodiscard]] bool has(std::string_view path, const char* attribute) const;
+  /// @tparam Number std::int64_t, of an integer attribute; double, of any number
+  template <typename Number>
+  [[nodiscard]] Number number(std::string_view path, const char* attribute) const;
+  [[nodiscard]] std::string text(std::string_view path, const char* attribute) const;
+
+ private:
+  [[nodiscard]] Attribute open_attribute(std::string_view path, const char* attribute) const;
+
+  std::filesystem::path name_;
+  File handle_;
+};
+
+/// HDF5's own driver of files on a disk with one rule more: after a write that failed, nothing more is written to the
+/// file, which stays as it is on the disk. HDF5 would try the rest when it closes the file, piece by piece, and leave a
+/// mixture.
 [[nodiscard]] hid_t file_driver();
-/// Drop whatever HDF5 still has to write, also when the file is closed: it stays as it is on the disk.
-void stop_writing(hid_t file);
+/// Why a write to this file has failed; empty where none has. HDF5 does not pass every failure on.
+[[nodiscard]] std::string write_failure(hid_t file);
 
 /// Fixed length: HDF5 keeps variable-length text in a heap without checksums.
 [[nodiscard]] Type text_type(std::size_t length);
 
-enum class Access { create_whole, create_growing, read, read_growing, write_growing };
-/// The one place where files are opened. Invalid where HDF5 cannot.
-[[nodiscard]] File open_file(const std::filesystem::path& file, Access access);
 /// Groups that keep their attributes in the order of creation, and in the object header, whose checksum covers them.
 [[nodiscard]] Properties group_properties(hid_t kind);
-
-/// @param state of the file, found anew where a writer opens or closes it at this moment
-/// @throws InputError where HDF5 cannot open it
-[[nodiscard]] File open_for_reading(const std::filesystem::path& file, FileState& state);
-
-/// Checks the attributes "filetype" and "format_version" of the root group, in this order. @throws InputError
-void check_type(hid_t file, const std::filesystem::path& name, std::string_view filetype, int format_version);
 
 /// Growing datasets have this attribute, with the name of the dataset that counts their rows.
 inline constexpr const char* rows_attribute = "rows";

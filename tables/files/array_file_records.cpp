@@ -1,9 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <cassert>
-#include <utility>
+#include <limits>
 
 #include "railtab/tables/files/array_file_writer.hpp"
 
@@ -11,21 +11,26 @@
 
 namespace railtab {
 
-using hdf5::place;
-using hdf5::require;
+using hdf5::Section;
 
 void ArrayFileWriter::Impl::begin_records() {
   assert(mode == Mode::growing);
-  if (broken) throw ComputationError(fmt::format("{}: could not be written before", file.string()));
-  if (temporary.empty()) return;
-  if (!growing.empty()) create_blocks();
-  growing.clear();
-  require_written(H5Fflush(handle.get(), H5F_SCOPE_LOCAL) >= 0, file.string());
-  require_written(handle.reset(), file.string());
-  if (std::filesystem::exists(file)) static_cast<void>(WriterLock(file));
+  if (!file.valid()) throw ComputationError(fmt::format("{}: could not be written before", file.place("")));
+  if (temporary.name.empty()) return;
+  if (histories > 0) {
+    static_cast<void>(create_dataset(
+        hdf5::blocks_dataset, type_of<std::uint64_t>(), {0, 1 + histories}, true,
+        {"1",
+         "records by the end of each block of rows, then the checksum of its rows in each growing dataset, in the "
+         "column that its attribute checksum_column names"}));
+  }
+  require_written(H5Fflush(file.get(), H5F_SCOPE_LOCAL) >= 0, file.place(""));
+  require_written(file.close(), file.place(""));
+  const std::filesystem::path name = file.name();
+  if (std::filesystem::exists(name)) static_cast<void>(WriterLock(name));
   // Readers find the file by its name only when it says that it is being written.
-  open_records();
-  publish();
+  open_records(name, temporary.name);
+  temporary.publish(name);
 }
 
 namespace {
@@ -42,127 +47,166 @@ herr_t keep_growing(hid_t group, const char* name, const H5L_info_t* link, void*
 
 ArrayFileWriter::Impl::Growing ArrayFileWriter::Impl::open_growing(const std::string& path) const {
   Growing entry;
-  entry.dataset = hdf5::open_object(handle.get(), file, path);
-  const hdf5::Space space(H5Dget_space(entry.dataset.get()));
-  const int rank = space.valid() ? H5Sget_simple_extent_ndims(space.get()) : 0;
-  require(rank > 0, place(file, path), "a growing dataset");
-  entry.extent.resize(static_cast<std::size_t>(rank));
-  H5Sget_simple_extent_dims(space.get(), entry.extent.data(), nullptr);
+  entry.dataset = file.object(path);
+  entry.extent = hdf5::extent_of(entry.dataset.get(), file.place(path));
   for (std::size_t i = 1; i < entry.extent.size(); ++i) entry.row_size *= entry.extent[i];
-  if (entry.row_size == 0) throw input_error(place(file, path), "rows without values", "a growing dataset");
   return entry;
 }
 
-void ArrayFileWriter::Impl::open_records() {
-  handle = hdf5::open_file(temporary.empty() ? file : temporary, hdf5::Access::write_growing);
-  require(handle.valid() && H5Fincrement_filesize(handle.get(), 0) >= 0, file.string(), "a file that can be written");
-  records_dataset = hdf5::open_object(handle.get(), file, hdf5::records_dataset);
-  std::array<std::int64_t, 2> count{-1, -1};
-  const bool read = H5Dread(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, count.data()) >= 0;
-  require(read && count[0] >= 0, place(file, hdf5::records_dataset), "the number of records");
-  records = static_cast<std::size_t>(count[0]);
-
+void ArrayFileWriter::Impl::open_records(const std::filesystem::path& name, const std::filesystem::path& now) {
+  file = hdf5::OpenFile(name, now, hdf5::Access::write_growing);
   std::vector<std::string> paths;
-  require(H5Lvisit(handle.get(), H5_INDEX_NAME, H5_ITER_INC, keep_growing, &paths) >= 0, file.string(), "its datasets");
+  hdf5::require(H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, keep_growing, &paths) >= 0, name.string(),
+                "its datasets");
   for (const std::string& path : paths) {
     Growing entry = open_growing(path);
-    if (entry.extent[0] < records) {
-      throw input_error(place(file, path), fmt::format("{} rows", entry.extent[0]), fmt::format("{} rows", records));
+    const std::int64_t column = file.number<std::int64_t>(path, hdf5::column_attribute);
+    if (entry.extent.empty() || entry.extent[0] < records() || entry.row_size == 0 || column < 1 ||
+        static_cast<std::size_t>(column) > paths.size()) {
+      throw input_error(
+          file.place(path),
+          fmt::format("the shape ({}) and {} {}", fmt::join(entry.extent, ", "), hdf5::column_attribute, column),
+          fmt::format("at least {} rows, and a column from 1 to {}", records(), paths.size()));
     }
-    entry.rows = records;
-    entry.column = static_cast<std::size_t>(hdf5::integer_attribute(
-        entry.dataset.get(), place(file, path, hdf5::column_attribute), hdf5::column_attribute));
+    entry.rows = records();
+    entry.column = static_cast<std::size_t>(column);
     growing.emplace(path, std::move(entry));
   }
   if (growing.empty()) return;
   blocks = open_growing(hdf5::blocks_dataset);
-  if (blocks.extent.size() != 2 || blocks.row_size != 1 + growing.size()) {
-    throw input_error(place(file, hdf5::blocks_dataset), fmt::format("{} columns", blocks.row_size),
-                      fmt::format("{}, one for each growing dataset and one more", 1 + growing.size()));
+  if (blocks.extent.size() != 2 || blocks.row_size != 1 + growing.size() || blocks.extent[0] < flushes.size()) {
+    throw input_error(file.place(hdf5::blocks_dataset), fmt::format("the shape ({})", fmt::join(blocks.extent, ", ")),
+                      fmt::format("{} columns, one for each growing dataset and one more", 1 + growing.size()));
   }
-  for (const auto& [path, entry] : growing) {
-    if (entry.column < blocks.row_size && entry.column > 0) continue;
-    throw input_error(place(file, path, hdf5::column_attribute), fmt::format("{}", entry.column),
-                      fmt::format("1 to {}", growing.size()));
-  }
-  blocks.rows = blocks.extent[0];
-  cut_blocks(records);
+  blocks.rows = flushes.size();
 }
 
-void ArrayFileWriter::Impl::make_room(const std::string& path, Growing& dataset, std::size_t rows) {
-  if (dataset.extent[0] >= rows) return;
-  dataset.extent[0] = rows;
-  require_written(H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0, place(file, path));
-}
-
-void ArrayFileWriter::Impl::append_rows(const std::string& path, Growing& dataset, hid_t memory_type,
-                                        const void* values, std::size_t rows) {
-  std::vector<hsize_t> start(dataset.extent.size(), 0);
-  start[0] = dataset.rows;
-  std::vector<hsize_t> count = dataset.extent;
-  count[0] = rows;
-  make_room(path, dataset, dataset.rows + rows);
-  const hdf5::Space target(H5Dget_space(dataset.dataset.get()));
-  const hdf5::Space source(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr));
-  const bool done =
-      H5Sselect_hyperslab(target.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
-      H5Dwrite(dataset.dataset.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, values) >= 0;
-  require_written(done, place(file, path));
+void ArrayFileWriter::Impl::append_rows(const std::string& path, Growing& dataset, hid_t type, const void* values,
+                                        std::size_t rows) {
+  bool done = true;
+  if (dataset.extent[0] < dataset.rows + rows) {
+    dataset.extent[0] = dataset.rows + rows;
+    done = H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0;
+  }
+  std::vector<hsize_t> extent = dataset.extent;
+  extent[0] = rows;
+  const hdf5::Rows place(dataset.dataset.get(), extent, dataset.rows);
+  done = done && H5Dwrite(dataset.dataset.get(), type, place.memory.get(), place.file.get(), H5P_DEFAULT, values) >= 0;
+  require_written(done, file.place(path));
   dataset.rows += rows;
 }
 
-void ArrayFileWriter::Impl::cut_to_rows() {
-  const auto cut = [this](const std::string& path, Growing& entry) {
-    if (!entry.dataset.valid() || entry.extent[0] == entry.rows) return;
-    entry.extent[0] = entry.rows;
-    require_written(H5Dset_extent(entry.dataset.get(), entry.extent.data()) >= 0, place(file, path));
-  };
-  for (auto& [path, entry] : growing) cut(path, entry);
-  cut(hdf5::blocks_dataset, blocks);
-}
-
-void ArrayFileWriter::Impl::create_blocks() {
-  static_cast<void>(
-      create_extendible(hdf5::blocks_dataset, H5T_STD_U64LE, nullptr, {0, 1 + growing.size()}, "1",
-                        "records by the end of each block of rows, then the checksum of its rows in each growing "
-                        "dataset, in the column that its attribute checksum_column names"));
+void ArrayFileWriter::Impl::cut_to_rows(const std::string& path, Growing& dataset) {
+  if (!dataset.dataset.valid() || dataset.extent[0] == dataset.rows) return;
+  dataset.extent[0] = dataset.rows;
+  require_written(H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0, file.place(path));
 }
 
 void ArrayFileWriter::Impl::append_block() {
   if (growing.empty()) return;
   const std::size_t rows = growing.begin()->second.rows;
   for ([[maybe_unused]] const auto& [path, entry] : growing) assert(entry.rows == rows);
-  if (rows == records) return;
-  records = rows;
+  if (rows == records()) return;
   std::vector<std::uint64_t> block(1 + growing.size());
   block[0] = rows;
   for (auto& [path, entry] : growing) block[entry.column] = std::exchange(entry.sum, word_checksum({}));
-  append_rows(hdf5::blocks_dataset, blocks, H5T_NATIVE_UINT64, block.data(), 1);
+  append_rows(hdf5::blocks_dataset, blocks, type_of<std::uint64_t>(), block.data(), 1);
+  flushes.push_back(rows);
 }
 
-void ArrayFileWriter::Impl::cut_blocks(std::size_t rows) {
-  if (growing.empty()) return;
-  std::vector<std::uint64_t> values(blocks.extent[0] * blocks.row_size);
-  if (!values.empty()) {
-    require(H5Dread(blocks.dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
-            place(file, hdf5::blocks_dataset), "readable checksums");
+/// The number of records as it is stored: a change of either shows, for their sum is -1.
+void ArrayFileWriter::Impl::commit() {
+  const auto count = static_cast<std::int64_t>(records());
+  const std::array<std::int64_t, 2> stored{count, -1 - count};
+  const hdf5::Object dataset = file.object(hdf5::records_dataset);
+  const bool done = H5Dwrite(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, stored.data()) >= 0 &&
+                    H5Fflush(file.get(), H5F_SCOPE_LOCAL) >= 0;
+  require_written(done, file.place(hdf5::records_dataset));
+}
+
+ArrayFileWriter ArrayFileWriter::reopen(const std::filesystem::path& file, std::string_view filetype,
+                                        int format_version) {
+  ArrayFileWriter writer(std::make_unique<Impl>(Mode::growing));
+  writer.impl_->temporary.lock = WriterLock(file);
+  // The reader's checks first: what is not a whole file of this type must not be opened for writing.
+  writer.impl_->flushes = ArrayFileReader(file, filetype, format_version).flushes();
+  const Section section;
+  writer.impl_->open_records(file, file);
+  return writer;
+}
+
+void ArrayFileWriter::create_growing(std::string_view path, const Shape& row_shape, std::string_view unit,
+                                     std::string_view description) {
+  assert(impl_->mode == Mode::growing && product(row_shape) > 0);
+  const Section section;
+  Shape shape{0};
+  shape.insert(shape.end(), row_shape.begin(), row_shape.end());
+  static_cast<void>(impl_->create_dataset(path, type_of<double>(), shape, true, {unit, description}));
+  impl_->write_text(path, hdf5::rows_attribute, hdf5::records_dataset);
+  impl_->write_attribute(path, hdf5::column_attribute, static_cast<std::int64_t>(++impl_->histories));
+}
+
+void ArrayFileWriter::append(std::string_view path, std::span<const double> values) {
+  const Section section;
+  impl_->begin_records();
+  const auto found = impl_->growing.find(path);
+  if (found == impl_->growing.end() || values.size() % found->second.row_size != 0) {  // of a file that was reopened
+    throw input_error(impl_->file.place(path), "no growing dataset with rows of that size", "one to go on with");
   }
-  std::size_t kept = 0;
-  std::uint64_t end = 0;
-  while (end < rows && kept < blocks.rows) end = values[kept++ * blocks.row_size];
-  if (end != rows) {
-    throw input_error(place(file, hdf5::blocks_dataset), fmt::format("no block that ends at record {}", rows),
+  auto& [name, entry] = *found;
+  if (values.empty()) return;
+  impl_->append_rows(name, entry, type_of<double>(), values.data(), values.size() / entry.row_size);
+  entry.sum = word_checksum(std::as_bytes(values), entry.sum);
+}
+
+void ArrayFileWriter::truncate(std::size_t rows) {
+  assert(impl_->mode == Mode::growing);
+  const Section section;
+  impl_->begin_records();
+  std::vector<std::size_t>& flushes = impl_->flushes;
+  const auto end = std::ranges::find(flushes, rows);
+  if (rows > 0 && end == flushes.end()) {
+    throw input_error(impl_->file.place(hdf5::blocks_dataset), fmt::format("no block that ends at record {}", rows),
                       "one: the file is damaged");
   }
-  blocks.rows = kept;
+  flushes.erase(rows > 0 ? end + 1 : flushes.begin(), flushes.end());
+  impl_->blocks.rows = flushes.size();
+  for (auto& [path, entry] : impl_->growing) {
+    entry.rows = rows;
+    entry.sum = word_checksum({});
+  }
+  impl_->commit();
 }
 
-void ArrayFileWriter::Impl::commit() {
-  const std::array<std::int64_t, 2> count = records_and_complement(records);
-  const bool done =
-      H5Dwrite(records_dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, count.data()) >= 0 &&
-      H5Fflush(handle.get(), H5F_SCOPE_LOCAL) >= 0;
-  require_written(done, place(file, hdf5::records_dataset));
+std::size_t ArrayFileWriter::records() const { return impl_->records(); }
+
+void ArrayFileWriter::create_slot(std::string_view path, std::string_view unit, std::string_view description) {
+  assert(impl_->mode == Mode::growing);
+  const Section section;
+  static_cast<void>(impl_->create_dataset(path, type_of<double>(), {0}, true, {unit, description}));
+}
+
+void ArrayFileWriter::replace(std::string_view path, std::span<const double> values) {
+  const Section section;
+  impl_->begin_records();
+  const std::string at = impl_->file.place(path);
+  const hdf5::Object dataset = impl_->file.object(path);
+  hsize_t extent = hdf5::extent_of(dataset.get(), at).at(0);
+  std::vector<double> content(values.begin(), values.end());
+  content.resize(std::max<std::size_t>(content.size(), extent), std::numeric_limits<double>::quiet_NaN());
+  extent = content.size();
+  impl_->require_written(
+      H5Dset_extent(dataset.get(), &extent) >= 0 &&
+          H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.data()) >= 0,
+      at);
+}
+
+void ArrayFileWriter::flush() {
+  const Section section;
+  impl_->begin_records();
+  impl_->append_block();
+  impl_->require_written(H5Fflush(impl_->file.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.place(""));
+  impl_->commit();
 }
 
 }  // namespace railtab

@@ -3,69 +3,146 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
+#include <array>
 #include <limits>
+
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/tables/files/array_file_seal.hpp"
 
 namespace railtab {
 
-using hdf5::place;
-using hdf5::require;
 using hdf5::Section;
 
-ArrayFileWriter::ArrayFileWriter(std::filesystem::path file, std::string_view filetype, int format_version, Mode mode)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->file = std::move(file);
-  impl_->mode = mode;
+ArrayFileWriter::Impl::~Impl() {
   const Section section;
-  impl_->create(filetype, format_version);
+  if (mode == Mode::growing && file.valid()) static_cast<void>(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+  abandon();
+}
+
+void ArrayFileWriter::Impl::require_written(bool done, const std::string& place) {
+  std::string reason = file.valid() ? hdf5::write_failure(file.get()) : "";
+  if (done && reason.empty()) return;
+  if (reason.empty()) reason = hdf5::last_error();
+  abandon();
+  throw ComputationError(fmt::format("{}: could not be written: {}", place, reason));
+}
+
+void ArrayFileWriter::Impl::abandon() noexcept {
+  growing.clear();
+  blocks = {};
+  static_cast<void>(file.close());
+  temporary = {};
+}
+
+void ArrayFileWriter::Impl::create_groups_of(std::string_view path) {
+  const hdf5::Properties properties = hdf5::group_properties(H5P_GROUP_CREATE);
+  for (std::size_t end = path.find('/'); end != std::string_view::npos; end = path.find('/', end + 1)) {
+    const std::string group(path.substr(0, end));
+    if (file.contains(group)) continue;
+    const hdf5::Object created(H5Gcreate2(file.get(), group.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+    require_written(created.valid(), file.place(group));
+  }
+}
+
+hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, const Shape& shape, bool grows,
+                                                   Statement statement) {
+  assert(!temporary.name.empty() && "nothing can be created once records have begun");
+  create_groups_of(path);
+  const int rank = static_cast<int>(shape.size());
+  const std::vector<hsize_t> extent(shape.begin(), shape.end());
+  std::vector<hsize_t> limit = extent, chunk = extent;
+  const hdf5::Properties properties(H5Pcreate(H5P_DATASET_CREATE));
+  bool done = properties.valid();
+  if (grows) {
+    limit[0] = H5S_UNLIMITED;
+    // Rows of a chunk: about 16 KiB, so that short runs stay small files; at least 8, so that the index of a long run
+    // stays small too (up to 8180 chunks each of its blocks fits in a page).
+    constexpr std::size_t chunk_values = 2048, fewest = 8;
+    chunk[0] = std::max(fewest, chunk_values / product(std::span(shape).subspan(1)));
+    constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+    done = H5Pset_chunk(properties.get(), rank, chunk.data()) >= 0 &&
+           (H5Tget_class(type) != H5T_FLOAT || H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing) >= 0);
+  }
+  const hdf5::Space space(shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent.data(), limit.data()));
+  hdf5::Object dataset(
+      H5Dcreate2(file.get(), std::string(path).c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+  require_written(done && dataset.valid(), file.place(path));
+  write_text(path, "unit", statement.unit);
+  write_text(path, "description", statement.description);
+  return dataset;
+}
+
+void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t type, std::span<const std::byte> values,
+                                          const Shape& shape, Statement statement) {
+  const hdf5::Object dataset = create_dataset(path, type, shape, false, statement);
+  require_written(values.empty() || H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
+                  file.place(path));
+  if (mode != Mode::growing || path == hdf5::records_dataset) return;
+  write_attribute(path, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum(values)));
+}
+
+hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std::string_view name, hid_t type) {
+  if (!path.empty()) create_groups_of(std::string(path) + "/");
+  const hdf5::Object object = file.object(path);
+  const std::string key(name);
+  hdf5::Attribute attribute;
+  if (H5Aexists(object.get(), key.c_str()) > 0) {
+    attribute = hdf5::Attribute(H5Aopen(object.get(), key.c_str(), H5P_DEFAULT));
+  } else {
+    assert(!temporary.name.empty() && "nothing can be created once records have begun");
+    const hdf5::Space space(H5Screate(H5S_SCALAR));
+    attribute = hdf5::Attribute(H5Acreate2(object.get(), key.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  }
+  require_written(attribute.valid(), file.place(path, name));
+  return attribute;
+}
+
+void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view name, std::string_view value,
+                                       std::size_t capacity) {
+  const std::size_t wanted = std::max({value.size(), capacity, std::size_t{1}});
+  const hdf5::Attribute attribute = open_attribute(path, name, hdf5::text_type(wanted).get());
+  const hdf5::Type type(H5Aget_type(attribute.get()));
+  const std::size_t room = H5Tget_size(type.get());
+  std::string bytes(value);
+  constexpr std::string_view cut = "...";
+  if (bytes.size() > room) bytes.replace(room - std::min(room, cut.size()), std::string::npos, cut);
+  bytes.resize(room, '\0');
+  require_written(H5Awrite(attribute.get(), type.get(), bytes.data()) >= 0, file.place(path, name));
+}
+
+ArrayFileWriter::ArrayFileWriter(const std::filesystem::path& file, std::string_view filetype, int format_version,
+                                 Mode mode)
+    : impl_(std::make_unique<Impl>(mode)) {
+  const bool grows = mode == Mode::growing;
+  const std::filesystem::path name = output_file(file);
+  if (grows && std::filesystem::exists(name)) static_cast<void>(WriterLock(name));
+  impl_->temporary = create_temporary(name);
+  const Section section;
+  impl_->file =
+      hdf5::OpenFile(name, impl_->temporary.name, grows ? hdf5::Access::create_growing : hdf5::Access::create_whole);
+  impl_->write_text("", "filetype", filetype);
+  impl_->write_attribute("", "format_version", std::int64_t{format_version});
+  if (!grows) return;
+  const std::array<std::int64_t, 2> none{0, -1};
+  impl_->write_dataset(hdf5::records_dataset, type_of<std::int64_t>(), std::as_bytes(std::span(none)), {none.size()},
+                       {"1", "rows of the growing datasets that are valid; minus one minus that number"});
 }
 
 ArrayFileWriter::ArrayFileWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-ArrayFileWriter ArrayFileWriter::reopen(std::filesystem::path file, std::string_view filetype, int format_version) {
-  // The reader's checks first: what is not a whole file of this type must not be opened for writing.
-  static_cast<void>(ArrayFileReader(file, filetype, format_version));
-  auto impl = std::make_unique<Impl>();
-  impl->file = std::move(file);
-  impl->mode = Mode::growing;
-  impl->lock = WriterLock(impl->file);
-  ArrayFileWriter writer(std::move(impl));
-  const Section section;
-  writer.impl_->open_records();
-  return writer;
-}
-
-ArrayFileWriter::~ArrayFileWriter() {
-  if (!impl_) return;
-  const Section section;
-  impl_.reset();
-}
-
+ArrayFileWriter::~ArrayFileWriter() = default;
 ArrayFileWriter::ArrayFileWriter(ArrayFileWriter&&) noexcept = default;
+ArrayFileWriter& ArrayFileWriter::operator=(ArrayFileWriter&&) noexcept = default;
 
-ArrayFileWriter& ArrayFileWriter::operator=(ArrayFileWriter&& other) noexcept {
-  std::swap(impl_, other.impl_);
-  return *this;
-}
-
-void ArrayFileWriter::write(std::string_view path, std::span<const double> values, const Shape& shape,
-                            std::string_view unit, std::string_view description) {
-  impl_->write_numbers(path, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values, shape, unit, description);
-}
-
-void ArrayFileWriter::write(std::string_view path, std::span<const std::int64_t> values, const Shape& shape,
-                            std::string_view unit, std::string_view description) {
-  impl_->write_numbers(path, H5T_STD_I64LE, H5T_NATIVE_INT64, values, shape, unit, description);
-}
-
-void ArrayFileWriter::write(std::string_view path, std::span<const float> values, const Shape& shape,
-                            std::string_view unit, std::string_view description) {
-  impl_->write_numbers(path, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values, shape, unit, description);
-}
-
-void ArrayFileWriter::write(std::string_view path, std::span<const std::uint32_t> values, const Shape& shape,
-                            std::string_view unit, std::string_view description) {
-  impl_->write_numbers(path, H5T_STD_U32LE, H5T_NATIVE_UINT32, values, shape, unit, description);
+void ArrayFileWriter::write(std::string_view path, const Numbers& numbers, const Shape& shape, std::string_view unit,
+                            std::string_view description) {
+  const Section section;
+  std::visit(
+      [&]<typename Number>(std::span<const Number> values) {
+        assert(values.size() == product(shape));
+        impl_->write_dataset(path, type_of<Number>(), std::as_bytes(values), shape, {unit, description});
+      },
+      numbers);
 }
 
 void ArrayFileWriter::write(std::string_view path, const std::vector<std::string>& values,
@@ -75,112 +152,37 @@ void ArrayFileWriter::write(std::string_view path, const std::vector<std::string
   std::string bytes(length * values.size(), '\0');
   for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(bytes.data() + i * length, length);
   const Section section;
-  const hdf5::Type type = hdf5::text_type(length);
-  impl_->write_dataset(path, type.get(), type.get(), bytes.data(), {values.size()}, "text", description);
+  impl_->write_dataset(path, hdf5::text_type(length).get(), std::as_bytes(std::span(bytes)), {values.size()},
+                       {"text", description});
 }
 
-void ArrayFileWriter::attribute(std::string_view path, std::string_view name, double value) {
-  const Section section;
-  impl_->write_attribute(path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
-}
-
-void ArrayFileWriter::attribute(std::string_view path, std::string_view name, std::int64_t value) {
-  const Section section;
-  impl_->write_attribute(path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
-}
-
-void ArrayFileWriter::attribute(std::string_view path, std::string_view name, std::string_view value,
+void ArrayFileWriter::attribute(std::string_view path, std::string_view name,
+                                const std::variant<double, std::int64_t, std::string_view>& value,
                                 std::size_t capacity) {
   const Section section;
-  impl_->write_text(path, name, value, capacity);
-}
-
-void ArrayFileWriter::create_growing(std::string_view path, const std::vector<std::size_t>& row_shape,
-                                     std::string_view unit, std::string_view description) {
-  assert(impl_->mode == Mode::growing && size_of(row_shape) > 0);
-  const Section section;
-  Impl::Growing entry;
-  entry.extent.assign(1, 0);
-  entry.extent.insert(entry.extent.end(), row_shape.begin(), row_shape.end());
-  const double missing = std::numeric_limits<double>::quiet_NaN();
-  entry.dataset = impl_->create_extendible(path, H5T_IEEE_F64LE, &missing, entry.extent, unit, description);
-  impl_->write_text(path, hdf5::rows_attribute, hdf5::records_dataset, 0);
-  const auto column = static_cast<std::int64_t>(1 + impl_->growing.size());
-  impl_->write_attribute(path, hdf5::column_attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &column);
-  impl_->growing.emplace(path, std::move(entry));
-}
-
-void ArrayFileWriter::append(std::string_view path, std::span<const double> values) {
-  const Section section;
-  impl_->begin_records();
-  const auto found = impl_->growing.find(path);
-  if (found == impl_->growing.end() || values.size() % found->second.row_size != 0) {  // of a file that was reopened
-    throw input_error(place(impl_->file, path), "no growing dataset with rows of that size", "one to go on with");
-  }
-  auto& [name, entry] = *found;
-  if (values.empty()) return;
-  impl_->append_rows(name, entry, H5T_NATIVE_DOUBLE, values.data(), values.size() / entry.row_size);
-  entry.sum = word_checksum(std::as_bytes(values), entry.sum);
-}
-
-void ArrayFileWriter::truncate(std::size_t rows) {
-  assert(impl_->mode == Mode::growing && rows <= impl_->records);
-  const Section section;
-  impl_->begin_records();
-  impl_->cut_blocks(rows);
-  impl_->records = rows;
-  for (auto& [path, entry] : impl_->growing) {
-    entry.rows = rows;
-    entry.sum = word_checksum({});
-  }
-  impl_->commit();
-}
-
-std::size_t ArrayFileWriter::records() const { return impl_->records; }
-
-void ArrayFileWriter::create_slot(std::string_view path, std::string_view unit, std::string_view description) {
-  assert(impl_->mode == Mode::growing);
-  const Section section;
-  const double missing = std::numeric_limits<double>::quiet_NaN();
-  static_cast<void>(impl_->create_extendible(path, H5T_IEEE_F64LE, &missing, {0}, unit, description));
-}
-
-void ArrayFileWriter::replace(std::string_view path, std::span<const double> values) {
-  const Section section;
-  impl_->begin_records();
-  const std::string at = place(impl_->file, path);
-  const hdf5::Object dataset = hdf5::open_object(impl_->handle.get(), impl_->file, path);
-  hsize_t extent = 0;
-  H5Sget_simple_extent_dims(hdf5::Space(H5Dget_space(dataset.get())).get(), &extent, nullptr);
-  std::vector<double> content(values.begin(), values.end());
-  content.resize(std::max<std::size_t>(content.size(), extent), std::numeric_limits<double>::quiet_NaN());
-  extent = content.size();
-  const bool done = H5Dset_extent(dataset.get(), &extent) >= 0 &&
-                    H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.data()) >= 0;
-  impl_->require_written(done, at);
-}
-
-void ArrayFileWriter::flush() {
-  assert(impl_->mode == Mode::growing);
-  const Section section;
-  impl_->begin_records();
-  impl_->append_block();
-  impl_->require_written(H5Fflush(impl_->handle.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.string());
-  impl_->commit();
+  const auto write = [&]<typename Value>(Value content) {
+    if constexpr (std::is_same_v<Value, std::string_view>) {
+      impl_->write_text(path, name, content, capacity);
+    } else {
+      impl_->write_attribute(path, name, content);
+    }
+  };
+  std::visit(write, value);
 }
 
 void ArrayFileWriter::close() {
   if (impl_->mode == Mode::growing) flush();
   const Section section;
-  impl_->cut_to_rows();
-  // All that needs room, while the file can still be abandoned.
-  impl_->require_written(H5Fflush(impl_->handle.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.string());
-  impl_->records_dataset = {};
+  for (auto& [path, entry] : impl_->growing) impl_->cut_to_rows(path, entry);
+  impl_->cut_to_rows(hdf5::blocks_dataset, impl_->blocks);
   impl_->growing.clear();
   impl_->blocks = {};
-  impl_->require_written(impl_->handle.reset(), impl_->file.string());
-  if (!impl_->temporary.empty()) impl_->publish();
-  impl_->lock = {};
+  // All that needs room first, while the file can still be abandoned.
+  impl_->require_written(H5Fflush(impl_->file.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.place(""));
+  impl_->require_written(impl_->file.close(), impl_->file.place(""));
+  if (impl_->mode == Mode::whole_or_nothing) seal_file(impl_->temporary.name);
+  if (!impl_->temporary.name.empty()) impl_->temporary.publish(impl_->file.name());
+  impl_->temporary = {};
 }
 
 }  // namespace railtab

@@ -1,38 +1,44 @@
 #pragma once
 
-#include <array>
 #include <cassert>
 #include <functional>
 #include <map>
 #include <numeric>
-#include <string>
+#include <type_traits>
 
 #include "railtab/runtime/base/file_checksum.hpp"
-#include "railtab/runtime/base/writer_lock.hpp"
+#include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/array_file_hdf5.hpp"
 
 namespace railtab {
 
-/// The number of records as it is stored: a change of either shows, for their sum is -1.
-inline std::array<std::int64_t, 2> records_and_complement(std::size_t records) {
-  const auto count = static_cast<std::int64_t>(records);
-  return {count, -1 - count};
-}
-
 /// Number of values.
-[[nodiscard]] inline std::size_t size_of(const ArrayFileWriter::Shape& shape) {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
+[[nodiscard]] inline std::size_t product(std::span<const std::size_t> extents) {
+  return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies());
 }
 
-/// State of a file being written. Its members call HDF5 without taking a Section: the public functions do.
+/// As in the file, so that no number changes: array_file_hdf5.cpp asserts a little-endian machine.
+template <typename Number>
+[[nodiscard]] hid_t type_of() {
+  if constexpr (std::is_same_v<Number, double>) return H5T_IEEE_F64LE;
+  if constexpr (std::is_same_v<Number, float>) return H5T_IEEE_F32LE;
+  if constexpr (std::is_same_v<Number, std::int64_t>) return H5T_STD_I64LE;
+  if constexpr (std::is_same_v<Number, std::uint64_t>) return H5T_STD_U64LE;
+  if constexpr (std::is_same_v<Number, std::uint32_t>) return H5T_STD_U32LE;
+}
+
+/// What is said about a dataset.
+struct Statement {
+  std::string_view unit, description;
+};
+
+/// State of a file being written. Its members call HDF5 without taking a Section: the public functions do, and the
+/// destructor.
 struct ArrayFileWriter::Impl {
-  std::filesystem::path file;       ///< the name at the end
-  std::filesystem::path temporary;  ///< the name now; empty once the file has its own
+  TemporaryFile temporary;  ///< the name now, empty once the file has its own; the lock stays
   Mode mode = Mode::whole_or_nothing;
-  bool broken = false;  ///< something could not be written: nothing more is, and the file gets no new name
-  WriterLock lock;      ///< of the file under its name now
-  hdf5::File handle;
+  hdf5::OpenFile file;  ///< with the name at the end; not valid after a write that failed
 
   struct Growing {
     hdf5::Object dataset;
@@ -42,12 +48,12 @@ struct ArrayFileWriter::Impl {
     std::size_t column = 0;                 ///< in the checksums of blocks
     std::uint64_t sum = word_checksum({});  ///< of the rows since the last block
   };
-  std::map<std::string, Growing, std::less<>> growing;
-  Growing blocks;  ///< checksums; its rows count blocks, not records
-  hdf5::Object records_dataset;
-  std::size_t records = 0;
+  std::map<std::string, Growing, std::less<>> growing;  ///< once records have begun
+  std::size_t histories = 0;                            ///< number of growing datasets that were created
+  Growing blocks;                                       ///< checksums; its rows count blocks, not records
+  std::vector<std::size_t> flushes;                     ///< records by the end of each block
 
-  Impl() = default;
+  explicit Impl(Mode how) : mode(how) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
@@ -57,44 +63,36 @@ struct ArrayFileWriter::Impl {
   /// Leaves the file as it is on the disk, as a kill would.
   void abandon() noexcept;
 
-  void create(std::string_view filetype, int format_version);
-  /// Those before each '/'.
+  /// The groups before each '/'.
   void create_groups_of(std::string_view path);
-  hdf5::Object create_dataset(std::string_view path, hid_t type, hid_t space, hid_t properties);
-  void write_dataset(std::string_view path, hid_t file_type, hid_t memory_type, const void* values, const Shape& shape,
-                     std::string_view unit, std::string_view description);
+  /// @param grows along its first extent
+  hdf5::Object create_dataset(std::string_view path, hid_t type, const Shape& shape, bool grows, Statement statement);
+  void write_dataset(std::string_view path, hid_t type, std::span<const std::byte> values, const Shape& shape,
+                     Statement statement);
+  /// Opens an attribute, created where there is none yet.
+  hdf5::Attribute open_attribute(std::string_view path, std::string_view key, hid_t type);
   template <typename Number>
-  void write_numbers(std::string_view path, hid_t file_type, hid_t memory_type, std::span<const Number> values,
-                     const Shape& shape, std::string_view unit, std::string_view description) {
-    assert(values.size() == size_of(shape));
-    const hdf5::Section section;
-    write_dataset(path, file_type, memory_type, values.data(), shape, unit, description);
+  void write_attribute(std::string_view path, std::string_view key, Number value) {
+    const hdf5::Attribute attribute = open_attribute(path, key, type_of<Number>());
+    require_written(H5Awrite(attribute.get(), type_of<Number>(), &value) >= 0, file.place(path, key));
   }
-  /// @param fill of rows that were never written; null: zeros
-  hdf5::Object create_extendible(std::string_view path, hid_t file_type, const double* fill,
-                                 const std::vector<hsize_t>& extent, std::string_view unit,
-                                 std::string_view description);
-  void write_attribute(std::string_view path, std::string_view name, hid_t file_type, hid_t memory_type,
-                       const void* value);
-  void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity);
+  void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0);
 
   /// Gives a growing file its name and opens it for single-writer-multiple-reader writing.
   void begin_records();
-  void open_records();
-  void create_blocks();
+  /// @param now the file's name at present
+  void open_records(const std::filesystem::path& name, const std::filesystem::path& now);
   [[nodiscard]] Growing open_growing(const std::string& path) const;
-  /// Never less than there is: a chunk given back could be used again before the file stops naming its old place, and
-  /// a process that ends in between leaves two owners of one place.
-  void make_room(const std::string& path, Growing& dataset, std::size_t rows);
-  void append_rows(const std::string& path, Growing& dataset, hid_t memory_type, const void* values, std::size_t rows);
+  [[nodiscard]] std::size_t records() const { return flushes.empty() ? 0 : flushes.back(); }
+  /// There is never less room than before: a chunk given back could be used again before the file stops naming its old
+  /// place, and a process that ends in between leaves two owners of one place.
+  void append_rows(const std::string& path, Growing& dataset, hid_t type, const void* values, std::size_t rows);
   /// The checksums of what came since the last block.
   void append_block();
-  /// Forget the blocks beyond the one that ends at `rows`. @throws InputError where none does.
-  void cut_blocks(std::size_t rows);
   /// Gives back what a shorter history left over; only before closing, when nothing more is allocated.
-  void cut_to_rows();
+  void cut_to_rows(const std::string& path, Growing& dataset);
+  /// Counts the records of the blocks.
   void commit();
-  void publish();
 };
 
 }  // namespace railtab

@@ -52,7 +52,7 @@ class ResultsFile {
       texts(std::string(group.name) + "/names", {"one", "other"});
     }
     const double speed = one_of(fault_.values, "header/speed", {50.0}).front();
-    out_.write("header/speed", {&speed, 1}, {}, "m/s", "speed");
+    out_.write("header/speed", std::span(&speed, 1), {}, "m/s", "speed");
     for (const columns::HeaderColumn& column : columns::header) {
       const std::vector<double> values = one_of(fault_.values, column.path, std::vector<double>{4.0, 2.0});
       out_.write(column.path, values, {values.size()}, column.unit, column.description);

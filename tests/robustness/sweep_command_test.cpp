@@ -245,6 +245,16 @@ TEST_F(SweepCommand, LeftOversOfItsOutputsGo) {
   EXPECT_TRUE(fs::exists(folder_ / "out/notes.txt.part-abcdefghijkl"));
 }
 
+// A train that stands beside its track: only the model shows it, which each run builds for itself.
+TEST_F(SweepCommand, InputThatIsWrongForAllRunsIsNamedOnce) {
+  write("beside.toml", "[train]\nstart = -1000.0\n[contact]\nmode = \"online\"\n[integration]\nduration = 0.1\n");
+  EXPECT_EQ(vsi({"sweep", "beside.toml", "--speed", "10:40:1", "--threads", "1", "-o", "out"}), 2) << text("log");
+  const std::string log = text("log"), message = "train.start";
+  const std::size_t first = log.find(message);
+  ASSERT_NE(first, std::string::npos) << log;
+  EXPECT_EQ(log.find(message, first + 1), std::string::npos) << log;
+}
+
 TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   write("scene.toml", scene);
   write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");

@@ -75,10 +75,11 @@ void add_spring(const FreeCoach& coach, const std::string& a, const std::string&
 }
 
 TEST_F(VehicleImportFiles, GiveTheMatricesOfTheBuiltCoach) {
-  const VehicleModel coach = build_coach({});
+  const VehicleModel coach = build_coach({}, MotionPlane::spatial, testing::without_geometric_stiffness);
   for (const Written how : {Written::as_railtab, Written::turned_in_millimetres}) {
     write(free_coach(), how);
-    const VehicleModel read = import_vehicle(scene(vehicle_section(how) + "[contact]\nmode = \"online\"\n").vehicle);
+    const VehicleModel read = import_vehicle(scene(vehicle_section(how) + "[contact]\nmode = \"online\"\n").vehicle,
+                                             MotionPlane::spatial, testing::without_geometric_stiffness);
     ASSERT_EQ(read.dofs(), 41);
     EXPECT_EQ(read.dof, coach.dof);
     EXPECT_EQ(read.wheelsets, coach.wheelsets);
@@ -126,11 +127,14 @@ TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
   tied = free_coach();
   tied.damping(tied.row("CAR", z), tied.row("CAR", z)) += 1e4;
   expect_refused(tied, {"c.mtx: row", "(z of CAR)", "resists z", "ties to the ground"});
-  // gravity that turns with the car body
+  // gravity that turns with the car body, said or unsaid
   tied = free_coach();
   const int roll_row = tied.row("CAR", roll);
   tied.stiffness(roll_row, roll_row) -= 3e5;
-  expect_refused(tied, {"k.mtx: row", "(roll of CAR)", "resists roll"});
+  expect_refused(tied, {"k.mtx: row", "(roll of CAR)", "resists roll", "train.geometric_stiffness = \"in-matrices\""});
+  const VehicleWeight in_matrices{standard_gravity, GeometricStiffness::in_matrices};
+  EXPECT_EQ(message([&] { static_cast<void>(import_vehicle(files(), MotionPlane::spatial, in_matrices)); }),
+            "no error");
 
   CoachParameters loose;
   loose.secondary.kx = loose.secondary.ky = 0.0;

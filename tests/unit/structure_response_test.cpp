@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "railtab/runtime/algebra/nested_dissection.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 

@@ -50,8 +50,42 @@ TEST(SpringDamper, RotationalStiffnessResistsRelativeRotationOnly) {
   EXPECT_NEAR(moment[3], -2.0, 1e-14);
 }
 
+/// f·(R_mᵀ(p_b − p_a)) less its part of first order, R_m turning by the shares of both rotations.
+double second_order_potential(const Vector3d& arm_a, const Vector3d& arm_b, const Vector3d& force,
+                              const Vector3d& share_b, const Vector12d& q) {
+  const Vector3d u_a = q.segment<3>(0), theta_a = q.segment<3>(3), u_b = q.segment<3>(6), theta_b = q.segment<3>(9);
+  const Vector3d mean = (Vector3d::Ones() - share_b).cwiseProduct(theta_a) + share_b.cwiseProduct(theta_b);
+  const Vector3d apart = moved(arm_b, u_b, theta_b) - moved(arm_a, u_a, theta_a);
+  const Vector3d linear = u_b + theta_b.cross(arm_b) - u_a - theta_a.cross(arm_a);
+  return force.dot(Eigen::AngleAxisd(-mean.norm(), mean.normalized()) * apart) - force.dot(linear);
+}
+
+TEST(Preload, IsThePotentialOfAForceThatTurnsWithItsEnds) {
+  for (int sample = 0; sample < 20; ++sample) {
+    const Vector3d arm_a = Vector3d::Random(), arm_b = Vector3d::Random(), force = Vector3d::Random();
+    const Vector3d share = 0.5 * (Vector3d::Random() + Vector3d::Ones());
+    const Vector12d q = Vector12d::Random();
+    const PairMatrix K = preload_matrix(arm_a, arm_b, force, share);
+    EXPECT_LT((K - K.transpose()).norm(), 1e-15);
+    constexpr double epsilon = 1e-4;
+    const double up = second_order_potential(arm_a, arm_b, force, share, epsilon * q);
+    const double down = second_order_potential(arm_a, arm_b, force, share, -epsilon * q);
+    EXPECT_NEAR(0.5 * q.dot(K * q), 0.5 * (up + down) / (epsilon * epsilon), 1e-6);
+  }
+}
+
+TEST(Preload, TurnsWithBothBodies) {
+  const Vector3d a(0.3, -0.2, 0.5), b(-0.4, 0.1, -0.6), point(0.2, 0.7, 0.1), axis(0.3, 0.5, -0.8);
+  const PairMatrix K = preload_matrix(point - a, point - b, {1.0, -2.0, 3.0}, Vector3d::Constant(0.3));
+  Vector12d q;  // about the origin, where nothing is
+  q << axis.cross(a), axis, axis.cross(b), axis;
+  const Vector3d second_order = 0.5 * axis.cross(axis.cross(b - a));  // of u_b - u_a
+  EXPECT_NEAR(0.5 * q.dot(K * q) + Vector3d(1.0, -2.0, 3.0).dot(second_order), 0.0, 1e-14);
+}
+
 /// A frame on two wheelsets, 2 m apart, each on two springs 1 m left and right of the centre; all dofs free.
-VehicleModel frame(const Vector3d& frame_position, const std::vector<DofIndices>& held_dofs = {}) {
+VehicleModel frame(const Vector3d& frame_position, const std::vector<DofIndices>& held_dofs = {},
+                   GeometricStiffness geometric = GeometricStiffness::omitted) {
   const std::vector<RigidBody> bodies{{"front", 1000, {500, 60, 500}, {1, 0, -0.5}},
                                       {"rear", 1000, {500, 60, 500}, {-1, 0, -0.5}},
                                       {"frame", 3000, {2000, 1500, 3000}, frame_position}};
@@ -61,7 +95,41 @@ VehicleModel frame(const Vector3d& frame_position, const std::vector<DofIndices>
       suspension.push_back({wheelset, 2, {wheelset == 0 ? 1.0 : -1.0, y, -0.5}, {2e7, 5e6, 1e6}, {1e3, 2e3, 3e3}});
     }
   }
-  return assemble_vehicle({"frame", bodies, suspension, {0, 1}, held_dofs, 0.5, 10.0, 10.0});
+  return assemble_vehicle({"frame", bodies, suspension, {0, 1}, held_dofs, 0.5, 10.0, {10.0, geometric}});
+}
+
+// Wheelsets stand still, a force pushes the frame aside: the moment about the rails is that of the force at its height
+// and of the weight that has moved.
+TEST(Vehicle, LeansUnderALateralForceByItsWeight) {
+  const double height = 2.0, weight = 3000 * 10.0;
+  const VehicleModel vehicle = frame({0.0, 0.0, -height}, {}, GeometricStiffness::included);
+  std::vector<int> rests, moves;
+  for (int row = 0; row < 18; ++row) (row < 12 ? rests : moves).push_back(row);
+  Vector6d load = Vector6d::Zero();
+  load[1] = 1e3;
+  const Eigen::MatrixXd K = vehicle.stiffness(moves, moves);
+  const Vector6d u = K.inverse() * load;
+  const Eigen::VectorXd pushed = -vehicle.stiffness(rests, moves) * u;  // forces on the wheelsets
+  double lateral = 0.0, moment = 0.0;
+  for (const int w : {0, 6}) {
+    lateral += pushed[w + 1];
+    moment += pushed[w + 3] + 0.5 * pushed[w + 1];  // axles are 0.5 m above the rails
+  }
+  EXPECT_NEAR(lateral, load[1], 1e-9 * load[1]);
+  const double expected = load[1] * height + weight * u[1];
+  EXPECT_NEAR(moment, expected, 1e-9 * expected);
+  EXPECT_GT(weight * u[1], 1e-3 * expected);
+  const VehicleModel upright = frame({0.0, 0.0, -height});
+  EXPECT_GT(u[1], (upright.stiffness(moves, moves).inverse() * load)[1]);
+}
+
+TEST(Vehicle, ThatFallsOverIsRejected) {
+  try {
+    static_cast<void>(frame({0.0, 0.0, -400.0}, {}, GeometricStiffness::included));
+    FAIL() << "a frame 400 m above its springs stands";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("falls over under its weight"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Vehicle, MatricesAreSymmetricAndPositiveSemidefinite) {
@@ -158,7 +226,7 @@ std::string message_of(const std::function<void()>& action) {
 TEST(Vehicle, RefusesWhatIsNoVehicle) {
   const RigidBody axle{"axle", 1000, {500, 60, 500}, {0, 0, -0.5}};
   const RigidBody box{"box", 3000, {500, 500, 500}, {0, 0, -1.0}};
-  const Suspension spring{0, 1, {0, 0, -0.5}, {1e6, 1e6, 1e6}, {0, 0, 0}};
+  const Suspension spring{0, 1, {0, 0, -0.5}, {1e6, 1e6, 1e6}, {0, 0, 0}, {1e6, 1e6, 1e6}};
   const auto assemble = [](std::vector<RigidBody> bodies, const std::vector<Suspension>& suspension,
                            std::vector<int> wheelsets, const std::vector<DofIndices>& dofs = {}) {
     return message_of([&] { (void)assemble_vehicle({"v", bodies, suspension, wheelsets, dofs, 0.5, 10.0}); });

@@ -91,35 +91,6 @@ TEST(PatchLoads, SeparatePatchesCarryTheirFullHertzForce) {
   EXPECT_GT(separate, 10);
 }
 
-// What Newton starts a step with: near enough to the loads there to be worth a correction.
-TEST(MovedLoads, FollowThePenetration) {
-  const auto geometry = s1002_on_60e1();
-  const WheelContactModel model = contact_model(*geometry);
-  const auto total = [](const PatchLoads& loads) {
-    return std::accumulate(loads.begin(), loads.end(), 0.0,
-                           [](double sum, const PatchLoad& load) { return sum + load.elastic_force; });
-  };
-  for (const double y : {0.0, 2e-3, 4.6e-3, 5.6e-3}) {  // tread, tread, tread and root, flange
-    const WheelsetPose pose{.y = y, .z = 0.3e-3, .yaw = 1e-3};
-    const ContactPatches patches = geometry->patches(pose);
-    ASSERT_GE(patches.count, 1);
-    const PatchLoads loads = patch_loads({}, *geometry, pose, patches);
-    const ContactMemory from = remembered(geometry->pair(), pose, patches, {});
-    EXPECT_NEAR(total(moved_loads(loads, from, pose)), total(loads), 1e-9 * total(loads));
-    for (const double rise : {-2e-6, 2e-6}) {
-      const WheelsetPose to{.y = y, .z = pose.z + rise, .yaw = pose.yaw};
-      const double change = total(patch_loads({}, *geometry, to, geometry->patches(to))) - total(loads);
-      const double guess = total(moved_loads(loads, from, to)) - total(loads);
-      std::printf("y = %.1f mm, z %+.0f um: force changes by %+.0f N, moved loads by %+.0f N\n", 1e3 * y, 1e6 * rise,
-                  change, guess);
-      EXPECT_GT(change * rise, 0.0);
-      EXPECT_NEAR(guess / change, 1.0, 0.5);  // where arcs join, ellipses change with the depth
-    }
-    const WheelsetPose above{.y = y, .z = -1e-3, .yaw = pose.yaw};  // in the air it does not pull
-    EXPECT_EQ(total(moved_loads(loads, from, above)), 0.0);
-  }
-}
-
 TEST(WheelForce, RailCarriesTheOppositeForceAndTheLeftWheelMirrorsTheRight) {
   const auto geometry = s1002_on_60e1();
   const WheelContactModel model = contact_model(*geometry);

@@ -11,7 +11,7 @@
 
 #include "flange_model.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "railtab/runtime/report/svg_figure.hpp"
+#include "svg_figure.hpp"
 
 namespace {
 

@@ -97,8 +97,7 @@ inline void run(const VsiModel& model, double time_step, double end, int record_
   integration.time_step = time_step;
   integration.alpha = 0.0;
   integration.tolerance = 1e-9;
-  const RunSummary summary =
-      simulate(model, integration, end, record_every, state, observer, std::lround(state.time / time_step));
+  const RunSummary summary = simulate(model, integration, end, record_every, state, observer);
   if (!summary.complete) throw std::runtime_error(summary.message);
 }
 

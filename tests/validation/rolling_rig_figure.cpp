@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "railtab/runtime/report/svg_figure.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
+#include "svg_figure.hpp"
 
 namespace {
 

@@ -118,7 +118,8 @@ VehicleModel planar_car(const ptree& car, const std::vector<double>& axles) {
                            {3, 4, 5, 6},
                            {z_and_pitch, z_and_pitch, z_and_pitch, z_only, z_only, z_only, z_only},
                            R0,
-                           25.0});
+                           25.0,
+                           {standard_gravity, GeometricStiffness::omitted}});  // as TTB-2D
 }
 
 struct Reference {

@@ -104,7 +104,7 @@ std::string run_table(const RunResults& results) {
   row("of these from the table", std::to_string(summary.table_queries));
   row("creep forces from outside the creep table", std::to_string(summary.outside_creep_table));
   row("degrees of freedom of the structure", std::to_string(summary.structure_dofs));
-  row("unknowns of the vehicles", std::to_string(summary.vehicle_dofs));
+  row("degrees of freedom of the vehicles", std::to_string(summary.vehicle_dofs));
   return "<table>" + rows + "</table></div>";
 }
 

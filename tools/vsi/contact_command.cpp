@@ -71,7 +71,7 @@ int contact_command(const Arguments& arguments) {
       ("query", text_value()->value_name("Q.csv"),
        "columns y,yaw,roll,dz [m, rad, rad, m]: pose of the wheelset against the right rail, dz below first touch")  //
       ("output,o", text_value()->value_name("R.csv"), "one row per contact patch")                                   //
-      ("online", "answer by the online search on the table's pair");
+      ("online", "use the online search on the table's pair");
   const CommandLine line("vsi contact TABLE.h5 --query Q.csv -o R.csv [--online]", own, {"table"}, arguments);
   if (line.help_printed()) return 0;
   const std::string table = line.required("table"), query = line.required("query"), output = line.required("output");

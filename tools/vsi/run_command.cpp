@@ -324,11 +324,11 @@ po::options_description run_options() {
       ("output,o", text_value()->value_name("RESULTS.h5"),
        "results; default: <scene>.results.h5 in this folder")  //
       ("resume",
-       "go on from the last checkpoint in RESULTS.h5; nothing is run where it is complete")            //
-      ("plan", "say what will be built and what is left out, and do not run")                          //
+       "continue from the last checkpoint in RESULTS.h5; a complete run is left as it is")             //
+      ("plan", "print what will be built and what is left out; no run")                                //
       ("contact", text_value()->value_name("MODE"), "table, online or paper, instead of the scene's")  //
       ("check-reduction", text_value()->value_name("SECONDS"),
-       "say how far the first SECONDS with structure.reduction are from those without, and do not run on");
+       "error of structure.reduction over the first SECONDS, against a run without; no further run");
   return own;
 }
 

@@ -36,7 +36,7 @@ std::vector<std::string> warnings(const SceneParameters& scene, const StructureS
 double shown(double x) { return std::abs(x) < 5e-4 ? 0.0 : x; }
 
 void print(const SceneParameters& scene, const StructureSummary& s) {
-  print_formatted("{}: {} unknowns, {} nodes\n", scene.name, s.dofs, s.nodes);
+  print_formatted("{}: {} degrees of freedom, {} nodes\n", scene.name, s.dofs, s.nodes);
   print_formatted("  from x = {:.3f}, y = {:.3f}, z = {:.3f} m to {:.3f}, {:.3f}, {:.3f} m below the rail-head tops\n",
                   shown(s.low[0]), shown(s.low[1]), shown(s.low[2]), shown(s.high[0]), shown(s.high[1]),
                   shown(s.high[2]));

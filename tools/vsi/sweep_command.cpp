@@ -33,7 +33,7 @@ namespace po = boost::program_options;
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int done = 0, failed = 1, interrupted = 130;
+constexpr int done = 0, failed = 1, wrong_input = 2, interrupted = 130;
 constexpr int kept = 3;  // of a process whose run was finished before
 
 std::string whole_text(const fs::path& file) {
@@ -58,7 +58,8 @@ class Sweep {
   Sweep(const SceneParameters& scene, fs::path scene_file, fs::path folder, bool quiet)
       : scene_(scene), scene_file_(std::move(scene_file)), folder_(std::move(folder)), quiet_(quiet) {}
 
-  /// @return exit code: 1 where a run failed or ended early, 130 after Ctrl-C
+  /// Input that is wrong for the first run that ends is wrong for all: the rest is not begun.
+  /// @return exit code: 1 where a run failed or ended early, 2 where the input of all is wrong, 130 after Ctrl-C
   int run(const std::vector<SweepRun>& runs, std::size_t processes) {
     signal(SIGINT, [](int) { asked_ = 1; });
     int code = done;
@@ -70,6 +71,7 @@ class Sweep {
       }
       if (going_.empty()) break;
       code = std::max(code, wait());
+      if (code == wrong_input) next = runs.size();
     }
     return asked_ != 0 ? interrupted : code;
   }
@@ -148,13 +150,14 @@ class Sweep {
       return code;
     } catch (const InputError& wrong) {
       print_message(fmt::format("vsi sweep: {}: {}\n", run.name, with_scene_line(wrong, scene, scene_file_).what()));
+      return wrong_input;
     } catch (const std::exception& failure) {
       print_message(fmt::format("vsi sweep: {}: {}\n", run.name, failure.what()));
     }
     return failed;
   }
 
-  /// Waits for one of the processes; its exit code, at most 1.
+  /// Waits for one of the processes; its exit code, 2 only where no run has ended otherwise.
   int wait() {
     int status = 0;
     const pid_t process = ::wait(&status);
@@ -163,6 +166,8 @@ class Sweep {
     if (ended == going_.end()) return done;
     const SweepRun& run = *ended->second;
     going_.erase(ended);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == wrong_input && !one_ended_) return wrong_input;
+    one_ended_ = true;
     if (WIFEXITED(status) && WEXITSTATUS(status) == kept) return done;
     const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
     if (!quiet_)
@@ -175,6 +180,7 @@ class Sweep {
   const SceneParameters& scene_;
   fs::path scene_file_, folder_;
   bool quiet_;
+  bool one_ended_ = false;  ///< with another exit code than that of wrong input
   std::map<pid_t, const SweepRun*> going_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -59,11 +58,6 @@ std::string label(const Setting& setting) {
   return text;
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 WorkFigure figure_of(WorkFigure figure, const SceneRun& run, const Steps& steps, bool quick) {
   figure.y_label = "error of wheel forces, rms [of the rms of their dynamic part]";
   figure.x_label = "processor time of the run";
@@ -76,16 +70,11 @@ WorkFigure figure_of(WorkFigure figure, const SceneRun& run, const Steps& steps,
   const MeasuredRun reference =
       measured([&](const RunObserver& observer) { return run(finest, every(steps.finest), observer); });
   const std::vector<Setting> all = settings(steps, quick);
-  std::vector<std::vector<double>> seconds(all.size());
-  std::vector<MeasuredRun> last(all.size());
-  for (int round = 0; round < (quick ? 1 : 3); ++round) {
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      last[i] = measured([&](const RunObserver& observer) {
-        return run(all[i].integration, every(all[i].integration.time_step), observer);
-      });
-      seconds[i].push_back(last[i].seconds);
-    }
-  }
+  const std::vector<MeasuredRun> last = median_runs(all.size(), quick, [&](std::size_t i) {
+    return measured([&](const RunObserver& observer) {
+      return run(all[i].integration, every(all[i].integration.time_step), observer);
+    });
+  });
   const IntegrationParameters standard;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const IntegrationParameters& p = all[i].integration;
@@ -97,7 +86,7 @@ WorkFigure figure_of(WorkFigure figure, const SceneRun& run, const Steps& steps,
       continue;
     }
     const auto per_step = [&](long n) { return static_cast<double>(n) / static_cast<double>(last[i].summary.steps); };
-    figure.points.push_back({all[i].method, label(all[i]), 1e9 * median(seconds[i]), error.rms, error.largest,
+    figure.points.push_back({all[i].method, label(all[i]), 1e9 * last[i].seconds, error.rms, error.largest,
                              fmt::format("{:.2f} Newton iterations per step; {} halved steps",
                                          per_step(last[i].summary.newton_iterations), last[i].summary.halved_steps),
                              is_standard});

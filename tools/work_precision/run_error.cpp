@@ -53,6 +53,21 @@ MeasuredRun measured(const std::function<RunSummary(const RunObserver&)>& run) {
   return result;
 }
 
+std::vector<MeasuredRun> median_runs(std::size_t count, bool quick,
+                                     const std::function<MeasuredRun(std::size_t)>& run) {
+  std::vector<MeasuredRun> last(count);
+  std::vector<std::vector<double>> seconds(count);
+  for (int round = 0; round < (quick ? 1 : 3); ++round) {
+    for (std::size_t i = 0; i < count; ++i) seconds[i].push_back((last[i] = run(i)).seconds);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto middle = seconds[i].begin() + static_cast<std::ptrdiff_t>(seconds[i].size() / 2);
+    std::nth_element(seconds[i].begin(), middle, seconds[i].end());
+    last[i].seconds = *middle;
+  }
+  return last;
+}
+
 RunError run_error(const MeasuredRun& reference, const MeasuredRun& run, Quantity quantity) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   if (reference.records.empty() || reference.records.size() != run.records.size()) return {none, none};

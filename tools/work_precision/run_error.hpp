@@ -19,6 +19,9 @@ struct MeasuredRun {
 
 /// @param run passes an observer on to a run
 [[nodiscard]] MeasuredRun measured(const std::function<RunSummary(const RunObserver&)>& run);
+/// The runs 0 to count - 1 in turn, three times (once where `quick`); each with the median of its times.
+[[nodiscard]] std::vector<MeasuredRun> median_runs(std::size_t count, bool quick,
+                                                   const std::function<MeasuredRun(std::size_t)>& run);
 
 /// What two runs are compared by.
 enum class Quantity {

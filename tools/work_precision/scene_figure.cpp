@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -106,14 +105,8 @@ std::vector<WorkFigure> scene_figures(const SceneTables& tables, bool quick) {
   const MeasuredRun reference = run_of(finest, recorded);
 
   const std::vector<Variant> all = variants(base, tables, quick);
-  std::vector<std::vector<double>> seconds(all.size());
-  std::vector<MeasuredRun> last(all.size());
-  for (int round = 0; round < (quick ? 1 : 3); ++round) {
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      last[i] = run_of(all[i].scene, recorded);
-      seconds[i].push_back(last[i].seconds);
-    }
-  }
+  const std::vector<MeasuredRun> last =
+      median_runs(all.size(), quick, [&](std::size_t i) { return run_of(all[i].scene, recorded); });
   std::filesystem::remove(track);
 
   std::vector<WorkFigure> figures;
@@ -128,10 +121,8 @@ std::vector<WorkFigure> scene_figures(const SceneTables& tables, bool quick) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const RunError error = run_error(reference, last[i], kind.quantity);
       if (!std::isfinite(error.rms)) continue;
-      std::nth_element(seconds[i].begin(), seconds[i].begin() + static_cast<std::ptrdiff_t>(seconds[i].size() / 2),
-                       seconds[i].end());
-      figure.points.push_back({all[i].method, all[i].setting, 1e9 * seconds[i][seconds[i].size() / 2], error.rms,
-                               error.largest, note_of(last[i].summary), all[i].standard, all[i].joined});
+      figure.points.push_back({all[i].method, all[i].setting, 1e9 * last[i].seconds, error.rms, error.largest,
+                               note_of(last[i].summary), all[i].standard, all[i].joined});
     }
     figures.push_back(figure);
   }

@@ -1,4 +1,4 @@
-#include "railtab/runtime/report/svg_figure.hpp"
+#include "svg_figure.hpp"
 
 #include <fmt/format.h>
 
