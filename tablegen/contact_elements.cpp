@@ -75,8 +75,8 @@ void ContactElementOptions::validate() const {
   }
   if (most < 64 || most > 4000000)
     throw input_error("largest number of elements", fmt::format("{}", most), "64..4000000");
-  if (!(negligible_volume >= 0.0 && negligible_volume <= 0.5)) {
-    throw input_error("negligible_volume", fmt::format("{}", negligible_volume), "0..0.5");
+  if (!(full_share >= 1e-6 && full_share <= 1.0)) {
+    throw input_error("full_share", fmt::format("{}", full_share), "1e-6..1");
   }
 }
 
@@ -152,20 +152,20 @@ ContactElements contact_elements(const UndeformedDistance& distance, const std::
   double volume = 0.0, length = 1.0, width = 1.0;
   for (const OverlapRegion& r : regions) volume += r.volume;
   for (const OverlapRegion& r : regions) {
-    if (r.volume < options.negligible_volume * volume) continue;
-    length = std::min(length, r.length);
-    width = std::min(width, r.s_high - r.s_low);
+    const double weight = std::sqrt(std::min(1.0, r.volume / (options.full_share * volume)));
+    if (weight == 0.0) continue;
+    length = std::min(length, r.length / weight);
+    width = std::min(width, (r.s_high - r.s_low) / weight);
   }
   const OverlapRegion box = bounding_box(regions);
   const double nx = std::ceil(options.across_narrowest * (box.x_high - box.x_low) / length - 1e-9);
   const double ns = std::ceil(options.across_narrowest * (box.s_high - box.s_low) / width - 1e-9);
   if (nx * ns > options.most) {
-    throw TooManyElements(
-        fmt::format("{:.0f} x {:.0f} elements are needed for {} across the narrowest overlap region ({:.3g} x {:.3g} "
-                    "mm in a box of "
-                    "{:.3g} x {:.3g} mm); at most {} are allowed. Ask for fewer across it or allow more.",
-                    nx, ns, options.across_narrowest, 1e3 * length, 1e3 * width, 1e3 * (box.x_high - box.x_low),
-                    1e3 * (box.s_high - box.s_low), options.most));
+    throw TooManyElements(fmt::format(
+        "{:.0f} x {:.0f} elements are needed for {} across the narrowest overlap ({:.3g} x {:.3g} mm in a box "
+        "of {:.3g} x {:.3g} mm); at most {} are allowed. Ask for fewer across it or allow more.",
+        nx, ns, options.across_narrowest, 1e3 * length, 1e3 * width, 1e3 * (box.x_high - box.x_low),
+        1e3 * (box.s_high - box.s_low), options.most));
   }
   return contact_elements(distance, regions, static_cast<int>(nx), static_cast<int>(ns));
 }

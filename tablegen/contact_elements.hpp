@@ -26,10 +26,11 @@ struct OverlapRegion {
 
 /// How the overlap is divided.
 struct ContactElementOptions {
-  int across_narrowest = 40;  ///< elements along and across the narrowest region, 4..1000
+  int across_narrowest = 40;  ///< elements along and across the narrowest region that counts in full, 4..1000
   int most = 60000;           ///< elements altogether, 64..4000000
-  /// Regions with a smaller share of the overlap's volume do not determine the elements' size, 0..0.5.
-  double negligible_volume = 1e-3;
+  /// A region with a smaller share of the overlap's volume than this counts less: as many elements as the square root
+  /// of its share in this one, so that a region that begins changes the elements' size continuously; 1e-6..1.
+  double full_share = 0.1;
 
   /// @throws InputError
   void validate() const;

@@ -16,7 +16,8 @@ struct LoadedContactOptions {
   ElasticMaterial wheel, rail;
   ContactElementOptions elements;
   NormalContactTolerance tolerance;
-  double load_tolerance = 1e-6;  ///< of contact_at_load(), share of the load, 1e-9..1e-2
+  /// Of contact_at_load(), share of the load, 1e-9..1e-2. Not below what the residual leaves of the force.
+  double load_tolerance = 1e-5;
 
   /// E* of the two bodies: 1/E* = (1 − ν_w²)/E_w + (1 − ν_r²)/E_r [Pa].
   [[nodiscard]] double contact_modulus() const noexcept;

@@ -8,7 +8,7 @@ namespace railtab {
 
 /// When the pressure is found.
 struct NormalContactTolerance {
-  double residual = 1e-6;    ///< 1e-12..1e-2
+  double residual = 1e-7;    ///< 1e-12..1e-2; the force is then off by some 1e-7 of itself
   int max_iterations = 300;  ///< of conjugate gradients, 1..10000
 
   /// @throws InputError

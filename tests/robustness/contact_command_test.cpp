@@ -83,12 +83,12 @@ TEST(ContactCommand, AWheelCarriesItsLoad) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
   const nlohmann::json j = nlohmann::json::parse(outcome.text);
   EXPECT_EQ(j["kind"], "loaded contact");
-  EXPECT_NEAR(j["force_on_rail"][2].get<double>(), 75e3, 0.1);
+  EXPECT_NEAR(j["force_on_rail"][2].get<double>(), 75e3, 0.75);
   EXPECT_EQ(j["force_on_rail"][0].get<double>(), 0.0);
   ASSERT_EQ(j["bands"].size(), 2u);
   EXPECT_NEAR(j["bands"][0]["normal_force"].get<double>() + j["bands"][1]["normal_force"].get<double>(),
               j["normal_force"].get<double>(), 1e-6);
-  EXPECT_LE(j["residual"].get<double>(), 1e-6);
+  EXPECT_LE(j["residual"].get<double>(), 1e-7);
   EXPECT_FALSE(j.contains("friction"));
   // the same height by --dz gives the same force
   const Outcome lowered = contact(std::string(pair) + "--pose 0.005,0.012,-1e-4 --elements 20 --json --dz " +
@@ -105,7 +105,7 @@ TEST(ContactCommand, FrictionAndTheFileOfPressures) {
               "--motion 0.01,0,0,0 --json -o '" + file.string() + "'");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
   const nlohmann::json j = nlohmann::json::parse(outcome.text);
-  EXPECT_NEAR(j["force_on_rail"][2].get<double>(), 20e3, 0.1);
+  EXPECT_NEAR(j["force_on_rail"][2].get<double>(), 20e3, 0.2);
   EXPECT_NEAR(j["friction"]["pitch_rate"].get<double>(), -30.0 / 0.46, 1e-9);
   EXPECT_LE(j["friction"]["residual"].get<double>(), 1e-6);
   EXPECT_EQ(j["friction"]["force_on_wheel"][0].get<double>(), -j["force_on_rail"][0].get<double>());
