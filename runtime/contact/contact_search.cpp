@@ -101,6 +101,8 @@ struct GapFilter {
   Near near;
   Wanted wanted;
 };
+template <class Near, class Wanted>
+GapFilter(double, Near, Wanted) -> GapFilter<Near, Wanted>;
 
 // Calls found(bracket) for every minimum of the gap in the intervals of a range that the filter lets pass.
 template <class Near, class Wanted, class Found>

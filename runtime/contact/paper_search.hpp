@@ -52,7 +52,7 @@ class PaperSearch {
     int first, last;
   };
 
-  void place(const WheelsetPose& pose, const PoseTrigonometry& trig, Outline& wheel) const noexcept;
+  void place(const WheelsetPose& pose, const PoseTrigonometry& trig, Outline& outline) const noexcept;
   void add_contact(const WheelsetPose& pose, const PoseTrigonometry& trig, const Outline& wheel, Zone zone,
                    ContactPatches& patches) const noexcept;
   void add_overlap(const WheelsetPose& pose, const PoseTrigonometry& trig, const Outline& wheel, Zone zone,

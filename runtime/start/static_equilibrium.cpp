@@ -16,7 +16,10 @@ namespace railtab {
 
 namespace {
 
-constexpr double regularisation = 0.05;  // eps [1/s²]: far below the square of any suspended mode (2π·0.5 Hz)² = 10
+// eps [1/s²]: below the square of any suspended mode, (2π·0.5 Hz)² = 10, and below what a free vehicle falls over with,
+// about 4, so that K + eps M is regular; weaker ones leave Newton's method without direction where there is no
+// friction.
+constexpr double regularisation = 0.5;
 constexpr double travel_between = 0.025;  // m: between the equilibria that velocity and acceleration are taken from
 constexpr int max_iterations = 60;
 constexpr int most_solves = 200;             // of a detour; those that lead anywhere take less than 80

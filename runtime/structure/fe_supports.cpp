@@ -129,7 +129,7 @@ void append_support(const Eigen::MatrixXd& columns, Columns& matrix) {
     }
   }
   wider.finalize();
-  matrix = std::move(wider);
+  matrix.swap(wider);
 }
 
 /// What a translation meets of what stands on other ground than the declared supports.
