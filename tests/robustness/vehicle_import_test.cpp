@@ -75,7 +75,8 @@ void add_spring(const FreeCoach& coach, const std::string& a, const std::string&
 }
 
 TEST_F(VehicleImportFiles, GiveTheMatricesOfTheBuiltCoach) {
-  const VehicleModel coach = build_coach(coach_parameters("manchester-coach"), MotionPlane::spatial, testing::without_geometric_stiffness);
+  const VehicleModel coach =
+      build_coach(coach_parameters("manchester-coach"), MotionPlane::spatial, testing::without_geometric_stiffness);
   for (const Written how : {Written::as_railtab, Written::turned_in_millimetres}) {
     write(free_coach(), how);
     const VehicleModel read = import_vehicle(scene(vehicle_section(how) + "[contact]\nmode = \"online\"\n").vehicle,

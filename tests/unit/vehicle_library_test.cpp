@@ -177,7 +177,7 @@ TEST(VehiclePitch, OfVerticalDataIsThatOfTheChainAtTheBogieDistance) {
   EXPECT_EQ(vehicles, 4);
 }
 
-/// "| manchester-coach | 44.482 | 4 | 54.55 | 1.08 | 0.13 | spatial |" for each vehicle.
+/// "| manchester-coach | 44.482 | 4 | 54.5 | 1.08 | 0.13 | spatial |" for each vehicle.
 std::string table_of_library() {
   std::string table;
   for (const std::string& name : vehicle_names()) {
@@ -190,7 +190,7 @@ std::string table_of_library() {
       return mode.motion == "car body bounce" && mode.damping < 1.0;
     });
     EXPECT_NE(bounce, modes.end()) << name;
-    table += fmt::format("| `{}` | {:.3f} | {} | {:.2f} | {:.2f} | {:.2f} | {} |\n", name, 1e-3 * summary.mass,
+    table += fmt::format("| `{}` | {:.3f} | {} | {:.1f} | {:.2f} | {:.2f} | {} |\n", name, 1e-3 * summary.mass,
                          summary.wheel_load.size(), 1e-3 * summary.wheel_load.front(), bounce->frequency,
                          bounce->damping, data.motion == MotionPlane::vertical ? "vertical" : "spatial");
   }
