@@ -27,7 +27,7 @@ void include(OverlapRegion& region, const RailLine& line, double width) {
   region.volume += 4.0 / 3.0 * half * std::max(0.0, line.overlap) * width;
 }
 
-/// Follows the overlap from one line to its end; sign ±1 along s.
+/// Follows the overlap from one line to its end, which may be that of a profile; sign ±1 along s.
 void walk(const UndeformedDistance& distance, RailLine line, double sign, OverlapRegion& region) {
   const ProfileCurve& rail = distance.pair().rail();
   while (true) {
@@ -58,7 +58,13 @@ std::vector<OverlapRegion> overlap_regions(const ContactSearch& search, const Wh
       return patch.s_rail >= r.s_low && patch.s_rail <= r.s_high;
     });
     const std::optional<RailLine> line = distance.line(patch.s_rail, patch.s_wheel);
-    if (known || !line || line->overlap <= 0.0) continue;
+    if (!line) {
+      throw ComputationError(
+          fmt::format("no undeformed distance at the contact of s_rail = {} m, s_wheel = {} m: the "
+                      "rail's normal does not meet the wheel there",
+                      patch.s_rail, patch.s_wheel));
+    }
+    if (known || line->overlap <= 0.0) continue;  // overlap within rounding of zero
     OverlapRegion region{line->s, line->s, line->x, line->x, 0.0, 0.0, 0.0};
     include(region, *line, walk_step);
     walk(distance, *line, -1.0, region);

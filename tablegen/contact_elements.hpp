@@ -21,6 +21,7 @@ struct OverlapRegion {
 /// Overlap regions of a wheel and its rail, in increasing s. Every region has a deepest point, which is a contact patch
 /// of the search: from each patch the overlap is followed to both sides along the rail profile.
 /// @param search of the pair of `distance`, at whose pose it is asked
+/// @throws ComputationError where a patch of the search has no undeformed distance
 [[nodiscard]] std::vector<OverlapRegion> overlap_regions(const ContactSearch& search, const WheelsetPose& pose,
                                                          const UndeformedDistance& distance);
 

@@ -64,12 +64,13 @@ Matrix state_matrix(const VehicleModel& vehicle, const Rows& rows) {
 }
 
 // "side-frame" of "side-frame-1-left": what bodies of one kind have in common.
-std::string kind_of(std::string name) {
+std::string kind_of(std::string_view body) {
   for (const std::string_view side : {"-left", "-right"}) {
-    if (name.ends_with(side)) name.resize(name.size() - side.size());
+    if (body.ends_with(side)) body.remove_suffix(side.size());
   }
-  const std::size_t last = name.find_last_not_of("0123456789");
-  if (last != name.npos && last + 1 < name.size() && last > 0 && name[last] == '-') name.resize(last);
+  const std::size_t last = body.find_last_not_of("0123456789");
+  if (last != body.npos && last + 1 < body.size() && last > 0 && body[last] == '-') body = body.substr(0, last);
+  std::string name(body);
   std::replace(name.begin(), name.end(), '-', ' ');
   return name;
 }

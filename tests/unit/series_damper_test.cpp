@@ -70,7 +70,7 @@ TEST(SeriesDamper, RestsWhereTheWholeVehicleMoves) {
   for (const Eigen::Vector3d& theta : angles) {
     Eigen::VectorXd v = Eigen::VectorXd::Zero(15);
     for (int b = 0; b < 2; ++b) {
-      v.segment(6 * b, 3) = theta.cross(vehicle.bodies[static_cast<std::size_t>(b)].position);
+      v.segment<3>(6 * b) = theta.cross(vehicle.bodies[static_cast<std::size_t>(b)].position);
       v.segment(6 * b + 3, 3) = theta;
     }
     EXPECT_LT((vehicle.damping * v).norm(), 1e-9 * vehicle.damping.norm());

@@ -341,8 +341,8 @@ TEST_P(VehicleRun, CrossesTheDemoBridge) {
   EXPECT_LT(highest, 1.5 * static_load);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, VehicleRun, ::testing::ValuesIn(vehicle_names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Of, VehicleRun, ::testing::ValuesIn(vehicle_names()), [](const auto& tested) {
+  std::string name = tested.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });

@@ -97,8 +97,12 @@ TEST_P(VehicleLibrary, EveryValueHasASourceAndEveryDoubtANote) {
   for (const SourcedValue& value : data.sourced.values) {
     EXPECT_FALSE(value.provenance.source.empty()) << value.key;
     EXPECT_FALSE(value.provenance.date.empty()) << value.key;
-    if (value.provenance.source == "none") EXPECT_NE(value.provenance.standing, Standing::verified) << value.key;
-    if (value.provenance.standing == Standing::suspect) EXPECT_FALSE(value.provenance.note.empty()) << value.key;
+    if (value.provenance.source == "none") {
+      EXPECT_NE(value.provenance.standing, Standing::verified) << value.key;
+    }
+    if (value.provenance.standing == Standing::suspect) {
+      EXPECT_FALSE(value.provenance.note.empty()) << value.key;
+    }
   }
 }
 
@@ -140,12 +144,14 @@ TEST_P(VehicleLibrary, SpringsHoldEveryMotionAndDampersDampIt) {
   EXPECT_GT(modes.front().frequency, 0.1);
   for (const VehicleMode& mode : modes) {
     EXPECT_GT(mode.damping, -1e-9) << mode.motion;
-    if (mode.motion.starts_with("car body")) EXPECT_GT(mode.damping, 0.02) << mode.motion;
+    if (mode.motion.starts_with("car body")) {
+      EXPECT_GT(mode.damping, 0.02) << mode.motion;
+    }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, VehicleLibrary, ::testing::ValuesIn(vehicle_names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Of, VehicleLibrary, ::testing::ValuesIn(vehicle_names()), [](const auto& vehicle) {
+  std::string name = vehicle.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
