@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <complex>
+
 namespace railtab {
 namespace {
 
@@ -23,6 +25,14 @@ TEST(DenseSolvers, SymmetricSpectrum) {
   EXPECT_LT((s.vectors.transpose() * s.vectors - MatrixXd::Identity(3, 3)).norm(), rounding);
   EXPECT_LT(s.values[0], s.values[1]);
   EXPECT_LT(s.values[1], s.values[2]);
+}
+
+TEST(DenseSolvers, GeneralSpectrum) {
+  const MatrixXd turning{{0.0, 2.0, 0.0}, {-2.0, 0.0, 0.0}, {1.0, 0.0, -3.0}};  // ±2i and −3
+  const GeneralSpectrum s = general_spectrum(turning);
+  EXPECT_LT((turning.cast<std::complex<double>>() * s.vectors - s.vectors * s.values.asDiagonal()).norm(), rounding);
+  EXPECT_LT(std::abs(s.values.sum() + 3.0), rounding);
+  EXPECT_NEAR(s.values.imag().cwiseAbs().maxCoeff(), 2.0, rounding);
 }
 
 TEST(DenseSolvers, GeneralisedEigenvaluesMakeThePencilSingular) {
