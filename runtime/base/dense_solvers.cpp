@@ -28,7 +28,7 @@ Matrix dense_inverse(const Matrix& A) { return A.partialPivLu().inverse(); }
 
 Matrix symmetric_solution(const Matrix& A, const Matrix& B) { return A.ldlt().solve(B); }
 
-Vector least_norm_solution(const Matrix& A, const Vector& b) { return A.completeOrthogonalDecomposition().solve(b); }
+Matrix least_norm_solution(const Matrix& A, const Matrix& B) { return A.completeOrthogonalDecomposition().solve(B); }
 
 Matrix least_squares_solution(const Matrix& A, const Matrix& B) { return A.householderQr().solve(B); }
 

@@ -31,8 +31,9 @@ struct GeneralSpectrum {
 /// X with A X = B, A symmetric and semidefinite (LDLᵀ).
 [[nodiscard]] Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-/// The shortest x that minimises |A x - b|, whatever the rank of A (complete orthogonal decomposition).
-[[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+/// The shortest x that minimises |A x - b| for each column b of B, whatever the rank of A (complete orthogonal
+/// decomposition).
+[[nodiscard]] Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
 /// X that minimises |A X - B|, the columns of A being independent (QR).
 [[nodiscard]] Eigen::MatrixXd least_squares_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);

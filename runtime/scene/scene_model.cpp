@@ -60,6 +60,10 @@ VehicleModel scene_vehicle(const SceneParameters& scene) {
   const MotionPlane plane = vehicle_plane(scene);
   const VehicleWeight weight{normal_gravity(scene.train), scene.train.geometric_stiffness};
   if (scene.train.vehicle == imported_vehicle) return import_vehicle(scene.vehicle, plane, weight);
+  if (weight.geometric_stiffness == GeometricStiffness::in_matrices) {
+    throw input_error("scene: train.geometric_stiffness", "\"in-matrices\" with a vehicle that is not imported",
+                      "\"included\" or \"omitted\"");
+  }
   const VehicleData data = find_vehicle(scene.train.vehicle);
   if (data.motion == MotionPlane::vertical && plane != MotionPlane::vertical) {
     throw input_error(

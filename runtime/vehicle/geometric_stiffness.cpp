@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
@@ -21,10 +19,6 @@ struct PreloadedUnit {
   Eigen::Vector3d point, force;
   double couple_share;
 };
-
-bool is_wheelset(const VehicleModel& vehicle, int body) {
-  return std::find(vehicle.wheelsets.begin(), vehicle.wheelsets.end(), body) != vehicle.wheelsets.end();
-}
 
 void add_preload(VehicleModel& vehicle, const PreloadedUnit& unit) {
   Eigen::Vector3d share = Eigen::Vector3d::Constant(unit.couple_share);
@@ -85,15 +79,16 @@ void add_geometric_stiffness(VehicleModel& vehicle, const std::vector<Suspension
 }
 
 void add_geometric_stiffness(VehicleModel& vehicle, const std::vector<CarriedWeight>& weights) {
-  const VehicleModel elastic = vehicle;  // reactions are those of the springs alone
-  for (const CarriedWeight& carried : weights) {
-    Eigen::VectorXd unit_load = Eigen::VectorXd::Zero(elastic.dofs());
-    unit_load[elastic.dof[carried.body][z_dof]] = 1.0;
-    const Eigen::VectorXd reaction = standing(elastic, unit_load).reaction;
-    for (const int wheelset : elastic.wheelsets) {
-      const double force = carried.weight * reaction[elastic.dof[wheelset][z_dof]];
-      const Eigen::Vector3d point{elastic.bodies[wheelset].position.x(), 0.0, carried.height};
-      add_preload(vehicle, {wheelset, carried.body, point, {0.0, 0.0, force}, 0.5});
+  if (weights.empty()) return;
+  const auto cases = static_cast<Eigen::Index>(weights.size());
+  Eigen::MatrixXd unit_loads = Eigen::MatrixXd::Zero(vehicle.dofs(), cases);
+  for (Eigen::Index k = 0; k < cases; ++k) unit_loads(vehicle.dof[weights[k].body][z_dof], k) = 1.0;
+  const Eigen::MatrixXd reaction = standing(vehicle, unit_loads).reaction;  // by the springs alone
+  for (Eigen::Index k = 0; k < cases; ++k) {
+    for (const int wheelset : vehicle.wheelsets) {
+      const double force = weights[k].weight * reaction(vehicle.dof[wheelset][z_dof], k);
+      const Eigen::Vector3d point{vehicle.bodies[wheelset].position.x(), 0.0, weights[k].height};
+      add_preload(vehicle, {wheelset, weights[k].body, point, {0.0, 0.0, force}, 0.5});
     }
   }
   check_standing(vehicle);

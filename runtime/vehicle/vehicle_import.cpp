@@ -137,9 +137,8 @@ std::vector<CarriedWeight> carried_weights(const FreeVehicle& vehicle, double gr
   for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
     const TableBody& body = vehicle.bodies[b];
     const int y = body.row[y_dof], z = body.row[z_dof], roll = body.row[roll_dof];
-    const bool is_wheelset =
-        std::find(vehicle.wheelsets.begin(), vehicle.wheelsets.end(), static_cast<int>(b)) != vehicle.wheelsets.end();
-    if (is_wheelset || z == held) continue;
+    const auto& wheelsets = vehicle.wheelsets;
+    if (z == held || std::find(wheelsets.begin(), wheelsets.end(), static_cast<int>(b)) != wheelsets.end()) continue;
     double carried = weight[z];
     if (!inner.empty()) carried -= vehicle.stiffness(z, inner).dot(followed);
     // where a lateral force does not turn the body: the height of its springs, if they are all at one

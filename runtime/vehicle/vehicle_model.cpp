@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -133,7 +134,11 @@ void add_rolling(VehicleModel& vehicle, int wheelset, double Jy) {
 
 /// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
 /// of the singular system is an equilibrium; a residual means that something is not carried.
-StandingVehicle standing(const VehicleModel& vehicle, const Eigen::VectorXd& weight) {
+bool is_wheelset(const VehicleModel& vehicle, int body) noexcept {
+  return std::find(vehicle.wheelsets.begin(), vehicle.wheelsets.end(), body) != vehicle.wheelsets.end();
+}
+
+StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& weight) {
   const int n = vehicle.dofs();
   std::vector<bool> is_supported(n, false);
   for (const int w : vehicle.wheelsets) {
@@ -143,20 +148,21 @@ StandingVehicle standing(const VehicleModel& vehicle, const Eigen::VectorXd& wei
   }
   std::vector<int> supported, carried;
   for (int i = 0; i < n; ++i) (is_supported[i] ? supported : carried).push_back(i);
-  StandingVehicle rest{weight, Eigen::VectorXd::Zero(n)};
+  StandingVehicle rest{weight, Eigen::MatrixXd::Zero(n, weight.cols())};
   if (carried.empty()) return rest;  // wheelsets alone
 
   const Eigen::MatrixXd K = vehicle.stiffness(carried, carried);
-  const Eigen::VectorXd load = weight(carried);
-  const Eigen::VectorXd sag = least_norm_solution(K, load);
-  const Eigen::VectorXd residual = K * sag - load;
-  if (!(residual.norm() <= 1e-6 * weight.norm())) {
-    throw input_error(vehicle.name, fmt::format("a weight of {:.3g} N that no spring carries", residual.norm()),
+  const Eigen::MatrixXd load = weight(carried, Eigen::all);
+  const Eigen::MatrixXd sag = least_norm_solution(K, load);
+  const Eigen::MatrixXd residual = K * sag - load;
+  for (Eigen::Index k = 0; k < weight.cols(); ++k) {
+    if (residual.col(k).norm() <= 1e-6 * weight.col(k).norm()) continue;
+    throw input_error(vehicle.name, fmt::format("a weight of {:.3g} N that no spring carries", residual.col(k).norm()),
                       "every body carried by the wheelsets through springs");
   }
   rest.reaction.setZero();
-  rest.reaction(supported) = weight(supported) - vehicle.stiffness(supported, carried) * sag;
-  rest.displacement(carried) = sag;
+  rest.reaction(supported, Eigen::all) = weight(supported, Eigen::all) - vehicle.stiffness(supported, carried) * sag;
+  rest.displacement(carried, Eigen::all) = sag;
   return rest;
 }
 

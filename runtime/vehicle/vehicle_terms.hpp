@@ -13,14 +13,17 @@ void add_rolling(VehicleModel& vehicle, int wheelset, double Jy);
 /// Adds what joins bodies a and b to a matrix of the vehicle's dofs; held ones are left out.
 void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b, const PairMatrix& pair);
 
-/// A vehicle at rest under its weight, its wheelsets held in z and roll; both vectors over all dofs.
+/// Whether a body is one of the vehicle's wheelsets.
+[[nodiscard]] bool is_wheelset(const VehicleModel& vehicle, int body) noexcept;
+
+/// A vehicle at rest under its weight, its wheelsets held in z and roll; all dofs × cases of weight.
 struct StandingVehicle {
-  Eigen::VectorXd reaction;      ///< of the wheelsets' z [N] and roll [N m], zero elsewhere
-  Eigen::VectorXd displacement;  ///< [m], [rad]
+  Eigen::MatrixXd reaction;      ///< of the wheelsets' z [N] and roll [N m], zero elsewhere
+  Eigen::MatrixXd displacement;  ///< [m], [rad]
 };
 
-/// @param weight over all dofs [N]
+/// @param weight all dofs × cases [N]; the stiffness is decomposed once for all of them
 /// @throws InputError where a weight is not carried by the wheelsets through springs
-[[nodiscard]] StandingVehicle standing(const VehicleModel& vehicle, const Eigen::VectorXd& weight);
+[[nodiscard]] StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& weight);
 
 }  // namespace railtab

@@ -9,6 +9,7 @@
 
 #include "../imported_vehicle.hpp"
 #include "../measured.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
@@ -124,6 +125,12 @@ TEST_F(ImportedCoach, LeansByTheSameMoment) {
   const double unloading = largest_unloading(built, at_rest(built));
   std::printf("imported coach: unloading %.4f, built-in coach %.4f\n", largest_unloading(model, record), unloading);
   EXPECT_NEAR(largest_unloading(model, record), unloading, 0.05 * unloading);
+}
+
+TEST(Cant, GeometricStiffnessInMatricesIsOfImportedVehicles) {
+  SceneParameters scene = coach_on_rigid_track();
+  scene.train.geometric_stiffness = GeometricStiffness::in_matrices;
+  EXPECT_THROW(static_cast<void>(build_model(scene)), InputError);
 }
 
 TEST(Cant, AStandingVehicleLeansByItsWeight) {
