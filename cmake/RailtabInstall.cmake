@@ -12,6 +12,7 @@ set(railtab_contact_headers
   tables/creep_table.hpp
   tables/geometry_leaf.hpp
   tables/geometry_table.hpp
+  tables/loaded_table.hpp
   tables/profile_knots.hpp
   tables/provenance.hpp
   tables/table_shard.hpp

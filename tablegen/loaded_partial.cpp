@@ -8,6 +8,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/tablegen/loaded_sweep.hpp"
+#include "railtab/tablegen/loaded_verification.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
@@ -112,6 +113,17 @@ std::vector<LoadedSweepColumn> earlier_columns(const std::filesystem::path& part
   return columns;
 }
 
+void certify(const ContactSearch& search, const LoadedSweepOptions& options, LoadedTableData& table) {
+  LoadedVerificationOptions check;
+  check.material = options.contact.wheel;
+  const LoadedVerification found = verify_loaded_table(search, LoadedTable(table), check);
+  table.statistics.emplace_back("certified.samples", found.samples);
+  table.statistics.emplace_back("certified.answered", found.answered);
+  for (const auto& [quantity, errors] : found.errors())
+    for (const auto& [name, value] : errors->named())
+      table.statistics.emplace_back(fmt::format("certified.error.{}.{}", quantity, name), value);
+}
+
 }  // namespace
 
 void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOptions& options,
@@ -143,6 +155,7 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
   for (const LoadedSweepColumn& column : store.known) append(column);
   store.keep = append;
   table.loaded = sweep_loaded(contact.search(), options, std::move(store), progress);
+  certify(contact.search(), options, *table.loaded);
   write_geometry_table(file, table);
   if (out) out->close();
   std::filesystem::remove(partial);

@@ -1,5 +1,7 @@
 #include "railtab/runtime/contact/contact_response.hpp"
 
+#include "railtab/runtime/contact/loaded_wheel.hpp"
+
 namespace railtab {
 
 WheelContact wheel_contact(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/mean_force.hpp"
 
 namespace railtab {

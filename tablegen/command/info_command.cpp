@@ -35,11 +35,41 @@ std::size_t branches_of(const GeometryTableData& table) {
   return std::accumulate(table.leaf_branch.begin(), table.leaf_branch.end(), std::size_t{0});
 }
 
-double statistic(const GeometryTableData& table, std::string_view name) {
-  for (const auto& [key, value] : table.statistics) {
+double statistic(const std::vector<std::pair<std::string, double>>& statistics, std::string_view name) {
+  for (const auto& [key, value] : statistics) {
     if (key == name) return value;
   }
   return std::nan("");
+}
+
+nlohmann::ordered_json loaded_description(const LoadedTableData& loaded) {
+  nlohmann::ordered_json j;
+  j["lateral"] = {{"low", loaded.lateral.front()}, {"high", loaded.lateral.back()}, {"nodes", loaded.lateral.size()}};
+  j["roll"] = {{"low", loaded.roll.front()}, {"high", loaded.roll.back()}, {"nodes", loaded.roll.size()}};
+  j["yaw"] = {{"high", std::sqrt(loaded.yaw_squared.back())}, {"nodes", loaded.yaw_squared.size()}};
+  j["levels"] = loaded.levels;
+  j["largest_energy"] = std::pow(loaded.largest_level, 5);
+  j["contact_modulus"] = loaded.contact_modulus;
+  j["parts"] = loaded.parts();
+  j["bytes"] = LoadedTable(loaded).bytes();
+  for (const auto& [name, value] : loaded.statistics) j["statistics"][name] = value;
+  return j;
+}
+
+std::string loaded_text(const LoadedTableData& loaded) {
+  const auto percent = [&](const char* name) { return 100.0 * statistic(loaded.statistics, name); };
+  std::string text = fmt::format(
+      "  loaded part  {:.3f} .. {:.3f} mm in {} nodes, roll {:.2f} .. {:.2f} mrad, yaw up to {:.2f} mrad, {} levels up "
+      "to "
+      "{:.3g} J, {:.1f} MiB\n",
+      1e3 * loaded.lateral.front(), 1e3 * loaded.lateral.back(), loaded.lateral.size(), 1e3 * loaded.roll.front(),
+      1e3 * loaded.roll.back(), 1e3 * std::sqrt(loaded.yaw_squared.back()), loaded.levels,
+      std::pow(loaded.largest_level, 5), static_cast<double>(LoadedTable(loaded).bytes()) / 1048576.0);
+  text += fmt::format(
+      "               force above 5 kN off by {:.2f} % (99 %), {:.2f} % (largest); from 1 to 5 kN {:.2f} %, {:.2f} %\n",
+      percent("certified.error.force.p99"), percent("certified.error.force.max"),
+      percent("certified.error.light_force.p99"), percent("certified.error.light_force.max"));
+  return text;
 }
 
 /// What was done to the points of both profile files.
@@ -73,6 +103,7 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   j["file_bytes"] = std::filesystem::file_size(file);
   j["tolerance"] = table.tolerance;
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
+  if (table.loaded) j["loaded"] = loaded_description(*table.loaded);
   j["provenance"] = {{"program_version", table.provenance.program_version},
                      {"command_line", table.provenance.command_line},
                      {"created", table.provenance.created},
@@ -104,9 +135,12 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
   text += fmt::format(
       "  verified     on {:.0f} queries: fallback {:.2f} %, missing or additional patches {:.3f} %,\n"
       "               penetration error {:.2g} m (99.9 %), {:.2g} m (largest); tolerance {:.2g} m\n",
-      statistic(table, "certified.samples"), 100 * statistic(table, "certified.fallback_share"),
-      100 * statistic(table, "certified.patch_mismatch_share"), statistic(table, "certified.error.penetration.p999"),
-      statistic(table, "certified.error.penetration.max"), table.tolerance);
+      statistic(table.statistics, "certified.samples"), 100 * statistic(table.statistics, "certified.fallback_share"),
+      100 * statistic(table.statistics, "certified.patch_mismatch_share"),
+      statistic(table.statistics, "certified.error.penetration.p999"),
+      statistic(table.statistics, "certified.error.penetration.max"), table.tolerance);
+  text += table.loaded ? loaded_text(*table.loaded)
+                       : "  loaded part  none: contact forces are those of an ellipse per patch (tablegen loaded)\n";
   text += fmt::format("  generated    {} by version {}: {}\n", table.provenance.created,
                       table.provenance.program_version, table.provenance.command_line);
   for (const std::string& note : profile_notes(table)) text += fmt::format("  profile      {}\n", note);

@@ -30,9 +30,9 @@ Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
 
 int run(const std::vector<std::string>& arguments) {
   const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
-      {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command},
-      {"creep", creep_command}, {"geometry", geometry_command}, {"info", info_command},
-      {"loaded", loaded_command},     {"merge", merge_command}, {"verify", verify_command}};
+      {"batch", batch_command},   {"conicity", conicity_command}, {"contact", contact_command},
+      {"creep", creep_command},   {"geometry", geometry_command}, {"info", info_command},
+      {"loaded", loaded_command}, {"merge", merge_command},       {"verify", verify_command}};
   if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
   if (arguments[0] == "--help" || arguments[0] == "-h") {
     print_formatted("{}", usage);

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "creep_report.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/loaded_verification.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
@@ -58,6 +61,34 @@ std::string text(const GeometryVerification& v) {
   return out;
 }
 
+nlohmann::ordered_json description(const LoadedVerification& v) {
+  nlohmann::ordered_json j;
+  j["samples"] = v.samples;
+  j["answered"] = v.answered;
+  j["above_5_kn"] = v.above_5_kn;
+  j["from_1_to_5_kn"] = v.from_1_to_5_kn;
+  for (const auto& [quantity, errors] : v.errors()) {
+    for (const auto& [name, value] : errors->named()) j["error"][std::string(quantity)][std::string(name)] = value;
+  }
+  j["time_ns"] = v.time_ns;
+  return j;
+}
+
+std::string text(const LoadedVerification& v) {
+  std::string out = fmt::format(
+      "\nloaded part: {} random poses, {} answered by the table alone; {} above 5 kN and {} from 1 to 5 kN compared "
+      "with "
+      "half-space solutions\n\n{:24}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n",
+      v.samples, v.answered, v.above_5_kn, v.from_1_to_5_kn, "relative error", "mean", "p50", "p95", "p99", "p99.9",
+      "max");
+  for (const auto& [quantity, errors] : v.errors()) {
+    out += fmt::format("{:24}", quantity);
+    for (const auto& [name, value] : errors->named()) out += fmt::format("{:11.2e}", value);
+    out += '\n';
+  }
+  return out + fmt::format("\ntime per look-up: {:.0f} ns\n", v.time_ns);
+}
+
 void verify_creep(const TableCommandLine& line, const std::string& file) {
   if (line.given("dz")) throw input_error("--dz", "on a creep table", "a geometry table, or no --dz");
   const TableCreep law{std::make_shared<const CreepTable>(read_creep_table(file))};
@@ -81,17 +112,32 @@ void verify_geometry(const TableCommandLine& line, const std::string& file) {
       throw input_error(fmt::format("--{}", option), "on a geometry table", "a creep table, or none of it");
     }
   }
-  const TableContact contact{GeometryTable(read_geometry_table(file))};
+  GeometryTableData table = read_geometry_table(file);
+  std::optional<LoadedTableData> loaded = std::move(table.loaded);
+  table.loaded.reset();
+  const TableContact contact{GeometryTable(std::move(table))};
   VerificationOptions options = verification_options(contact.table().data());
   options.samples = static_cast<int>(line.whole_number("samples", 1, 100'000'000));
   options.seed = static_cast<std::uint64_t>(line.whole_number("seed", 0, 1LL << 53));
   if (line.given("dz")) options.lowering = line.interval("dz");
   ProgressBar bar("verify", !line.quiet());
   const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
+  std::optional<LoadedVerification> of_loaded;
+  if (loaded) {
+    LoadedVerificationOptions check;
+    check.samples = static_cast<int>(line.whole_number("loaded-samples", 1, 10'000'000));
+    check.seed = options.seed;
+    check.material = {line.number("modulus"), line.number("poisson")};
+    ProgressBar loaded_bar("verify the loaded part", !line.quiet());
+    of_loaded = verify_loaded_table(contact.search(), LoadedTable(std::move(*loaded)), check,
+                                    [&](double share) { loaded_bar.show(share); });
+  }
   if (line.json()) {
-    print_json(description(result));
+    nlohmann::ordered_json j = description(result);
+    if (of_loaded) j["loaded"] = description(*of_loaded);
+    print_json(j);
   } else {
-    print_formatted("{}", text(result));
+    print_formatted("{}{}", text(result), of_loaded ? text(*of_loaded) : "");
   }
 }
 
@@ -104,8 +150,11 @@ void verify_command(const std::vector<std::string>& arguments) {
       ("samples", text_value("10000")->value_name("N"), "random queries over the table's range")  //
       ("seed", text_value("1")->value_name("N"), "of the random numbers")                         //
       ("dz", po::value<std::string>()->value_name("LO:HI"),
-       "geometry: lowering of the wheelset below first touch [m] (0:3e-4)")                          //
-      ("ratio", po::value<std::string>()->value_name("LO:HI"), "creep: a/b, log-uniform (0.05:20)")  //
+       "geometry: lowering of the wheelset below first touch [m] (0:3e-4)")                                           //
+      ("loaded-samples", text_value("500")->value_name("N"), "geometry: half-space solutions for its loaded part")    //
+      ("modulus", text_value("210e9")->value_name("PA"), "geometry: Young's modulus of wheel and rail, loaded part")  //
+      ("poisson", text_value("0.28")->value_name("NU"), "geometry: Poisson's ratio, loaded part")                     //
+      ("ratio", po::value<std::string>()->value_name("LO:HI"), "creep: a/b, log-uniform (0.05:20)")                   //
       ("creepage", po::value<std::string>()->value_name("LO:HI"),
        "creep: size of (c11 ux/3, c22 uy/3, c23 phi), log-uniform (0.05:30)");
   const TableCommandLine line("tablegen verify FILE.h5 [options]", own, {"file"}, arguments);
