@@ -106,6 +106,11 @@ NumberRows read_number_rows(const std::filesystem::path& file, const std::vector
   return table;
 }
 
+bool has_column(const std::filesystem::path& file, std::string_view name) {
+  const ColumnRows rows(file, "a CSV file");
+  return std::find(rows.header().begin(), rows.header().end(), name) != rows.header().end();
+}
+
 double factor_to_si(const FileColumn& column, const std::vector<UnitFactor>& units) {
   std::string known;
   for (const UnitFactor& u : units) {

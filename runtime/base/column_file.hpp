@@ -33,6 +33,9 @@ struct NumberRows {
 /// numbers under them. @throws InputError with file and line
 [[nodiscard]] NumberRows read_number_rows(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
+/// Whether the header row has this name. @throws InputError where the file cannot be read
+[[nodiscard]] bool has_column(const std::filesystem::path& file, std::string_view name);
+
 /// Factor from the column's unit to SI.
 struct UnitFactor {
   std::string_view unit;

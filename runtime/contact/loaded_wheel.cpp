@@ -50,6 +50,12 @@ std::array<Dual, 3> creep(const CreepLaw& law, const Dual& ratio, const std::arr
   return f;
 }
 
+/// On the wheel, moment about the wheelset centre, in rail-head axes.
+template <class T>
+struct Wrench {
+  Vector<T> force, moment;
+};
+
 /// A part of the contact that bears load, or several as one.
 template <class T>
 struct Part {
@@ -72,7 +78,6 @@ class LoadedContactForce {
       force_[k] = slopes ? moved(lookup.force[j], row(slopes->stiffness.col(j)), pose_) : T(lookup.force[j]);
     }
     energy_ = slopes ? moved(lookup.energy, row(lookup.force), pose_) : T(lookup.energy);
-    rest_.fill(T(0.0));
     if (lookup.energy > 0.0) add_parts();
   }
 
@@ -81,22 +86,34 @@ class LoadedContactForce {
   [[nodiscard]] const T& energy() const { return energy_; }
   [[nodiscard]] const std::array<T, 4>& pose() const { return pose_; }
   /// Creep and damping forces, generalised.
-  [[nodiscard]] const Generalised<T>& rest() const { return rest_; }
+  [[nodiscard]] Generalised<T> rest() const { return wheel_.generalised(rest_.force, rest_.moment); }
+  /// All forces at the pose, generalised.
+  [[nodiscard]] Generalised<T> total() const {
+    Wrench<T> sum = wrench(force_);
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum.force[i] += rest_.force[i];
+      sum.moment[i] += rest_.moment[i];
+    }
+    return wheel_.generalised(sum.force, sum.moment);
+  }
   [[nodiscard]] const T& normal() const { return normal_; }
   [[nodiscard]] const std::array<double, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
   [[nodiscard]] int outside_creep_table() const { return outside_; }
 
-  /// Elastic forces as generalised forces on wheelset and rail. The moment of the normal forces about the axle is zero.
+  /// Elastic forces as generalised forces on wheelset and rail.
   [[nodiscard]] Generalised<T> generalised(const std::array<T, 4>& on_rail) const {
-    using std::cos, std::sin, std::tan;
-    const T moment_x = -on_rail[2], moment_up = -on_rail[3], moment_y = tan(wheel_.yaw) * moment_x;
-    const T c = cos(wheel_.roll), s = sin(wheel_.roll);
-    const Vector<T> force{T(0.0), -on_rail[0], -on_rail[1]};
-    const Vector<T> moment{moment_x, c * moment_y - s * moment_up, s * moment_y + c * moment_up};
-    return wheel_.generalised(force, moment);
+    const Wrench<T> w = wrench(on_rail);
+    return wheel_.generalised(w.force, w.moment);
   }
 
  private:
+  // On the wheel. The moment of the normal forces about the axle is zero.
+  [[nodiscard]] Wrench<T> wrench(const std::array<T, 4>& on_rail) const {
+    const T moment_x = -on_rail[2], moment_up = -on_rail[3], moment_y = wheel_.sin_yaw / wheel_.cos_yaw * moment_x;
+    const T &c = wheel_.cos_roll, &s = wheel_.sin_roll;
+    return {{T(0.0), -on_rail[0], -on_rail[1]}, {moment_x, c * moment_y - s * moment_up, s * moment_y + c * moment_up}};
+  }
+
   void add_parts() {
     using std::cos, std::sin;
     std::array<Part<T>, LoadedLookup::capacity> parts;
@@ -221,8 +238,10 @@ class LoadedContactForce {
     const Vector<T> moment{own[0] + arm[1] * force[2] - arm[2] * force[1],
                            own[1] + arm[2] * force[0] - arm[0] * force[2],
                            own[2] + arm[0] * force[1] - arm[1] * force[0]};
-    const Generalised<T> f = wheel_.generalised(force, moment);
-    for (std::size_t i = 0; i < 9; ++i) rest_[i] += weight * f[i];
+    for (std::size_t i = 0; i < 3; ++i) {
+      rest_.force[i] += weight * force[i];
+      rest_.moment[i] += weight * moment[i];
+    }
   }
 
   const WheelContactModel& model_;
@@ -231,7 +250,7 @@ class LoadedContactForce {
   const LoadedSlopes* slopes_;
   std::array<T, 4> pose_, force_;
   T energy_, normal_ = T(0.0);
-  Generalised<T> rest_;
+  Wrench<T> rest_{};
   std::array<double, LoadedLookup::capacity> part_normal_{};
   int outside_ = 0;
 };
@@ -275,8 +294,9 @@ Generalised<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& sta
     if (number(ends) > 0.0) share += along / ends;
   }
   Generalised<T> result = end.generalised(mean);
+  const Generalised<T> rest = end.rest();
   for (std::size_t i = 0; i < 9; ++i) {
-    result[i] += 0.5 * share * (start.rest[static_cast<Eigen::Index>(i)] + weight * end.rest()[i]);
+    result[i] += 0.5 * share * (start.rest[static_cast<Eigen::Index>(i)] + weight * rest[i]);
   }
   return result;
 }
@@ -288,7 +308,7 @@ WheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, co
   WheelForce result;
   const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
   const LoadedContactForce<double> force(model, wheel, lookup);
-  const Vector9 total = in_track(side, force.generalised(force.elastic())) + in_track(side, force.rest());
+  const Vector9 total = in_track(side, force.total());
   result.wheelset = total.head<6>();
   result.rail = total.tail<3>();
   result.rail_x = -result.wheelset[0];
@@ -321,13 +341,13 @@ LoadedMemory loaded_memory(const WheelContactModel& model, WheelSide side, const
                            const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
   const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
   const LoadedContactForce<double> force(model, wheel, lookup);
+  const Generalised<double> rest = force.rest();
   return {.weight = lookup.table_share,
           .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
           .energy = lookup.energy,
           .force = lookup.force,
-          .rest = lookup.table_share * Eigen::Map<const Vector9>(force.rest().data()),
-          .total =
-              lookup.table_share * (in_track(side, force.generalised(force.elastic())) + in_track(side, force.rest()))};
+          .rest = lookup.table_share * Eigen::Map<const Vector9>(rest.data()),
+          .total = lookup.table_share * in_track(side, force.total())};
 }
 
 Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
@@ -361,8 +381,7 @@ Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, con
   if (start) {
     total = mean_over_step(model.geometry->pair(), *start, force, lookup.table_share);
   } else {
-    total = force.generalised(force.elastic());
-    for (std::size_t i = 0; i < 9; ++i) total[i] += force.rest()[i];
+    total = force.total();
   }
   if (side == WheelSide::left) reflect_force(total);
   Matrix9 tangent;

@@ -54,6 +54,7 @@ struct WheelKinematics {
 
   T y, z, roll, yaw;     ///< WheelsetPose
   T centre_y, centre_z;  ///< of the wheelset centre from the rail-head origin [m]
+  T cos_roll, sin_roll, cos_yaw, sin_yaw;
   T rail_cos, rail_sin;  ///< of the rail's roll: to and from track axes
   T rail_rate;           ///< of the rail's roll [rad/s]
   Vector velocity;       ///< of the wheelset centre against the rail's material at its origin, x along the rail [m/s]
@@ -76,8 +77,11 @@ struct WheelKinematics {
     // Velocity of the wheelset centre against the rail's material, along the rail's tangent (1, yaw, slope).
     velocity = from_track(m.velocity[0] + V, m.velocity[1] - m.rail_velocity[0] - V * m.rail_yaw,
                           m.velocity[2] - m.rail_velocity[1] - V * m.rail_slope);
-    const T cos_yaw = cos(yaw);
-    axle = {-sin(yaw), cos_yaw * cos(roll), cos_yaw * sin(roll)};
+    cos_roll = cos(roll);
+    sin_roll = sin(roll);
+    cos_yaw = cos(yaw);
+    sin_yaw = sin(yaw);
+    axle = {-sin_yaw, cos_yaw * cos_roll, cos_yaw * sin_roll};
     const T turning = m.velocity[4] - V / pair.nominal_radius();
     rotation = from_track(m.velocity[3] - m.rail_velocity[2], T(0.0), m.velocity[5]);
     for (std::size_t i = 0; i < 3; ++i) rotation[i] += turning * axle[i];
