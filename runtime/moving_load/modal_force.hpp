@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "railtab/runtime/moving_load/axle_train.hpp"
+#include "railtab/runtime/moving_load/modal_deck.hpp"
+
+namespace railtab {
+
+/// The modal forces of a train on a deck as cubics of the distance s that its first axle has come from x = 0. Between
+/// two places at which some axle passes a knot the sum over the axles, Σ P_k φ_n(s − behind_k), is one cubic, so that
+/// the pieces are the same at all speeds.
+struct ModalForce {
+  using Cubic = std::array<double, 4>;
+  int modes = 0;              ///< the deck's dynamic ones
+  std::vector<double> start;  ///< of each piece [m], and the end of the last one
+  std::vector<Cubic> cubic;   ///< [piece·modes + mode]: F = Σ c_j (s − start)^j [N kg^-1/2]
+  [[nodiscard]] std::size_t pieces() const noexcept { return start.size() - 1; }
+};
+[[nodiscard]] ModalForce modal_force(const ModalDeck& deck, const AxleTrain& train);
+
+/// The forces of all modes with the first axle at s [m], in the same units.
+[[nodiscard]] Eigen::ArrayXd modal_force_at(const ModalDeck& deck, const AxleTrain& train, double s);
+
+}  // namespace railtab
