@@ -26,10 +26,7 @@ struct TrainResponse {
 
 /// All trains over a deck, passages on `threads` threads; the same numbers on any number of them.
 ///
-/// Without a list of speeds each train's largest acceleration and displacement over the range are sought: at
-/// seven even speeds, both ends with them, and where free_amplitude(), which shows the resonances, has its highest
-/// peaks; then by parabolas about the highest peaks, until the next one would raise them by less than 0.05 %. Not more
-/// than 25 passages of a train.
+/// Without a list of speeds the critical ones of each train are sought, search_critical_speeds().
 /// @param finished called with the share done, from any thread but not from two at a time; may be empty
 [[nodiscard]] std::vector<TrainResponse> train_responses(const ModalDeck& deck, const std::vector<AxleTrain>& trains,
                                                          const SpeedRange& range, int threads,

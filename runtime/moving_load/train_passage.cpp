@@ -176,31 +176,4 @@ PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const 
   return {speed, passage.acceleration(), passage.displacement(train)};
 }
 
-FreeAmplitude free_amplitude(const ModalDeck& deck, const AxleTrain& train, const ModalForce& unit, double speed) {
-  FreeAmplitude sum{0.0, 0.0};
-  for (int n = 0; n < deck.dynamic_modes; ++n) {
-    ModalMotion mode(deck.omega[n], deck.damping[n]);
-    double q = 0.0, dq = 0.0;
-    for (std::size_t p = 0; p < unit.pieces(); ++p) {
-      const double duration = (unit.start[p + 1] - unit.start[p]) / speed;
-      mode.begin(q, dq, unit.cubic[p * static_cast<std::size_t>(unit.modes) + static_cast<std::size_t>(n)], speed);
-      mode.move(duration, mode.factor(duration));
-      q = mode.q();
-      dq = mode.velocity();
-    }
-    mode.begin(q, dq, {0.0, 0.0, 0.0, 0.0}, speed);
-    std::complex<double> axles = 0.0;
-    double most = 0.0;
-    for (std::size_t k = 0; k < train.behind.size(); ++k) {
-      if (k > 0) axles *= mode.factor((train.behind[k] - train.behind[k - 1]) / speed);
-      axles += train.load[k];
-      most = std::max(most, std::abs(axles));
-    }
-    const double amplitude = std::abs(mode.free_part()) * most * deck.largest_shape[n];
-    sum.displacement += amplitude;
-    sum.acceleration += amplitude * deck.omega[n] * deck.omega[n];
-  }
-  return sum;
-}
-
 }  // namespace railtab

@@ -29,14 +29,4 @@ struct PassagePeaks {
 [[nodiscard]] PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const ModalForce& force,
                                          double speed);
 
-/// Bounds of the amplitudes of acceleration [m/s²] and displacement [m] that axles leave: with each mode's response to
-/// one axle that has gone, its amplitude after the first K axles, |Σ_k P_k e^{λ(t_K − t_k)}|, largest over K, summed
-/// over the modes. Its peaks over the speed are the resonances of the train. A small part of a passage's cost.
-/// @param unit modal_force() of a single axle of 1 N
-struct FreeAmplitude {
-  double acceleration, displacement;
-};
-[[nodiscard]] FreeAmplitude free_amplitude(const ModalDeck& deck, const AxleTrain& train, const ModalForce& unit,
-                                           double speed);
-
 }  // namespace railtab
