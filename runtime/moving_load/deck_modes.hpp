@@ -4,7 +4,7 @@
 
 namespace railtab {
 
-/// Up to which deck accelerations count, from the first and third frequency; all [Hz]. [EN1990, A2.4.4.2.1(4)]
+/// Up to which deck accelerations count, from the first and third frequency; all [Hz]. [EN1990A2, A2.4.4.2.1]
 [[nodiscard]] double cut_off_frequency(double first, double third) noexcept;
 
 /// @param omega rising [rad/s]

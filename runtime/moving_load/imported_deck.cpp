@@ -50,7 +50,7 @@ ModalDeck::Cubics through(const std::array<Eigen::ArrayXd, 4>& f, double h) {
 }
 
 void set_line(const DeckFunction& deck, const ModalBasis& basis, double length, ModalDeck& result) {
-  constexpr double longest_element = 0.5, inside = 1e-6;  // [m]: the deck ends before its last node
+  constexpr double longest_element = 0.5, inside = 2e-6;  // [m]: the deck ends before its last node
   const int elements = std::clamp(static_cast<int>(std::ceil(length / longest_element)), 48, 400);
   const double h = length / elements;
   for (int e = 0; e < elements; ++e) {
@@ -86,7 +86,7 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
   }
   const ModalBasis basis = enough_modes(structure, modes);
   ModalDeck deck;
-  deck.name = structure.source;
+  deck.name = "structure";
   deck.start = begin;
   deck.omega = basis.omega2.array().sqrt();
   const Eigen::SparseMatrix<double> damping = damping_matrix(structure, parameters.damping).of_unknowns;

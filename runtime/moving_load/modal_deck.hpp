@@ -39,10 +39,10 @@ struct ModalDeck {
 
 /// Which modes vibrate.
 struct DynamicModes {
-  int count = 0;  ///< 0: all up to the greatest of 30 Hz, 1.5 f1 and f3 [EN1990, A2.4.4.2.1(4)], at least three
+  int count = 0;  ///< 0: all up to the greatest of 30 Hz, 1.5 f1 and f3 [EN1990A2, A2.4.4.2.1], at least three
 };
 
-/// A simply supported span, frequencies (nπ/L)² √(EI/m) and shapes √(2/(mL)) sin(nπx/L) [Fryba1999, ch. 1]; the
+/// A simply supported span, frequencies (nπ/L)² √(EI/m) and shapes √(2/(mL)) sin(nπx/L); the
 /// same damping ratio for all modes. Cubics meet the sines in value and slope at their knots and are within 4e-6 of the
 /// amplitude of those of modes that vibrate. 25 modes at least: their static deflection is within 1e-5 of the beam's.
 /// Not of the track: add its mass.

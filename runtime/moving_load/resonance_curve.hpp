@@ -8,8 +8,7 @@ namespace railtab {
 
 /// Free vibration that the axles of a train leave, over its speed: of each mode the amplitude g_n(v) that one axle of
 /// 1 N leaves, times the largest sum of the first K axles, |Σ_k P_k e^{λ_n (t_K − t_k)}|, times the largest φ_n (and
-/// ω_n²); summed over the modes. Its peaks are the resonances of the train [ERRI D214: decomposition at resonance with
-/// sub-trains and damping]. One speed costs a small part of a passage.
+/// ω_n²); summed over the modes. Its peaks are the resonances of the train. One speed costs a small part of a passage.
 struct ResonanceCurve {
   std::vector<double> speed;         ///< even steps of 1/v, rising [m/s]
   std::vector<double> acceleration;  ///< [m/s²]

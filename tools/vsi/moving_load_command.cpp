@@ -111,6 +111,7 @@ std::vector<ModalDeck> decks_of_scene(const SceneParameters& scene, const Dynami
   }
   std::vector<ModalDeck> decks;
   std::vector<const BridgeParameters*> known;
+  std::vector<int> count;
   double start = 0.0;
   for (std::size_t s = 0; s < scene.spans.size(); ++s) {
     const BridgeParameters& span = scene.spans[s];
@@ -119,11 +120,15 @@ std::vector<ModalDeck> decks_of_scene(const SceneParameters& scene, const Dynami
       known.push_back(&span);
       decks.push_back(simply_supported_deck(span, modes));
       decks.back().name = fmt::format("span {}", s + 1);
+      count.push_back(1);
       decks.back().start = start;
     } else {
-      decks[static_cast<std::size_t>(same - known.begin())].name += fmt::format(", {}", s + 1);
+      ++count[static_cast<std::size_t>(same - known.begin())];
     }
     start += span.length;
+  }
+  for (std::size_t d = 0; d < decks.size(); ++d) {
+    if (count[d] > 1) decks[d].name += fmt::format(" and {} more like it", count[d] - 1);
   }
   return decks;
 }

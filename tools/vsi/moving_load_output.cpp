@@ -42,7 +42,7 @@ std::vector<double> frequencies(const ModalDeck& deck) {
 
 void print_deck(const DeckResponse& deck) {
   const ModalDeck& d = deck.deck;
-  print_formatted("{}: {:.6g} m\n", d.name, d.length());
+  print_formatted("{}: {:.6g} m from x = {:.6g} m\n", d.name, d.length(), d.start);
   for (int n = 0; n < d.dynamic_modes; ++n) {
     print_formatted("  {:3}. {:10.6f} Hz, damping {:.3f} %\n", n + 1, d.frequency(n), 100.0 * d.damping[n]);
   }
@@ -103,6 +103,14 @@ std::size_t count_passages(const std::vector<DeckResponse>& responses) {
     for (const TrainResponse& response : deck.responses) count += response.passages.size();
   }
   return count;
+}
+
+/// A name as a cell of a CSV: file names may have what separates cells and rows.
+std::string cell(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ',' || c == '"' || static_cast<unsigned char>(c) < ' '; },
+      '_');
+  return name;
 }
 
 }  // namespace
@@ -174,10 +182,8 @@ std::string response_rows(const std::vector<DeckResponse>& responses) {
   std::string text = response_columns();
   const auto out = std::back_inserter(text);
   for (const DeckResponse& deck : responses) {
-    std::string name = deck.deck.name;
-    std::replace(name.begin(), name.end(), ',', ';');
     for (const TrainResponse& response : deck.responses) {
-      const std::string& train = deck.trains[response.train].name;
+      const std::string name = cell(deck.deck.name), train = cell(deck.trains[response.train].name);
       const double standing = response.standing.value;
       if (response.passages.empty()) fmt::format_to(out, "{},{},,,,,,,,,{:.8g},\n", name, train, standing);
       for (const PassagePeaks& p : response.passages) {
