@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -32,7 +32,7 @@ struct ModalDeck {
 
   [[nodiscard]] double length() const noexcept { return knots.back(); }
   [[nodiscard]] int modes() const noexcept { return static_cast<int>(omega.size()); }
-  [[nodiscard]] double frequency(int mode) const { return omega[mode] / 6.283185307179586; }  ///< [Hz]
+  [[nodiscard]] double frequency(int mode) const { return omega[mode] / (2.0 * std::numbers::pi); }  ///< [Hz]
   /// φ (derivative 0), dφ/dx (1) or d²φ/dx² (2) of all modes at 0 <= x <= length.
   [[nodiscard]] Eigen::ArrayXd shape_at(double x, int derivative = 0) const;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "command/command_line.hpp"
@@ -47,14 +48,11 @@ po::options_description options() {
   return own;
 }
 
-SpeedRange speeds_of(const CommandLine& line) {
+/// None where the command line has none.
+std::optional<SpeedRange> speeds_of(const CommandLine& line) {
   const bool si = line.given("speed"), kmh = line.given("speed-kmh");
   if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
-  if (!si && !kmh) {
-    throw input_error("vsi moving-load", "no speeds",
-                      "--speed LO:HI[:STEP] (m/s) or --speed-kmh LO:HI[:STEP]; EN 1991-2 asks for 40 m/s to 1.2 times "
-                      "the line's speed");
-  }
+  if (!si && !kmh) return std::nullopt;
   const std::string option = si ? "speed" : "speed-kmh", text = line.text(option);
   const double unit = si ? 1.0 : 1.0 / 3.6;
   SpeedRange range;
@@ -162,7 +160,8 @@ std::vector<AxleTrain> trains_on(const ModalDeck& deck, const CommandLine& line)
 }
 
 /// All trains on all decks.
-std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const CommandLine& line) {
+std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optional<SpeedRange>& speeds,
+                                  const CommandLine& line) {
   const int threads = line.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   ProgressBar bar("trains", !line.quiet() && !line.json());
   std::vector<DeckResponse> responses;
@@ -172,9 +171,13 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const CommandLin
     response.trains = trains_on(response.deck, line);
     const bool moving =
         std::any_of(response.trains.begin(), response.trains.end(), [](const auto& t) { return !t.only_static; });
-    const SpeedRange range = moving || line.given("speed") || line.given("speed-kmh") ? speeds_of(line) : SpeedRange{};
+    if (moving && !speeds) {
+      throw input_error("vsi moving-load", "no speeds",
+                        "--speed LO:HI[:STEP] (m/s) or --speed-kmh LO:HI[:STEP]; EN 1991-2 asks for 40 m/s to 1.2 "
+                        "times the line's speed");
+    }
     const double done = static_cast<double>(responses.size() - 1), all = static_cast<double>(decks.size());
-    response.responses = train_responses(response.deck, response.trains, range, threads,
+    response.responses = train_responses(response.deck, response.trains, speeds.value_or(SpeedRange{}), threads,
                                          [&](double share) { bar.show((done + share) / all); });
   }
   bar.wipe();
@@ -186,11 +189,9 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const CommandLin
 int moving_load_command(const Arguments& arguments) {
   const CommandLine line(usage, options(), {"scene"}, arguments);
   if (line.help_printed()) return 0;
-  if (!line.given("scene") && !line.given("length")) {
-    if (arguments.empty() || (arguments.size() == 1 && line.json())) {
-      print_trains(line.json());
-      return 0;
-    }
+  if (arguments.empty() || (arguments.size() == 1 && line.json())) {
+    print_trains(line.json());
+    return 0;
   }
   constexpr int most_modes = 100;
   const DynamicModes modes{static_cast<int>(line.whole_number("modes", 0, most_modes))};
@@ -199,10 +200,11 @@ int moving_load_command(const Arguments& arguments) {
     require_replaceable_text(line.text("output"), response_columns());
     if (line.given("scene")) require_no_input(line.text("output"), {line.text("scene")});
   }
+  const std::optional<SpeedRange> speeds = speeds_of(line);
   double seconds = 0.0;
   const std::vector<DeckResponse> responses = [&] {
     const Stopwatch watch(seconds);
-    return respond(decks_of(line, modes), line);
+    return respond(decks_of(line, modes), speeds, line);
   }();
   if (line.given("output")) write_text_file(line.text("output"), response_rows(responses), response_columns());
   if (line.json()) {
