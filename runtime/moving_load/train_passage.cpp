@@ -10,7 +10,8 @@ namespace railtab {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double samples_per_period = 16.0;
+/// In the shortest period; on a deck with a free end, where accelerations jump, peaks are those of the samples.
+constexpr double samples_per_period = 16.0, samples_with_jumps = 64.0;
 /// A sample this near to the best peak may belong to a higher one: between samples a motion of the shortest period
 /// rises by (π/16)²/2, 2 %.
 constexpr double near_peak = 0.97;
@@ -24,6 +25,15 @@ struct Candidate {
   std::vector<ModalMotion> motion;
 };
 
+/// Whether a force that comes on to the deck or leaves it makes a mode's force jump.
+bool has_free_end(const ModalDeck& deck) {
+  constexpr double rounding = 1e-6;
+  for (const double x : {0.0, deck.length()}) {
+    if ((deck.shape_at(x).abs() > rounding * deck.largest_shape).head(deck.dynamic_modes).any()) return true;
+  }
+  return false;
+}
+
 class Passage {
  public:
   Passage(const ModalDeck& deck, double speed) : deck_(deck), speed_(speed), modes_(deck.dynamic_modes) {
@@ -32,7 +42,8 @@ class Passage {
     dq_.setZero(modes_);
     a_.setZero(modes_);
     factor_.resize(static_cast<std::size_t>(modes_));
-    longest_step_ = 2.0 * pi / deck.omega[modes_ - 1] / samples_per_period;
+    jumps_ = has_free_end(deck);
+    longest_step_ = 2.0 * pi / deck.omega[modes_ - 1] / (jumps_ ? samples_with_jumps : samples_per_period);
   }
 
   /// Through one piece, from `start` on and `duration` [s] long.
@@ -42,7 +53,9 @@ class Passage {
     for (int n = 0; n < modes_; ++n) {
       motion_[index(n)].begin(q_[n], dq_[n], force[n], speed_);
       factor_[index(n)] = motion_[index(n)].factor(step);
+      a_[n] = motion_[index(n)].acceleration();
     }
+    if (jumps_) look(a_, start, 0.0, acceleration_);
     for (int i = 1; i <= steps; ++i) {
       const double tau = step * i;
       double bound_w = 0.0, bound_a = 0.0;
@@ -88,7 +101,7 @@ class Passage {
       const std::array<double, 5> q = motion_[index(n)].derivatives(0.0);
       for (int k = 0; k < 3; ++k) u[k] += deck_.point_shape(point, n) * q[index(best.order + k)];
     }
-    const bool beside_top = u[0] * u[2] < 0.0 && std::abs(u[1]) <= longest_step_ * std::abs(u[2]);
+    const bool beside_top = !jumps_ && u[0] * u[2] < 0.0 && std::abs(u[1]) <= longest_step_ * std::abs(u[2]);
     const double value = beside_top ? std::abs(u[0] - 0.5 * u[1] * u[1] / u[2]) : sample;
     if (!(value > best.value)) return;
     best.value = value;
@@ -131,7 +144,7 @@ class Passage {
     double ahead = 0.0, x = x0;
     Local at = local(best, ahead, x);
     for (int i = 0; i < rounds; ++i) {
-      if (at.u * at.tt < 0.0) ahead = std::clamp(ahead - at.t / at.tt, -longest_step_, longest_step_);
+      if (!jumps_ && at.u * at.tt < 0.0) ahead = std::clamp(ahead - at.t / at.tt, -longest_step_, longest_step_);
       at = local(best, ahead, x);
       if (at.u * at.xx < 0.0) {
         x = std::clamp(x - at.x / at.xx, std::max(0.0, x0 - interval), std::min(deck_.length(), x0 + interval));
@@ -152,6 +165,7 @@ class Passage {
 
   const ModalDeck& deck_;
   double speed_, longest_step_ = 0.0;
+  bool jumps_ = false;
   int modes_;
   std::vector<ModalMotion> motion_;
   std::vector<std::complex<double>> factor_;

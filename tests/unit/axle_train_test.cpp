@@ -67,7 +67,7 @@ TEST(AxleTrain, EveryTrainHasItsSource) {
   for (const std::string& name : names) {
     const AxleTrain train = find_axle_train(name, 10.0);
     EXPECT_FALSE(train.provenance.source.empty()) << name;
-    EXPECT_EQ(train.provenance.standing == Standing::suspect, train.only_static) << name << ": from memory";
+    EXPECT_EQ(train.provenance.standing == Standing::assumed, train.only_static) << name << ": from memory";
   }
   EXPECT_EQ(expanded_names({"hslm-a", "lm71"}).size(), 11U);
 }

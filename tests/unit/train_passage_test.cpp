@@ -206,6 +206,30 @@ TEST(TrainPassage, AnUndampedSpanKeepsItsVibration) {
   EXPECT_NEAR(found.acceleration.value, own.acceleration, 1e-3 * own.acceleration);
 }
 
+/// A rigid deck on a spring, with free ends: a force that comes on to it accelerates it at once by P/M. It leaves after
+/// two periods, when it stops the motion.
+TEST(TrainPassage, AForceComesOnToAFreeEnd) {
+  constexpr double M = 1e5, length = 10.0, frequency = 2.0;
+  ModalDeck deck;
+  deck.knots = {0.0, length};
+  deck.shape.push_back(ModalDeck::Cubics::Zero(1, 4));
+  deck.shape[0](0, 0) = 1.0 / std::sqrt(M);
+  deck.omega = Eigen::ArrayXd::Constant(1, 2.0 * pi * frequency);
+  deck.damping = Eigen::ArrayXd::Zero(1);
+  deck.dynamic_modes = 1;
+  deck.point_x = {0.0, length};
+  deck.point_shape = Eigen::MatrixXd::Constant(2, 1, 1.0 / std::sqrt(M));
+  deck.points_on_line = 2;
+  deck.largest_shape = Eigen::ArrayXd::Constant(1, 1.0 / std::sqrt(M));
+  AxleTrain axle;
+  axle.behind = {0.0};
+  axle.load = {100e3};
+  const PassagePeaks found = train_passage(deck, axle, modal_force(deck, axle), length * frequency / 2.0);
+  EXPECT_NEAR(found.acceleration.value, 1.0, 1e-9);
+  const double at_rest = 100e3 / (M * std::pow(2.0 * pi * frequency, 2));
+  EXPECT_NEAR(found.displacement.value, 2.0 * at_rest, 1e-9 * at_rest);
+}
+
 TEST(TrainPassage, PiecesOfTheModalForceAreTheSumOverTheAxles) {
   const ModalDeck deck = simply_supported_deck(span());
   const AxleTrain train = find_axle_train("hslm-a2", 25.0);
