@@ -64,10 +64,14 @@ ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes
   section.Iy = span.Iy;
   section.mass = span.mass;
   const double first = simply_supported_frequency(section, span.length, 1);  // the n-th is n² times it
-  constexpr int least = 25;
+  constexpr int least = 25, most = 100;
   ModalDeck deck;
   const auto by_cut_off = static_cast<int>(
       std::sqrt(cut_off_frequency(first / (2.0 * pi), 9.0 * first / (2.0 * pi)) * 2.0 * pi / first) + 1.0);
+  if (by_cut_off > most) {
+    throw input_error("bridge", fmt::format("a first natural frequency of {:.4g} Hz", first / (2.0 * pi)),
+                      fmt::format("at most {} modes below 30 Hz: see length, mass and bending stiffness", most));
+  }
   const int count = std::max({least, modes.count, by_cut_off});
   const Eigen::ArrayXd n = Eigen::ArrayXd::LinSpaced(count, 1.0, count);
   deck.omega = first * n.square();

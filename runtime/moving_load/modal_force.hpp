@@ -8,9 +8,10 @@
 
 namespace railtab {
 
-/// The modal forces of a train on a deck as cubics of the distance s that its first axle has come from x = 0. Between
-/// two places at which some axle passes a knot the sum over the axles, Σ P_k φ_n(s − behind_k), is one cubic, so that
-/// the pieces are the same at all speeds.
+/// The modal forces of a train on a deck, F_n(s) = Σ P_k φ_n(s − behind_k), as cubics of the distance s that its first
+/// axle has come from x = 0, the same at all speeds. A new piece begins wherever an axle passes an end of the deck or
+/// another place at which shapes have a kink, and after an element's length at the latest; the cubic has the force's
+/// value and slope at both ends of its piece and is as near to it as the cubics of the shapes are to the modes.
 struct ModalForce {
   using Cubic = std::array<double, 4>;
   int modes = 0;              ///< the deck's dynamic ones

@@ -23,10 +23,10 @@ struct PassagePeaks {
 /// with the polynomial's coefficients d from those of the force; z continues q and q′ and so holds the free vibration
 /// that all axles which have gone have left. There is no time step whose error would count: samples, at least 16 in the
 /// shortest period, serve to find the peaks, which Newton iteration on the solution, in time and along the line, then
-/// takes to their tops. (On a deck with a free end accelerations jump as axles come and go: there the peaks are those of
-/// 64 samples in the shortest period.) After the last axle the vibration is followed until its envelope is below the
-/// peaks found. Cost: pieces × modes exponentials, and the shapes at all points where the modes' amplitudes could exceed
-/// the peak.
+/// takes to their tops. (On a deck with a free end accelerations jump as axles come and go: there the peaks are those
+/// of 64 samples in the shortest period.) After the last axle the vibration is followed until its envelope is below the
+/// peaks found. Cost: pieces × modes exponentials, and the shapes at all points where the modes' amplitudes could
+/// exceed the peak.
 /// @param force that of this deck and train @pre speed > 0 [m/s]
 [[nodiscard]] PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const ModalForce& force,
                                          double speed);

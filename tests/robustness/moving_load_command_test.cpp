@@ -90,6 +90,9 @@ TEST_F(MovingLoadCommand, WrongInput) {
   expect_refused("moving-load --train hslm-a1 --speed 40:90", "a scene, or --length");
   expect_refused("moving-load --length 25 --mass 15e3 --bending-stiffness 30e9 --damping 1 --speed 40:90",
                  "--damping: found 1");
+  expect_refused("moving-load --length 25 --mass 1 --bending-stiffness 1 --damping 0.01 --speed 40:90",
+                 "a first natural frequency of 0.002513 Hz");
+  expect_refused(span + "--speed 1:2 --modes 100", "fewer --modes");
   write("scene.toml", rigid_scene);
   expect_refused("moving-load scene.toml --speed 40:90", "no bridge");
   expect_refused("moving-load scene.toml --length 20 --speed 40:90", "--length: found a scene too");

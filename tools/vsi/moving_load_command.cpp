@@ -159,6 +159,18 @@ std::vector<AxleTrain> trains_on(const ModalDeck& deck, const CommandLine& line)
   return trains;
 }
 
+/// A passage has 16 samples in the shortest period: not for hours.
+void check_effort(const DeckResponse& response, double slowest_speed) {
+  constexpr double most_periods = 1e6;
+  const double top = response.deck.frequency(response.deck.dynamic_modes - 1);
+  for (const AxleTrain& train : response.trains) {
+    const double periods = top * (train.reach() + response.deck.length()) / slowest_speed;
+    if (train.only_static || periods <= most_periods) continue;
+    throw input_error("--speed", fmt::format("{:.3g} periods of {:.4g} Hz while {} crosses", periods, top, train.name),
+                      fmt::format("at most {:.0e}: a higher speed or fewer --modes", most_periods));
+  }
+}
+
 /// All trains on all decks.
 std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optional<SpeedRange>& speeds,
                                   const CommandLine& line) {
@@ -177,6 +189,7 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optio
                         "times the line's speed");
     }
     const double done = static_cast<double>(responses.size() - 1), all = static_cast<double>(decks.size());
+    if (speeds) check_effort(response, speeds->low);
     response.responses = train_responses(response.deck, response.trains, speeds.value_or(SpeedRange{}), threads,
                                          [&](double share) { bar.show((done + share) / all); });
   }
