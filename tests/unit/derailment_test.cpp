@@ -35,7 +35,7 @@ TEST(Derailment, IsBesideOrBelowTheRailsWithAWheelInTheAir) {
   EXPECT_EQ(derailment(model, standing(model, -0.01, 0.11)),
             "wheelset 1 has left the rails at t = 0 s: it stands 0.01 m to the left and 0.11 m below");
   VsiState carried = standing(model, 0.16, 0.0);
-  for (ContactPatches& patches : carried.contact.patches) patches.count = 1;
+  for (WheelContact& contact : carried.contact.contact) contact.patches.count = 1;
   EXPECT_EQ(derailment(model, carried), "");
 }
 

@@ -108,7 +108,7 @@ struct ConeContact {
 ConeContact contact_at_rest(const VsiModel& model) {
   VsiState state(model);
   EXPECT_TRUE(static_equilibrium(model, state).converged);
-  const ContactPatch& patch = state.contact.patches.at(1).patch[0];
+  const ContactPatch& patch = state.contact.contact.at(1).patches.patch[0];
   return {std::tan(-patch.angle), model.geometry->pair().rail_offset() + patch.y_rail, patch.rolling_radius,
           1.0 / patch.curv_rail};
 }

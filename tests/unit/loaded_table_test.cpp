@@ -1,0 +1,209 @@
+// A table of the loaded contact: its derivatives against differences, its forces against the half-space solution.
+
+#include "railtab/tables/loaded_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "loaded_table_fixture.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+/// Poses well inside the table, lowered by 10 to 80 µm.
+class Poses {
+ public:
+  WheelsetPose next() {
+    const double y = at(-2.6e-3, -0.9e-3), roll = at(-8e-4, 8e-4), yaw = at(-3.5e-3, 3.5e-3);
+    const double shear =
+        0.75 * roll;  // about the height above the rail at which a roll leaves the contact in its place
+    return {y + shear, s1002_on_60e1().touch_height(y + shear, roll, yaw) + at(1e-5, 8e-5), roll, yaw};
+  }
+
+ private:
+  double at(double low, double high) { return low + (high - low) * uniform_(random_); }
+  std::mt19937_64 random_{20261122};
+  std::uniform_real_distribution<double> uniform_;
+};
+
+LoadedLookup look(const LoadedTable& table, const WheelsetPose& p) { return table.lookup(p.y, p.z, p.roll, p.yaw); }
+
+WheelsetPose moved(const WheelsetPose& p, int coordinate, double by) {
+  return {p.y + (coordinate == 0 ? by : 0.0), p.z + (coordinate == 1 ? by : 0.0), p.roll + (coordinate == 2 ? by : 0.0),
+          p.yaw + (coordinate == 3 ? by : 0.0)};
+}
+
+TEST(LoadedTable, ForcesStiffnessAndPartsHaveTheDerivativesOfTheEnergy) {
+  const LoadedTable table(tread_table());
+  Poses poses;
+  int compared = 0;
+  for (int n = 0; n < 200; ++n) {
+    const WheelsetPose pose = poses.next();
+    LoadedSlopes slopes;
+    const LoadedLookup found = table.lookup(pose.y, pose.z, pose.roll, pose.yaw, slopes);
+    ASSERT_GT(found.table_share, 0.0);
+    ASSERT_GT(found.energy, 0.0);
+    ASSERT_EQ(found.parts, 1U);
+    constexpr double step = 2e-9;
+    for (int j = 0; j < 4; ++j) {
+      const LoadedLookup plus = look(table, moved(pose, j, step)), minus = look(table, moved(pose, j, -step));
+      EXPECT_NEAR((plus.energy - minus.energy) / (2.0 * step), found.force[j], 1e-6 * found.force.norm());
+      const Eigen::Vector4d column = (plus.force - minus.force) / (2.0 * step);
+      // A difference across the border of a cell is no derivative: stiffness jumps there.
+      if ((column - slopes.stiffness.col(j)).norm() > 1e-5 * slopes.stiffness.norm()) continue;
+      ++compared;
+      const auto a = plus.part[0].values(), b = minus.part[0].values(),
+                 d = slopes.part[0][static_cast<std::size_t>(j)].values();
+      const auto value = found.part[0].values();
+      for (std::size_t q = 0; q < LoadedPart::quantities; ++q) {
+        EXPECT_NEAR((a[q] - b[q]) / (2.0 * step), d[q], 1e-5 * std::abs(d[q]) + 1e-6 * std::abs(value[q]) / 1e-5)
+            << "quantity " << q << " along " << j;
+      }
+    }
+  }
+  EXPECT_GT(compared, 790);  // of 800
+}
+
+TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) {
+  const LoadedTable table(tread_table());
+  Poses poses;
+  for (int n = 0; n < 25; ++n) {
+    const WheelsetPose pose = poses.next();
+    const LoadedLookup found = look(table, pose);
+    LoadedContactOptions options;
+    options.elements.across_narrowest = 40;
+    const LoadedContact exact = loaded_contact(s1002_on_60e1(), pose, options);
+    const WheelsetCentre centre = wheelset_centre(s1002_on_60e1().pair(), pose);
+    const Eigen::Vector3d moment = exact.on_rail.moment_about({0.0, centre.y, centre.z});
+    EXPECT_NEAR(found.energy, exact.elastic_energy, 6e-3 * exact.elastic_energy);
+    EXPECT_NEAR(found.force[0], exact.on_rail.force.y(), 6e-3 * exact.normal_force);
+    EXPECT_NEAR(found.force[1], exact.on_rail.force.z(), 6e-3 * exact.normal_force);
+    EXPECT_NEAR(found.force[2], moment.x(), 6e-3 * std::abs(moment.x()));
+    const LoadedPart& part = found.part[0];
+    const ContactBand& band = exact.bands.front();
+    EXPECT_NEAR(part.angle, band.angle, 5e-4);
+    EXPECT_NEAR(part.a, band.a, 0.03 * band.a);
+    EXPECT_NEAR(part.b, band.b, 0.03 * band.b);
+    EXPECT_NEAR(part.s_rail, band.s_rail, 0.05 * band.b);
+    EXPECT_NEAR(part.pressure, exact.largest_pressure, 0.04 * exact.largest_pressure);
+  }
+}
+
+TEST(LoadedTable, KnowsWhereItEnds) {
+  const LoadedTable table(tread_table());
+  const auto touch = [](double y) { return s1002_on_60e1().touch_height(y, 0.0, 0.0); };
+  const double y = -2e-3;
+  const LoadedLookup above = table.lookup(y, touch(y) - 1e-6, 0.0, 0.0);
+  EXPECT_EQ(above.table_share, 1.0);
+  EXPECT_EQ(above.energy, 0.0);
+  EXPECT_EQ(above.parts, 0U);
+  EXPECT_EQ(table.lookup(-3.1e-3, touch(-3.1e-3) + 5e-5, 0.0, 0.0).table_share, 0.0);
+  EXPECT_EQ(table.lookup(y, touch(y) + 5e-5, 1.1e-3, 0.0).table_share, 0.0);
+  EXPECT_EQ(table.lookup(y, touch(y) + 5e-5, 0.0, 4.1e-3).table_share, 0.0);
+  EXPECT_EQ(table.lookup(y, touch(y) + 3e-4, 0.0, 0.0).table_share, 0.0);
+  // smoothly
+  double before = 1.0;
+  for (double at = -2.8e-3; at > -3.0e-3; at -= 1e-6) {
+    const double share = table.lookup(at, touch(at) + 5e-5, 0.0, 0.0).table_share;
+    EXPECT_LE(share, before);
+    EXPECT_LT(before - share, 0.02);
+    before = share;
+  }
+  EXPECT_LT(before, 1e-3);
+}
+
+TEST(LoadedTable, IsEvenInYaw) {
+  const LoadedTable table(tread_table());
+  Poses poses;
+  const WheelsetPose pose = poses.next();
+  const LoadedLookup found = look(table, pose), other = table.lookup(pose.y, pose.z, pose.roll, -pose.yaw);
+  EXPECT_EQ(found.energy, other.energy);
+  EXPECT_EQ(found.force[3], -other.force[3]);
+  EXPECT_EQ(found.part[0].arm_x, -other.part[0].arm_x);
+  EXPECT_EQ(found.part[0].arm_z, other.part[0].arm_z);
+}
+
+TEST(LoadedTable, RejectsArraysThatDoNotFit) {
+  const auto broken = [](auto change) {
+    LoadedTableData data = tread_table();
+    change(data);
+    EXPECT_THROW(LoadedTable{std::move(data)}, InputError);
+  };
+  broken([](LoadedTableData& d) { std::swap(d.lateral[0], d.lateral[1]); });
+  broken([](LoadedTableData& d) { d.height.pop_back(); });
+  broken([](LoadedTableData& d) { d.touch.push_back(0.0); });
+  broken([](LoadedTableData& d) { d.shift.clear(); });
+  broken([](LoadedTableData& d) { d.pressed.front() = 1U << 20; });
+  broken([](LoadedTableData& d) { d.part.resize(d.part.size() / 2); });
+  broken([](LoadedTableData& d) { d.levels = 2; });
+  broken([](LoadedTableData& d) { d.largest_level = std::nan(""); });
+  broken([](LoadedTableData& d) { d.cut.assign(20, 0.0); });
+}
+
+TEST(LoadedSweep, GoesOnFromTheColumnsItIsGiven) {
+  LoadedSweepOptions options = tread_options();
+  options.lateral = {-2.5e-3, -1.5e-3};
+  options.levels = 7;
+  LoadedColumnStore store;
+  std::vector<LoadedSweepColumn> kept;
+  store.keep = [&](const LoadedSweepColumn& column) { kept.push_back(column); };
+  const LoadedTableData whole = sweep_loaded(s1002_on_60e1(), options, store);
+  ASSERT_GT(kept.size(), 12U);
+  LoadedColumnStore resumed;
+  resumed.known.assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(kept.size() / 2));
+  std::size_t more = 0;
+  resumed.keep = [&](const LoadedSweepColumn&) { ++more; };
+  const LoadedTableData again = sweep_loaded(s1002_on_60e1(), options, resumed);
+  EXPECT_EQ(more, kept.size() - kept.size() / 2);
+  EXPECT_EQ(again.lateral, whole.lateral);
+  EXPECT_EQ(again.height, whole.height);
+  EXPECT_EQ(again.part, whole.part);
+  EXPECT_EQ(again.statistics, whole.statistics);
+}
+
+TEST(LoadedSweep, RejectsOptionsOutOfRange) {
+  const auto broken = [](auto change) {
+    LoadedSweepOptions options = tread_options();
+    change(options);
+    EXPECT_THROW(static_cast<void>(sweep_loaded(s1002_on_60e1(), options)), InputError);
+  };
+  broken([](LoadedSweepOptions& o) { o.lateral = {1e-3, -1e-3}; });
+  broken([](LoadedSweepOptions& o) { o.yaw = -1e-3; });
+  broken([](LoadedSweepOptions& o) { o.levels = 4; });
+  broken([](LoadedSweepOptions& o) { o.roll_nodes = 10; });
+  broken([](LoadedSweepOptions& o) { o.largest_load = 0.0; });
+}
+
+TEST(ContactJumps, OfTheStandardPairAreThree) {
+  // The jumps lie at 0.214, 5.02 and 6.605 mm (wide tread, root, flange), the contact's places 6 mm and more apart.
+  const std::vector<ContactJump> jumps = contact_jumps(s1002_on_60e1(), {-8e-3, 8e-3}, 0.0, 0.0);
+  ASSERT_EQ(jumps.size(), 3U);
+  EXPECT_NEAR(jumps[0].y, 0.214e-3, 5e-6);
+  EXPECT_NEAR(jumps[1].y, 5.02e-3, 2e-5);
+  EXPECT_NEAR(jumps[2].y, 6.605e-3, 2e-5);
+  for (const ContactJump& jump : jumps) {
+    const double cut = widest_gap(s1002_on_60e1(), jump);
+    EXPECT_GT(cut, std::min(jump.s_below, jump.s_above));
+    EXPECT_LT(cut, std::max(jump.s_below, jump.s_above));
+  }
+}
+
+TEST(LateralWarp, GoesThroughTheJumpsWithAContinuousSlope) {
+  const LateralWarp warp({0.0, 5e-3, 6.6e-3}, {3.6e-3, 7.6e-3, 9.0e-3}, 0.0);
+  EXPECT_NEAR(warp.at(0.0).y, 3.6e-3, 1e-15);
+  EXPECT_NEAR(warp.at(5e-3).y, 7.6e-3, 1e-15);
+  EXPECT_NEAR(warp.at(6.6e-3).y, 9.0e-3, 1e-15);
+  EXPECT_NEAR(warp.at(-1e-3).y, 2.6e-3, 1e-15);
+  for (double y0 = -1e-3; y0 < 8e-3; y0 += 1.3e-4) {
+    constexpr double step = 1e-8;
+    EXPECT_NEAR((warp.at(y0 + step).y - warp.at(y0 - step).y) / (2.0 * step), warp.at(y0).slope, 1e-4);
+    EXPECT_GT(warp.at(y0).slope, 0.5);
+  }
+  EXPECT_NEAR(LateralWarp({}, {}, 2e-3).at(1e-3).y, 3e-3, 1e-15);
+}
+
+}  // namespace
+}  // namespace railtab

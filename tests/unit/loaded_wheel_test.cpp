@@ -1,0 +1,227 @@
+// Forces of a wheel by a table of the loaded contact: tangents against differences, energy, creep forces against exact
+// rolling contact.
+
+#include "railtab/runtime/contact/loaded_wheel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "loaded_table_fixture.hpp"
+#include "railtab/runtime/base/dual.hpp"
+#include "railtab/runtime/contact/contact_response.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/tablegen/loaded_rolling.hpp"
+
+namespace railtab {
+namespace {
+
+const ContactGeometry& geometry() {
+  static const ContactGeometry loaded(s1002_on_60e1(), std::make_shared<const LoadedTable>(tread_table()));
+  return loaded;
+}
+
+WheelContactModel model_with(CreepLaw law, double damping = 0.0) {
+  WheelContactModel model;
+  model.geometry = &geometry();
+  model.creep_law = std::move(law);
+  model.damping = damping;
+  model.speed = 50.0;
+  return model;
+}
+
+/// A wheel on its rail, both in motion.
+struct State {
+  WheelSide side;
+  WheelsetMotion wheelset;
+  RailHeadMotion rail;
+
+  [[nodiscard]] WheelContact contact() const {
+    return wheel_contact(geometry(), relative_pose(geometry().pair(), side, wheelset, rail));
+  }
+};
+
+class States {
+ public:
+  enum class Rails { moving, still };
+  explicit States(Rails rails = Rails::moving) : rails_(rails) {}
+
+  State next(WheelSide side) {
+    State s{side, {}, {}};
+    const double mirror = side == WheelSide::right ? 1.0 : -1.0, roll = at(-5e-4, 5e-4);
+    s.rail.displacement << at(-1e-4, 1e-4), at(-1e-4, 1e-4), at(-2e-4, 2e-4);
+    s.rail.velocity << at(-0.01, 0.01), at(-0.01, 0.01), at(-0.1, 0.1);
+    s.rail.yaw = at(-2e-4, 2e-4);
+    s.rail.slope = at(-2e-4, 2e-4);
+    s.wheelset.displacement << 0.0, mirror * at(-2.4e-3, -1.1e-3) + 0.75 * roll, 0.0, roll, 0.0, at(-3e-3, 3e-3);
+    for (Eigen::Index i = 0; i < 6; ++i) s.wheelset.velocity[i] = at(-0.05, 0.05);
+    if (rails_ == Rails::still) s.rail = {};
+    const WheelsetPose pose = relative_pose(geometry().pair(), side, s.wheelset, s.rail);
+    s.wheelset.displacement[2] += s1002_on_60e1().touch_height(pose.y, pose.roll, pose.yaw) - pose.z + at(2e-5, 7e-5);
+    return s;
+  }
+  double at(double low, double high) { return low + (high - low) * uniform_(random_); }
+
+ private:
+  Rails rails_;
+  std::mt19937_64 random_{7};
+  std::uniform_real_distribution<double> uniform_;
+};
+
+Vector9 total(const WheelForce& f) {
+  Vector9 v;
+  v << f.wheelset, f.rail;
+  return v;
+}
+
+TEST(Dual, CarriesDerivativesAlong) {
+  Dual x(0.7);
+  x.slope[2][1] = 1.0;
+  const Dual f = sqrt(2.0 - sin(x) * x / (1.0 + cos(x))) * tan(x) - 3.0 / (x * x + 1.0);
+  const auto of = [](double v) {
+    return std::sqrt(2.0 - std::sin(v) * v / (1.0 + std::cos(v))) * std::tan(v) - 3.0 / (v * v + 1.0);
+  };
+  EXPECT_NEAR(f.value, of(0.7), 1e-15);
+  EXPECT_NEAR(f.slope[2][1], (of(0.7 + 1e-6) - of(0.7 - 1e-6)) / 2e-6, 1e-9);
+  EXPECT_EQ(f.slope[0][0], 0.0);
+}
+
+TEST(CreepForceJet, IsTheDerivativeOfEveryLaw) {
+  const Creepage c{0.4, -0.3, 0.5};
+  for (const CreepLaw& law : {CreepLaw(LinearCreep{}), CreepLaw(PolachCreep{}), creep_law("table", 0.28)}) {
+    const CreepForceJet jet = creep_force_jet(law, 1.7, c);
+    const auto difference = [&](std::size_t j) {
+      constexpr double step = 1e-5;
+      const auto at = [&](double by) {
+        return creep_force(law, 1.7 + (j == 0) * by,
+                           {c.x + (j == 1) * by, c.y + (j == 2) * by, c.spin + (j == 3) * by});
+      };
+      const CreepForce plus = at(step), minus = at(-step);
+      return std::array{(plus.x - minus.x) / (2.0 * step), (plus.y - minus.y) / (2.0 * step),
+                        (plus.moment - minus.moment) / (2.0 * step)};
+    };
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto d = difference(j);
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(jet.derivative[i][j], d[i], 2e-5) << creep_law_name(law);
+    }
+  }
+}
+
+TEST(LoadedWheel, TangentIsTheDerivativeInATimeStep) {
+  States states;
+  constexpr double rate = 2000.0, step = 2e-9;
+  const StepRates rates{Vector6::Constant(rate), rate, nullptr};
+  int compared = 0;
+  for (int n = 0; n < 40; ++n) {
+    const State s = states.next(n % 2 == 0 ? WheelSide::right : WheelSide::left);
+    const WheelContactModel model = model_with(creep_law("table", 0.28), n % 3 == 0 ? 0.02 : 0.0);
+    const WheelContact contact = s.contact();
+    ASSERT_EQ(contact.loaded.table_share, 1.0);
+    State before = s;
+    before.wheelset.displacement[1] += states.at(-1e-5, 1e-5);
+    before.wheelset.displacement[2] -= states.at(0.0, 4e-5);
+    const WheelContact start = before.contact();
+    const ContactMemory memory = contact_memory(model, s.side, before.wheelset, before.rail, start,
+                                                wheel_force(model, s.side, before.wheelset, before.rail, start));
+    for (const bool mean : {false, true}) {
+      StepRates in_step = rates;
+      in_step.start = mean ? &memory : nullptr;
+      const Matrix9 tangent = wheel_force_tangent(model, s.side, s.wheelset, s.rail, contact, in_step);
+      const auto force = [&](Eigen::Index j, double by) {
+        State m = s;
+        (j < 6 ? m.wheelset.displacement[j] : m.rail.displacement[j - 6]) += by;
+        (j < 6 ? m.wheelset.velocity[j] : m.rail.velocity[j - 6]) += rate * by;
+        const WheelContact at = m.contact();
+        const WheelForce f = wheel_force(model, s.side, m.wheelset, m.rail, at);
+        return mean ? mean_force(model, s.side, m.wheelset, m.rail, memory, at, f) : total(f);
+      };
+      for (Eigen::Index j = 0; j < 9; ++j) {
+        const Vector9 forward = (force(j, step) - force(j, 0.0)) / step,
+                      back = (force(j, 0.0) - force(j, -step)) / step;
+        if ((forward - back).norm() > 1e-3 * tangent.norm()) continue;  // the border of a cell
+        ++compared;
+        EXPECT_LT((0.5 * (forward + back) - tangent.col(j)).norm(),
+                  1e-4 * tangent.col(j).norm() + 1e-6 * tangent.norm())
+            << "along " << j << (mean ? ", mean" : "");
+      }
+    }
+  }
+  EXPECT_GT(compared, 700);  // of 720
+}
+
+TEST(LoadedWheel, LeftIsTheMirrorImageOfRight) {
+  States states;
+  const WheelContactModel model = model_with(creep_law("table", 0.28), 0.02);
+  for (int n = 0; n < 10; ++n) {
+    const State right = states.next(WheelSide::right);
+    State left = right;
+    left.side = WheelSide::left;
+    for (const Eigen::Index i : {1, 3, 5}) {
+      left.wheelset.displacement[i] *= -1.0;
+      left.wheelset.velocity[i] *= -1.0;
+    }
+    for (const Eigen::Index i : {0, 2}) {
+      left.rail.displacement[i] *= -1.0;
+      left.rail.velocity[i] *= -1.0;
+    }
+    left.rail.yaw *= -1.0;
+    Vector9 a = total(wheel_force(model, right.side, right.wheelset, right.rail, right.contact()));
+    const Vector9 b = total(wheel_force(model, left.side, left.wheelset, left.rail, left.contact()));
+    for (const Eigen::Index i : {1, 3, 5, 6, 8}) a[i] *= -1.0;
+    EXPECT_LT((a - b).norm(), 1e-12 * a.norm());
+  }
+}
+
+TEST(LoadedWheel, MeanForceDoesTheWorkOfTheEnergysChange) {
+  States states(States::Rails::still);
+  WheelContactModel model = model_with(LinearCreep{});
+  model.friction = 0.0;
+  for (int n = 0; n < 30; ++n) {
+    State end = states.next(WheelSide::right);
+    State start = end;
+    start.wheelset.displacement[1] += states.at(-5e-5, 5e-5);
+    start.wheelset.displacement[2] -= states.at(-2e-5, 2e-4);  // lifted off in most cases
+    start.wheelset.displacement[3] += states.at(-1e-5, 1e-5);
+    const WheelContact from = start.contact(), to = end.contact();
+    const ContactMemory memory = contact_memory(model, start.side, start.wheelset, start.rail, from,
+                                                wheel_force(model, start.side, start.wheelset, start.rail, from));
+    const WheelForce force = wheel_force(model, end.side, end.wheelset, end.rail, to);
+    const Vector9 mean = mean_force(model, end.side, end.wheelset, end.rail, memory, to, force);
+    // on the wheelset, against the energy; roll turns about the track's x, which the force's moment is about
+    const Vector6 path = end.wheelset.displacement - start.wheelset.displacement;
+    const double work = -mean.head<6>().dot(path);
+    EXPECT_NEAR(work, to.loaded.energy - from.loaded.energy, 1e-9 * to.loaded.energy + 1e-12);
+  }
+}
+
+TEST(LoadedWheel, CreepForcesAreThoseOfExactRollingContact) {
+  States states(States::Rails::still);
+  const WheelContactModel model = model_with(creep_law("table", 0.28));
+  for (int n = 0; n < 6; ++n) {
+    State s = states.next(WheelSide::right);
+    s.wheelset.velocity << 0.0, states.at(-0.03, 0.03), 0.0, 0.0, states.at(-0.15, 0.15), 0.0;
+    const WheelContact contact = s.contact();
+    ASSERT_EQ(contact.loaded.table_share, 1.0);
+    WheelContactModel smooth = model;
+    smooth.friction = 0.0;
+    const Vector9 creep = total(wheel_force(model, s.side, s.wheelset, s.rail, contact)) -
+                          total(wheel_force(smooth, s.side, s.wheelset, s.rail, contact));
+    LoadedContactOptions material;
+    material.elements.across_narrowest = 30;
+    const LoadedContact exact = loaded_contact(s1002_on_60e1(), contact.pose, material);
+    RelativeMotion motion = running_motion(contact.pose, model.speed,
+                                           s.wheelset.velocity[4] - model.speed / geometry().pair().nominal_radius());
+    motion.velocity.y() += s.wheelset.velocity[1];
+    LoadedRollingOptions options;
+    options.friction = model.friction;
+    options.speed = model.speed;
+    const LoadedRolling rolling = loaded_rolling(geometry().pair(), exact, material, motion, options);
+    const double bound = model.friction * exact.normal_force;
+    EXPECT_LT((creep.head<3>() + rolling.on_rail.force).norm(), 0.015 * bound)
+        << creep.head<3>().transpose() / bound << " | " << -rolling.on_rail.force.transpose() / bound;
+  }
+}
+
+}  // namespace
+}  // namespace railtab
