@@ -41,3 +41,16 @@ function(railtab_layer name)
   # Stating the alignment makes it part of the interface.
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=32)
 endfunction()
+
+# railtab_library_source(<variable> <function> <header>): a source with the files library/*.toml of this folder, as what
+# `const std::vector<LibraryFile>& function()` of the header returns; its name in the variable.
+function(railtab_library_source variable function header)
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/library/*.toml)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/library_files.cpp)
+  add_custom_command(OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -D OUTPUT=${source} -D FUNCTION=${function} -D HEADER=${header} -D "FILES=${files}"
+            -P ${PROJECT_SOURCE_DIR}/cmake/EmbedLibrary.cmake
+    DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/EmbedLibrary.cmake
+    VERBATIM)
+  set(${variable} ${source} PARENT_SCOPE)
+endfunction()

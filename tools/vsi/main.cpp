@@ -19,6 +19,8 @@ constexpr const char* usage =
     "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
     "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n"
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
+    "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
+    "contact\n"
     "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
     "library\n";
 
@@ -32,6 +34,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "sweep") return sweep_command(rest);
   if (name == "report") return report_command(rest);
   if (name == "structure") return structure_command(rest);
+  if (name == "moving-load") return moving_load_command(rest);
   if (name == "vehicle") return vehicle_command(rest);
   if (name == "--help" || name == "-h") {
     print_formatted("{}", usage);

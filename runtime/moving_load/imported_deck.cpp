@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/moving_load/deck_modes.hpp"
+#include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/free_motion.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
+
+namespace railtab {
+namespace {
+
+/// Modes up to the cut-off and some beyond it, which the static deflection needs.
+ModalBasis enough_modes(const FeStructure& structure, const DynamicModes& wanted) {
+  constexpr int first_try = 20, most = 320;
+  for (int count = std::max(first_try, 2 * wanted.count);; count *= 2) {
+    ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, std::min(count, most));
+    const auto found = static_cast<int>(basis.omega2.size());
+    const Eigen::ArrayXd omega = basis.omega2.array().sqrt();
+    if (found < count || count >= most || 2 * count_dynamic_modes(omega, wanted) <= found) return basis;
+  }
+}
+
+/// Vertical motion of the modes at x on the track's centre line, at the height of the deck's nodes.
+Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis, double x) {
+  const std::optional<DeckAttachment> found = deck(x, 0.0, 0.0);
+  if (!found) {
+    throw input_error("structure.deck", fmt::format("no deck at x = {:.6g} m on the track's centre line", x),
+                      "nodes of the deck under the whole line");
+  }
+  const Eigen::RowVectorXd row =
+      found->rows.row(2) + found->arm.y() * found->rows.row(3) - found->arm.x() * found->rows.row(4);
+  Eigen::ArrayXd motion = Eigen::ArrayXd::Zero(basis.shape.cols());
+  for (std::size_t k = 0; k < found->dof.size(); ++k) {
+    if (found->dof[k] >= 0)
+      motion += row[static_cast<Eigen::Index>(k)] * basis.shape.row(found->dof[k]).array().transpose();
+  }
+  return motion;
+}
+
+/// The cubic through the values at 0, h/3, 2h/3 and h.
+ModalDeck::Cubics through(const std::array<Eigen::ArrayXd, 4>& f, double h) {
+  ModalDeck::Cubics c(f[0].size(), 4);
+  c << f[0], (-5.5 * f[0] + 9.0 * f[1] - 4.5 * f[2] + f[3]) / h,
+      (9.0 * f[0] - 22.5 * f[1] + 18.0 * f[2] - 4.5 * f[3]) / (h * h),
+      4.5 * (-f[0] + 3.0 * f[1] - 3.0 * f[2] + f[3]) / (h * h * h);
+  return c;
+}
+
+void set_line(const DeckFunction& deck, const ModalBasis& basis, double length, ModalDeck& result) {
+  constexpr double longest_element = 0.5, inside = 2e-6;  // [m]: the deck ends before its last node
+  const int elements = std::clamp(static_cast<int>(std::ceil(length / longest_element)), 48, 400);
+  const double h = length / elements;
+  for (int e = 0; e < elements; ++e) {
+    std::array<Eigen::ArrayXd, 4> values;
+    for (int k = 0; k < 4; ++k) {
+      const double u = std::clamp(h * k / 3.0, inside, h - inside);
+      values[static_cast<std::size_t>(k)] = on_centre_line(deck, basis, result.start + h * e + u);
+    }
+    result.knots.push_back(h * e);
+    result.shape.push_back(through(values, h));
+  }
+  result.knots.push_back(length);
+}
+
+}  // namespace
+
+ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& modes) {
+  parameters.validate();
+  if (!parameters.deck.given()) {
+    throw input_error("structure.deck", "nothing", "the nodes of the deck on which the train's forces act");
+  }
+  const FeStructure structure = read_on_supports(parameters);
+  require_held(structure);
+  const std::vector<int> nodes = selected_nodes(structure, parameters.deck, "structure.deck");
+  double begin = INFINITY, end = -INFINITY;
+  for (const int number : nodes) {
+    begin = std::min(begin, structure.nodes.at(number).position[0]);
+    end = std::max(end, structure.nodes.at(number).position[0]);
+  }
+  if (!(end - begin > 0.5)) {
+    throw input_error("structure.deck", fmt::format("a deck of {:.4g} m along the track", end - begin),
+                      "a longer one: see structure.units and structure.axes");
+  }
+  const ModalBasis basis = enough_modes(structure, modes);
+  ModalDeck deck;
+  deck.name = "structure";
+  deck.start = begin;
+  deck.omega = basis.omega2.array().sqrt();
+  const Eigen::SparseMatrix<double> damping = damping_matrix(structure, parameters.damping).of_unknowns;
+  deck.damping =
+      (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
+  deck.dynamic_modes = count_dynamic_modes(deck.omega, modes);
+  const double most_damped = deck.damping.head(deck.dynamic_modes).maxCoeff();
+  if (most_damped >= 1.0) {
+    throw input_error("structure", fmt::format("a mode with damping ratio {:.4g}", most_damped),
+                      "damping below the critical one in all modes");
+  }
+  set_line(deck_function(structure, nodes), basis, end - begin, deck);
+  std::vector<double> x;
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(nodes.size()), deck.modes());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const FeNode& node = structure.nodes.at(nodes[k]);
+    x.push_back(node.position[0] - begin);
+    for (const int row : node.rows[2]) {
+      shapes.row(static_cast<Eigen::Index>(k)) += basis.shape.row(row) / static_cast<double>(node.rows[2].size());
+    }
+  }
+  set_points(static_cast<int>(deck.knots.size()) - 1, shapes, x, deck);
+  return deck;
+}
+
+}  // namespace railtab

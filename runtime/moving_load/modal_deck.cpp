@@ -1,0 +1,98 @@
+#include "railtab/runtime/moving_load/modal_deck.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/interval_search.hpp"
+#include "railtab/runtime/moving_load/deck_modes.hpp"
+#include "railtab/runtime/structure/beam_element.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+}  // namespace
+
+std::size_t element_at(const ModalDeck& deck, double x) noexcept {
+  return interval_at(deck.knots, std::clamp(x, 0.0, deck.length()));
+}
+
+Eigen::ArrayXd ModalDeck::shape_at(double x, int derivative) const {
+  const std::size_t e = element_at(*this, x);
+  const Cubics& c = shape[e];
+  const double u = x - knots[e];
+  if (derivative == 0) return c.col(0) + u * (c.col(1) + u * (c.col(2) + u * c.col(3)));
+  if (derivative == 1) return c.col(1) + u * (2.0 * c.col(2) + 3.0 * u * c.col(3));
+  return 2.0 * c.col(2) + 6.0 * u * c.col(3);
+}
+
+double cut_off_frequency(double first, double third) noexcept {
+  constexpr double least = 30.0;  // [Hz]
+  return std::max({least, 1.5 * first, third});
+}
+
+int count_dynamic_modes(const Eigen::ArrayXd& omega, const DynamicModes& modes) {
+  const auto found = static_cast<int>(omega.size());
+  if (modes.count > 0) return std::min(modes.count, found);
+  const double limit =
+      2.0 * pi * (1.0 + 1e-9) * cut_off_frequency(omega[0] / (2.0 * pi), omega[std::min(2, found - 1)] / (2.0 * pi));
+  return static_cast<int>((omega <= limit).count());
+}
+
+void set_points(int intervals, const Eigen::MatrixXd& other_shapes, const std::vector<double>& other_x,
+                ModalDeck& deck) {
+  deck.points_on_line = intervals + 1;
+  deck.point_shape.resize(intervals + 1 + other_shapes.rows(), deck.modes());
+  for (int i = 0; i <= intervals; ++i) {
+    deck.point_x.push_back(deck.length() * i / intervals);
+    deck.point_shape.row(i) = deck.shape_at(deck.point_x.back()).matrix().transpose();
+  }
+  deck.point_shape.bottomRows(other_shapes.rows()) = other_shapes;
+  deck.point_x.insert(deck.point_x.end(), other_x.begin(), other_x.end());
+  deck.largest_shape = deck.point_shape.cwiseAbs().colwise().maxCoeff().transpose();
+}
+
+ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes& modes) {
+  span.validate();
+  BeamSection section;
+  section.E = span.E;
+  section.Iy = span.Iy;
+  section.mass = span.mass;
+  const double first = simply_supported_frequency(section, span.length, 1);  // the n-th is n² times it
+  constexpr int least = 25, most = 100;
+  ModalDeck deck;
+  const auto by_cut_off = static_cast<int>(
+      std::sqrt(cut_off_frequency(first / (2.0 * pi), 9.0 * first / (2.0 * pi)) * 2.0 * pi / first) + 1.0);
+  if (by_cut_off > most) {
+    throw input_error("bridge", fmt::format("a first natural frequency of {:.4g} Hz", first / (2.0 * pi)),
+                      fmt::format("at most {} modes below 30 Hz: see length, mass and bending stiffness", most));
+  }
+  const int count = std::max({least, modes.count, by_cut_off});
+  const Eigen::ArrayXd n = Eigen::ArrayXd::LinSpaced(count, 1.0, count);
+  deck.omega = first * n.square();
+  deck.damping = Eigen::ArrayXd::Constant(count, span.damping_ratio);
+  deck.dynamic_modes = count_dynamic_modes(deck.omega, modes);
+  const int elements = 16 * std::max(3, deck.dynamic_modes);
+  const double h = span.length / elements, amplitude = std::sqrt(2.0 / (span.mass * span.length));
+  for (int e = 0; e < elements; ++e) {
+    const double x = h * e;
+    deck.knots.push_back(x);
+    const Eigen::ArrayXd k = n * (pi / span.length);
+    const Eigen::ArrayXd a = amplitude * (k * x).sin(), b = amplitude * (k * (x + h)).sin();
+    const Eigen::ArrayXd slope_a = amplitude * k * (k * x).cos(), slope_b = amplitude * k * (k * (x + h)).cos();
+    ModalDeck::Cubics c(count, 4);
+    c << a, slope_a, (3.0 * (b - a) / h - 2.0 * slope_a - slope_b) / h,
+        (2.0 * (a - b) / h + slope_a + slope_b) / (h * h);
+    deck.shape.push_back(std::move(c));
+  }
+  deck.knots.push_back(span.length);
+  set_points(std::max(20, 8 * deck.dynamic_modes), Eigen::MatrixXd(0, count), {}, deck);
+  return deck;
+}
+
+}  // namespace railtab

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/structure/imported_bridge.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
+
+namespace railtab {
+
+/// A deck by its modes. With w(x, t) = Σ φ_n(x) q_n(t), downwards, and modes normalised to a modal mass of 1 kg,
+///   q_n″ + 2 ζ_n ω_n q_n′ + ω_n² q_n = F_n,   F_n = Σ_k P_k φ_n(x_k)                                       (ML1)
+/// under axle loads P_k at x_k. The shapes along the line on which the axles stand are cubics in each of its elements:
+/// φ_n(x) = Σ_j c_nj u^j, u = x − knots[e] [kg^-1/2].
+struct ModalDeck {
+  using Cubics = Eigen::Array<double, Eigen::Dynamic, 4>;
+
+  std::string name;
+  double start = 0.0;         ///< place of x = 0 along the track [m]
+  std::vector<double> knots;  ///< from 0 to the deck's length [m], rising
+  std::vector<Cubics> shape;  ///< of each element, modes × 4: c_n0 … c_n3
+  Eigen::ArrayXd omega;       ///< circular natural frequencies, rising [rad/s]
+  Eigen::ArrayXd damping;     ///< ratios of critical, 0 <= ζ < 1
+  int dynamic_modes = 0;      ///< the first of them, that vibrate; the others answer without inertia
+  /// Where the largest motions are sought: along the line first, evenly spaced, then places of an imported deck.
+  std::vector<double> point_x;   ///< [m]
+  Eigen::MatrixXd point_shape;   ///< points × modes [kg^-1/2]
+  int points_on_line = 0;        ///< the first of them
+  Eigen::ArrayXd largest_shape;  ///< of each mode over line and points, amounts [kg^-1/2]
+
+  [[nodiscard]] double length() const noexcept { return knots.back(); }
+  [[nodiscard]] int modes() const noexcept { return static_cast<int>(omega.size()); }
+  [[nodiscard]] double frequency(int mode) const { return omega[mode] / (2.0 * std::numbers::pi); }  ///< [Hz]
+  /// φ (derivative 0), dφ/dx (1) or d²φ/dx² (2) of all modes at 0 <= x <= length.
+  [[nodiscard]] Eigen::ArrayXd shape_at(double x, int derivative = 0) const;
+};
+
+/// Which modes vibrate.
+struct DynamicModes {
+  int count = 0;  ///< 0: all up to the greatest of 30 Hz, 1.5 f1 and f3 [EN1990A2, A2.4.4.2.1], at least three
+};
+
+/// A simply supported span, frequencies (nπ/L)² √(EI/m) and shapes √(2/(mL)) sin(nπx/L); the
+/// same damping ratio for all modes. Cubics meet the sines in value and slope at their knots and are within 4e-6 of the
+/// amplitude of those of modes that vibrate. 25 modes at least: their static deflection is within 1e-5 of the beam's.
+/// Not of the track: add its mass.
+/// @throws InputError naming the key
+[[nodiscard]] ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes& modes = {});
+
+/// The deck of an imported bridge under forces on the track's centre line, between its first and last deck node; modes
+/// and their damping φᵀCφ/(2ω) from its matrices, the supports at rest. Sought are the line and all nodes of the deck.
+/// @throws InputError, ComputationError
+[[nodiscard]] ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& modes = {});
+
+/// Element of the line that holds x, clamped to the line.
+[[nodiscard]] std::size_t element_at(const ModalDeck& deck, double x) noexcept;
+
+}  // namespace railtab

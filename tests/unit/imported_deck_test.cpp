@@ -1,0 +1,133 @@
+// Decks from a finite-element program under axle loads: one span against the built-in one, two against closed forms.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "../folder_fixture.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/moving_load/static_deflection.hpp"
+#include "railtab/runtime/moving_load/train_passage.hpp"
+#include "railtab/runtime/structure/beam_element.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr double pi = std::numbers::pi, span = 20.0, stiffness = 20e9, mass = 10e3;
+
+/// A continuous beam over equal spans of elements of 1 m, z and pitch alone, in Matrix Market.
+class BeamFiles : public testing::InFolder {
+ protected:
+  [[nodiscard]] ImportParameters beam(int spans) const {
+    const int nodes = spans * 20 + 1;
+    BeamSection section;
+    section.E = stiffness;
+    section.Iy = 1.0;
+    section.mass = mass;
+    const BeamMatrix k = beam_stiffness(section, 1.0), m = beam_mass(section, 1.0);
+    const std::array<int, 4> plane{2, 4, 8, 10};
+    std::vector<int> row_of(static_cast<std::size_t>(2 * nodes), -1);
+    std::string dofs = "row,node,motion\n", places = "# number, x, y, z\n";
+    int rows = 0;
+    for (int i = 0; i < nodes; ++i) {
+      places += std::to_string(i + 1) + ", " + std::to_string(i) + ", 0, 1\n";
+      for (int turn = 0; turn < 2; ++turn) {
+        if (turn == 0 && i % 20 == 0) continue;
+        row_of[static_cast<std::size_t>(2 * i + turn)] = rows;
+        dofs += std::to_string(++rows) + "," + std::to_string(i + 1) + (turn == 0 ? ",z\n" : ",roty\n");
+      }
+    }
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(rows, rows), M = K;
+    for (int e = 0; e + 1 < nodes; ++e) {
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b < 4; ++b) {
+          const int i = row_of[static_cast<std::size_t>(2 * e + a)], j = row_of[static_cast<std::size_t>(2 * e + b)];
+          if (i < 0 || j < 0) continue;
+          K(i, j) += k(plane[static_cast<std::size_t>(a)], plane[static_cast<std::size_t>(b)]);
+          M(i, j) += m(plane[static_cast<std::size_t>(a)], plane[static_cast<std::size_t>(b)]);
+        }
+      }
+    }
+    ImportParameters parameters;
+    parameters.files = {FeFormat::matrix_market, write("m.mtx", market(M)), write("k.mtx", market(K)), "",
+                        write("dofs.csv", dofs), write("nodes.csv", places)};
+    parameters.frame = {"m-N-kg", "x y z", {{0.0, 0.0, 0.0}}};
+    parameters.damping.ratio = 0.01;
+    parameters.deck.from = {0.0, 0.0, 1.0};
+    parameters.deck.to = {spans * span, 0.0, 1.0};
+    return parameters;
+  }
+
+ private:
+  static std::string market(const Eigen::MatrixXd& matrix) {
+    std::string entries;
+    long count = 0;
+    char text[80];
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      for (Eigen::Index i = j; i < matrix.rows(); ++i) {
+        if (matrix(i, j) == 0.0) continue;
+        ++count;
+        std::snprintf(text, sizeof text, "%ld %ld %.17g\n", i + 1, j + 1, matrix(i, j));
+        entries += text;
+      }
+    }
+    const std::string n = std::to_string(matrix.rows());
+    return "%%MatrixMarket matrix coordinate real symmetric\n" + n + " " + n + " " + std::to_string(count) + "\n" +
+           entries;
+  }
+};
+
+TEST_F(BeamFiles, OneSpanIsTheBuiltInOne) {
+  BridgeParameters p;
+  p.length = span;
+  p.E = stiffness;
+  p.Iy = 1.0;
+  p.mass = mass;
+  p.damping_ratio = 0.01;
+  const ModalDeck own = simply_supported_deck(p), imported = imported_deck(beam(1));
+  ASSERT_EQ(imported.dynamic_modes, own.dynamic_modes);
+  for (int n = 0; n < own.dynamic_modes; ++n) {
+    const double of_elements = std::pow((n + 1) * pi / 20.0, 4) / 1440.0;  // relative, of cubics with consistent mass
+    EXPECT_NEAR(imported.omega[n], own.omega[n] * (1.0 + of_elements), 0.1 * of_elements * own.omega[n]);
+  }
+  EXPECT_NEAR(imported.damping[0], 0.01, 1e-9) << "Rayleigh's at the first and the third mode";
+  EXPECT_NEAR(imported.damping[2], 0.01, 1e-9);
+  const AxleTrain train = find_axle_train("hslm-a5", span);
+  const double v = 22.0 * own.frequency(0) / 2.0;  // resonance of the second order
+  const PassagePeaks a = train_passage(own, train, modal_force(own, train), v);
+  const PassagePeaks b = train_passage(imported, train, modal_force(imported, train), v);
+  EXPECT_NEAR(b.displacement.value, a.displacement.value, 1e-3 * a.displacement.value);
+  const double at_rest = largest_static_deflection(own, train).value;
+  EXPECT_NEAR(largest_static_deflection(imported, train).value, at_rest, 1e-4 * at_rest);
+}
+
+/// Two equal spans: first frequency that of one span simply supported, second (3.9266/L)² √(EI/m); a force in the
+/// middle of one span deflects it by 23PL³/(1536EI) and the middle of the other by −9PL³/(1536EI).
+TEST_F(BeamFiles, TwoContinuousSpans) {
+  const ModalDeck deck = imported_deck(beam(2));
+  const double unit = std::sqrt(stiffness / mass) / (span * span);
+  EXPECT_NEAR(deck.omega[0], pi * pi * unit, 1e-5 * deck.omega[0]);
+  EXPECT_NEAR(deck.omega[1], 3.926602 * 3.926602 * unit, 1e-5 * deck.omega[1]);
+  AxleTrain axle;
+  axle.behind = {0.0};
+  axle.load = {100e3};
+  const Eigen::ArrayXd q = modal_force_at(deck, axle, 0.5 * span) / deck.omega.square();
+  const double scale = 100e3 * span * span * span / (1536.0 * stiffness);
+  EXPECT_NEAR((q * deck.shape_at(0.5 * span)).sum(), 23.0 * scale, 1e-3 * 23.0 * scale) << "by the modes found";
+  EXPECT_NEAR((q * deck.shape_at(1.5 * span)).sum(), -9.0 * scale, 1e-3 * 9.0 * scale);
+  // so slowly that the deck follows: the largest deflection is the one at rest
+  const PassagePeaks slow = train_passage(deck, axle, modal_force(deck, axle), 1.0);
+  const double at_rest = largest_static_deflection(deck, axle).value;
+  EXPECT_NEAR(slow.displacement.value, at_rest, 0.02 * at_rest);
+}
+
+TEST_F(BeamFiles, ADeckIsNeeded) {
+  ImportParameters parameters = beam(1);
+  parameters.deck = {};
+  EXPECT_THROW(static_cast<void>(imported_deck(parameters)), InputError);
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,231 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "command/command_line.hpp"
+#include "command/output_place.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
+#include "commands.hpp"
+#include "moving_load_output.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
+#include "railtab/runtime/base/stopwatch.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "sweep_plan.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+constexpr double slowest = 1.0, fastest = 200.0;  // [m/s]
+constexpr const char* usage =
+    "vsi moving-load [SCENE.toml | --length M --mass KG/M --bending-stiffness N*M2 --damping RATIO] [--train NAME] "
+    "--speed LO:HI[:STEP] [-o RESPONSE.csv]";
+
+po::options_description options() {
+  po::options_description own("Options");
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge; its train is not used")  //
+      ("length", text_value()->value_name("M"), "without a scene: span of a simply supported beam")                   //
+      ("mass", text_value()->value_name("KG/M"), "its mass per length, with track")                                   //
+      ("bending-stiffness", text_value()->value_name("N*M2"), "its bending stiffness EI")                             //
+      ("damping", text_value()->value_name("RATIO"), "its damping ratio, 0.01 for 1 %")                               //
+      ("train", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+       "a train, NAME*N wagons or AXLES.csv, may be given many times; default hslm-a, its ten trains")  //
+      ("speed", text_value()->value_name("LO:HI[:STEP]"),
+       "speeds in m/s; without STEP the critical ones between LO and HI are sought")  //
+      ("speed-kmh", text_value()->value_name("LO:HI[:STEP]"), "speeds in km/h")       //
+      ("sleeper-spacing", text_value()->value_name("M"), "spreads each axle load 25/50/25 % over three sleepers")(
+          "modes", text_value("0")->value_name("N"),
+          "modes that vibrate; 0: up to the greatest of 30 Hz, 1.5 f1 and f3")  //
+      ("output,o", text_value()->value_name("RESPONSE.csv"), "a row per deck, train and speed");
+  return own;
+}
+
+/// None where the command line has none.
+std::optional<SpeedRange> speeds_of(const CommandLine& line) {
+  const bool si = line.given("speed"), kmh = line.given("speed-kmh");
+  if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
+  if (!si && !kmh) return std::nullopt;
+  const std::string option = si ? "speed" : "speed-kmh", text = line.text(option);
+  const double unit = si ? 1.0 : 1.0 / 3.6;
+  SpeedRange range;
+  if (std::count(text.begin(), text.end(), ':') == 1) {
+    const NumberRange ends = line.range(option);
+    range.low = unit * ends.low;
+    range.high = unit * ends.high;
+  } else {
+    range.speeds = values_of_range("--" + option, text);
+    for (double& speed : range.speeds) speed *= unit;
+    range.low = range.speeds.front();
+    range.high = range.speeds.back();
+  }
+  if (!(range.low >= slowest && range.high <= fastest && range.low <= range.high) ||
+      (range.speeds.empty() && !(range.low < range.high))) {
+    throw input_error("--" + option, text,
+                      fmt::format("speeds from {} to {} m/s, LO below HI (--speed-kmh takes km/h)", slowest, fastest));
+  }
+  return range;
+}
+
+/// A span from the command line.
+ModalDeck deck_of_options(const CommandLine& line, const DynamicModes& modes) {
+  for (const char* option : {"length", "mass", "bending-stiffness", "damping"}) {
+    if (!line.given(option)) {
+      throw input_error("vsi moving-load", fmt::format("no --{}", option),
+                        "a scene, or --length, --mass, --bending-stiffness and --damping");
+    }
+  }
+  BridgeParameters span;
+  span.length = line.number("length");
+  span.mass = line.number("mass");
+  span.E = line.number("bending-stiffness");
+  span.Iy = 1.0;
+  span.damping_ratio = line.number("damping");
+  require_between("--length", span.length, 0.5, 1000.0, "m");
+  require_positive("--mass", span.mass, "kg/m");
+  require_positive("--bending-stiffness", span.E, "N m²");
+  require_between("--damping", span.damping_ratio, 0.0, 0.5, "-");
+  ModalDeck deck = simply_supported_deck(span, modes);
+  deck.name = "span";
+  return deck;
+}
+
+bool alike(const BridgeParameters& a, const BridgeParameters& b) {
+  return a.length == b.length && a.mass == b.mass && a.E * a.Iy == b.E * b.Iy && a.damping_ratio == b.damping_ratio;
+}
+
+/// The spans of a scene, those that are alike once, or its imported bridge.
+std::vector<ModalDeck> decks_of_scene(const SceneParameters& scene, const DynamicModes& modes) {
+  if (!scene.structure.files.nodes.empty()) return {imported_deck(scene.structure, modes)};
+  if (scene.spans.empty()) {
+    throw input_error("scene", "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
+  }
+  std::vector<ModalDeck> decks;
+  std::vector<const BridgeParameters*> known;
+  std::vector<int> count;
+  double start = 0.0;
+  for (std::size_t s = 0; s < scene.spans.size(); ++s) {
+    const BridgeParameters& span = scene.spans[s];
+    const auto same = std::find_if(known.begin(), known.end(), [&](const auto* other) { return alike(*other, span); });
+    if (same == known.end()) {
+      known.push_back(&span);
+      decks.push_back(simply_supported_deck(span, modes));
+      decks.back().name = fmt::format("span {}", s + 1);
+      count.push_back(1);
+      decks.back().start = start;
+    } else {
+      ++count[static_cast<std::size_t>(same - known.begin())];
+    }
+    start += span.length;
+  }
+  for (std::size_t d = 0; d < decks.size(); ++d) {
+    if (count[d] > 1) decks[d].name += fmt::format(" and {} more like it", count[d] - 1);
+  }
+  return decks;
+}
+
+std::vector<ModalDeck> decks_of(const CommandLine& line, const DynamicModes& modes) {
+  if (!line.given("scene")) return {deck_of_options(line, modes)};
+  for (const char* option : {"length", "mass", "bending-stiffness", "damping"}) {
+    if (line.given(option)) throw input_error(fmt::format("--{}", option), "a scene too", "one of them");
+  }
+  const std::filesystem::path file = line.required("scene");
+  const SceneParameters scene = read_scene(file);
+  try {
+    return decks_of_scene(scene, modes);
+  } catch (const InputError& wrong) {
+    throw with_scene_line(wrong, scene, file);
+  }
+}
+
+std::vector<AxleTrain> trains_on(const ModalDeck& deck, const CommandLine& line) {
+  std::vector<std::string> names{"hslm-a"};
+  if (line.given("train")) names = line.required_many("train");
+  std::vector<AxleTrain> trains;
+  for (const std::string& name : expanded_names(names)) {
+    trains.push_back(find_axle_train(name, deck.length()));
+    if (!line.given("sleeper-spacing")) continue;
+    const double spacing = line.number("sleeper-spacing");
+    require_between("--sleeper-spacing", spacing, 0.1, 2.0, "m");
+    trains.back() = spread_over_sleepers(trains.back(), spacing);
+  }
+  return trains;
+}
+
+/// A passage has 16 samples in the shortest period: not for hours.
+void check_effort(const DeckResponse& response, double slowest_speed) {
+  constexpr double most_periods = 1e6;
+  const double top = response.deck.frequency(response.deck.dynamic_modes - 1);
+  for (const AxleTrain& train : response.trains) {
+    const double periods = top * (train.reach() + response.deck.length()) / slowest_speed;
+    if (train.only_static || periods <= most_periods) continue;
+    throw input_error("--speed", fmt::format("{:.3g} periods of {:.4g} Hz while {} crosses", periods, top, train.name),
+                      fmt::format("at most {:.0e}: a higher speed or fewer --modes", most_periods));
+  }
+}
+
+/// All trains on all decks.
+std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optional<SpeedRange>& speeds,
+                                  const CommandLine& line) {
+  const int threads = line.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  ProgressBar bar("trains", !line.quiet() && !line.json());
+  std::vector<DeckResponse> responses;
+  for (ModalDeck& deck : decks) {
+    DeckResponse& response = responses.emplace_back();
+    response.deck = std::move(deck);
+    response.trains = trains_on(response.deck, line);
+    const bool moving =
+        std::any_of(response.trains.begin(), response.trains.end(), [](const auto& t) { return !t.only_static; });
+    if (moving && !speeds) {
+      throw input_error("vsi moving-load", "no speeds",
+                        "--speed LO:HI[:STEP] (m/s) or --speed-kmh LO:HI[:STEP]; EN 1991-2 asks for 40 m/s to 1.2 "
+                        "times the line's speed");
+    }
+    const double done = static_cast<double>(responses.size() - 1), all = static_cast<double>(decks.size());
+    if (speeds) check_effort(response, speeds->low);
+    response.responses = train_responses(response.deck, response.trains, speeds.value_or(SpeedRange{}), threads,
+                                         [&](double share) { bar.show((done + share) / all); });
+  }
+  bar.wipe();
+  return responses;
+}
+
+}  // namespace
+
+int moving_load_command(const Arguments& arguments) {
+  const CommandLine line(usage, options(), {"scene"}, arguments);
+  if (line.help_printed()) return 0;
+  if (arguments.empty() || (arguments.size() == 1 && line.json())) {
+    print_trains(line.json());
+    return 0;
+  }
+  constexpr int most_modes = 100;
+  const DynamicModes modes{static_cast<int>(line.whole_number("modes", 0, most_modes))};
+  if (line.given("output")) {
+    require_writable_place(line.text("output"), "-o");
+    require_replaceable_text(line.text("output"), response_columns());
+    if (line.given("scene")) require_no_input(line.text("output"), {line.text("scene")});
+  }
+  const std::optional<SpeedRange> speeds = speeds_of(line);
+  double seconds = 0.0;
+  const std::vector<DeckResponse> responses = [&] {
+    const Stopwatch watch(seconds);
+    return respond(decks_of(line, modes), speeds, line);
+  }();
+  if (line.given("output")) write_text_file(line.text("output"), response_rows(responses), response_columns());
+  if (line.json()) {
+    print_responses_as_json(responses, seconds);
+  } else if (!line.quiet()) {
+    print_responses(responses, seconds);
+  }
+  return 0;
+}
+
+}  // namespace railtab::vsi
