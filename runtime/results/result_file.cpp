@@ -112,6 +112,13 @@ RunSummary read_summary(const ArrayFileReader& in, std::size_t wheels) {
       energy.*entry.value = fields.number(columns::summary_group, entry.name);
     }
   }
+  if (std::ranges::count(names, std::string(columns::summary_stop_names.front().first))) {
+    StopSummary& stops = summary.stops.emplace();
+    for (const auto& [name, value] : columns::summary_stop_names) stops.*value = in.text(columns::summary_group, name);
+    for (const auto& [name, value] : columns::summary_stops) {
+      stops.*value = fields.number(columns::summary_group, name);
+    }
+  }
   const std::int64_t last_wheel = static_cast<std::int64_t>(wheels) - 1;
   for (const auto& entry : columns::summary_wheel_extremes) {
     if (!std::ranges::count(names, wheel_of(entry))) continue;
@@ -168,6 +175,14 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   out.attribute(columns::summary_group, columns::contact_energy_impacts, static_cast<std::int64_t>(energy.impacts));
   for (const auto& entry : columns::summary_contact_energy) {
     out.attribute(columns::summary_group, entry.name, energy.*entry.value);
+  }
+  if (summary.stops) {
+    for (const auto& [name, value] : columns::summary_stop_names) {
+      out.attribute(columns::summary_group, name, (*summary.stops).*value, message_room);
+    }
+    for (const auto& [name, value] : columns::summary_stops) {
+      out.attribute(columns::summary_group, name, (*summary.stops).*value);
+    }
   }
   for (const auto& entry : columns::summary_wheel_extremes) {
     const WheelExtreme& extreme = summary.wheel_extremes.*entry.value;
