@@ -60,9 +60,9 @@ class ElementBuilder {
   }
 
   int number_of(const Eigen::VectorXd& row) {
-    const auto found = std::find(rows_.begin(), rows_.end(), row);
-    if (found == rows_.end()) rows_.push_back(row);
-    return static_cast<int>(found == rows_.end() ? rows_.size() - 1 : static_cast<std::size_t>(found - rows_.begin()));
+    const auto number = std::find(rows_.begin(), rows_.end(), row) - rows_.begin();
+    if (number == static_cast<std::ptrdiff_t>(rows_.size())) rows_.push_back(row);
+    return static_cast<int>(number);
   }
 
   // The load that the unit's spring along z carries at rest is a compression: it has its sign.

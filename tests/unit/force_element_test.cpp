@@ -336,7 +336,7 @@ TEST(BlowOffDamper, InSeriesMeetsTheClosedFormWithSecondOrder) {
     Oscillator mass(mass_on(blow_off(), c1, series), {alpha, time_step, rule});
     mass.begin(0.05, 0.0);
     PiecewiseLinearMotion exact({regime(c1, 0.0), regime(c2, rest), regime(c2, -rest)},
-                                [](const Eigen::VectorXd& y) {
+                                [series](const Eigen::VectorXd& y) {
                                   const double force = series * y[2];
                                   return std::abs(force) < blow_off_force ? 0 : force > 0.0 ? 1 : 2;
                                 },
