@@ -16,19 +16,19 @@ constexpr double walk_step = 5e-5;  // along the rail profile [m]
 constexpr double margin = 0.01;     // of the box, on each side: the contact lies well inside the overlap
 constexpr double no_wheel = -5e-3;  // overlap where no wheel surface was found [m]
 
-void include(OverlapRegion& region, const RailLine& line, double width) {
-  const double half = std::sqrt(2.0 * std::max(0.0, line.overlap) / line.curvature);
-  region.s_low = std::min(region.s_low, line.s);
-  region.s_high = std::max(region.s_high, line.s);
-  region.x_low = std::min(region.x_low, line.x - half);
-  region.x_high = std::max(region.x_high, line.x + half);
-  region.length = std::max(region.length, 2.0 * half);
-  region.depth = std::max(region.depth, line.overlap);
-  region.volume += 4.0 / 3.0 * half * std::max(0.0, line.overlap) * width;
+/// The overlap on one line of the rail.
+struct Slice {
+  double s, overlap, x, half;  ///< half: of its length along x [m]
+  [[nodiscard]] double area() const { return 4.0 / 3.0 * half * overlap; }
+};
+
+Slice slice(const RailLine& line) {
+  const double overlap = std::max(0.0, line.overlap);
+  return {line.s, overlap, line.x, std::sqrt(2.0 * overlap / line.curvature)};
 }
 
-/// Follows the overlap from one line to its end, which may be that of a profile; sign ±1 along s.
-void walk(const UndeformedDistance& distance, RailLine line, double sign, OverlapRegion& region) {
+/// Slices from one line to the end of the overlap, which may be that of a profile; sign ±1 along s.
+void walk(const UndeformedDistance& distance, RailLine line, double sign, std::vector<Slice>& slices) {
   const ProfileCurve& rail = distance.pair().rail();
   while (true) {
     const double s = line.s + sign * walk_step;
@@ -37,24 +37,54 @@ void walk(const UndeformedDistance& distance, RailLine line, double sign, Overla
     if (!next) return;
     if (next->overlap <= 0.0) {
       // the end, from the overlap on both sides of it
-      RailLine end = line;
-      end.s += sign * walk_step * line.overlap / (line.overlap - next->overlap);
-      end.overlap = 0.0;
-      include(region, end, 0.0);
+      slices.push_back({line.s + sign * walk_step * line.overlap / (line.overlap - next->overlap), 0.0, line.x, 0.0});
       return;
     }
-    include(region, *next, walk_step);
+    slices.push_back(slice(*next));
     line = *next;
   }
 }
 
+/// Slices first..last, the volume of each that of a step along s.
+SurfaceOverlap::Part part(const std::vector<Slice>& slices, std::size_t first, std::size_t last) {
+  // (∫A ds)²/∫A² ds over the width of an ellipse's overlap, A ~ (1 − t²)^(3/2): (3π/8)²/(32/35)/2
+  constexpr double of_ellipse = 0.7591;
+  SurfaceOverlap::Part part{0.0, 0.0, 0.0};
+  double squares = 0.0;
+  for (std::size_t i = first; i <= last; ++i) {
+    part.length = std::max(part.length, 2.0 * slices[i].half);
+    part.volume += slices[i].area() * walk_step;
+    squares += slices[i].area() * slices[i].area() * walk_step;
+  }
+  const double extent = slices[last].s - slices[first].s;
+  part.width = squares > 0.0 ? std::min(extent, part.volume * part.volume / squares / of_ellipse) : extent;
+  return part;
+}
+
+SurfaceOverlap region_of(const std::vector<Slice>& slices) {
+  SurfaceOverlap region{slices.front().s, slices.back().s, slices.front().x, slices.front().x, 0.0, {}};
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const Slice& here = slices[i];
+    region.x_low = std::min(region.x_low, here.x - here.half);
+    region.x_high = std::max(region.x_high, here.x + here.half);
+    region.depth = std::max(region.depth, here.overlap);
+    const bool saddle = i > first && i + 1 < slices.size() && here.overlap < slices[i - 1].overlap &&
+                        here.overlap <= slices[i + 1].overlap;
+    if (!saddle && i + 1 < slices.size()) continue;
+    region.parts.push_back(part(slices, first, i));
+    first = i;
+  }
+  return region;
+}
+
 }  // namespace
 
-std::vector<OverlapRegion> overlap_regions(const ContactSearch& search, const WheelsetPose& pose,
-                                           const UndeformedDistance& distance) {
-  std::vector<OverlapRegion> regions;
+std::vector<SurfaceOverlap> surface_overlaps(const ContactSearch& search, const WheelsetPose& pose,
+                                             const UndeformedDistance& distance) {
+  std::vector<SurfaceOverlap> regions;
   for (const ContactPatch& patch : search.patches(pose)) {
-    const bool known = std::any_of(regions.begin(), regions.end(), [&](const OverlapRegion& r) {
+    const bool known = std::any_of(regions.begin(), regions.end(), [&](const SurfaceOverlap& r) {
       return patch.s_rail >= r.s_low && patch.s_rail <= r.s_high;
     });
     const std::optional<RailLine> line = distance.line(patch.s_rail, patch.s_wheel);
@@ -65,11 +95,12 @@ std::vector<OverlapRegion> overlap_regions(const ContactSearch& search, const Wh
                       patch.s_rail, patch.s_wheel));
     }
     if (known || line->overlap <= 0.0) continue;  // overlap within rounding of zero
-    OverlapRegion region{line->s, line->s, line->x, line->x, 0.0, 0.0, 0.0};
-    include(region, *line, walk_step);
-    walk(distance, *line, -1.0, region);
-    walk(distance, *line, 1.0, region);
-    regions.push_back(region);
+    std::vector<Slice> slices;
+    walk(distance, *line, -1.0, slices);
+    std::reverse(slices.begin(), slices.end());
+    slices.push_back(slice(*line));
+    walk(distance, *line, 1.0, slices);
+    regions.push_back(region_of(slices));
   }
   std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.s_low < b.s_low; });
   return regions;
@@ -88,9 +119,9 @@ void ContactElementOptions::validate() const {
 
 namespace {
 
-OverlapRegion bounding_box(const std::vector<OverlapRegion>& regions) {
-  OverlapRegion box = regions.front();
-  for (const OverlapRegion& r : regions) {
+SurfaceOverlap bounding_box(const std::vector<SurfaceOverlap>& regions) {
+  SurfaceOverlap box = regions.front();
+  for (const SurfaceOverlap& r : regions) {
     box.s_low = std::min(box.s_low, r.s_low);
     box.s_high = std::max(box.s_high, r.s_high);
     box.x_low = std::min(box.x_low, r.x_low);
@@ -119,9 +150,9 @@ void fill_row(const UndeformedDistance& distance, const RailLine& line, int row,
 
 }  // namespace
 
-ContactElements contact_elements(const UndeformedDistance& distance, const std::vector<OverlapRegion>& regions, int nx,
+ContactElements contact_elements(const UndeformedDistance& distance, const std::vector<SurfaceOverlap>& regions, int nx,
                                  int ns) {
-  const OverlapRegion box = bounding_box(regions);
+  const SurfaceOverlap box = bounding_box(regions);
   const double length = (1.0 + 2.0 * margin) * (box.x_high - box.x_low);
   const double width = (1.0 + 2.0 * margin) * (box.s_high - box.s_low);
   ContactElements e;
@@ -136,7 +167,7 @@ ContactElements contact_elements(const UndeformedDistance& distance, const std::
   std::optional<RailLine> before;
   for (int j = 0; j < ns; ++j) {
     const double s = s_first + (j + 0.5) * e.ds;
-    const bool overlaps = std::any_of(regions.begin(), regions.end(), [&](const OverlapRegion& r) {
+    const bool overlaps = std::any_of(regions.begin(), regions.end(), [&](const SurfaceOverlap& r) {
       return s > r.s_low - 2.0 * e.ds && s < r.s_high + 2.0 * e.ds;
     });
     std::optional<RailLine> line;
@@ -153,17 +184,20 @@ ContactElements contact_elements(const UndeformedDistance& distance, const std::
   return e;
 }
 
-ContactElements contact_elements(const UndeformedDistance& distance, const std::vector<OverlapRegion>& regions,
+ContactElements contact_elements(const UndeformedDistance& distance, const std::vector<SurfaceOverlap>& regions,
                                  const ContactElementOptions& options) {
   double volume = 0.0, length = 1.0, width = 1.0;
-  for (const OverlapRegion& r : regions) volume += r.volume;
-  for (const OverlapRegion& r : regions) {
-    const double weight = std::sqrt(std::min(1.0, r.volume / (options.full_share * volume)));
-    if (weight == 0.0) continue;
-    length = std::min(length, r.length / weight);
-    width = std::min(width, (r.s_high - r.s_low) / weight);
+  for (const SurfaceOverlap& r : regions)
+    for (const SurfaceOverlap::Part& p : r.parts) volume += p.volume;
+  for (const SurfaceOverlap& r : regions) {
+    for (const SurfaceOverlap::Part& p : r.parts) {
+      const double weight = std::sqrt(std::min(1.0, p.volume / (options.full_share * volume)));
+      if (weight == 0.0) continue;
+      length = std::min(length, p.length / weight);
+      width = std::min(width, p.width / weight);
+    }
   }
-  const OverlapRegion box = bounding_box(regions);
+  const SurfaceOverlap box = bounding_box(regions);
   const double nx = std::ceil(options.across_narrowest * (box.x_high - box.x_low) / length - 1e-9);
   const double ns = std::ceil(options.across_narrowest * (box.s_high - box.s_low) / width - 1e-9);
   if (nx * ns > options.most) {

@@ -53,7 +53,7 @@ LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, co
   LoadedContact contact;
   contact.pose = pose;
   const UndeformedDistance distance(search.pair(), pose);
-  contact.regions = overlap_regions(search, pose, distance);
+  contact.regions = surface_overlaps(search, pose, distance);
   contact.converged = contact.regions.empty();
   if (contact.regions.empty()) return contact;
   contact.elements = neighbour ? contact_elements(distance, contact.regions, neighbour->nx, neighbour->ns)

@@ -38,7 +38,7 @@ struct RailWrench {
 /// The half-space solution of one (right) wheel on its rail, without friction.
 struct LoadedContact {
   WheelsetPose pose;
-  std::vector<OverlapRegion> regions;  ///< empty where nothing touches; then all that follows is zero or empty
+  std::vector<SurfaceOverlap> regions;  ///< empty where nothing touches; then all that follows is zero or empty
   ContactElements elements;
   Eigen::VectorXd pressure;  ///< of the elements [Pa]
   std::vector<int> band;     ///< of each element, its place in `bands`; −1 without pressure

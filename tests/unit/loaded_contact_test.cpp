@@ -71,13 +71,13 @@ TEST(UndeformedDistance, EndsOnTheWheelAtAnyPose) {
   for (const WheelsetPose& pose :
        {lowered(-3e-3, 2e-3, 0.0, 5e-5), lowered(5e-3, -1e-3, 0.012, 8e-5), lowered(7e-3, 1e-3, -0.03, 2e-4)}) {
     const UndeformedDistance distance(pair, pose);
-    const std::vector<OverlapRegion> regions = overlap_regions(s1002_on_60e1(), pose, distance);
+    const std::vector<SurfaceOverlap> regions = surface_overlaps(s1002_on_60e1(), pose, distance);
     ASSERT_FALSE(regions.empty());
     const Eigen::Matrix3d rotation =
         (Eigen::AngleAxisd(pose.roll, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()))
             .toRotationMatrix();
     const WheelsetCentre centre = wheelset_centre(pair, pose);
-    for (const OverlapRegion& region : regions) {
+    for (const SurfaceOverlap& region : regions) {
       for (int i = 1; i < 6; ++i) {
         const auto line = distance.line(region.s_low + (region.s_high - region.s_low) * i / 6.0);
         ASSERT_TRUE(line);
