@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/series_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
@@ -69,6 +70,11 @@ class ElementBuilder {
   void add_load(const Suspension& unit, ForceElement& friction) {
     const Eigen::VectorXd vertical = row_of(unit, z_axis);
     const double at_rest = unit.stiffness[z_axis] * vertical.dot(rest_);
+    constexpr double least = 1.0;  // N: less is rounding
+    if (vehicle_.gravity > 0.0 && std::abs(at_rest) < least && friction.friction.force == 0.0) {
+      throw input_error(fmt::format("{}: {}", vehicle_.name, friction.name),
+                        "a friction ratio on a spring that carries no load at rest", "a spring that carries weight");
+    }
     friction.load_row = number_of(vertical);
     friction.load = std::abs(at_rest);
     friction.load_stiffness = at_rest < 0.0 ? -unit.stiffness[z_axis] : unit.stiffness[z_axis];

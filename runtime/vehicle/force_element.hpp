@@ -72,6 +72,7 @@ struct VehicleModel;
 /// has numbered in the same order.
 /// @param rest displacement of all dofs under gravity, from which units carry their loads
 /// @param first_series_row first inner degree of freedom of the series stiffnesses
+/// @throws InputError where a friction ratio belongs to a spring without load
 void add_force_elements(VehicleModel& vehicle, const std::vector<Suspension>& suspension, const Eigen::VectorXd& rest,
                         int first_series_row);
 

@@ -489,6 +489,13 @@ TEST(Wedge, DecaysUnderAWeight) {
   }
 }
 
+TEST(Wedge, NeedsALoad) {
+  EXPECT_NO_THROW((void)mass_on(wedge(0.1)));
+  NonlinearUnit with_force = wedge(0.1);
+  with_force.friction.force = 100.0;
+  EXPECT_NEAR(mass_on(with_force).elements.element[0].stiffness, (100.0 + 0.1 * m * standard_gravity) / 1e-5, 1.0);
+}
+
 TEST(Wedge, DissipatesWhatTheMassLoses) {
   Oscillator mass(mass_on(wedge(0.2)), {0.0, period / 200.0, ContactForceRule::energy});
   mass.begin(0.04, 0.0);  // farther than the spring is compressed by the weight: the load goes through zero
