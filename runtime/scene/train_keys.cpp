@@ -72,9 +72,9 @@ std::vector<KeyRow> train_keys() {
                                    {"in-matrices", GeometricStiffness::in_matrices}})},
       {"train.force_elements", "",
        "bump stops, dampers with blow-off and dry friction of the vehicle; linear: stand-ins, without stops",
-       choice<ForceElementChoice>(of_train<&TrainParameters::force_elements>,
-                                  {{"nonlinear", ForceElementChoice::nonlinear},
-                                   {"linear", ForceElementChoice::linear}})},
+       choice<ForceElementChoice>(
+           of_train<&TrainParameters::force_elements>,
+           {{"nonlinear", ForceElementChoice::nonlinear}, {"linear", ForceElementChoice::linear}})},
   };
 }
 

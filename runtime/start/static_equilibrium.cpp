@@ -49,10 +49,7 @@ struct RestOperators {
       : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
     if (!model.vehicle.elements.empty()) {
       elements.emplace(model.vehicle, vehicle.inverse(), 1.0);
-      for (Eigen::Index w = 0; w < elements->to_wheelsets.rows() / 6; ++w) {
-        elements->to_wheelsets.row(6 * w + pitch).setZero();
-        elements->from_wheelsets.col(6 * w + pitch).setZero();
-      }
+      elements->leave_out_pitch();
     }
     if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
   }
@@ -244,10 +241,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
-      if (elements) {
-        motion.contact_load.noalias() -=
-            model.vehicle.elements.rows.transpose() * elements->vehicle[index(v)].end_force();
-      }
+      if (elements) elements->vehicle[index(v)].add_end_force(motion.contact_load);
       Eigen::VectorXd next = vehicle.inverse() * (load[index(v)] + motion.contact_load +
                                                   regularisation * (model.vehicle.mass * motion.displacement));
       clear_pitch(model, next);

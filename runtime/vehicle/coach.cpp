@@ -92,7 +92,8 @@ VehicleDescription describe_coach(const CoachParameters& p) {
     parts.wheelsets.push_back(wheelset);
     // at axle height, so that the wheelset's rotation about its axle is free of the springs
     for (const double y : {-p.primary_half_distance, p.primary_half_distance}) {
-      parts.suspension.push_back(make_unit("primary suspension", wheelset, bogie, {x, y, -p.nominal_radius}, p.primary));
+      parts.suspension.push_back(
+          make_unit("primary suspension", wheelset, bogie, {x, y, -p.nominal_radius}, p.primary));
     }
   }
   for (int b = 0; b < 2; ++b) {

@@ -52,7 +52,8 @@ struct CoachParameters {
 /// out of the plane.
 [[nodiscard]] std::vector<DofIndices> held_motions(const VehicleDescription& parts, MotionPlane plane);
 
-/// describe_coach() as a model with linear force elements: 41 dofs with four wheelsets, or 16 in the vertical plane. @throws InputError
+/// describe_coach() as a model with linear force elements: 41 dofs with four wheelsets, or 16 in the vertical plane.
+/// @throws InputError
 [[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial,
                                        const VehicleWeight& weight = {});
 

@@ -40,7 +40,8 @@ double ForceCurve::integral(double x) const noexcept {
 
 ForceCurve::Value ForceCurve::mean(double x0, double x1) const noexcept {
   const Value start = at(x0), end = at(x1);
-  const bool one_line = segment(std::abs(x0)) == segment(std::abs(x1)) && (x0 * x1 >= 0.0 || segment(std::abs(x0)) == 0);
+  const bool one_line =
+      segment(std::abs(x0)) == segment(std::abs(x1)) && (x0 * x1 >= 0.0 || segment(std::abs(x0)) == 0);
   if (one_line || x0 == x1) return {0.5 * (start.force + end.force), 0.5 * end.slope};
   const double mean = (integral(x1) - integral(x0)) / (x1 - x0);
   return {mean, (end.force - mean) / (x1 - x0)};
@@ -62,12 +63,9 @@ FrictionStep slide(double force, double stretch, double limit0, double limit1) n
   // The share of the path on which it sticks: the elastic force meets the limit, both linear.
   const double side = elastic > 0.0 ? 1.0 : -1.0;
   const double sticks = (limit0 - side * before) / (side * stretch - (limit1 - limit0));
-  return {side * limit1,
-          side * 0.5 * (limit0 + limit1 - sticks * (limit0 - side * before)),
-          0.0,
-          0.5 * sticks * sticks,
-          side,
-          side * 0.5 * (1.0 - sticks * sticks)};
+  return {side * limit1, side * 0.5 * (limit0 + limit1 - sticks * (limit0 - side * before)),
+          0.0,           0.5 * sticks * sticks,
+          side,          side * 0.5 * (1.0 - sticks * sticks)};
 }
 
 }  // namespace railtab

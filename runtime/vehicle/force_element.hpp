@@ -17,9 +17,9 @@ enum class ForceElementChoice {
 
 /// Dry friction between the two ends of a suspension unit along or about one axis.
 struct Friction {
-  double force = 0.0;      ///< limit that no load changes [N] or [N m]
-  double ratio = 0.0;      ///< limit over the load that the unit's spring along z carries [-], as on a wedge
-  double travel = 2e-4;    ///< before it slides under the load at rest, elastic [m] or [rad], > 0
+  double force = 0.0;    ///< limit that no load changes [N] or [N m]
+  double ratio = 0.0;    ///< limit over the load that the unit's spring along z carries [-], as on a wedge
+  double travel = 2e-4;  ///< before it slides under the load at rest, elastic [m] or [rad], > 0
   [[nodiscard]] bool acts() const noexcept { return force > 0.0 || ratio > 0.0; }
 };
 
@@ -37,9 +37,9 @@ enum class ForceElementKind { stop, damper, friction };
 struct ForceElement {
   std::string name;  ///< "secondary suspension along y, bogie-1 to car-body, right"
   ForceElementKind kind;
-  int row;            ///< of ForceElements::rows, its elongation
-  ForceCurve curve;   ///< of a stop or a damper
-  Friction friction;  ///< of kind friction
+  int row;                 ///< of ForceElements::rows, its elongation
+  ForceCurve curve;        ///< of a stop or a damper
+  Friction friction;       ///< of kind friction
   double stiffness = 0.0;  ///< of a friction element before it slides [N/m] or [N m/rad]
   /// The load of a friction element with a ratio: load + load_stiffness · (row load_row) [N], none below zero.
   int load_row = -1;

@@ -44,9 +44,9 @@ struct Suspension {
   double couple_share = 0.5;
   /// In series with the damper along x, y, z [N/m]; 0: the damper alone.
   Eigen::Vector3d series_stiffness = Eigen::Vector3d::Zero();
-  std::string name{};                          ///< of its force elements in messages
-  std::array<NonlinearUnit, 3> nonlinear{};    ///< along x, y, z
-  Friction yaw_friction{};                     ///< about z [N m]
+  std::string name{};                        ///< of its force elements in messages
+  std::array<NonlinearUnit, 3> nonlinear{};  ///< along x, y, z
+  Friction yaw_friction{};                   ///< about z [N m]
 };
 
 /// A body of a vehicle as results and loads know it; position of the point whose motion its dofs are, vehicle frame.
@@ -55,9 +55,9 @@ struct VehicleBody {
   Eigen::Vector3d position;  ///< [m]
 };
 
-/// A vehicle, running at constant speed (the car body's x is held). Small displacements from the
-/// vehicle's own static equilibrium: gravity acts as the static axle loads and as geometric stiffness. Rows of the
-/// matrices that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
+/// A vehicle that runs at constant speed (the car body's x is held). Small displacements from its own static
+/// equilibrium: gravity acts as the static axle loads and as geometric stiffness. The matrices have all that is linear.
+/// Rows that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
 struct VehicleModel {
   std::string name;
   std::vector<VehicleBody> bodies;

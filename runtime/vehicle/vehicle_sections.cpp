@@ -40,9 +40,9 @@ double read_damping(TomlSection& section, std::string_view axis, const std::stri
     unit.damper = read_curve(section, curve_key, "m/s and N");
     const auto& curve = unit.damper.points();
     if (!stated) damping = curve.front()[1] / curve.front()[0];
-    data.nonlinear.push_back(
-        fmt::format("{} along {}: damper of {} points, up to {:.6g} N at {:.6g} m/s{}", name, axis, curve.size(),
-                    curve.back()[1], curve.back()[0], section.has(of("series_k", axis)) ? ", in series" : ""));
+    data.nonlinear.push_back(fmt::format("{} along {}: damper of {} points, up to {:.6g} N at {:.6g} m/s{}", name, axis,
+                                         curve.size(), curve.back()[1], curve.back()[0],
+                                         section.has(of("series_k", axis)) ? ", in series" : ""));
     data.linearised.push_back(fmt::format(
         "{} along {}: its damper of {} points, up to {:.6g} N at {:.6g} m/s, runs linearly with {:.6g} N s/m", name,
         axis, curve.size(), curve.back()[1], curve.back()[0], damping));

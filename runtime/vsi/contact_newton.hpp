@@ -55,7 +55,7 @@ struct ContactProblem {
   Eigen::VectorXd free, predicted, predicted_velocity;  ///< 12 per wheelset
   Eigen::MatrixXd vehicle_compliance;                   ///< of one vehicle's wheelsets, 6w × 6w, times the load weight
   TrainElements* elements = nullptr;  ///< force elements of the vehicles, which follow the contact forces; or none
-  std::vector<RailCoupling> rail;                       ///< times the load weight; empty on rigid track
+  std::vector<RailCoupling> rail;     ///< times the load weight; empty on rigid track
   std::vector<std::array<RailHeadMotion, 2>> deviation;  ///< irregularity and the rails' slopes, per wheelset and side
   double largest_move = 5e-3;                            ///< bound on one Newton correction [m or rad]
   /// Contact at the start of the step where f = mean_weight·(mean force over the step − half of that at its start);

@@ -30,6 +30,14 @@ ElementCompliance::ElementCompliance(const VehicleModel& vehicle, const std::vec
   own = load_weight * (rows * inverse * rows.transpose());
 }
 
+void ElementCompliance::leave_out_pitch() {
+  constexpr Eigen::Index pitch = 4;
+  for (Eigen::Index k = pitch; k < to_wheelsets.rows(); k += 6) {
+    to_wheelsets.row(k).setZero();
+    from_wheelsets.col(k).setZero();
+  }
+}
+
 ElementForces::ElementForces(const VehicleModel& vehicle) : elements_(vehicle.elements) {
   const Eigen::Index rows = elements_.rows.rows();
   for (Eigen::VectorXd* v : {&x0_, &v0_, &predicted_, &predicted_rate_, &x_, &share_, &end_}) v->setZero(rows);

@@ -17,6 +17,8 @@ struct ElementCompliance {
 
   /// @param inverse of the vehicle's effective matrix
   ElementCompliance(const VehicleModel& vehicle, const Eigen::MatrixXd& inverse, double load_weight);
+  /// For a state of rest, whose pitch unknowns of the wheelsets are no displacements.
+  void leave_out_pitch();
   /// Elongations only, of a vehicle whose dofs `free` have the inverse effective matrix `inverse`.
   ElementCompliance(const VehicleModel& vehicle, const std::vector<int>& free, const Eigen::MatrixXd& inverse,
                     double load_weight);
@@ -63,6 +65,9 @@ class ElementForces {
   /// The elements' share f in the step, dual to the elongations; and their forces at its end.
   [[nodiscard]] const Eigen::VectorXd& share() const noexcept { return share_; }
   [[nodiscard]] const Eigen::VectorXd& end_force() const noexcept { return end_; }
+  /// The same as loads on the vehicle's dofs, added.
+  void add_share(Eigen::VectorXd& load) const { load.noalias() -= elements_.rows.transpose() * share_; }
+  void add_end_force(Eigen::VectorXd& load) const { load.noalias() -= elements_.rows.transpose() * end_; }
   /// By element, of those of kind friction.
   [[nodiscard]] const Eigen::VectorXd& friction() const noexcept { return friction_end_; }
 
@@ -77,7 +82,7 @@ class ElementForces {
 
   ForceElements elements_;
   Step step_;
-  Eigen::VectorXd x0_, v0_, friction_;         // at the begin
+  Eigen::VectorXd x0_, v0_, friction_;          // at the begin
   Eigen::VectorXd predicted_, predicted_rate_;  // of the step
   Eigen::VectorXd x_, share_, end_, friction_end_;
   Eigen::MatrixXd slope_;  // ∂share/∂x

@@ -128,13 +128,13 @@ class HertzContacts : public ContactLaw {
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
-      if (elements_) add_load(step, elements_->vehicle[index(v)].share(), ws.vehicle_load);
+      if (elements_) elements_->vehicle[index(v)].add_share(ws.vehicle_load);
       const Eigen::VectorXd increment =
           free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
       close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
       if (elements_) {
-        add_load(step, elements_->vehicle[index(v)].end_force(), motion.contact_load);
+        elements_->vehicle[index(v)].add_end_force(motion.contact_load);
         state.friction[index(v)] = elements_->vehicle[index(v)].friction();
       }
       update(hht, prediction_[index(v)], increment, motion);
@@ -151,10 +151,6 @@ class HertzContacts : public ContactLaw {
     const bool energy = hht.contact_force == ContactForceRule::energy;
     return {energy ? ElementRule::energy : ElementRule::endpoint, hht.time_step, hht.velocity_rate(),
             energy ? 1.0 / (hht.gamma() * hht.load_weight()) : 1.0};
-  }
-
-  static void add_load(const StepContext& step, const Eigen::VectorXd& force, Eigen::VectorXd& load) {
-    load.noalias() -= step.model.vehicle.elements.rows.transpose() * force;
   }
 
   void gather_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
@@ -176,9 +172,9 @@ class HertzContacts : public ContactLaw {
   WheelContactModel contact_;              // at the speed of the step's end
   ContactProblem problem_;
   std::optional<TrainElements> elements_;  // where vehicles have force elements
-  std::vector<Prediction> prediction_;  // per vehicle
-  std::vector<Eigen::VectorXd> free_;   // per vehicle: increment without contact forces
-  NewtonWorkspace newton_;              // tangents and loads are kept from step to step, until reinitialise()
+  std::vector<Prediction> prediction_;     // per vehicle
+  std::vector<Eigen::VectorXd> free_;      // per vehicle: increment without contact forces
+  NewtonWorkspace newton_;                 // tangents and loads are kept from step to step, until reinitialise()
 };
 
 }  // namespace

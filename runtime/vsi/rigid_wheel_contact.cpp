@@ -158,8 +158,7 @@ class RigidWheels : public ContactLaw {
       wheels(step).update(step.hht, prediction_[index(v)], loaded(v), moved,
                           force_.segment(per_vehicle_ * v, per_vehicle_), state.vehicle[index(v)]);
       if (elements_.empty()) continue;
-      const Eigen::MatrixXd& rows = step.model.vehicle.elements.rows;
-      state.vehicle[index(v)].contact_load.noalias() -= rows.transpose() * elements_[index(v)].end_force();
+      elements_[index(v)].add_end_force(state.vehicle[index(v)].contact_load);
       state.friction[index(v)] = elements_[index(v)].friction();
     }
     std::swap(state.contact, ws.solution);
@@ -281,12 +280,12 @@ class RigidWheels : public ContactLaw {
   }
 
   int per_vehicle_;
-  std::vector<Prediction> prediction_;      // per vehicle
-  std::vector<Eigen::VectorXd> remainder_;  // per vehicle: R
-  const VsiState* state_ = nullptr;         // at the begin of the step
-  std::vector<ElementForces> elements_;     // per vehicle; empty where there are none
+  std::vector<Prediction> prediction_;         // per vehicle
+  std::vector<Eigen::VectorXd> remainder_;     // per vehicle: R
+  const VsiState* state_ = nullptr;            // at the begin of the step
+  std::vector<ElementForces> elements_;        // per vehicle; empty where there are none
   std::vector<Eigen::VectorXd> element_load_;  // per vehicle: on its dofs, in R
-  Eigen::VectorXd free_force_, force_;      // per wheelset: without heave, and solved [N]
+  Eigen::VectorXd free_force_, force_;         // per wheelset: without heave, and solved [N]
   Eigen::MatrixXd system_;
   Running running_{};
   std::vector<LineCoupling> couplings_;

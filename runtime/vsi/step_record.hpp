@@ -98,8 +98,8 @@ struct StopExtremes {
 };
 /// The same for the summary. @see RunSummary::stops
 struct StopSummary {
-  std::string first_name, largest_name;  ///< "coach-1: secondary suspension along y, bogie-1 to car-body, right"
-  double first_time = 0;                 ///< [s]
+  std::string first_name, largest_name;        ///< "coach-1: secondary suspension along y, bogie-1 to car-body, right"
+  double first_time = 0;                       ///< [s]
   double largest_force = 0, largest_time = 0;  ///< [N], [s]
 };
 

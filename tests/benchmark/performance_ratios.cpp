@@ -207,7 +207,7 @@ int main(int argc, char** argv) {
   for (const auto& [name, measure] : {Price{"contact geometry: table / online search", geometry_table_to_search},
                                       Price{"creep forces: table / FASTSIM 20 x 20", creep_table_to_fastsim},
                                       Price{"time step / back-substitution", step_to_back_substitution},
-                      Price{"force elements: as built / linear", force_elements_to_linear}}) {
+                                      Price{"force elements: as built / linear", force_elements_to_linear}}) {
     const double ratio = measure();
     text += fmt::format("{},{:.4g}\n", name, ratio);
     const auto known = baseline.find(name);

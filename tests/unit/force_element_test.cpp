@@ -1,212 +1,25 @@
-// Bump stops, dampers with blow-off and dry friction: their forces, and one-mass oscillators in steps of a run against
-// closed forms.
+// Bump stops, dampers with blow-off and dry friction: one-mass oscillators in steps of a run against closed forms.
 #include "railtab/runtime/vehicle/force_element.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
+#include "one_mass_oscillator.hpp"
 #include "piecewise_linear_motion.hpp"
-#include "railtab/runtime/vsi/element_forces.hpp"
-#include "railtab/runtime/vsi/vehicle_response.hpp"
 
 namespace railtab {
 namespace {
 
+using testing::k;
+using testing::m;
+using testing::mass_on;
+using testing::Oscillator;
+using testing::period;
 using testing::PiecewiseLinearMotion;
 using testing::Regime;
-
-TEST(ForceCurve, IsOddAndGoesOnWithItsLastSlope) {
-  const ForceCurve stop({{0.02, 0.0}, {0.03, 1000.0}, {0.04, 5000.0}});
-  EXPECT_EQ(stop.free_travel(), 0.02);
-  EXPECT_EQ(stop.at(0.015).force, 0.0);
-  EXPECT_NEAR(stop.at(0.025).force, 500.0, 1e-9);
-  EXPECT_NEAR(stop.at(-0.05).force, -9000.0, 1e-9);
-  EXPECT_NEAR(stop.at(-0.05).slope, 4e5, 1e-6);
-  const double area = 0.5 * 0.01 * 1000.0 + 0.5 * 0.01 * 6000.0 + 0.5 * 0.01 * 14000.0;
-  EXPECT_NEAR(stop.integral(0.05), area, 1e-12 * area);
-  EXPECT_EQ(stop.integral(-0.05), stop.integral(0.05));
-}
-
-TEST(ForceCurve, MeanIsTheDiscreteGradientOfItsIntegral) {
-  const ForceCurve curve({{0.1, 2500.0}, {0.3, 3585.0}});
-  const double places[] = {-0.5, -0.3, -0.2, -0.05, 0.0, 0.07, 0.1, 0.15, 0.31, 2.0};
-  for (const double x0 : places) {
-    for (const double x1 : places) {
-      const ForceCurve::Value mean = curve.mean(x0, x1);
-      EXPECT_NEAR(mean.force * (x1 - x0), curve.integral(x1) - curve.integral(x0), 1e-9) << x0 << " " << x1;
-      if (std::abs(x1) == 0.1 || std::abs(x1) == 0.3) continue;  // a kink
-      constexpr double h = 1e-7;
-      const double slope = (curve.mean(x0, x1 + h).force - curve.mean(x0, x1 - h).force) / (2.0 * h);
-      EXPECT_NEAR(mean.slope, slope, 1e-3 * std::abs(slope)) << x0 << " " << x1;
-    }
-  }
-}
-
-/// The path in many small parts, each of which sticks or slides as a whole.
-double mean_by_parts(double force, double stretch, double limit0, double limit1) {
-  constexpr int parts = 200000;
-  double sum = 0.0;
-  for (int i = 1; i <= parts; ++i) {
-    const double limit = limit0 + (limit1 - limit0) * i / parts;
-    const double next = std::clamp(force + stretch / parts, -limit, limit);
-    sum += 0.5 * (force + next);
-    force = next;
-  }
-  return sum / parts;
-}
-
-struct Path {
-  double force, stretch, limit0, limit1;
-};
-constexpr Path paths[] = {{0.0, 50.0, 100.0, 100.0},    {30.0, 500.0, 100.0, 120.0}, {-60.0, 400.0, 100.0, 80.0},
-                          {90.0, -300.0, 100.0, 140.0}, {80.0, -10.0, 100.0, 30.0},  {100.0, 1e5, 100.0, 100.0},
-                          {-50.0, 20.0, 60.0, 0.0},     {0.0, 40.0, 0.0, 25.0}};
-
-TEST(Friction, SticksAndSlidesAlongItsPath) {
-  for (const Path& p : paths) {
-    const FrictionStep step = slide(p.force, p.stretch, p.limit0, p.limit1);
-    EXPECT_NEAR(step.mean, mean_by_parts(p.force, p.stretch, p.limit0, p.limit1), 2e-2) << p.force << " " << p.stretch;
-    EXPECT_LE(std::abs(step.end), p.limit1);
-    // what is not stored is dissipated: never less than nothing
-    const double dissipated = step.mean * p.stretch - 0.5 * (step.end * step.end - p.force * p.force);
-    EXPECT_GE(dissipated, -1e-9) << p.force << " " << p.stretch;
-  }
-}
-
-TEST(Friction, HasItsDerivatives) {
-  constexpr double h = 1e-5;
-  for (const Path& p : paths) {
-    if (p.limit1 == 0.0) continue;
-    const FrictionStep step = slide(p.force, p.stretch, p.limit0, p.limit1);
-    const FrictionStep more = slide(p.force, p.stretch + h, p.limit0, p.limit1);
-    const FrictionStep less = slide(p.force, p.stretch - h, p.limit0, p.limit1);
-    EXPECT_NEAR(step.mean_by_stretch, (more.mean - less.mean) / (2.0 * h), 1e-5);
-    EXPECT_NEAR(step.end_by_stretch, (more.end - less.end) / (2.0 * h), 1e-5);
-    const FrictionStep wider = slide(p.force, p.stretch, p.limit0, p.limit1 + h);
-    const FrictionStep tighter = slide(p.force, p.stretch, p.limit0, p.limit1 - h);
-    EXPECT_NEAR(step.mean_by_limit, (wider.mean - tighter.mean) / (2.0 * h), 1e-5);
-    EXPECT_NEAR(step.end_by_limit, (wider.end - tighter.end) / (2.0 * h), 1e-5);
-  }
-}
-
-constexpr double m = 1000.0, k = 4e5;
-const double omega = std::sqrt(k / m), period = 2.0 * std::numbers::pi / omega;
-
-/// A mass above a wheelset that is held, on one suspension unit.
-VehicleModel mass_on(const NonlinearUnit& vertical, double damping = 0.0, double series = 0.0,
-                     double gravity = standard_gravity) {
-  VehicleDescription parts;
-  parts.name = "mass";
-  parts.weight.gravity = gravity;
-  parts.bodies = {{"car-body", m, {100.0, 100.0, 100.0}, {0.0, 0.0, -1.0}},
-                  {"wheelset-1", 100.0, {10.0, 10.0, 10.0}, {0.0, 0.0, -0.46}}};
-  Suspension unit{1, 0, {0.0, 0.0, -0.46}, {0.0, 0.0, k}, {0.0, 0.0, damping}};
-  unit.series_stiffness = {0.0, 0.0, series};
-  unit.nonlinear[2] = vertical;
-  parts.suspension = {unit};
-  parts.wheelsets = {1};
-  parts.held_dofs.assign(2, DofIndices{held, held, held, held, held, held});
-  parts.held_dofs[0][2] = 0;
-  return assemble_vehicle(parts);
-}
-
-/// The mass in steps, as the contacts' Newton makes them with a vehicle on held wheelsets. z down, from rest.
-class Oscillator {
- public:
-  Oscillator(VehicleModel vehicle, const HhtScheme& hht)
-      : vehicle_(std::move(vehicle)),
-        hht_(hht),
-        response_(vehicle_, vehicle_.damping, hht),
-        compliance_(vehicle_, response_.inverse(), hht.load_weight()),
-        elements_(vehicle_),
-        motion_(vehicle_.dofs()),
-        friction_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(vehicle_.elements.element.size()))),
-        load_(Eigen::VectorXd::Zero(vehicle_.dofs())) {}
-
-  /// Begins at a place with a velocity, all springs at the elongations that belong to it; no friction.
-  void begin(double z, double rate, double force = 0.0) {
-    motion_.displacement[0] = z;
-    motion_.velocity[0] = rate;
-    const ForceElements& e = vehicle_.elements;
-    motion_.contact_load =
-        -e.rows.transpose() * e.force(e.rows * motion_.displacement, e.rows * motion_.velocity, friction_);
-    motion_.step_load = motion_.contact_load;
-    motion_.acceleration[0] = (force + motion_.contact_load[0] - k * z) / m;
-  }
-
-  /// @param force on the mass at the begin and at the end [N]
-  void step(double before = 0.0, double after = 0.0) {
-    const bool energy = hht_.contact_force == ContactForceRule::energy;
-    predict(hht_, motion_, prediction_);
-    load_.setZero();
-    load_[0] = hht_.load_weight() * after - hht_.alpha * before;
-    const Eigen::VectorXd increment =
-        response_.free_increment(vehicle_, vehicle_.damping, hht_, load_, motion_, prediction_);
-    elements_.begin({energy ? ElementRule::energy : ElementRule::endpoint, hht_.time_step, hht_.velocity_rate(),
-                     energy ? 1.0 / (hht_.gamma() * hht_.load_weight()) : 1.0},
-                    motion_, friction_, prediction_,
-                    prediction_.displacement + motion_.acceleration / hht_.acceleration_rate());
-    const Eigen::MatrixXd& rows = vehicle_.elements.rows;
-    const Eigen::VectorXd free = prediction_.displacement + increment;
-    ASSERT_TRUE(elements_.solve(compliance_, rows * free));
-    const Eigen::VectorXd force = -rows.transpose() * elements_.share();
-    const Eigen::VectorXd moved = increment + hht_.load_weight() * (response_.inverse() * force);
-    EXPECT_NEAR((rows * (prediction_.displacement + moved) - elements_.elongation()).norm(), 0.0, 1e-12);
-    account(moved);
-    close_load(hht_, force, motion_.contact_load, motion_.step_load);
-    motion_.contact_load = -rows.transpose() * elements_.end_force();
-    friction_ = elements_.friction();
-    update(hht_, prediction_, moved, motion_);
-  }
-
-  [[nodiscard]] double z() const { return motion_.displacement[0]; }
-  [[nodiscard]] double rate() const { return motion_.velocity[0]; }
-  /// What springs, stops, sticking friction and mass hold, and what has been dissipated [J].
-  [[nodiscard]] double energy() const {
-    double sum = 0.5 * m * rate() * rate() +
-                 0.5 * motion_.displacement.dot(vehicle_.stiffness * motion_.displacement);
-    const Eigen::VectorXd x = vehicle_.elements.rows * motion_.displacement;
-    for (std::size_t i = 0; i < vehicle_.elements.element.size(); ++i) {
-      const ForceElement& e = vehicle_.elements.element[i];
-      const double f = friction_[static_cast<Eigen::Index>(i)];
-      if (e.kind == ForceElementKind::stop) sum += e.curve.integral(x[e.row]);
-      if (e.kind == ForceElementKind::friction) sum += 0.5 * f * f / e.stiffness;
-    }
-    return sum;
-  }
-  [[nodiscard]] double dissipated() const { return dissipated_; }
-  [[nodiscard]] VehicleModel& vehicle() { return vehicle_; }
-
- private:
-  void account(const Eigen::VectorXd& moved) {
-    const Eigen::VectorXd before = vehicle_.elements.rows * motion_.displacement;
-    const Eigen::VectorXd after = vehicle_.elements.rows * (prediction_.displacement + moved);
-    for (std::size_t i = 0; i < vehicle_.elements.element.size(); ++i) {
-      const ForceElement& e = vehicle_.elements.element[i];
-      const double way = after[e.row] - before[e.row], f = friction_[static_cast<Eigen::Index>(i)];
-      if (e.kind == ForceElementKind::damper) dissipated_ += e.curve.at(way / hht_.time_step).force * way;
-      if (e.kind != ForceElementKind::friction) continue;
-      const FrictionStep path = slide(f, e.stiffness * way, e.limit(before).force, e.limit(after).force);
-      const double lost = path.mean * way - 0.5 * (path.end * path.end - f * f) / e.stiffness;
-      EXPECT_GE(lost, -1e-9);
-      dissipated_ += lost;
-    }
-  }
-
-  VehicleModel vehicle_;
-  HhtScheme hht_;
-  VehicleResponse response_;
-  ElementCompliance compliance_;
-  ElementForces elements_;
-  LinearMotion motion_;
-  Eigen::VectorXd friction_, load_;
-  Prediction prediction_;
-  double dissipated_ = 0.0;
-};
 
 /// Largest difference of the displacement from the exact motion over `periods`, relative to its largest value.
 double largest_error(Oscillator& steps, PiecewiseLinearMotion& exact, double time_step, double periods) {
@@ -295,9 +108,9 @@ double blow_off_error(double time_step, double alpha, ContactForceRule rule) {
   Oscillator mass(mass_on(blow_off()), {alpha, time_step, rule});
   mass.begin(0.05, 0.0);
   constexpr double rest = blow_off_force - c2 * blow_off_rate;
-  PiecewiseLinearMotion exact({oscillator(0.0, c1, 0.0), oscillator(0.0, c2, rest), oscillator(0.0, c2, -rest)},
-                              [](const Eigen::VectorXd& y) { return blow_off_regime(y[1]); },
-                              Eigen::Vector2d(0.05, 0.0), time_step);
+  PiecewiseLinearMotion exact(
+      {oscillator(0.0, c1, 0.0), oscillator(0.0, c2, rest), oscillator(0.0, c2, -rest)},
+      [](const Eigen::VectorXd& y) { return blow_off_regime(y[1]); }, Eigen::Vector2d(0.05, 0.0), time_step);
   return largest_error(mass, exact, time_step, 3.0);
 }
 
@@ -335,12 +148,13 @@ TEST(BlowOffDamper, InSeriesMeetsTheClosedFormWithSecondOrder) {
   const auto error = [&](double time_step, double alpha, ContactForceRule rule) {
     Oscillator mass(mass_on(blow_off(), c1, series), {alpha, time_step, rule});
     mass.begin(0.05, 0.0);
-    PiecewiseLinearMotion exact({regime(c1, 0.0), regime(c2, rest), regime(c2, -rest)},
-                                [series](const Eigen::VectorXd& y) {
-                                  const double force = series * y[2];
-                                  return std::abs(force) < blow_off_force ? 0 : force > 0.0 ? 1 : 2;
-                                },
-                                Eigen::Vector3d(0.05, 0.0, 0.0), time_step);
+    PiecewiseLinearMotion exact(
+        {regime(c1, 0.0), regime(c2, rest), regime(c2, -rest)},
+        [series](const Eigen::VectorXd& y) {
+          const double force = series * y[2];
+          return std::abs(force) < blow_off_force ? 0 : force > 0.0 ? 1 : 2;
+        },
+        Eigen::Vector3d(0.05, 0.0, 0.0), time_step);
     return largest_error(mass, exact, time_step, 3.0);
   };
   for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
@@ -367,17 +181,18 @@ double friction_error(double time_step, double alpha, ContactForceRule rule) {
   const auto regime = [](double rate) -> Regime {
     return {Eigen::MatrixXd{{0.0, 1.0, 0.0}, {-k / m, 0.0, -1.0 / m}, {0.0, rate, 0.0}}, Eigen::Vector3d::Zero()};
   };
-  PiecewiseLinearMotion exact({regime(stiffness), regime(0.0)},
-                              [](const Eigen::VectorXd& y) {
-                                constexpr double rounding = 1e-9;
-                                const bool slides = std::abs(y[2]) >= force * (1.0 - rounding) && y[2] * y[1] > 0.0;
-                                return slides ? 1 : 0;
-                              },
-                              Eigen::Vector3d(0.05, 0.0, 0.0), time_step);
+  PiecewiseLinearMotion exact(
+      {regime(stiffness), regime(0.0)},
+      [](const Eigen::VectorXd& y) {
+        constexpr double rounding = 1e-9;
+        const bool slides = std::abs(y[2]) >= force * (1.0 - rounding) && y[2] * y[1] > 0.0;
+        return slides ? 1 : 0;
+      },
+      Eigen::Vector3d(0.05, 0.0, 0.0), time_step);
   return largest_error(mass, exact, time_step, 4.0);
 }
 
-TEST(Friction, MeetsTheClosedFormWithSecondOrder) {
+TEST(DryFriction, MeetsTheClosedFormWithSecondOrder) {
   for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
     for (const double alpha : {0.0, -0.05}) {
       const double coarse = friction_error(period / 500.0, alpha, rule);
@@ -392,7 +207,7 @@ TEST(Friction, MeetsTheClosedFormWithSecondOrder) {
 /// Forced vibration with Coulomb friction F and a force P cos Ωt, which does not stop within a cycle [DenHartog1931]:
 /// The travel before sliding, s, delays the friction by √(s/x̂): here it is shorter than a step.
 ///     x̂ = (P/k) √(V² − (F/P)² H²),  V = 1/(1 − β²),  H = sin(π/β)/(β (1 + cos(π/β))),  β = Ω/ω.
-TEST(Friction, MeetsDenHartogsForcedVibration) {
+TEST(DryFriction, MeetsDenHartogsForcedVibration) {
   constexpr double P = 4e3, F = 0.3 * P;
   for (const double beta : {0.7, 1.3}) {
     const double V = 1.0 / (1.0 - beta * beta);
@@ -412,7 +227,7 @@ TEST(Friction, MeetsDenHartogsForcedVibration) {
   }
 }
 
-TEST(Friction, DissipatesWhatTheMassLoses) {
+TEST(DryFriction, DissipatesWhatTheMassLoses) {
   for (const double slides_after : {4e-3, 1e-5}) {
     Oscillator mass(mass_on(sliding(2e3, slides_after)), {0.0, period / 200.0, ContactForceRule::energy});
     mass.begin(0.05, 0.0);

@@ -191,29 +191,28 @@ TEST(VehicleFile, SaysWhatIsNotLinear) {
           "friction_ratio_z = 0.2\nfriction_yaw = 5e3\nstand_in_for = \"leaf springs\"\n",
       "wagon.toml");
   EXPECT_EQ(data.parts.suspension[0].damping.y(), 25000.0);  // the slope of the first segment
-  EXPECT_EQ(data.nonlinear,
-            (std::vector<std::string>{"springs along x: dry friction of 4000 N",
-                                      "springs along y: damper of 2 points, up to 3585 N at 0.3 m/s",
-                                      "springs along y: stop from 0 N at 25 mm to 600 N at 30 mm",
-                                      "springs along z: dry friction of 0.2 times the load along z",
-                                      "springs about z: dry friction of 5000 N m"}));
+  EXPECT_EQ(data.nonlinear, (std::vector<std::string>{"springs along x: dry friction of 4000 N",
+                                                      "springs along y: damper of 2 points, up to 3585 N at 0.3 m/s",
+                                                      "springs along y: stop from 0 N at 25 mm to 600 N at 30 mm",
+                                                      "springs along z: dry friction of 0.2 times the load along z",
+                                                      "springs about z: dry friction of 5000 N m"}));
   EXPECT_EQ(data.stand_ins, (std::vector<std::string>{"springs: a linear stand-in for leaf springs"}));
   EXPECT_EQ(data.linearised,
             (std::vector<std::string>{
                 "springs along y: its damper of 2 points, up to 3585 N at 0.3 m/s, runs linearly with 25000 N s/m",
                 "springs along z: dry friction of 0.2 times the load along z runs as a linear damper of 30000 N s/m",
                 "springs: a linear stand-in for leaf springs"}));
-  EXPECT_EQ(data.left_out,
-            (std::vector<std::string>{"springs along x: dry friction of 4000 N",
-                                      "springs along y: its stop, from 0 N at 25 mm to 600 N at 30 mm",
-                                      "springs about z: dry friction of 5000 N m"}));
+  EXPECT_EQ(data.left_out, (std::vector<std::string>{"springs along x: dry friction of 4000 N",
+                                                     "springs along y: its stop, from 0 N at 25 mm to 600 N at 30 mm",
+                                                     "springs about z: dry friction of 5000 N m"}));
 }
 
 // The model of a run has the elements in place of their stand-ins, that of natural motions the stand-ins.
 TEST(VehicleFile, BuildsTheElementsOrTheirStandIns) {
   const VehicleData data = parse_vehicle(
-      wagon + "damper_curve_y = [[0.1, 2500], [0.3, 3585]]\nseries_ky = 1e6\nstop_y = [[0.025, 0], [0.03, 600]]\n"
-              "friction_ratio_z = 0.2\n",
+      wagon +
+          "damper_curve_y = [[0.1, 2500], [0.3, 3585]]\nseries_ky = 1e6\nstop_y = [[0.025, 0], [0.03, 600]]\n"
+          "friction_ratio_z = 0.2\n",
       "wagon.toml");
   const VehicleModel linear = build_vehicle(data, MotionPlane::spatial);
   const VehicleModel built = build_vehicle(data, MotionPlane::spatial, {}, ForceElementChoice::nonlinear);

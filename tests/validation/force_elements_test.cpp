@@ -210,8 +210,8 @@ TEST(ForceElements, MomentsBalanceOnTheStops) {
   EXPECT_NEAR(moment, expected, 5e-3 * expected);
 }
 
-// A freight wagon with wedges whose wheels follow the rails: the car body moves as on Hertz's contacts, which add little,
-// and steps converge.
+// A freight wagon with wedges whose wheels follow the rails: the car body moves as on Hertz's contacts, which add
+// little, and steps converge.
 TEST(ForceElements, WedgesWithWheelsThatFollowTheRails) {
   SceneParameters scene = coach_in_gust("freight-21t", 0.42);
   scene.loads[0].load = {};

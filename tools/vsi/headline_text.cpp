@@ -148,12 +148,11 @@ nlohmann::ordered_json headline_json(const report::Headline& headline, const Run
                      {"structure", summary.seconds_structure}, {"vehicle", summary.seconds_vehicle},
                      {"output", summary.seconds_output}};
   if (summary.stops) {
-    json["stops"] = {
-        {"first", {{"time", summary.stops->first_time}, {"where", summary.stops->first_name}}},
-        {"largest_force",
-         {{"value", summary.stops->largest_force},
-          {"time", summary.stops->largest_time},
-          {"where", summary.stops->largest_name}}}};
+    json["stops"] = {{"first", {{"time", summary.stops->first_time}, {"where", summary.stops->first_name}}},
+                     {"largest_force",
+                      {{"value", summary.stops->largest_force},
+                       {"time", summary.stops->largest_time},
+                       {"where", summary.stops->largest_name}}}};
   }
   if (summary.contact_energy) json["contact_energy"] = contact_energy_json(*summary.contact_energy);
   if (headline.real_time_factor > 0.0) json["real_time_factor"] = headline.real_time_factor;
