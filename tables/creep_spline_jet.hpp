@@ -4,14 +4,9 @@
 #include <cstddef>
 #include <cstring>
 
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
+#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
-
-/// Four doubles side by side. Handed over by reference: by value its place depends on the instruction set.
-using Pack [[gnu::vector_size(32)]] = double;
 
 /// Weights of the four B-splines around a query and their derivatives with respect to its fraction of the cell; in each
 /// pack the axes a/b, t, α, β.
@@ -39,15 +34,6 @@ struct CreepSplineJet {
 
 namespace creep_spline_detail {
 
-/// Four neighbouring floats as doubles. GCC 12 converts a vector type by halves, in twice the instructions.
-inline void widen(const float* from, Pack& to) noexcept {
-#ifdef __AVX__
-  to = _mm256_cvtps_pd(_mm_loadu_ps(from));
-#else
-  for (int i = 0; i < 4; ++i) to[i] = static_cast<double>(from[i]);
-#endif
-}
-
 /// Four places of β, three functions each, one after the other in three packs: with one place in each.
 inline void separate(const Pack* three, Pack* places) noexcept {
   places[0] = three[0];
@@ -69,7 +55,7 @@ inline void over_beta(const Pack* places, const Pack* weights, Pack& sum) noexce
 /// @param corner of place (0, 0, 0, 0); three functions to a place, β fastest. @param stride of a/b, t, α, in floats
 inline void creep_spline_jet(const float* corner, const std::array<std::size_t, 3>& stride, const CreepSplineWeights& w,
                              CreepSplineJet& jet) noexcept {
-  using creep_spline_detail::over_beta, creep_spline_detail::separate, creep_spline_detail::widen;
+  using creep_spline_detail::over_beta, creep_spline_detail::separate;
   enum Axis { ratio, t, alpha };
   constexpr int packs = 3;  // four places of β, three functions
   Pack value[packs]{}, by_t[packs]{}, by_alpha[packs]{};

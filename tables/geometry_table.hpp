@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "railtab/tables/geometry_leaf.hpp"
+#include "railtab/tables/loaded_table.hpp"
 #include "railtab/tables/profile_knots.hpp"
 #include "railtab/tables/provenance.hpp"
 #include "railtab/tables/table_shard.hpp"
@@ -67,6 +69,7 @@ struct GeometryTableData {
   std::vector<float> trusted_lowering;
   std::vector<float> coefficient;  ///< per branch, in the order of the leaves: branch_terms() times four quantities
   double tolerance = 0;            ///< penetration error the table was made for [m]
+  std::optional<LoadedTableData> loaded;  ///< the loaded contact of the pair, where the file holds it
   /// Measured error statistics and options, name -> value; written as attributes.
   std::vector<std::pair<std::string, double>> statistics;
   TableProvenance provenance;

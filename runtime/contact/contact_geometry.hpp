@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <variant>
 
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/tables/loaded_table.hpp"
 
 namespace railtab {
 
@@ -13,7 +15,12 @@ namespace railtab {
 class ContactGeometry {
  public:
   using Source = std::variant<TableContact, ContactSearch, PaperSearch>;
-  explicit ContactGeometry(Source source) : source_(std::move(source)) {}
+  /// @param loaded the loaded contact of the same pair, where forces come from it
+  explicit ContactGeometry(Source source, std::shared_ptr<const LoadedTable> loaded = nullptr)
+      : source_(std::move(source)), loaded_(std::move(loaded)) {}
+
+  /// Null where normal forces are those of the patches.
+  [[nodiscard]] const LoadedTable* loaded() const noexcept { return loaded_.get(); }
 
   /// Patches of the right wheel at a pose, with penetration above zero. Left wheel: pose.mirrored().
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose) const noexcept {
@@ -24,7 +31,7 @@ class ContactGeometry {
   /// The online search in place of a table.
   [[nodiscard]] ContactGeometry without_table() const {
     const auto* const table = std::get_if<TableContact>(&source_);
-    return table ? ContactGeometry(table->search()) : *this;
+    return table ? ContactGeometry(table->search(), loaded_) : *this;
   }
 
   [[nodiscard]] const WheelRailPair& pair() const noexcept {
@@ -44,6 +51,7 @@ class ContactGeometry {
 
  private:
   Source source_;
+  std::shared_ptr<const LoadedTable> loaded_;
 };
 
 }  // namespace railtab

@@ -41,6 +41,44 @@ CreepForce creep_force(const CreepLaw& law, double ratio, const Creepage& creepa
   return std::visit(Force{ratio, creepage}, law);
 }
 
+namespace {
+
+void set_column(const CreepForce& from, const CreepForce& to, double step, std::size_t j, CreepForceJet& jet) {
+  jet.derivative[0][j] = (to.x - from.x) / step;
+  jet.derivative[1][j] = (to.y - from.y) / step;
+  jet.derivative[2][j] = (to.moment - from.moment) / step;
+}
+
+}  // namespace
+
+CreepForceJet creep_force_jet(const CreepLaw& law, double ratio, const Creepage& creepage) noexcept {
+  constexpr double share = 1e-6;  // of a/b, and of a creepage or of 1
+  CreepForceJet jet;
+  const auto* const table = std::get_if<TableCreep>(&law);
+  const bool from_table = table && table->share(ratio, creepage) == 1.0;
+  if (from_table) {
+    const Creepage c = within_range(creepage);
+    const CreepLookup found = table->table->lookup(ratio, {c.x, c.y, c.spin});
+    jet.force = {found.force[0], found.force[1], found.force[2]};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) jet.derivative[i][j + 1] = found.derivative[i][j];
+  } else {
+    jet.force = creep_force(law, ratio, creepage);
+  }
+  set_column(jet.force, creep_force(law, (1.0 + share) * ratio, creepage), share * ratio, 0, jet);
+  if (from_table) return jet;
+  const auto along = [&](double Creepage::*member, std::size_t j) {
+    Creepage moved = creepage;
+    const double step = share * std::max(1.0, std::abs(creepage.*member));
+    moved.*member += step;
+    set_column(jet.force, creep_force(law, ratio, moved), step, j, jet);
+  };
+  along(&Creepage::x, 1);
+  along(&Creepage::y, 2);
+  along(&Creepage::spin, 3);
+  return jet;
+}
+
 std::string_view creep_law_name(const CreepLaw& law) noexcept {
   constexpr std::string_view names[] = {"linear", "polach", "fastsim", "table"};
   return names[law.index()];

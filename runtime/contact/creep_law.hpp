@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -70,6 +71,16 @@ using CreepLaw = std::variant<LinearCreep, PolachCreep, FastsimCreep, TableCreep
 
 /// Normalised creep force on the wheel for an ellipse of ratio a/b. Finite for every finite input.
 [[nodiscard]] CreepForce creep_force(const CreepLaw& law, double ratio, const Creepage& creepage) noexcept;
+
+/// Creep force with its derivatives.
+struct CreepForceJet {
+  CreepForce force;
+  /// [i][j]: of F_x, F_y, M_z with respect to a/b, υx, υy, φ.
+  std::array<std::array<double, 4>, 3> derivative{};
+};
+
+/// creep_force() and its derivatives: from the table's own where the creep table answers, else by differences.
+[[nodiscard]] CreepForceJet creep_force_jet(const CreepLaw& law, double ratio, const Creepage& creepage) noexcept;
 
 [[nodiscard]] std::string_view creep_law_name(const CreepLaw& law) noexcept;
 

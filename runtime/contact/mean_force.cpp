@@ -19,7 +19,7 @@ double PenetrationGradient::change(const WheelsetPose& from, const WheelsetPose&
 }
 
 Vector9 ContactMemory::force() const noexcept {
-  Vector9 sum = Vector9::Zero();
+  Vector9 sum = loaded.total;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) sum += patch[i].force;
   return sum;
 }

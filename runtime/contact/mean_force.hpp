@@ -1,6 +1,6 @@
 #pragma once
 
-#include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/contact/loaded_wheel.hpp"
 
 namespace railtab {
 
@@ -27,8 +27,9 @@ struct ContactMemory {
   WheelsetPose pose;
   std::array<Patch, ContactPatches::capacity> patch;  ///< the first `count`
   int count = 0;
+  LoadedMemory loaded;  ///< of the contact by the loaded table
 
-  [[nodiscard]] Vector9 force() const noexcept;  ///< of all patches
+  [[nodiscard]] Vector9 force() const noexcept;  ///< of all patches and the loaded contact
 };
 
 [[nodiscard]] ContactMemory remembered(const WheelRailPair& pair, const WheelsetPose& pose,

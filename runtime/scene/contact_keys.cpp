@@ -87,7 +87,16 @@ std::vector<KeyRow> contact_keys() {
        {},
        contact_search_left_out},
       {"contact.table", "", "geometry table, with its profiles and dimensions",
-       FileKey{of_contact<&ContactParameters::table>}}};
+       FileKey{of_contact<&ContactParameters::table>}},
+      {"contact.elastic",
+       "",
+       "elastic forces: half-space solutions from the loaded part of the table, or an ellipse per patch; automatic: "
+       "the "
+       "former where the table has that part",
+       choice<ElasticContact>(of_contact<&ContactParameters::elastic>, {{"automatic", ElasticContact::automatic},
+                                                                        {"half-space", ElasticContact::half_space},
+                                                                        {"patches", ElasticContact::patches}}),
+       {&with_contact_table}}};
   return all_of({rows, applying(with_hertz_contact, all_of({hertz, pair_keys(), force_keys()}))});
 }
 

@@ -38,6 +38,8 @@ const Condition without_speed_file{
     "no train.speed_file", [](At at) { return unless(at.scene.train.speed_file.empty(), "train.speed_file too"); }};
 const Condition without_contact_table{
     "no contact.table", [](At at) { return unless(at.scene.contact.table.empty(), "contact.table too"); }};
+const Condition with_contact_table{"contact.table",
+                                   [](At at) { return unless(!at.scene.contact.table.empty(), "no contact.table"); }};
 const Condition without_irregularity_file{
     "no irregularity.file", [](At at) { return unless(!at.scene.irregularity, "irregularity.file too"); }};
 const Condition without_damping_type{"no bridge.damping_type", [](At at) {

@@ -32,8 +32,8 @@ struct Condition {
 extern const Condition without_speed_kmh, without_speed_file, without_contact_table, without_irregularity_file,
     without_damping_type;
 // Vehicles and contact.
-extern const Condition with_imported_vehicle, with_hertz_contact, with_creep_table_law, with_automatic_contact_force,
-    with_smooth_search;
+extern const Condition with_imported_vehicle, with_contact_table, with_hertz_contact, with_creep_table_law,
+    with_automatic_contact_force, with_smooth_search;
 // The line.
 extern const Condition with_spectrum, with_turning_spans;
 // Track and structure.

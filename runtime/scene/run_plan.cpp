@@ -51,6 +51,9 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPl
     plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
                                      model.geometry->pair().wheel().knots().name,
                                      model.geometry->pair().rail().knots().name));
+    plan.built.push_back(model.geometry->loaded()
+                             ? "elastic contact forces: half-space solutions, from the loaded part of the table"
+                             : "elastic contact forces: an ellipse per patch");
     plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
     return;
   }

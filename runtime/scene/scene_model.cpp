@@ -28,14 +28,36 @@ WheelRailPair scene_pair(const ContactParameters& contact) {
                        contact.dimensions);
 }
 
-ContactGeometry::Source geometry_source(const ContactParameters& contact) {
+/// The loaded contact of a table, where the scene's forces are to come from it; it leaves the table.
+std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& contact, GeometryTableData& table) {
+  std::optional<LoadedTableData> loaded = std::move(table.loaded);
+  table.loaded.reset();
+  if (contact.elastic == ElasticContact::patches) return nullptr;
+  if (!loaded) {
+    if (contact.elastic == ElasticContact::automatic) return nullptr;
+    throw input_error("scene: contact.elastic", fmt::format("\"half-space\" with {}", contact.table.string()),
+                      "a table with a loaded part (tablegen loaded adds it), or \"patches\"");
+  }
+  const double modulus = contact.material.contact_modulus();
+  if (std::abs(loaded->contact_modulus / modulus - 1.0) > 1e-6) {
+    throw input_error("scene: contact.material", fmt::format("steel of the contact modulus E* = {:.6g} Pa", modulus),
+                      fmt::format("{:.6g} Pa, that of the loaded part of {}, or contact.elastic = \"patches\"",
+                                  loaded->contact_modulus, contact.table.string()));
+  }
+  return std::make_shared<const LoadedTable>(std::move(*loaded));
+}
+
+ContactGeometry scene_geometry(const ContactParameters& contact) {
   switch (contact.mode) {
-    case ContactMode::table:
-      return TableContact(GeometryTable(read_geometry_table(contact.table)));
+    case ContactMode::table: {
+      GeometryTableData table = read_geometry_table(contact.table);
+      std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
+      return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded));
+    }
     case ContactMode::online:
-      return ContactSearch(scene_pair(contact));
+      return ContactGeometry(ContactSearch(scene_pair(contact)));
     case ContactMode::paper:
-      return PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline);
+      return ContactGeometry(PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline));
   }
   throw InputError("contact.mode: unknown");
 }
@@ -103,7 +125,7 @@ void check_on_track(const SceneParameters& scene, const VsiModel& model) {
 
 // Contact geometry and contact forces; a scene whose wheels follow the rails needs neither.
 void add_contact(const ContactParameters& contact, VsiModel& model) {
-  model.geometry = std::make_shared<const ContactGeometry>(geometry_source(contact));
+  model.geometry = std::make_shared<const ContactGeometry>(scene_geometry(contact));
   model.contact.geometry = model.geometry.get();
   model.contact.normal.material = contact.material;
   model.contact.normal.curvature_floor =

@@ -22,6 +22,8 @@
 namespace railtab {
 
 enum class ContactMode { table, online, paper };
+/// Elastic forces of the contact: the half-space solution where the table holds it, or always, or those of patches.
+enum class ElasticContact { automatic, half_space, patches };
 enum class TrackKind { rigid, flexible, imported };
 
 struct TrainParameters {
@@ -46,6 +48,7 @@ struct TrainParameters {
 struct ContactParameters {
   ContactMode mode = ContactMode::table;
   NormalContact normal = NormalContact::hertz;
+  ElasticContact elastic = ElasticContact::automatic;
   std::filesystem::path table;  ///< geometry table; also gives the profiles
   std::string wheel = "S1002";  ///< where no table is named (online, paper)
   std::string rail = "60E1";

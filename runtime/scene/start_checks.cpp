@@ -116,8 +116,9 @@ std::string displacement_warning(const SceneParameters& scene, const VsiModel& m
       const bool left = side == WheelSide::left;
       const WheelsetMotion motion = wheelset_motion(present, present.predicted, w);
       const RailHeadMotion rail = rail_motion(present, present.predicted, w, left ? 0 : 1);
-      const ContactPatches patches = model.geometry->patches(relative_pose(model.geometry->pair(), side, motion, rail));
-      const double lateral = wheel_force(contact, side, motion, rail, patches).wheelset[1];
+      const WheelContact found =
+          wheel_contact(*model.geometry, relative_pose(model.geometry->pair(), side, motion, rail));
+      const double lateral = wheel_force(contact, side, motion, rail, found).wheelset[1];
       largest = std::max(largest, std::abs(lateral));
       const double below = motion.displacement[2] + (left ? -b : b) * motion.displacement[3];
       lift = std::max(lift, rail.displacement[1] - below);

@@ -23,9 +23,9 @@ double vertical_force(const VsiModel& model, const WheelContactModel& contact, c
   const WheelSide wheel_side = side == 0 ? WheelSide::left : WheelSide::right;
   const WheelsetMotion motion = wheelset_motion(problem, displacement, w);
   const RailHeadMotion rail = rail_motion(problem, displacement, w, side);
-  const ContactPatches patches =
-      model.geometry->patches(relative_pose(model.geometry->pair(), wheel_side, motion, rail));
-  return -wheel_force(contact, wheel_side, motion, rail, patches).wheelset[2];
+  const WheelContact found =
+      wheel_contact(*model.geometry, relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+  return -wheel_force(contact, wheel_side, motion, rail, found).wheelset[2];
 }
 
 const DofIndices& wheelset_dof(const VsiModel& model, int w) {

@@ -2,7 +2,7 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
-#include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/runtime/contact/contact_response.hpp"
 
 namespace railtab {
 
@@ -12,13 +12,19 @@ using Matrix12 = NewtonWorkspace::Matrix12;
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
-ContactPatches wheel_patches(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
-                             NewtonWorkspace& ws) {
-  if (ws.found.empty()) return model.geometry->patches(pose);
-  if (pairs == Pairs::kept) return moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
-  ws.found[wheel] = model.geometry->patches(pose);
-  ws.found_at[wheel] = pose;
-  return ws.found[wheel];
+WheelContact contact_of_wheel(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
+                              NewtonWorkspace& ws) {
+  if (ws.found.empty()) return wheel_contact(*model.geometry, pose);
+  if (pairs == Pairs::searched) {
+    ws.found[wheel] = model.geometry->patches(pose);
+    ws.found_at[wheel] = pose;
+  }
+  WheelContact contact;
+  contact.pose = pose;
+  contact.patches = pairs == Pairs::searched
+                        ? ws.found[wheel]
+                        : moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
+  return contact;
 }
 
 }  // namespace
@@ -36,29 +42,29 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
       const WheelSide wheel_side = sides[index(side)];
       const std::size_t number = index(2 * w + side);
-      ContactPatches& patches = s.patches[number];
       const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
+      WheelContact& contact = s.contact[number];
       {
         const Stopwatch watch(counts.seconds_lookup);
-        patches = wheel_patches(model, number, pose, pairs, ws);
+        contact = contact_of_wheel(model, number, pose, pairs, ws);
       }
       if (pairs == Pairs::searched) {
         ++counts.queries;
-        if (patches.from_table) ++counts.table_queries;
+        if (!contact.by_patches() || contact.patches.from_table) ++counts.table_queries;
       }
-      const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
-      const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, loads);
+      const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, contact);
       const int r = 6 + 3 * side;
       end_force.head<6>() += wheel.wheelset;
       end_force.segment<3>(r) = wheel.rail;
       s.rail_x[number] = wheel.rail_x;
       counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
-      s.memory[number] = remembered(model.geometry->pair(), pose, patches, wheel);
+      s.memory[number] = contact_memory(model, wheel_side, motion, rail, contact, wheel);
       if (problem.start) {
         const ContactMemory& start = problem.start->memory[number];
-        const Vector9 share = problem.mean_weight *
-                              (mean_force(model.geometry->pair(), start, pose, patches, wheel) - 0.5 * start.force());
+        const Vector9 share =
+            problem.mean_weight *
+            (mean_force(model, wheel_side, motion, rail, start, contact, wheel) - 0.5 * start.force());
         force.head<6>() += share.head<6>();
         force.segment<3>(r) = share.tail<3>();
       } else {
@@ -81,7 +87,7 @@ void differentiate(const WheelContactModel& model, const ContactProblem& problem
       const std::size_t number = index(2 * w + side);
       const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
       const Matrix9 t = (start ? problem.mean_weight : 1.0) *
-                        wheel_force_tangent(model, sides[index(side)], motion, rail, s.patches[number],
+                        wheel_force_tangent(model, sides[index(side)], motion, rail, s.contact[number],
                                             {problem.velocity_rate, problem.rail_velocity_rate, start});
       const int r = 6 + 3 * side;
       tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "railtab/runtime/contact/mean_force.hpp"
+#include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
@@ -36,7 +36,7 @@ struct ContactSolution {
   Eigen::VectorXd step_load;   ///< p, the contacts' part of Eq. 12 in the last step
   std::vector<double> rail_x;  ///< longitudinal force on the rail per wheel [N]
   std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
-  std::vector<ContactPatches> patches;  ///< per wheel, of its own (mirrored on the left) side
+  std::vector<WheelContact> contact;  ///< per wheel, of its own (mirrored on the left) side
   std::vector<ContactMemory> memory;    ///< per wheel, what the next step wants to know of this one's end
 };
 

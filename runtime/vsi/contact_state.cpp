@@ -3,19 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/index.hpp"
+
 namespace railtab {
 
 std::vector<ContactState> contact_states(const ContactSolution& contact) {
   constexpr double flange_angle = 0.2;  // rad: steeper than any tread
   std::vector<ContactState> result;
-  result.reserve(contact.patches.size());
-  for (std::size_t wheel = 0; wheel < contact.patches.size(); ++wheel) {
-    const ContactPatches& patches = contact.patches[wheel];
+  result.reserve(contact.contact.size());
+  for (std::size_t wheel = 0; wheel < contact.contact.size(); ++wheel) {
     ContactState state = ContactState::separated;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
-      if (contact.normal[wheel][i] <= 0.0) continue;
-      const bool flange = std::abs(patches.patch[i].angle) > flange_angle;
-      state = std::max(state, flange ? ContactState::flange : ContactState::tread);
+    const auto bears = [&](std::size_t i, double angle) {
+      if (contact.normal[wheel][i] <= 0.0) return;
+      state = std::max(state, std::abs(angle) > flange_angle ? ContactState::flange : ContactState::tread);
+    };
+    const WheelContact& of_wheel = contact.contact[wheel];
+    if (of_wheel.by_patches()) {
+      for (std::size_t i = 0; i < index(of_wheel.patches.count); ++i) bears(i, of_wheel.patches.patch[i].angle);
+    } else if (of_wheel.touches()) {
+      for (std::size_t i = 0; i < of_wheel.loaded.parts; ++i) bears(i, of_wheel.loaded.part[i].angle);
     }
     result.push_back(state);
   }
@@ -34,7 +40,7 @@ ContactChange contact_change(const ContactSolution& before, const ContactSolutio
 
 double largest_force_change(const ContactSolution& before, const ContactSolution& after) {
   double largest = 0.0;
-  for (int wheel = 0; wheel < static_cast<int>(after.patches.size()); ++wheel) {
+  for (int wheel = 0; wheel < static_cast<int>(after.contact.size()); ++wheel) {
     const int vertical = rail_unknown(wheel) + 1;
     largest = std::max(largest, std::abs(after.end_force[vertical] - before.end_force[vertical]));
   }

@@ -12,7 +12,7 @@ constexpr double farthest_aside = 0.15;  // m
 constexpr double deepest = 0.1;          // m, below the rails
 
 bool touches(const VsiState& state, int wheel) {
-  return state.contact.patches[static_cast<std::size_t>(wheel)].count > 0;
+  return state.contact.contact[static_cast<std::size_t>(wheel)].touches();
 }
 
 /// Where a wheelset stands against the mean of its two rail heads, lateral and down.

@@ -11,16 +11,6 @@ namespace {
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
-/// (2/5) F d of the patches of one wheel.
-double contact_energy(const WheelContactModel& model, const WheelsetPose& pose, const ContactPatches& patches) {
-  const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < index(patches.count); ++i) {
-    sum += 0.4 * loads[i].elastic_force * patches.patch[i].penetration;
-  }
-  return sum;
-}
-
 // Of bump stops, and of friction that has not begun to slide.
 double stored(const ForceElements& elements, const Eigen::VectorXd& x, const Eigen::VectorXd& friction) {
   double sum = 0.0;
@@ -86,18 +76,18 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
       const WheelSide wheel_side = sides[index(side)];
       const RailHeadMotion rail = rail_motion(problem, problem.predicted, w, side);
       const WheelsetPose pose = relative_pose(pair, wheel_side, motion, rail);
-      const ContactPatches patches = model_.geometry->patches(pose);
-      now.contact_energy[index(w)] += contact_energy(contact_, pose, patches);
+      const WheelContact found = wheel_contact(*model_.geometry, pose);
+      now.contact_energy[index(w)] += elastic_energy(contact_, found);
       const std::size_t number = now.contact.size();
       const int k = wheelset_unknowns * w, r = rail_unknown(2 * w + side);
       now.wheel_displacement.segment<3>(r) = rail.displacement;
       now.wheel_velocity.segment<3>(r) = rail.velocity;
       const auto add = [&](const WheelContactModel& contact, const std::vector<ContactMemory>& before,
                            std::vector<ContactMemory>& memory, Eigen::VectorXd& mean) {
-        const WheelForce force = wheel_force(contact, wheel_side, motion, rail, patches);
-        memory.push_back(remembered(pair, pose, patches, force));
+        const WheelForce force = wheel_force(contact, wheel_side, motion, rail, found);
+        memory.push_back(contact_memory(contact, wheel_side, motion, rail, found, force));
         if (before.empty()) return;  // the account begins
-        const Vector9 f = mean_force(pair, before[number], pose, patches, force);
+        const Vector9 f = mean_force(contact, wheel_side, motion, rail, before[number], found, force);
         mean.segment<6>(k) += f.head<6>();
         mean.segment<3>(r) = f.tail<3>();
       };

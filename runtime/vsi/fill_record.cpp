@@ -32,11 +32,11 @@ void add_carried(const VsiModel& model, StepRecord& record) {
   }
 }
 
-void fill_patches(const ContactSolution& contact, std::size_t index, WheelRecord& wheel) {
-  wheel = {};
+void fill_patches(const WheelRailPair& pair, const ContactSolution& contact, std::size_t index, WheelRecord& wheel) {
+  const ContactPatches patches = recorded_patches(pair, contact.contact[index]);
   const ContactPatch* first = nullptr;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.patches[index].count); ++i) {
-    const ContactPatch& patch = contact.patches[index].patch[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+    const ContactPatch& patch = patches.patch[i];
     const double force = contact.normal[index][i];
     if (force <= 0.0) continue;
     ++wheel.patches;
@@ -66,7 +66,8 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   record.wheels.resize(wheels);
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
-    fill_patches(state.contact, wheel, w);
+    w = {};
+    if (model.geometry) fill_patches(model.geometry->pair(), state.contact, wheel, w);
     const int unknown = rail_unknown(static_cast<int>(wheel));
     w.Y = state.contact.end_force[unknown];
     w.Q = state.contact.end_force[unknown + 1];

@@ -27,7 +27,7 @@ void ForceRulePolicy::after_step(ContactChange change, ContactForceRule used, do
 bool ForceRulePolicy::alternates(const VsiState& state) const noexcept {
   constexpr double share = 1e-3;  // of the static wheel load
   double largest = 0.0;
-  for (int wheel = 0; wheel < static_cast<int>(state.contact.patches.size()); ++wheel) {
+  for (int wheel = 0; wheel < static_cast<int>(state.contact.contact.size()); ++wheel) {
     const auto force = [wheel](const Eigen::VectorXd& f) { return f.segment<2>(rail_unknown(wheel)); };
     largest =
         std::max(largest, (force(state.contact.step_load) - force(state.contact.end_force)).cwiseAbs().maxCoeff());

@@ -90,7 +90,7 @@ void set_vertical_forces(const Eigen::VectorXd& force, ContactSolution& solution
     solution.force[wheelset_unknowns * w + heave] = force[w];
     for (int side = 0; side < 2; ++side) {
       solution.force[rail_unknown(2 * w + side) + 1] = -0.5 * force[w];
-      solution.patches[index(2 * w + side)].count = 0;
+      solution.contact[index(2 * w + side)] = {};
     }
   }
   solution.end_force = solution.force;

@@ -135,7 +135,7 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   state.contact.end_force = std::move(now.end_force);
   state.contact.memory = std::move(now.memory);
   state.contact.normal = std::move(now.normal);
-  state.contact.patches = std::move(now.patches);
+  state.contact.contact = std::move(now.contact);
 }
 
 std::unique_ptr<ContactLaw> make_contact_law(const VsiModel& model) {

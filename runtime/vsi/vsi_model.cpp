@@ -50,7 +50,7 @@ VsiState::VsiState(const VsiModel& model)
   contact.end_force = contact.step_load = contact.force;
   contact.memory.resize(index(2 * wheelsets));
   contact.rail_x.assign(index(2 * wheelsets), 0.0);
-  contact.patches.resize(index(2 * wheelsets));
+  contact.contact.resize(index(2 * wheelsets));
   contact.normal.resize(index(2 * wheelsets));
   far_field = Eigen::VectorXd::Zero(6 * wheelsets);
   if (model.window) left_behind = Eigen::VectorXd::Zero(model.window->numbers());

@@ -15,6 +15,7 @@ void contact_command(const std::vector<std::string>& arguments);
 void creep_command(const std::vector<std::string>& arguments);
 void geometry_command(const std::vector<std::string>& arguments);
 void info_command(const std::vector<std::string>& arguments);
+void loaded_command(const std::vector<std::string>& arguments);
 void merge_command(const std::vector<std::string>& arguments);
 void verify_command(const std::vector<std::string>& arguments);
 

@@ -20,6 +20,7 @@ constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
   merge      put the shards of a table together
   contact    one exact rolling-contact solution: creep force and its proof
   conicity   rolling radius difference and equivalent conicity (EN 15302) from a geometry table
+  loaded     add the loaded contact (half-space solutions over all poses) to a geometry table
   info       print what a table holds
   verify     compare a table with the online search: errors, share of fallback, time per query
 
@@ -31,7 +32,7 @@ int run(const std::vector<std::string>& arguments) {
   const std::map<std::string, std::function<void(const std::vector<std::string>&)>> commands{
       {"batch", batch_command}, {"conicity", conicity_command}, {"contact", contact_command},
       {"creep", creep_command}, {"geometry", geometry_command}, {"info", info_command},
-      {"merge", merge_command}, {"verify", verify_command}};
+      {"loaded", loaded_command},     {"merge", merge_command}, {"verify", verify_command}};
   if (arguments.empty()) throw InputError(fmt::format("no command\n\n{}", usage));
   if (arguments[0] == "--help" || arguments[0] == "-h") {
     print_formatted("{}", usage);
@@ -44,7 +45,7 @@ int run(const std::vector<std::string>& arguments) {
   const auto command = commands.find(arguments[0]);
   if (command == commands.end()) {
     throw input_error("command", fmt::format("\"{}\"", arguments[0]),
-                      "geometry, batch, creep, merge, contact, conicity, info or verify");
+                      "geometry, batch, creep, merge, contact, conicity, loaded, info or verify");
   }
   command->second({arguments.begin() + 1, arguments.end()});
   return 0;

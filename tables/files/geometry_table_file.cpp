@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "railtab/tables/files/file_fields.hpp"
+#include "railtab/tables/files/loaded_table_file.hpp"
 #include "railtab/tables/files/table_statements.hpp"
 
 namespace railtab {
@@ -115,6 +116,7 @@ std::string content_checksum(const GeometryTableData& table) {
   add_array(table.coefficient);
   for (const DimensionColumn& column : dimension_columns) add({&(table.*column.value), 1});
   for (const auto& [name, value] : table.statistics) add({&value, 1});
+  if (table.loaded) sum = loaded_checksum(*table.loaded, sum);
   return fmt::format("{:016x}", sum);
 }
 
@@ -183,6 +185,7 @@ void write_geometry_table(const std::filesystem::path& file, const GeometryTable
   out.attribute("cells", "shard_index", static_cast<std::int64_t>(table.shard.index));
   out.attribute("cells", "shard_count", static_cast<std::int64_t>(table.shard.count));
   write_cells(out, table);
+  if (table.loaded) write_loaded_table(out, *table.loaded);
   write_statements(out, table.provenance, table.statistics, content_checksum(table));
   out.close();
 }
@@ -203,6 +206,7 @@ GeometryTableData read_geometry_table(const std::filesystem::path& name) {
   table.trusted_lowering = in.floats(lowering_field);
   in.set("terms", terms_of(table), "axes");
   table.coefficient = in.floats(coefficient_field);
+  table.loaded = read_loaded_table(file);
   table.statistics = read_statistics(file);
   table.provenance = read_provenance(file);
   require_checksum(file, content_checksum(table));

@@ -1,0 +1,78 @@
+#include "railtab/runtime/contact/contact_response.hpp"
+
+namespace railtab {
+
+WheelContact wheel_contact(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept {
+  WheelContact contact;
+  contact.pose = pose;
+  if (geometry.loaded()) contact.loaded = geometry.loaded()->lookup(pose.y, pose.z, pose.roll, pose.yaw);
+  if (contact.by_patches()) contact.patches = geometry.patches(pose);
+  return contact;
+}
+
+WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                       const RailHeadMotion& rail, const WheelContact& contact) noexcept {
+  const double share = contact.loaded.table_share;
+  if (share == 0.0) return wheel_force(model, side, wheelset, rail, contact.patches);
+  WheelForce loaded = loaded_wheel_force(model, side, wheelset, rail, contact.loaded);
+  if (share == 1.0) return loaded;
+  WheelForce force = wheel_force(model, side, wheelset, rail, contact.patches);
+  force.wheelset = (1.0 - share) * force.wheelset + share * loaded.wheelset;
+  force.rail = (1.0 - share) * force.rail + share * loaded.rail;
+  force.rail_x = -force.wheelset[0];
+  for (int i = 0; i < contact.patches.count; ++i) force.patch[static_cast<std::size_t>(i)] *= 1.0 - share;
+  return force;
+}
+
+ContactPatches recorded_patches(const WheelRailPair& pair, const WheelContact& contact) noexcept {
+  return contact.by_patches() ? contact.patches : loaded_patches(pair, contact.pose, contact.loaded);
+}
+
+double elastic_energy(const WheelContactModel& model, const WheelContact& contact) noexcept {
+  double sum = contact.loaded.table_share * contact.loaded.energy;
+  if (!contact.by_patches()) return sum;
+  const PatchLoads loads = patch_loads(model.normal, *model.geometry, contact.pose, contact.patches);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    sum += (1.0 - contact.loaded.table_share) * 0.4 * loads[i].elastic_force * contact.patches.patch[i].penetration;
+  }
+  return sum;
+}
+
+ContactMemory contact_memory(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                             const RailHeadMotion& rail, const WheelContact& contact,
+                             const WheelForce& force) noexcept {
+  ContactMemory memory = remembered(model.geometry->pair(), contact.pose, contact.patches, force);
+  if (contact.loaded.table_share > 0.0) memory.loaded = loaded_memory(model, side, wheelset, rail, contact.loaded);
+  return memory;
+}
+
+Vector9 mean_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                   const RailHeadMotion& rail, const ContactMemory& start, const WheelContact& contact,
+                   const WheelForce& force) noexcept {
+  Vector9 mean = Vector9::Zero();
+  if (contact.patches.count > 0 || start.count > 0) {
+    mean = mean_force(model.geometry->pair(), start, contact.pose, contact.patches, force);
+  }
+  if (contact.loaded.table_share > 0.0 || start.loaded.weight > 0.0) {
+    mean += loaded_mean_force(model, side, start.loaded, wheelset, rail, contact.loaded);
+  }
+  return mean;
+}
+
+Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                            const RailHeadMotion& rail, const WheelContact& contact, const StepRates& rates) noexcept {
+  const double share = contact.loaded.table_share;
+  Matrix9 tangent = Matrix9::Zero();
+  if (contact.by_patches()) {
+    tangent = (1.0 - share) * wheel_force_tangent(model, side, wheelset, rail, contact.patches, rates);
+  }
+  if (rates.start && (share > 0.0 || rates.start->loaded.weight > 0.0)) {
+    // a mean, whose ends have their shares already
+    tangent += loaded_wheel_tangent(model, side, wheelset, rail, rates, &rates.start->loaded);
+  } else if (share > 0.0) {
+    tangent += share * loaded_wheel_tangent(model, side, wheelset, rail, rates, nullptr);
+  }
+  return tangent;
+}
+
+}  // namespace railtab

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "railtab/runtime/contact/wheel_contact.hpp"
+#include "railtab/tables/loaded_table.hpp"
+
+namespace railtab {
+
+/// The elastic contact of a wheel at the start of a time step, as a right wheel's.
+struct LoadedMemory {
+  double weight = 0.0;  ///< share of the loaded table in the contact; 0: none
+  WheelsetPose pose;
+  double energy = 0.0;                              ///< U [J]
+  Eigen::Vector4d force = Eigen::Vector4d::Zero();  ///< LoadedLookup::force
+  Vector9 rest = Vector9::Zero();                   ///< creep and damping forces, weighted
+  Vector9 total = Vector9::Zero();                  ///< all forces, weighted, of the wheel as it is (track frame)
+};
+
+/// Forces of the loaded contact of one wheel: elastic forces are the derivative of the tabulated energy. Each part of
+/// the contact has its creep force, by the model's law for the ellipse with the pressure's second moments, from the
+/// creepage at the mean point of the wheel in contact; parts that merge count as one ellipse by the depth of the saddle
+/// between them (docs/theory/contact_table.md).
+/// @param lookup at the pose that relative_pose() returns
+[[nodiscard]] WheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side,
+                                            const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                            const LoadedLookup& lookup) noexcept;
+
+/// The parts that bear load as patches, for records: penetration is the approach of a Hertzian contact with the same
+/// energy and force, (5/2) U/N.
+[[nodiscard]] ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pose,
+                                            const LoadedLookup& lookup) noexcept;
+
+/// Mean over a time step, from its start to the state of `lookup`: of the elastic forces the discrete gradient of the
+/// energy [Gonzalez1996], F̄ = ½(F₀ + F₁) + (U₁ − U₀ − ½(F₀ + F₁)·Δq) M⁻¹Δq/(Δq·M⁻¹Δq), whose work is the change of
+/// the energy; of creep and damping forces the mean of both ends, in proportion to the normal force's.
+[[nodiscard]] Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
+                                        const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                        const LoadedLookup& lookup) noexcept;
+
+[[nodiscard]] LoadedMemory loaded_memory(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                                         const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept;
+
+/// As wheel_force_tangent(), by the chain rule from the table's derivatives, the law's and those of the kinematics.
+/// @param start of the mean force over a step, or null
+[[nodiscard]] Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side,
+                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                           const StepRates& rates, const LoadedMemory* start) noexcept;
+
+}  // namespace railtab

@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
+#include "commands.hpp"
+#include "railtab/tablegen/loaded_sweep.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
+#include "table_command_line.hpp"
+
+namespace railtab {
+
+namespace {
+
+namespace po = boost::program_options;
+
+po::options_description loaded_options() {
+  const LoadedSweepOptions defaults;
+  po::options_description own("Options (SI units)");
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "the geometry table of the pair")     //
+      ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"), "wheelset lateral shift without roll and yaw")  //
+      ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                             //
+      ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head")             //
+      ("largest-load", text_value("300e3")->value_name("N"),
+       "vertical force of the centred wheel at the last level of energy")  //
+      ("levels", text_value("33")->value_name("N"), "levels of energy")    //
+      ("force-error", text_value("2.5e-3")->value_name("E"),
+       "relative error of the force above 5 kN at which the lateral nodes are refined")                   //
+      ("light-error", text_value("8e-3")->value_name("E"), "the same from 1 to 5 kN")                     //
+      ("elements", text_value("28")->value_name("N"), "elements across the narrowest part of a contact")  //
+      ("modulus", text_value("210e9")->value_name("PA"), "Young's modulus of wheel and rail")             //
+      ("poisson", text_value("0.28")->value_name("NU"), "Poisson's ratio of wheel and rail");
+  return own;
+}
+
+LoadedSweepOptions requested(const TableCommandLine& line) {
+  LoadedSweepOptions options;
+  options.lateral = line.interval("lateral");
+  options.yaw = line.number("yaw");
+  options.roll = line.interval("roll");
+  options.largest_load = line.number("largest-load");
+  options.levels = static_cast<int>(line.whole_number("levels", 5, 1000));
+  options.force_error = line.number("force-error");
+  options.light_error = line.number("light-error");
+  options.contact.elements.across_narrowest = static_cast<int>(line.whole_number("elements", 4, 1000));
+  options.contact.wheel = options.contact.rail = {line.number("modulus"), line.number("poisson")};
+  options.validate();
+  return options;
+}
+
+}  // namespace
+
+void loaded_command(const std::vector<std::string>& arguments) {
+  const TableCommandLine line("tablegen loaded FILE.h5 [options]", loaded_options(), {"file"}, arguments);
+  if (line.help_printed()) return;
+  const std::string file = line.required("file");
+  ProgressBar bar("loaded contact", !line.quiet());
+  add_loaded_table(file, requested(line), provenance("loaded", arguments), [&](double share) { bar.show(share); });
+  if (line.quiet() && !line.json()) return;
+  const GeometryTableData table = read_geometry_table(file);
+  if (line.json()) {
+    print_json(table_description(table, file));
+  } else {
+    print_formatted("{}", table_text(table, file));
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "railtab/runtime/contact/contact_search.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
+
+namespace railtab {
+
+/// A lateral shift at which first touch jumps between two places of the rail.
+struct ContactJump {
+  double y;                 ///< [m]
+  double s_below, s_above;  ///< arc lengths on the rail just below and above y [m]
+};
+
+/// All jumps of first touch of more than 1 mm along the rail, in increasing y.
+[[nodiscard]] std::vector<ContactJump> contact_jumps(const ContactSearch& search, const Interval& lateral, double roll,
+                                                     double yaw);
+
+/// Where between the two places of a jump the gap between wheel and rail is largest [m].
+[[nodiscard]] double widest_gap(const ContactSearch& search, const ContactJump& jump);
+
+/// The lateral shift y at which a wheelset with roll and yaw meets the rail as one without does at y0: through the
+/// jumps of both, with a continuous slope between them and constant displacement beyond; without jumps about the
+/// wheelset centre's height above the rail, y = y0 + R0·roll.
+class LateralWarp {
+ public:
+  /// @param reference, moved jumps of the wheelset without and with roll and yaw, as many
+  LateralWarp(std::vector<double> reference, const std::vector<double>& moved, double constant);
+
+  struct Place {
+    double y, slope;  ///< [m], dy/dy0
+  };
+  [[nodiscard]] Place at(double y0) const noexcept;
+
+ private:
+  std::vector<double> y0_, displacement_, slope_;
+  double constant_;
+};
+
+}  // namespace railtab

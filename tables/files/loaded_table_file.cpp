@@ -1,0 +1,105 @@
+#include "railtab/tables/files/loaded_table_file.hpp"
+
+#include <array>
+
+#include "railtab/tables/files/file_fields.hpp"
+
+namespace railtab {
+
+namespace {
+
+constexpr const char* group = "loaded";
+
+/// Arrays of numbers with their place in the file. One list serves writer, reader and checksum.
+struct Column {
+  std::vector<double> LoadedTableData::*values;
+  Field field;
+};
+
+const std::array<Column, 6>& columns() {
+  using Values = Field::Values;
+  static const std::array<Column, 6> list{
+      Column{&LoadedTableData::lateral,
+             {"loaded/lateral", {"lateral"}, "m", "nodes of the reduced lateral shift y0", Values::increasing}},
+      Column{&LoadedTableData::roll, {"loaded/roll", {"roll"}, "rad", "nodes of the roll", Values::increasing}},
+      Column{&LoadedTableData::yaw_squared,
+             {"loaded/yaw_squared", {"yaw"}, "rad^2", "nodes of the square of the yaw", Values::increasing}},
+      Column{&LoadedTableData::cut,
+             {"loaded/cut", {"cuts"}, "m", "arc lengths on the rail profile between its parts", Values::increasing}},
+      Column{&LoadedTableData::shift,
+             {"loaded/shift", {"lateral", "roll", "yaw", "2"}, "m; 1", "lateral shift y at the nodes, and dy/dy0"}},
+      Column{&LoadedTableData::touch, {"loaded/touch", {"lateral", "roll", "yaw"}, "m", "height of first touch"}}};
+  return list;
+}
+
+const Field height_field{"loaded/height",
+                         {"lateral", "levels", "roll", "yaw", "4"},
+                         "m; m/J^0.2; 1; 1/J^0.2",
+                         "height of the wheelset at energy w^5 less that of first touch, and the height's derivatives "
+                         "with respect to w, to y0 and to both"};
+const Field pressed_field{"loaded/pressed",
+                          {"nodes"},
+                          "1",
+                          "at the nodes (lateral, level), the parts of the rail that are pressed anywhere in roll and yaw, bit by bit from the first"};
+const Field part_field{"loaded/part",
+                       {"pressed", "roll", "yaw", "12"},
+                       "1; m; rad; N/m; Pa",
+                       "per pressed part: share of the vertical force, mean point of the wheel (x over yaw, y, z), "
+                       "contact angle, semi-axes a, b over w, force per length at its peak and its upper end over w^2, "
+                       "arc lengths on rail and wheel, largest pressure over w"};
+
+}  // namespace
+
+void write_loaded_table(ArrayFileWriter& file, const LoadedTableData& table) {
+  FieldWriter out(file);
+  out.set("levels", static_cast<std::size_t>(table.levels));
+  out.set("cuts", table.cut.size());
+  for (const Column& column : columns()) {
+    if (column.values == &LoadedTableData::cut && table.cut.empty()) continue;
+    out.write(column.field, table.*column.values);
+  }
+  out.write(height_field, table.height);
+  out.write(pressed_field, table.pressed);
+  out.write(part_field, table.part);
+  file.attribute(group, "levels", static_cast<std::int64_t>(table.levels));
+  file.attribute(group, "largest_level", table.largest_level);
+  file.attribute(group, "contact_modulus", table.contact_modulus);
+  for (const auto& [name, value] : table.statistics) file.attribute("loaded/height", name, value);
+}
+
+std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
+  if (!file.contains("loaded/height")) return {};
+  FieldReader in(file);
+  LoadedTableData table;
+  table.levels = static_cast<int>(file.whole_number(group, "levels", 3, 10000));
+  table.largest_level = in.number(group, "largest_level", 0.0);
+  table.contact_modulus = in.number(group, "contact_modulus", 0.0);
+  in.set("levels", static_cast<std::size_t>(table.levels), group);
+  const bool cut = file.contains("loaded/cut");
+  for (const Column& column : columns()) {
+    if (column.values == &LoadedTableData::cut && !cut) continue;
+    table.*column.values = in.numbers(column.field);
+  }
+  table.height = in.floats(height_field);
+  table.pressed = in.counts(pressed_field);
+  table.part = in.floats(part_field);
+  for (const std::string& name : file.attribute_names("loaded/height")) {
+    if (name != "unit" && name != "description") table.statistics.emplace_back(name, in.number("loaded/height", name));
+  }
+  return table;
+}
+
+std::uint64_t loaded_checksum(const LoadedTableData& table, std::uint64_t sum) noexcept {
+  const auto add = [&sum](std::span<const double> values) {
+    const double length = static_cast<double>(values.size());
+    sum = checksum(values, checksum({&length, 1}, sum));
+  };
+  for (const Column& column : columns()) add(table.*column.values);
+  const std::array<double, 3> level{static_cast<double>(table.levels), table.largest_level, table.contact_modulus};
+  add(level);
+  for (const auto& [name, value] : table.statistics) add({&value, 1});
+  sum = checksum(std::span(table.pressed), checksum(std::span(table.height), sum));
+  return checksum(std::span(table.part), sum);
+}
+
+}  // namespace railtab

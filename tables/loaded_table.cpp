@@ -1,0 +1,487 @@
+#include "railtab/tables/loaded_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/pack.hpp"
+
+namespace railtab {
+
+namespace {
+
+void require_increasing(const char* name, const std::vector<double>& nodes, std::size_t least, std::size_t most) {
+  const bool increasing = std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) == nodes.end();
+  if (nodes.size() < least || nodes.size() > most || !increasing) {
+    throw input_error(fmt::format("loaded table: {}", name), fmt::format("{} nodes", nodes.size()),
+                      fmt::format("{} to {} increasing nodes", least, most));
+  }
+}
+
+void require_size(const char* name, std::size_t found, std::size_t expected) {
+  if (found == expected) return;
+  throw input_error(fmt::format("loaded table: {}", name), fmt::format("{} numbers", found),
+                    fmt::format("{}", expected));
+}
+
+// The polynomials of Lagrange with value 1 at one node, with two derivatives.
+struct Lagrange {
+  std::array<double, LoadedTable::most_nodes> value{}, first{}, second{};
+
+  Lagrange(const std::vector<double>& node, double x) noexcept {
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      double p = 1.0, dp = 0.0, ddp = 0.0;
+      for (std::size_t j = 0; j < node.size(); ++j) {
+        if (j == i) continue;
+        const double slope = 1.0 / (node[i] - node[j]), factor = (x - node[j]) * slope;
+        ddp = ddp * factor + 2.0 * dp * slope;
+        dp = dp * factor + p * slope;
+        p *= factor;
+      }
+      value[i] = p;
+      first[i] = dp;
+      second[i] = ddp;
+    }
+  }
+};
+
+// Cubic Hermite polynomials over a cell of width h, of its place t = 0..1: order value at 0, slope at 0, value at 1,
+// slope at 1; with two derivatives with respect to the coordinate.
+struct Hermite {
+  std::array<double, 4> value, first, second;
+
+  Hermite(double t, double h) noexcept {
+    const double s = 1.0 - t;
+    value = {s * s * (1.0 + 2.0 * t), h * t * s * s, t * t * (3.0 - 2.0 * t), -h * t * t * s};
+    first = {-6.0 * t * s / h, s * (1.0 - 3.0 * t), 6.0 * t * s / h, t * (3.0 * t - 2.0)};
+    second = {(12.0 * t - 6.0) / (h * h), (6.0 * t - 4.0) / h, (6.0 - 12.0 * t) / (h * h), (6.0 * t - 2.0) / h};
+  }
+};
+
+constexpr std::size_t buckets = 2048;
+
+// 0 at the border and beyond, 1 from `margin` inside on, with continuous slope.
+double inside_share(double distance, double margin) noexcept {
+  const double t = std::clamp(distance / margin, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+// Derivatives along the pose and its reductions.
+enum Direction : std::size_t { here, by_roll, by_yaw, by_roll_roll, by_roll_yaw, by_yaw_yaw, directions };
+
+}  // namespace
+
+/// Weights of the columns (roll, yaw²) in the value and in derivatives with respect to roll and yaw.
+struct LoadedTable::Weights {
+  static constexpr std::size_t most = most_nodes * most_nodes;
+  std::size_t columns;
+  std::array<std::array<double, directions>, most> column;
+
+  Weights(const LoadedTableData& data, double roll, double yaw) noexcept : columns(data.columns()) {
+    const Lagrange r(data.roll, roll), s(data.yaw_squared, yaw * yaw);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < data.roll.size(); ++i) {
+      for (std::size_t j = 0; j < data.yaw_squared.size(); ++j, ++k) {
+        const double yaw_1 = 2.0 * yaw * s.first[j], yaw_2 = 2.0 * s.first[j] + 4.0 * yaw * yaw * s.second[j];
+        column[k] = {r.value[i] * s.value[j],  r.first[i] * s.value[j], r.value[i] * yaw_1,
+                     r.second[i] * s.value[j], r.first[i] * yaw_1,      r.value[i] * yaw_2};
+      }
+    }
+  }
+};
+
+/// Where a pose lies.
+struct LoadedTable::Cell {
+  std::size_t lateral = 0;  ///< the lower node
+  double width = 0.0;       ///< [m]
+  double t = 0.0;           ///< 0..1
+  Hermite across{0.0, 1.0};
+  std::array<double, 2> touch{};  ///< height of first touch at both lateral nodes, in this roll and yaw [m]
+  int level = 0;                  ///< the lower node
+  double u = 0.0;
+};
+
+LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
+  constexpr std::size_t many = 100000;
+  require_increasing("lateral", data_.lateral, 2, many);
+  require_increasing("roll", data_.roll, 1, most_nodes);
+  require_increasing("yaw_squared", data_.yaw_squared, 1, most_nodes);
+  if (data_.levels < 3 || data_.levels > 10000 || !(data_.largest_level > 0.0)) {
+    throw input_error("loaded table: levels", fmt::format("{} up to {}", data_.levels, data_.largest_level),
+                      "3..10000, up to more than 0");
+  }
+  if (data_.parts() > LoadedLookup::capacity) {
+    throw input_error("loaded table: cut", fmt::format("{}", data_.cut.size()),
+                      fmt::format("at most {}", LoadedLookup::capacity - 1));
+  }
+  const std::size_t columns = data_.columns(), nodes = data_.lateral.size() * static_cast<std::size_t>(data_.levels);
+  require_size("shift", data_.shift.size(), 2 * data_.lateral.size() * columns);
+  require_size("touch", data_.touch.size(), data_.lateral.size() * columns);
+  require_size("height", data_.height.size(), 4 * nodes * columns);
+  require_size("pressed", data_.pressed.size(), nodes);
+  std::size_t part_size = 0;
+  for (const std::uint32_t pressed : data_.pressed) {
+    if (pressed >> data_.parts() != 0) {
+      throw input_error("loaded table: pressed", fmt::format("{}", pressed),
+                        fmt::format("bits of {} parts", data_.parts()));
+    }
+    part_at_.push_back(part_size);
+    part_size += static_cast<std::size_t>(std::popcount(pressed)) * columns * LoadedPart::quantities;
+  }
+  require_size("part", data_.part.size(), part_size);
+  level_step_ = data_.largest_level / (data_.levels - 1);
+  for (std::size_t i = 0, node = 0; i < buckets; ++i) {
+    const double y0 = data_.lateral.front() + (data_.lateral.back() - data_.lateral.front()) * static_cast<double>(i) /
+                                                  static_cast<double>(buckets);
+    while (node + 2 < data_.lateral.size() && data_.lateral[node + 1] <= y0) ++node;
+    bucket_.push_back(static_cast<std::uint32_t>(node));
+  }
+  const std::size_t middle = static_cast<std::size_t>(data_.levels) / 3;
+  for (std::size_t i = 0; i < data_.lateral.size(); ++i) {
+    const std::size_t first = 4 * i * static_cast<std::size_t>(data_.levels) * columns;
+    const double rise = static_cast<double>(data_.height[first + 4 * middle * columns]);
+    steepness_.push_back(rise / std::pow(static_cast<double>(middle) * level_step_, 2));
+  }
+}
+
+std::size_t LoadedTable::bytes() const noexcept {
+  return sizeof(double) * (data_.shift.size() + data_.touch.size() + data_.lateral.size()) +
+         sizeof(float) * (data_.height.size() + data_.pressed.size() + data_.part.size()) +
+         sizeof(std::size_t) * part_at_.size();
+}
+
+bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) const noexcept {
+  const auto place = [&](std::size_t node) {
+    double at = 0.0;
+    for (std::size_t k = 0; k < weights.columns; ++k) {
+      at += weights.column[k][here] * data_.shift[2 * (node * weights.columns + k)];
+    }
+    return at;
+  };
+  const std::size_t last = data_.lateral.size() - 1;
+  const double first_y0 = data_.lateral.front(), range = data_.lateral.back() - first_y0;
+  const auto node_of = [&](double y0) {
+    const double at = std::clamp((y0 - first_y0) / range, 0.0, 1.0) * static_cast<double>(buckets);
+    return static_cast<std::size_t>(bucket_[std::min(static_cast<std::size_t>(at), buckets - 1)]);
+  };
+  // The displacement changes little along y0: from the node at y to that at y less its displacement, and on from there.
+  const std::size_t near = node_of(y);
+  std::size_t low = node_of(y - (place(near) - data_.lateral[near]));
+  while (low > 0 && place(low) > y) --low;
+  while (low + 1 < last && place(low + 1) <= y) ++low;
+  const std::size_t high = low + 1;
+  cell.lateral = low;
+  cell.width = data_.lateral[high] - data_.lateral[low];
+  std::array<double, 4> corner{};
+  for (std::size_t k = 0; k < weights.columns; ++k) {
+    const double weight = weights.column[k][here];
+    const double* const at_low = &data_.shift[2 * (low * weights.columns + k)];
+    const double* const at_high = &data_.shift[2 * (high * weights.columns + k)];
+    corner[0] += weight * at_low[0];
+    corner[1] += weight * at_low[1];
+    corner[2] += weight * at_high[0];
+    corner[3] += weight * at_high[1];
+  }
+  if (!(y >= corner[0] && y <= corner[2])) return false;
+  const auto sum = [&](const std::array<double, 4>& basis) {
+    return basis[0] * corner[0] + basis[1] * corner[1] + basis[2] * corner[2] + basis[3] * corner[3];
+  };
+  double t = (y - corner[0]) / (corner[2] - corner[0]);
+  for (int iteration = 0; iteration < 20; ++iteration) {  // nearly linear: two or three suffice
+    const Hermite basis(t, cell.width);
+    const double change = (sum(basis.value) - y) / (sum(basis.first) * cell.width);
+    t -= change;
+    if (std::abs(change) < 1e-13) break;
+  }
+  cell.t = std::clamp(t, 0.0, 1.0);
+  cell.across = Hermite(cell.t, cell.width);
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t k = 0; k < weights.columns; ++k) {
+      cell.touch[i] += weights.column[k][here] * data_.touch[(low + i) * weights.columns + k];
+    }
+  }
+  return true;
+}
+
+double LoadedTable::height_at(const Cell& cell, int level, const Weights& weights) const noexcept {
+  const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
+  const float* const low = &data_.height[4 * (cell.lateral * levels + static_cast<std::size_t>(level)) * columns];
+  const float* const high = low + 4 * levels * columns;
+  const std::array<double, 4>& basis = cell.across.value;
+  double z = basis[0] * cell.touch[0] + basis[2] * cell.touch[1];
+  for (std::size_t k = 0; k < columns; ++k) {
+    const auto of = [&](const float* node, std::size_t q) { return static_cast<double>(node[4 * k + q]); };
+    z += weights.column[k][here] *
+         (basis[0] * of(low, 0) + basis[1] * of(low, 2) + basis[2] * of(high, 0) + basis[3] * of(high, 2));
+  }
+  return z;
+}
+
+bool LoadedTable::find_level(double z, const Weights& weights, Cell& cell) const noexcept {
+  const double touch = height_at(cell, 0, weights);
+  if (z <= touch) {
+    cell.level = -1;
+    return true;
+  }
+  const double steepness = (1.0 - cell.t) * steepness_[cell.lateral] + cell.t * steepness_[cell.lateral + 1];
+  const double guess = std::sqrt((z - touch) / steepness) / level_step_;
+  int level = std::clamp(static_cast<int>(std::min(guess, 1e6)), 0, data_.levels - 2);
+  while (level > 0 && height_at(cell, level, weights) > z) --level;
+  while (level < data_.levels - 1 && height_at(cell, level + 1, weights) <= z) ++level;
+  cell.level = level;
+  return level < data_.levels - 1;
+}
+
+/// The place along the energy and how it and y0 follow the pose (y, z, roll, yaw).
+struct LoadedTable::LevelPlace {
+  double w;
+  Eigen::Vector4d w_1, y0_1;
+};
+
+namespace {
+
+// Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
+struct Linear {
+  std::size_t low = 0, high = 0;
+  double part = 0.0, rate = 0.0;
+
+  Linear(const std::vector<double>& node, double x) noexcept {
+    if (node.size() == 1) return;
+    const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
+    high = static_cast<std::size_t>(above - node.begin());
+    low = high - 1;
+    rate = 1.0 / (node[high] - node[low]);
+    part = (x - node[low]) * rate;
+  }
+};
+
+}  // namespace
+
+template <bool slopes>
+void LoadedTable::add_parts(const Cell& cell, const LevelPlace& place, double roll, double yaw, LoadedLookup& result,
+                            LoadedSlopes* derivatives) const noexcept {
+  // Every quantity but the share weighted with it; the sums and their derivatives along the four coordinates.
+  constexpr std::size_t packs = LoadedPart::quantities / 4;
+  enum Along : std::size_t { value, by_lateral, by_level, by_roll_node, by_yaw_node, count };
+  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
+  const std::size_t yaws = data_.yaw_squared.size();
+  const Linear r(data_.roll, roll), s(data_.yaw_squared, yaw * yaw);
+  const std::array<double, 2> ft{1.0 - cell.t, cell.t}, fu{1.0 - cell.u, cell.u};
+  const std::array<double, 2> fr{1.0 - r.part, r.part}, fs{1.0 - s.part, s.part};
+  const std::array<double, 2> t_rate{-1.0 / cell.width, 1.0 / cell.width},
+      u_rate{-1.0 / level_step_, 1.0 / level_step_};
+  const std::array<double, 2> r_rate{-r.rate, r.rate}, s_rate{-s.rate, s.rate};
+  const std::size_t first = cell.lateral * levels + static_cast<std::size_t>(cell.level);
+  const std::array<std::size_t, 4> node{first, first + levels, first + 1, first + levels + 1};
+  unsigned loaded = 0;
+  for (const std::size_t n : node) loaded |= data_.pressed[n];
+  const double w = place.w;
+  for (std::size_t p = 0; p < data_.parts(); ++p) {
+    if ((loaded >> p & 1U) == 0) continue;
+    Pack sum[count][packs]{};
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const std::uint32_t pressed = data_.pressed[node[corner]];
+      if ((pressed >> p & 1U) == 0) continue;
+      const auto before = static_cast<std::size_t>(std::popcount(pressed & ((1U << p) - 1U)));
+      const float* const stored = &data_.part[part_at_[node[corner]] + before * columns * LoadedPart::quantities];
+      Pack here_[packs]{}, along_roll[packs]{}, along_yaw[packs]{};
+      for (std::size_t i = 0; i <= r.high - r.low; ++i) {
+        for (std::size_t j = 0; j <= s.high - s.low; ++j) {
+          const float* const v = stored + ((r.low + i) * yaws + s.low + j) * LoadedPart::quantities;
+          const double share = static_cast<double>(v[0]);
+          for (std::size_t q = 0; q < packs; ++q) {
+            Pack values;
+            widen(v + 4 * q, values);
+            values *= q == 0 ? Pack{1.0, share, share, share} : Pack{share, share, share, share};
+            here_[q] += fr[i] * fs[j] * values;
+            if constexpr (slopes) {
+              along_roll[q] += r_rate[i] * fs[j] * values;
+              along_yaw[q] += fr[i] * s_rate[j] * values;
+            }
+          }
+        }
+      }
+      const std::size_t t = corner & 1U, u = corner >> 1U;
+      for (std::size_t q = 0; q < packs; ++q) {
+        sum[value][q] += ft[t] * fu[u] * here_[q];
+        if constexpr (slopes) {
+          sum[by_lateral][q] += t_rate[t] * fu[u] * here_[q];
+          sum[by_level][q] += ft[t] * u_rate[u] * here_[q];
+          sum[by_roll_node][q] += ft[t] * fu[u] * along_roll[q];
+          sum[by_yaw_node][q] += ft[t] * fu[u] * along_yaw[q];
+        }
+      }
+    }
+    const double share = sum[value][0][0], inverse = 1.0 / share;
+    if (!(share > 0.0)) continue;
+    // From reduced quantities to lengths, densities and pressure.
+    const Pack scale[packs]{{1.0, yaw, 1.0, 1.0}, {1.0, w, w, w * w}, {w * w, 1.0, 1.0, w}};
+    const Pack means{0.0, 1.0, 1.0, 1.0};  // all but the share
+    Pack mean[packs];
+    for (std::size_t q = 0; q < packs; ++q) mean[q] = inverse * sum[value][q];
+    mean[0][0] = share;
+    const auto store = [](const Pack(&from)[packs], LoadedPart& to) { std::memcpy(&to, from, sizeof to); };
+    Pack scaled[packs];
+    for (std::size_t q = 0; q < packs; ++q) scaled[q] = scale[q] * mean[q];
+    store(scaled, result.part[result.parts]);
+    if constexpr (slopes) {
+      for (std::size_t d = by_lateral; d < count; ++d) {
+        const double slope = sum[d][0][0];
+        for (std::size_t q = 0; q < packs; ++q) sum[d][q] = inverse * (sum[d][q] - slope * mean[q]);
+        sum[d][0] = means * sum[d][0] + (1.0 - means) * slope;
+      }
+      const Pack scale_w[packs]{{0.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 1.0, 2.0 * w}, {2.0 * w, 0.0, 0.0, 1.0}};
+      for (std::size_t j = 0; j < 4; ++j) {
+        const auto k = static_cast<Eigen::Index>(j);
+        Pack slope[packs];
+        for (std::size_t q = 0; q < packs; ++q) {
+          slope[q] = scale[q] * (sum[by_lateral][q] * place.y0_1[k] + sum[by_level][q] * place.w_1[k]) +
+                     scale_w[q] * mean[q] * place.w_1[k];
+          if (j == 2) slope[q] += scale[q] * sum[by_roll_node][q];
+          if (j == 3) slope[q] += 2.0 * yaw * scale[q] * sum[by_yaw_node][q];
+        }
+        if (j == 3) slope[0][1] += mean[0][1];
+        store(slope, derivatives->part[result.parts][j]);
+      }
+    }
+    ++result.parts;
+  }
+}
+
+double LoadedTable::margin_share(double roll, double yaw) const noexcept {
+  double share = 1.0;
+  if (data_.roll.size() == 1) {
+    share = roll == data_.roll.front() ? 1.0 : 0.0;
+  } else {
+    const double margin = border * (data_.roll.back() - data_.roll.front());
+    share = inside_share(std::min(roll - data_.roll.front(), data_.roll.back() - roll), margin);
+  }
+  const double largest = data_.yaw_squared.back();
+  if (data_.yaw_squared.size() == 1) return yaw * yaw <= largest ? share : 0.0;
+  return share * inside_share(largest - yaw * yaw, border * largest);
+}
+
+template <bool slopes>
+LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, LoadedSlopes* derivatives) const noexcept {
+  LoadedLookup result;
+  double inside = margin_share(roll, yaw);
+  if (!(inside > 0.0)) return result;
+  const Weights weights(data_, roll, yaw);
+  Cell cell;
+  if (!find_lateral(y, weights, cell)) return result;
+  const double y0 = data_.lateral[cell.lateral] + cell.t * cell.width;
+  const double lateral_range = data_.lateral.back() - data_.lateral.front();
+  inside *= inside_share(std::min(y0 - data_.lateral.front(), data_.lateral.back() - y0), border * lateral_range);
+  if (!(inside > 0.0) || !find_level(z, weights, cell)) return result;
+  if (cell.level < 0) {
+    result.table_share = inside;
+    return result;
+  }
+
+  // The corners' values, slopes along w and y0 and mixed derivatives, with their derivatives along roll and yaw.
+  const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
+  constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
+  Pack corner[4][directions]{};
+  std::array<std::array<double, directions>, 4> shift{};
+  for (std::size_t c = 0; c < 4; ++c) {  // c = 2·lateral + level
+    const float* const value =
+        &data_.height[4 * ((cell.lateral + c / 2) * levels + static_cast<std::size_t>(cell.level) + c % 2) * columns];
+    const double* const touch = &data_.touch[(cell.lateral + c / 2) * columns];
+    for (std::size_t k = 0; k < columns; ++k) {
+      Pack v;
+      widen(value + 4 * k, v);
+      v[0] += touch[k];
+      const double s = data_.shift[2 * ((cell.lateral + c / 2) * columns + k) + c % 2];
+      for (std::size_t d = 0; d < wanted; ++d) {
+        corner[c][d] += weights.column[k][d] * v;
+        shift[c][d] += weights.column[k][d] * s;
+      }
+    }
+  }
+  const Hermite& t = cell.across;
+  // Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
+  const auto across_at = [&](const std::array<double, 4>& basis, Direction d) {
+    const std::array<double, 4> r{basis[0] * corner[0][d][0] + basis[1] * corner[0][d][2] + basis[2] * corner[2][d][0] +
+                                      basis[3] * corner[2][d][2],
+                                  basis[0] * corner[0][d][1] + basis[1] * corner[0][d][3] + basis[2] * corner[2][d][1] +
+                                      basis[3] * corner[2][d][3],
+                                  basis[0] * corner[1][d][0] + basis[1] * corner[1][d][2] + basis[2] * corner[3][d][0] +
+                                      basis[3] * corner[3][d][2],
+                                  basis[0] * corner[1][d][1] + basis[1] * corner[1][d][3] + basis[2] * corner[3][d][1] +
+                                      basis[3] * corner[3][d][3]};
+    return r;
+  };
+  const auto sum = [](const std::array<double, 4>& basis, const std::array<double, 4>& r) {
+    return basis[0] * r[0] + basis[1] * r[1] + basis[2] * r[2] + basis[3] * r[3];
+  };
+  const std::array<double, 4> line = across_at(t.value, here);
+  // The level: the root of a cubic that grows from z or less to z or more.
+  double low = 0.0, high = 1.0, u = (z - line[0]) / (line[2] - line[0]);
+  if (cell.level == 0) u = std::sqrt(std::max(0.0, u));
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const Hermite basis(u, level_step_);
+    const double excess = sum(basis.value, line) - z, slope = sum(basis.first, line) * level_step_;
+    (excess > 0.0 ? high : low) = u;
+    double next = u - excess / slope;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    const double change = std::abs(next - u);
+    u = next;
+    if (change < 1e-13) break;  // rounding of a place
+  }
+  cell.u = u;
+  const double w = (cell.level + u) * level_step_;
+  inside *= inside_share(data_.levels - 1 - (cell.level + u), border * (data_.levels - 1));
+  const Hermite level(u, level_step_);
+
+  // y0(y, roll, yaw), then w(y, z, roll, yaw) from Z(w, y0(y, roll, yaw), roll, yaw) = z.
+  const auto along = [&](const std::array<double, 4>& basis, Direction d) {
+    return basis[0] * shift[0][d] + basis[1] * shift[1][d] + basis[2] * shift[2][d] + basis[3] * shift[3][d];
+  };
+  const double Y_y0 = along(t.first, here), Z_w = sum(level.first, line);
+  if (!(Z_w > 0.0)) return result;
+  const std::array<double, 4> line_y = across_at(t.first, here);
+  const std::array<double, 4> line_r = across_at(t.value, by_roll), line_s = across_at(t.value, by_yaw);
+  const double Z_y = sum(level.value, line_y);
+  const Eigen::Vector4d y0_1(1.0 / Y_y0, 0.0, -along(t.value, by_roll) / Y_y0, -along(t.value, by_yaw) / Y_y0);
+  const Eigen::Vector4d Z_1 =
+      Eigen::Vector4d(0.0, -1.0, sum(level.value, line_r), sum(level.value, line_s)) + Z_y * y0_1;
+  const Eigen::Vector4d w_1 = -Z_1 / Z_w;
+  const double w3 = w * w * w;
+  result.table_share = inside;
+  result.energy = w3 * w * w;
+  result.force = 5.0 * w3 * w * w_1;
+  if constexpr (slopes) {
+    const auto Z = [&](const std::array<double, 4>& at_w, const std::array<double, 4>& at_y, Direction d) {
+      return sum(at_w, across_at(at_y, d));
+    };
+    const auto symmetric = [](const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
+      return Eigen::Matrix4d(a * b.transpose() + b * a.transpose());
+    };
+    Eigen::Matrix4d Y_2 = Eigen::Matrix4d::Zero(), Z_2 = Eigen::Matrix4d::Zero();
+    Y_2.bottomRightCorner<2, 2>() << along(t.value, by_roll_roll), along(t.value, by_roll_yaw),
+        along(t.value, by_roll_yaw), along(t.value, by_yaw_yaw);
+    const Eigen::Vector4d Y_y1(0.0, 0.0, along(t.first, by_roll), along(t.first, by_yaw));
+    const Eigen::Matrix4d y0_2 =
+        -(Y_2 + symmetric(Y_y1, y0_1) + along(t.second, here) * y0_1 * y0_1.transpose()) / Y_y0;
+    Z_2(2, 2) = Z(level.value, t.value, by_roll_roll);
+    Z_2(2, 3) = Z_2(3, 2) = Z(level.value, t.value, by_roll_yaw);
+    Z_2(3, 3) = Z(level.value, t.value, by_yaw_yaw);
+    const Eigen::Vector4d Z_y1(0.0, 0.0, Z(level.value, t.first, by_roll), Z(level.value, t.first, by_yaw));
+    Z_2 += symmetric(Z_y1, y0_1) + Z(level.value, t.second, here) * y0_1 * y0_1.transpose() + Z_y * y0_2;
+    const Eigen::Vector4d Z_w1 =
+        Eigen::Vector4d(0.0, 0.0, sum(level.first, line_r), sum(level.first, line_s)) + sum(level.first, line_y) * y0_1;
+    const Eigen::Matrix4d w_2 = -(Z_2 + symmetric(Z_w1, w_1) + sum(level.second, line) * w_1 * w_1.transpose()) / Z_w;
+    derivatives->stiffness = 5.0 * w3 * (4.0 * w_1 * w_1.transpose() + w * w_2);
+  }
+  add_parts<slopes>(cell, {w, w_1, y0_1}, roll, yaw, result, derivatives);
+  return result;
+}
+
+template LoadedLookup LoadedTable::found<false>(double, double, double, double, LoadedSlopes*) const noexcept;
+template LoadedLookup LoadedTable::found<true>(double, double, double, double, LoadedSlopes*) const noexcept;
+
+}  // namespace railtab

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace railtab {
+
+/// The loaded contact of a pair: the half-space solution over all poses of a wheelset against its right rail head.
+///
+/// Without friction the contact is conservative: the force on the rail is the derivative of its elastic energy U with
+/// respect to the pose (y, z, roll, yaw). Stored is the height z of the wheelset at equal energy, over the level
+/// w = U^(1/5) [J^(1/5)], the reduced lateral shift y0, roll and yaw²:
+///
+///   U = w⁵,  z = Z(w, y0, roll, yaw²),  y = Y(y0, roll, yaw²).
+///
+/// For a Hertzian contact z is a parabola of w whose vertex is the height of first touch. Z is bicubic in (w, y0) with
+/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −F_y/F_z, and a polynomial in roll and yaw². At y0 the
+/// contact jumps between the same places of the rail whatever roll and yaw (docs/theory/contact_table.md).
+struct LoadedTableData {
+  std::vector<double> lateral;      ///< nodes of y0, increasing [m]
+  std::vector<double> roll;         ///< nodes, increasing [rad]
+  std::vector<double> yaw_squared;  ///< nodes, increasing [rad²]; the first may stand for 0
+  int levels = 0;                   ///< nodes of w, equally spaced from 0
+  double largest_level = 0.0;       ///< [J^(1/5)]
+  /// y and ∂y/∂y0 at the nodes (lateral, roll, yaw²), quantity fastest [m, 1].
+  std::vector<double> shift;
+  /// Height of first touch at the nodes (lateral, roll, yaw²) [m].
+  std::vector<double> touch;
+  /// z less that of first touch, ∂z/∂w, ∂z/∂y0, ∂²z/∂w∂y0 at the nodes (lateral, level, roll, yaw²), quantity fastest.
+  std::vector<float> height;
+  /// The rail's surface in parts, divided where the contact jumps: arc lengths on the rail profile, increasing [m].
+  std::vector<double> cut;
+  /// At the nodes (lateral, level): the parts that press anywhere in roll and yaw, bit by bit from the first.
+  std::vector<std::uint32_t> pressed;
+  /// LoadedPart of these, in the order of its members, semi-axes and pressure over w, densities over w², arm_x over
+  /// yaw; at the nodes (lateral, level, part, roll, yaw²), quantity fastest.
+  std::vector<float> part;
+  double contact_modulus = 0.0;  ///< E* of both bodies [Pa]
+  /// Options and measured errors, name -> value; written as attributes.
+  std::vector<std::pair<std::string, double>> statistics;
+
+  [[nodiscard]] std::size_t parts() const noexcept { return cut.size() + 1; }
+  [[nodiscard]] std::size_t columns() const noexcept { return roll.size() * yaw_squared.size(); }
+};
+
+/// What presses on one part of the rail's surface.
+struct LoadedPart {
+  double share;  ///< of the vertical force on the rail, without friction [-]
+  double arm_x, arm_y,
+      arm_z;               ///< mean of the wheel's points in contact, from the wheelset centre [m]
+  double angle;            ///< contact angle: that of the part's force [rad]
+  double a, b;             ///< semi-axes of the ellipse with the second moments of the pressure [m]
+  double peak;             ///< largest force per length across the rail [N/m]
+  double saddle;           ///< force per length at the part's upper end [N/m]
+  double s_rail, s_wheel;  ///< mean arc lengths on the profiles [m]
+  double pressure;         ///< largest [Pa]
+
+  static constexpr std::size_t quantities = 12;
+  [[nodiscard]] std::array<double, quantities> values() const noexcept {
+    return {share, arm_x, arm_y, arm_z, angle, a, b, peak, saddle, s_rail, s_wheel, pressure};
+  }
+  [[nodiscard]] static LoadedPart of(const std::array<double, quantities>& v) noexcept {
+    return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11]};
+  }
+};
+
+/// The contact at a pose. Generalised forces on the rail, order y, z, roll, yaw: the derivatives of the energy with
+/// respect to the wheelset's motions [N, N m].
+struct LoadedLookup {
+  static constexpr std::size_t capacity = 6;
+  /// Share of the table in the answer: 1 inside, 0 outside, smooth between over a margin inside its border. Where 0,
+  /// what follows is zero.
+  double table_share = 0.0;
+  double energy = 0.0;  ///< U [J]; 0: no contact
+  Eigen::Vector4d force = Eigen::Vector4d::Zero();
+  std::size_t parts = 0;
+  std::array<LoadedPart, capacity>
+      part;  ///< the first `parts`, in increasing arc length on the rail, each with a share
+};
+
+/// Derivatives with respect to the pose.
+struct LoadedSlopes {
+  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();                 ///< of the forces
+  std::array<std::array<LoadedPart, 4>, LoadedLookup::capacity> part;  ///< of the parts, as many as these
+};
+
+/// Look-up: const, allocation-free, thread-safe. Energy and forces are continuous; stiffness and the parts' derivatives
+/// jump at the borders of cells.
+class LoadedTable {
+ public:
+  /// @throws InputError where shapes disagree or nodes are out of order
+  explicit LoadedTable(LoadedTableData data);
+
+  static constexpr std::size_t most_nodes = 9;  ///< of roll, and of yaw²
+  static constexpr double border = 0.05;        ///< width of the blend, share of the range of each axis
+
+  /// @param y, z of the wheelset centre [m] (WheelsetPose) @param roll, yaw [rad]
+  [[nodiscard]] LoadedLookup lookup(double y, double z, double roll, double yaw) const noexcept {
+    return found<false>(y, z, roll, yaw, nullptr);
+  }
+  /// The same with derivatives; these are set where there is contact.
+  [[nodiscard]] LoadedLookup lookup(double y, double z, double roll, double yaw, LoadedSlopes& slopes) const noexcept {
+    return found<true>(y, z, roll, yaw, &slopes);
+  }
+
+  [[nodiscard]] const LoadedTableData& data() const noexcept { return data_; }
+  /// Memory that look-ups use [bytes].
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  struct Weights;
+  struct Cell;
+  struct LevelPlace;
+  template <bool slopes>
+  [[nodiscard]] LoadedLookup found(double y, double z, double roll, double yaw,
+                                   LoadedSlopes* derivatives) const noexcept;
+  [[nodiscard]] double margin_share(double roll, double yaw) const noexcept;
+  [[nodiscard]] bool find_lateral(double y, const Weights& weights, Cell& cell) const noexcept;
+  [[nodiscard]] double height_at(const Cell& cell, int level, const Weights& weights) const noexcept;
+  [[nodiscard]] bool find_level(double z, const Weights& weights, Cell& cell) const noexcept;
+  template <bool slopes>
+  void add_parts(const Cell& cell, const LevelPlace& place, double roll, double yaw, LoadedLookup& result,
+                 LoadedSlopes* derivatives) const noexcept;
+
+  LoadedTableData data_;
+  std::vector<double> steepness_;      ///< of each lateral node, (z − z_touch)/w², for the first guess of a level
+  std::vector<std::size_t> part_at_;   ///< of each (lateral, level), where its parts begin
+  std::vector<std::uint32_t> bucket_;  ///< of equal stretches of y0, the node at or below their beginning
+  double level_step_ = 0.0;
+};
+
+}  // namespace railtab
