@@ -138,6 +138,14 @@ inline constexpr std::array summary_contact_energy{
     ContactEnergyEntry{"contact_energy_largest_impact_stored", &ContactEnergy::largest_impact_stored}};
 inline constexpr const char* contact_energy_impacts = "contact_energy_impacts";  // -1 where no account was kept
 
+/// Texts and numbers of RunSummary::stops; empty where no stop was engaged, absent in older files.
+inline constexpr std::array<std::pair<const char*, std::string StopSummary::*>, 2> summary_stop_names{
+    {{"stop_first_name", &StopSummary::first_name}, {"stop_largest_name", &StopSummary::largest_name}}};
+inline constexpr std::array<std::pair<const char*, double StopSummary::*>, 3> summary_stops{
+    {{"stop_first_time", &StopSummary::first_time},
+     {"stop_largest_force", &StopSummary::largest_force},
+     {"stop_largest_time", &StopSummary::largest_time}}};
+
 struct WheelExtremeEntry {
   const char* name;  ///< and of time and wheel: with _time and _wheel
   WheelExtreme WheelExtremes::*value;

@@ -112,6 +112,14 @@ RunSummary read_summary(const ArrayFileReader& in, std::size_t wheels) {
       energy.*entry.value = fields.number(columns::summary_group, entry.name);
     }
   }
+  if (std::ranges::count(names, std::string(columns::summary_stop_names.front().first))) {
+    StopSummary stops;
+    for (const auto& [name, value] : columns::summary_stop_names) stops.*value = in.text(columns::summary_group, name);
+    for (const auto& [name, value] : columns::summary_stops) {
+      stops.*value = fields.number(columns::summary_group, name);
+    }
+    if (!stops.first_name.empty()) summary.stops = std::move(stops);
+  }
   const std::int64_t last_wheel = static_cast<std::int64_t>(wheels) - 1;
   for (const auto& entry : columns::summary_wheel_extremes) {
     if (!std::ranges::count(names, wheel_of(entry))) continue;
@@ -169,6 +177,11 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   for (const auto& entry : columns::summary_contact_energy) {
     out.attribute(columns::summary_group, entry.name, energy.*entry.value);
   }
+  const StopSummary stops = summary.stops.value_or(StopSummary{});
+  for (const auto& [name, value] : columns::summary_stop_names) {
+    out.attribute(columns::summary_group, name, stops.*value, message_room);
+  }
+  for (const auto& [name, value] : columns::summary_stops) out.attribute(columns::summary_group, name, stops.*value);
   for (const auto& entry : columns::summary_wheel_extremes) {
     const WheelExtreme& extreme = summary.wheel_extremes.*entry.value;
     out.attribute(columns::summary_group, entry.name, extreme.value);

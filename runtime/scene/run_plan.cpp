@@ -29,6 +29,9 @@ void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPl
   plan.built.push_back(fmt::format("{} x {}, {} degrees of freedom each", scene.train.count,
                                    scene.train.vehicle == imported_vehicle ? scene.train.vehicle : model.vehicle.name,
                                    model.vehicle.dofs()));
+  for (const std::string& element : model.vehicle.nonlinear) {
+    plan.built.push_back(fmt::format("not linear of {}: {}", model.vehicle.name, element));
+  }
   for (const std::string& element : model.vehicle.left_out) {
     plan.built.push_back(fmt::format("not modelled of {}: {}", model.vehicle.name, element));
   }

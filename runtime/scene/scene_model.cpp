@@ -94,7 +94,7 @@ VehicleModel scene_vehicle(const SceneParameters& scene) {
         "as named assumptions");
   }
   require_closing(data);
-  return build_vehicle(data, plane, weight);
+  return build_vehicle(data, plane, weight, scene.train.force_elements);
 }
 
 // The first wheelset stands at `start`; coaches follow each other at their length over couplers.

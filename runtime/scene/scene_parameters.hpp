@@ -36,6 +36,7 @@ struct TrainParameters {
   double initial_lateral_shift = 0.0;
   double initial_yaw = 0.0;
   GeometricStiffness geometric_stiffness = GeometricStiffness::included;
+  ForceElementChoice force_elements = ForceElementChoice::nonlinear;
   double lateral_acceleration = 0.0;  ///< V²/R of a curve to the left, horizontal: pushes the vehicles right [m/s²]
   double cant = 0.0;                  ///< height of the right rail above the left one, over cant_base [m]
   static constexpr double cant_base = 1.5;  ///< [m]

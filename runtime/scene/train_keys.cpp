@@ -70,6 +70,11 @@ std::vector<KeyRow> train_keys() {
                                   {{"included", GeometricStiffness::included},
                                    {"omitted", GeometricStiffness::omitted},
                                    {"in-matrices", GeometricStiffness::in_matrices}})},
+      {"train.force_elements", "",
+       "bump stops, dampers with blow-off and dry friction of the vehicle; linear: stand-ins, without stops",
+       choice<ForceElementChoice>(
+           of_train<&TrainParameters::force_elements>,
+           {{"nonlinear", ForceElementChoice::nonlinear}, {"linear", ForceElementChoice::linear}})},
   };
 }
 

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
+#include "railtab/runtime/vsi/element_forces.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
@@ -34,19 +36,24 @@ constexpr double out_of_balance = 1e-3;                         // of the static
 constexpr double pitch_rate_compliance =
     1e-3;  // rad/s per N m: any value that lets Newton drive the axle's torque to zero
 
+constexpr int pitch = 4;
+
 // The linear parts at rest, made once.
 struct RestOperators {
   WheelContactModel contact;
   VehicleResponse vehicle;
+  std::optional<ElementCompliance> elements;
   std::unique_ptr<StructureResponse> structure;
 
   explicit RestOperators(const VsiModel& model)
       : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
+    if (!model.vehicle.elements.empty()) {
+      elements.emplace(model.vehicle, vehicle.inverse(), 1.0);
+      elements->leave_out_pitch();
+    }
     if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
   }
 };
-
-constexpr int pitch = 4;
 
 // A vehicle whose wheelsets are where their contacts put them. What contact forces displace it by would say the same
 // but for the rounding of those forces, which a contact's stiffness over that of eps M enlarges: by a million on steel.
@@ -192,6 +199,13 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     load[index(v)] += model.vehicle.static_load;
   }
 
+  std::optional<TrainElements> elements;
+  if (rest.elements) {
+    elements.emplace(model.vehicle, model.vehicle_x.size());
+    elements->compliance = &*rest.elements;
+    problem.elements = &*elements;
+  }
+
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
     rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
     if (share.deviation < 1.0) scale(share.deviation, problem.deviation);
@@ -200,6 +214,9 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
       const Eigen::VectorXd free =
           vehicle.inverse() * (load[index(v)] + regularisation * (model.vehicle.mass * motion.displacement));
       gather_wheelsets(model, v, free, problem.free);
+      if (!elements) continue;
+      elements->vehicle[index(v)].begin_rest(motion.displacement, state.friction[index(v)]);
+      elements->free[index(v)] = model.vehicle.elements.rows * free;
     }
     for (int w = 0; w < model.wheelsets(); ++w) {
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
@@ -209,7 +226,10 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     }
     const Eigen::VectorXd contact_before = state.contact.displacement;
     if (model.normal_contact == NormalContact::rigid) {
+      if (elements && report.iterations > 0) elements->respond(state.contact.force, problem.free);
       rest_on_rails(problem, state.contact);
+      Eigen::VectorXd displacement = problem.free;
+      if (elements) elements->respond(state.contact.force, displacement);
     } else if (!solve_contact_by_continuation(contact, problem, limits, state.contact, workspace).converged) {
       ++report.iterations;
       return report;
@@ -221,6 +241,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
+      if (elements) elements->vehicle[index(v)].add_end_force(motion.contact_load);
       Eigen::VectorXd next = vehicle.inverse() * (load[index(v)] + motion.contact_load +
                                                   regularisation * (model.vehicle.mass * motion.displacement));
       clear_pitch(model, next);

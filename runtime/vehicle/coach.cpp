@@ -31,9 +31,12 @@ RigidBody make_body(std::string name, const BodyInertia& inertia, double x, doub
   return {std::move(name), inertia.mass, {inertia.Jx, inertia.Jy, inertia.Jz}, {x, 0.0, -height}};
 }
 
-Suspension make_unit(int body_a, int body_b, const Eigen::Vector3d& point, const SuspensionUnit& unit) {
+Suspension make_unit(std::string name, int body_a, int body_b, const Eigen::Vector3d& point,
+                     const SuspensionUnit& unit) {
   Suspension result{body_a, body_b, point, {unit.kx, unit.ky, unit.kz}, {unit.cx, unit.cy, unit.cz}};
   result.series_stiffness = {unit.series_kx, unit.series_ky, unit.series_kz};
+  result.name = std::move(name);
+  result.nonlinear = unit.nonlinear;
   return result;
 }
 
@@ -89,13 +92,14 @@ VehicleDescription describe_coach(const CoachParameters& p) {
     parts.wheelsets.push_back(wheelset);
     // at axle height, so that the wheelset's rotation about its axle is free of the springs
     for (const double y : {-p.primary_half_distance, p.primary_half_distance}) {
-      parts.suspension.push_back(make_unit(wheelset, bogie, {x, y, -p.nominal_radius}, p.primary));
+      parts.suspension.push_back(
+          make_unit("primary suspension", wheelset, bogie, {x, y, -p.nominal_radius}, p.primary));
     }
   }
   for (int b = 0; b < 2; ++b) {
     for (const double side : {-1.0, 1.0}) {
       const Eigen::Vector3d point{bogie_x[b], side * p.secondary_half_distance, -p.secondary_height};
-      parts.suspension.push_back(make_unit(1 + b, car, point, p.secondary));
+      parts.suspension.push_back(make_unit("secondary suspension", 1 + b, car, point, p.secondary));
       parts.suspension.back().rotational_stiffness = {p.secondary_bending + 0.5 * p.roll_bar, p.secondary_bending, 0.0};
     }
   }
@@ -118,6 +122,7 @@ VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane, c
   VehicleDescription parts = describe_coach(parameters);
   parts.held_dofs = held_motions(parts, plane);
   parts.weight = weight;
+  parts.force_elements = ForceElementChoice::linear;
   return assemble_vehicle(parts);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
@@ -17,6 +18,7 @@ struct SuspensionUnit {
   double kx = 0, ky = 0, kz = 0;                       ///< [N/m]
   double cx = 0, cy = 0, cz = 0;                       ///< [N s/m]
   double series_kx = 0, series_ky = 0, series_kz = 0;  ///< [N/m]
+  std::array<NonlinearUnit, 3> nonlinear{};            ///< along x, y, z
 };
 
 /// A vehicle with two bogies, the template "two-bogie" of vehicle files (docs/file_formats/vehicle.md): car body, two
@@ -50,7 +52,8 @@ struct CoachParameters {
 /// out of the plane.
 [[nodiscard]] std::vector<DofIndices> held_motions(const VehicleDescription& parts, MotionPlane plane);
 
-/// describe_coach() as a model: 41 dofs with four wheelsets, or 16 in the vertical plane. @throws InputError
+/// describe_coach() as a model with linear force elements: 41 dofs with four wheelsets, or 16 in the vertical plane.
+/// @throws InputError
 [[nodiscard]] VehicleModel build_coach(const CoachParameters& parameters, MotionPlane plane = MotionPlane::spatial,
                                        const VehicleWeight& weight = {});
 

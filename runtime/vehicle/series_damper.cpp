@@ -8,11 +8,16 @@ namespace railtab {
 
 namespace {
 
-bool is_in_series(const Suspension& unit, int axis) {
-  return unit.series_stiffness[axis] > 0.0 && unit.damping[axis] > 0.0;
+// Whether the damper along an axis is a force element that is not linear.
+bool is_replaced(const Suspension& unit, int axis, ForceElementChoice choice) {
+  return choice == ForceElementChoice::nonlinear && unit.nonlinear[static_cast<std::size_t>(axis)].replaces_damper();
 }
 
 }  // namespace
+
+bool is_in_series(const Suspension& unit, int axis) noexcept {
+  return unit.series_stiffness[axis] > 0.0 && unit.damping[axis] > 0.0;
+}
 
 int count_series_dampers(const std::vector<Suspension>& suspension) {
   int count = 0;
@@ -22,15 +27,16 @@ int count_series_dampers(const std::vector<Suspension>& suspension) {
   return count;
 }
 
-Eigen::Vector3d parallel_damping(const Suspension& unit) {
+Eigen::Vector3d parallel_damping(const Suspension& unit, ForceElementChoice choice) {
   Eigen::Vector3d damping = unit.damping;
   for (int axis = 0; axis < 3; ++axis) {
-    if (is_in_series(unit, axis)) damping[axis] = 0.0;
+    if (is_in_series(unit, axis) || is_replaced(unit, axis, choice)) damping[axis] = 0.0;
   }
   return damping;
 }
 
-void add_series_dampers(VehicleModel& vehicle, const std::vector<Suspension>& suspension, int first_row) {
+void add_series_dampers(VehicleModel& vehicle, const std::vector<Suspension>& suspension, int first_row,
+                        ForceElementChoice choice) {
   int row = first_row;
   for (const Suspension& unit : suspension) {
     const SpringKinematics kinematics =
@@ -48,6 +54,7 @@ void add_series_dampers(VehicleModel& vehicle, const std::vector<Suspension>& su
       }
       rows[12] = row++;
       vehicle.stiffness(rows[12], rows[12]) += unit.series_stiffness[axis];
+      if (is_replaced(unit, axis, choice)) continue;
       for (std::size_t i = 0; i < 13; ++i) {
         for (std::size_t j = 0; j < 13; ++j) {
           if (rows[i] == held || rows[j] == held) continue;

@@ -15,10 +15,15 @@ namespace railtab {
 /// @returns how many of the units' dampers have a series stiffness
 [[nodiscard]] int count_series_dampers(const std::vector<Suspension>& suspension);
 
-/// @param first_row of their inner degrees of freedom, which the matrices have already
-void add_series_dampers(VehicleModel& vehicle, const std::vector<Suspension>& suspension, int first_row);
+/// Whether the unit's damper along an axis has a series stiffness.
+[[nodiscard]] bool is_in_series(const Suspension& unit, int axis) noexcept;
 
-/// The unit's dampers without those that have a series stiffness [N s/m].
-[[nodiscard]] Eigen::Vector3d parallel_damping(const Suspension& unit);
+/// Dampers that follow a curve are left to add_force_elements() where `choice` asks for it.
+/// @param first_row of their inner degrees of freedom, which the matrices have already
+void add_series_dampers(VehicleModel& vehicle, const std::vector<Suspension>& suspension, int first_row,
+                        ForceElementChoice choice);
+
+/// The unit's linear dampers without those that have a series stiffness [N s/m].
+[[nodiscard]] Eigen::Vector3d parallel_damping(const Suspension& unit, ForceElementChoice choice);
 
 }  // namespace railtab

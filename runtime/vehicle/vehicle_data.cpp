@@ -10,7 +10,8 @@
 
 namespace railtab {
 
-VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight) {
+VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight,
+                           ForceElementChoice choice) {
   const bool vertical_data = data.motion == MotionPlane::vertical;
   if (vertical_data && plane != MotionPlane::vertical) {
     throw input_error(fmt::format("{}: motion", data.place), "\"vertical\", and a model with lateral motion",
@@ -18,14 +19,20 @@ VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const Veh
   }
   VehicleDescription parts = data.parts;
   parts.weight = weight;
+  parts.force_elements = choice;
   parts.held_dofs = held_motions(parts, plane);
   if (vertical_data) {
     for (DofIndices& dof : parts.held_dofs) dof[0] = held;
   }
   VehicleModel vehicle = assemble_vehicle(parts);
   vehicle.top_speed = data.top_speed;
-  vehicle.linearised = data.linearised;
-  vehicle.left_out = data.left_out;
+  const bool linear = choice == ForceElementChoice::linear;
+  vehicle.linearised = linear ? data.linearised : data.stand_ins;
+  if (linear) {
+    vehicle.left_out = data.left_out;
+  } else {
+    vehicle.nonlinear = data.nonlinear;
+  }
   return vehicle;
 }
 

@@ -27,8 +27,9 @@ struct VehicleData {
   double top_speed = 0.0;                     ///< [m/s]; 0: not stated
   std::optional<CoachParameters> coach;       ///< of the template "two-bogie"
   VehicleDescription parts;                   ///< all bodies and force elements, nothing held
-  std::vector<std::string> linearised;        ///< as VehicleModel::linearised
-  std::vector<std::string> left_out;          ///< as VehicleModel::left_out
+  /// Sentences on what is not linear: the force elements, linear elements that stand in for others in any run, and what
+  /// ForceElementChoice::linear makes of the former, which it runs by stand-ins or leaves out.
+  std::vector<std::string> nonlinear, stand_ins, linearised, left_out;
   SourcedValues sourced;
   std::vector<StatedCheck> checks;
 };
@@ -36,7 +37,9 @@ struct VehicleData {
 /// Vertical data have no longitudinal stiffness: x of all bodies is then held too, and the vertical plane is z and
 /// pitch.
 /// @throws InputError where the data are vertical and `plane` is not
-[[nodiscard]] VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight = {});
+/// @param choice of force elements; natural motions are those of the linear ones
+[[nodiscard]] VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight = {},
+                                         ForceElementChoice choice = ForceElementChoice::linear);
 
 /// A stated check with what the vehicle has.
 struct ClosingCheck {

@@ -94,15 +94,15 @@ Eigen::VectorXd weight_of(const VehicleModel& vehicle, const std::vector<RigidBo
   return weight;
 }
 
-void add_suspension(VehicleModel& vehicle, const std::vector<Suspension>& suspension) {
-  for (const Suspension& unit : suspension) {
+void add_suspension(VehicleModel& vehicle, const VehicleDescription& parts) {
+  for (const Suspension& unit : parts.suspension) {
     const Eigen::Vector3d arm_a = unit.point - vehicle.bodies[unit.body_a].position;
     const Eigen::Vector3d arm_b = unit.point - vehicle.bodies[unit.body_b].position;
     const DofIndices& a = vehicle.dof[unit.body_a];
     const DofIndices& b = vehicle.dof[unit.body_b];
     add_pair_matrix(vehicle.stiffness, a, b, spring_matrix(arm_a, arm_b, unit.stiffness, unit.rotational_stiffness));
     add_pair_matrix(vehicle.damping, a, b,
-                    spring_matrix(arm_a, arm_b, parallel_damping(unit), Eigen::Vector3d::Zero()));
+                    spring_matrix(arm_a, arm_b, parallel_damping(unit, parts.force_elements), Eigen::Vector3d::Zero()));
   }
 }
 
@@ -191,8 +191,8 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
     if (dof[y_dof] != held) vehicle.lateral_shift[dof[y_dof]] = 1.0;
   }
   add_inertia(vehicle, parts.bodies);
-  add_suspension(vehicle, parts.suspension);
-  add_series_dampers(vehicle, parts.suspension, of_bodies);
+  add_suspension(vehicle, parts);
+  add_series_dampers(vehicle, parts.suspension, of_bodies, parts.force_elements);
   for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, parts.bodies[w].inertia.y());
   vehicle.lateral_load = vehicle.mass * vehicle.lateral_shift;
   const StandingVehicle rest = standing(vehicle, weight_of(vehicle, parts.bodies, parts.weight.gravity));
@@ -200,6 +200,9 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   vehicle.static_load = rest.reaction;
   if (parts.weight.geometric_stiffness == GeometricStiffness::included) {
     add_geometric_stiffness(vehicle, parts.suspension, rest.displacement);
+  }
+  if (parts.force_elements == ForceElementChoice::nonlinear) {
+    add_force_elements(vehicle, parts.suspension, rest.displacement, of_bodies);
   }
   return vehicle;
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "railtab/runtime/base/dof_indices.hpp"
+#include "railtab/runtime/vehicle/force_element.hpp"
 
 namespace railtab {
 
@@ -42,6 +44,9 @@ struct Suspension {
   double couple_share = 0.5;
   /// In series with the damper along x, y, z [N/m]; 0: the damper alone.
   Eigen::Vector3d series_stiffness = Eigen::Vector3d::Zero();
+  std::string name{};                        ///< of its force elements in messages
+  std::array<NonlinearUnit, 3> nonlinear{};  ///< along x, y, z
+  Friction yaw_friction{};                   ///< about z [N m]
 };
 
 /// A body of a vehicle as results and loads know it; position of the point whose motion its dofs are, vehicle frame.
@@ -50,9 +55,9 @@ struct VehicleBody {
   Eigen::Vector3d position;  ///< [m]
 };
 
-/// A vehicle with linear suspension, running at constant speed (the car body's x is held). Small displacements from the
-/// vehicle's own static equilibrium: gravity acts as the static axle loads and as geometric stiffness. Rows of the
-/// matrices that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
+/// A vehicle that runs at constant speed (the car body's x is held). Small displacements from its own static
+/// equilibrium: gravity acts as the static axle loads and as geometric stiffness. The matrices have all that is linear.
+/// Rows that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
 struct VehicleModel {
   std::string name;
   std::vector<VehicleBody> bodies;
@@ -72,6 +77,8 @@ struct VehicleModel {
   Eigen::VectorXd lateral_load;         ///< per lateral acceleration of the track to the left, +m to the right [kg]
   Eigen::VectorXd lateral_shift;        ///< what the dofs are when the whole vehicle has gone 1 m to the right
   double top_speed = 0.0;               ///< that its data state [m/s]; 0: none
+  ForceElements elements{};             ///< that are not linear, besides the matrices
+  std::vector<std::string> nonlinear;   ///< those elements, a sentence for each kind of unit
   std::vector<std::string> linearised;  ///< force elements that run by a linear stand-in, a sentence for each
   std::vector<std::string> left_out;    ///< force elements of its data that the model has not
 
@@ -89,6 +96,7 @@ struct VehicleDescription {
   double nominal_radius = 0.46;  ///< [m]
   double length = 26.4;          ///< over couplers [m]
   VehicleWeight weight{};
+  ForceElementChoice force_elements = ForceElementChoice::nonlinear;
 };
 
 /// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points, and the

@@ -17,37 +17,91 @@ std::string of(std::string_view quantity, std::string_view axis) { return fmt::f
 
 bool is_vertical(const VehicleData& data) { return data.motion == MotionPlane::vertical; }
 
-// Damping along one axis, with what is not linear about it.
-double read_damping(TomlSection& section, std::string_view axis, const std::string& name, VehicleData& data) {
-  const std::string key = of("c", axis), curve_key = of("damper_curve_", axis), friction_key = of("friction_", axis);
+// A characteristic through the origin whose force does not fall.
+ForceCurve read_curve(TomlSection& section, const std::string& key, std::string_view units) {
+  const auto points = section.points(key, units);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double before = i == 0 ? 0.0 : points[i - 1][1];
+    if (!(points[i][0] > 0.0) || points[i][1] < before) {
+      throw section.error(key, fmt::format("[{:.6g}, {:.6g}]", points[i][0], points[i][1]),
+                          "points from 0, 0 on, alike in both directions, whose forces do not fall");
+    }
+  }
+  return ForceCurve(points);
+}
+
+// Damping along one axis by a linear stand-in, and what is not linear about it.
+double read_damping(TomlSection& section, std::string_view axis, const std::string& name, NonlinearUnit& unit,
+                    VehicleData& data) {
+  const std::string key = of("c", axis), curve_key = of("damper_curve_", axis);
   const bool stated = section.has(key);
   double damping = section.number(key, damping_kind, 0.0);
   if (section.has(curve_key)) {
-    const auto curve = section.points(curve_key, "m/s and N");
+    unit.damper = read_curve(section, curve_key, "m/s and N");
+    const auto& curve = unit.damper.points();
     if (!stated) damping = curve.front()[1] / curve.front()[0];
+    data.nonlinear.push_back(fmt::format("{} along {}: damper of {} points, up to {:.6g} N at {:.6g} m/s{}", name, axis,
+                                         curve.size(), curve.back()[1], curve.back()[0],
+                                         section.has(of("series_k", axis)) ? ", in series" : ""));
     data.linearised.push_back(fmt::format(
         "{} along {}: its damper of {} points, up to {:.6g} N at {:.6g} m/s, runs linearly with {:.6g} N s/m", name,
         axis, curve.size(), curve.back()[1], curve.back()[0], damping));
   }
-  if (section.has(friction_key)) {
-    const double force = section.number(friction_key, force_kind);
-    if (damping > 0.0) {
-      data.linearised.push_back(fmt::format(
-          "{} along {}: dry friction of {:.6g} N runs as a linear damper of {:.6g} N s/m", name, axis, force, damping));
-    } else {
-      data.left_out.push_back(fmt::format("{} along {}: dry friction of {:.6g} N", name, axis, force));
-    }
-  }
   return damping;
 }
 
-void read_stop(TomlSection& section, std::string_view axis, const std::string& name, VehicleData& data) {
+struct FrictionKinds {
+  NumberKind force, travel;
+};
+constexpr FrictionKinds sliding{force_kind, travel_kind}, turning_friction{moment_kind, angle_kind};
+
+// Dry friction, "friction_x", "friction_ratio_x" and "friction_travel_x" along or about an axis.
+Friction read_friction(TomlSection& section, std::string_view axis, const FrictionKinds& kinds, double travel) {
+  Friction friction;
+  friction.force = section.number(of("friction_", axis), kinds.force, 0.0);
+  friction.ratio = section.number(of("friction_ratio_", axis), friction_ratio_kind, 0.0);
+  friction.travel = section.number(of("friction_travel_", axis), kinds.travel, travel);
+  return friction;
+}
+
+std::string friction_text(const Friction& friction, std::string_view unit) {
+  if (friction.ratio == 0.0) return fmt::format("dry friction of {:.6g} {}", friction.force, unit);
+  const std::string of_load = fmt::format("dry friction of {:.6g} times the load along z", friction.ratio);
+  return friction.force > 0.0 ? fmt::format("{} and {:.6g} {}", of_load, friction.force, unit) : of_load;
+}
+
+void describe_friction(const Friction& friction, const std::string& place, double damping, VehicleData& data) {
+  if (!friction.acts()) return;
+  const std::string text = friction_text(friction, "N");
+  data.nonlinear.push_back(fmt::format("{}: {}", place, text));
+  if (damping > 0.0) {
+    data.linearised.push_back(fmt::format("{}: {} runs as a linear damper of {:.6g} N s/m", place, text, damping));
+  } else {
+    data.left_out.push_back(fmt::format("{}: {}", place, text));
+  }
+}
+
+void describe_yaw_friction(const Friction& friction, const std::string& name, VehicleData& data) {
+  if (!friction.acts()) return;
+  const std::string text = fmt::format("{} about z: {}", name, friction_text(friction, "N m"));
+  data.nonlinear.push_back(text);
+  data.left_out.push_back(text);
+}
+
+ForceCurve read_stop(TomlSection& section, std::string_view axis, const std::string& name, VehicleData& data) {
   const std::string key = of("stop_", axis);
-  if (!section.has(key)) return;
-  const auto points = section.points(key, "m and N");
-  data.left_out.push_back(fmt::format("{} along {}: its stop, from {:.6g} N at {:.3g} mm to {:.6g} N at {:.3g} mm",
-                                      name, axis, points.front()[1], 1e3 * points.front()[0], points.back()[1],
-                                      1e3 * points.back()[0]));
+  if (!section.has(key)) return {};
+  ForceCurve stop = read_curve(section, key, "m and N");
+  const auto& points = stop.points();
+  if (points.front()[1] != 0.0 || points.size() < 2) {
+    throw section.error(key, fmt::format("{} points, first {:.6g} N", points.size(), points.front()[1]),
+                        "at least two points, the first with 0 N: there the free travel ends");
+  }
+  const std::string text = fmt::format("from {:.6g} N at {:.3g} mm to {:.6g} N at {:.3g} mm", points.front()[1],
+                                       1e3 * points.front()[0], points.back()[1], 1e3 * points.back()[0]);
+  data.nonlinear.push_back(fmt::format("{} along {}: stop {}", name, axis, text));
+  data.left_out.push_back(fmt::format("{} along {}: its stop, {}", name, axis, text));
+  return stop;
 }
 
 RigidBody make_body(std::string name, const BodyInertia& inertia, const Eigen::Vector3d& position) {
@@ -88,14 +142,20 @@ void read_connection(TomlSection& section, VehicleData& data) {
   const bool both_sides = !vertical && section.flag("both_sides");
   const SuspensionUnit unit = read_unit(section, name, data);
   Eigen::Vector3d turning = Eigen::Vector3d::Zero();
+  Friction yaw_friction;
   if (!vertical) {
+    constexpr double yaw_travel = 1e-3;  // rad
+    yaw_friction = read_friction(section, "yaw", turning_friction, yaw_travel);
+    describe_yaw_friction(yaw_friction, name, data);
     turning.x() = section.number("k_roll", bending_kind, 0.0);
     turning.z() = section.number("k_yaw", bending_kind, 0.0);
   }
   turning.y() = section.number("k_pitch", bending_kind, 0.0);
   const double couple_share = section.number("couple_share", ratio_kind, Suspension{}.couple_share);
   if (section.has("stand_in_for")) {
-    data.linearised.push_back(fmt::format("{}: a linear stand-in for {}", name, section.text("stand_in_for")));
+    const std::string stand_in = fmt::format("{}: a linear stand-in for {}", name, section.text("stand_in_for"));
+    data.stand_ins.push_back(stand_in);
+    data.linearised.push_back(stand_in);
   }
   section.reject_others();
   if (both_sides && y == 0.0) throw section.error("y", "0 with both_sides", "the distance from the track's centre");
@@ -113,6 +173,9 @@ void read_connection(TomlSection& section, VehicleData& data) {
       joint.rotational_stiffness = turning;
       joint.series_stiffness = {unit.series_kx, unit.series_ky, unit.series_kz};
       joint.couple_share = couple_share;
+      joint.name = name;
+      joint.nonlinear = unit.nonlinear;
+      joint.yaw_friction = yaw_friction;
       data.parts.suspension.push_back(joint);
     }
   }
@@ -121,18 +184,33 @@ void read_connection(TomlSection& section, VehicleData& data) {
 }  // namespace
 
 SuspensionUnit read_unit(TomlSection& section, const std::string& name, VehicleData& data) {
+  SuspensionUnit unit;
   std::array<double, 3> k{}, c{}, series{};
   for (std::size_t i = is_vertical(data) ? 2 : 0; i < 3; ++i) {
+    NonlinearUnit& nonlinear = unit.nonlinear[i];
     k[i] = section.number(of("k", axes[i]), stiffness_kind, 0.0);
-    c[i] = read_damping(section, axes[i], name, data);
+    c[i] = read_damping(section, axes[i], name, nonlinear, data);
     series[i] = section.number(of("series_k", axes[i]), stiffness_kind, 0.0);
     if (series[i] > 0.0 && c[i] < 1.0) {
       throw section.error(of("series_k", axes[i]), "a stiffness in series without damper",
                           fmt::format("{} too", of("c", axes[i])));
     }
-    read_stop(section, axes[i], name, data);
+    nonlinear.friction = read_friction(section, axes[i], sliding, Friction{}.travel);
+    if (nonlinear.friction.acts() && (series[i] > 0.0 || !nonlinear.damper.empty())) {
+      throw section.error(of("friction_", axes[i]), "dry friction in a connection with a damper of its own",
+                          "a [[connection]] for each");
+    }
+    describe_friction(nonlinear.friction, fmt::format("{} along {}", name, axes[i]), c[i], data);
+    nonlinear.stop = read_stop(section, axes[i], name, data);
   }
-  return {k[0], k[1], k[2], c[0], c[1], c[2], series[0], series[1], series[2]};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (unit.nonlinear[i].friction.ratio == 0.0 || k[2] > 0.0) continue;
+    throw section.error(of("friction_ratio_", axes[i]), "no spring whose load presses it together", "kz too");
+  }
+  unit.kx = k[0], unit.ky = k[1], unit.kz = k[2];
+  unit.cx = c[0], unit.cy = c[1], unit.cz = c[2];
+  unit.series_kx = series[0], unit.series_ky = series[1], unit.series_kz = series[2];
+  return unit;
 }
 
 BodyInertia read_inertia(TomlSection& section, const VehicleData& data) {

@@ -13,10 +13,11 @@ inline constexpr NumberKind mass_kind{"kg", 1.0, 1e6}, inertia_kind{"kg m²", 0.
     stiffness_kind{"N/m", 0.0, 1e12}, damping_kind{"N s/m", 0.0, 1e9}, bending_kind{"N m/rad", 0.0, 1e12},
     distance_kind{"m", 0.05, 100.0}, height_kind{"m", -1.0, 10.0}, position_kind{"m", -100.0, 100.0},
     radius_kind{"m", 0.05, 2.0}, speed_kind{"km/h", 1.0, 1000.0}, force_kind{"N", 0.0, 1e7}, ratio_kind{"", 0.0, 1.0},
-    frequency_kind{"Hz", 0.0, 1e3};
+    moment_kind{"N m", 0.0, 1e7}, travel_kind{"m", 1e-6, 0.1}, angle_kind{"rad", 1e-6, 0.1},
+    friction_ratio_kind{"", 0.0, 10.0}, frequency_kind{"Hz", 0.0, 1e3};
 
 /// The keys kx … cz, series_k*, damper_curve_*, stop_* and friction_* of a spring-damper. Vertical data have those of z
-/// alone. What is not linear goes into data.linearised and data.left_out under `name`.
+/// alone. What is not linear is described in data.nonlinear, data.linearised and data.left_out under `name`.
 [[nodiscard]] SuspensionUnit read_unit(TomlSection& section, const std::string& name, VehicleData& data);
 
 /// mass, Jx, Jy, Jz; vertical data have no Jx and Jz, which then act on nothing.

@@ -6,6 +6,7 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
+#include "railtab/runtime/vsi/element_forces.hpp"
 
 namespace railtab {
 
@@ -34,6 +35,7 @@ void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::Ve
   for (const RailCoupling& c : problem.rail) {
     r.segment<3>(rail_unknown(c.i)) += c.compliance * s.force.segment<3>(rail_unknown(c.j));
   }
+  if (problem.elements) problem.elements->respond(s.force, r);
 }
 
 // C of every group.
@@ -58,6 +60,21 @@ void assemble_compliances(const ContactProblem& problem, NewtonWorkspace& ws) {
   }
 }
 
+// C of a group that is a whole vehicle, less what its force elements take away. In a time step, where groups are single
+// wheelsets, that is as small as their coupling.
+Eigen::MatrixXd with_elements(const ContactProblem& problem, int vehicle, const Eigen::MatrixXd& compliance) {
+  if (!problem.elements || problem.wheelsets_per_group != problem.wheelsets_per_vehicle) return compliance;
+  const TrainElements& elements = *problem.elements;
+  const Eigen::MatrixXd stiffening = elements.vehicle[index(vehicle)].stiffening(*elements.compliance);
+  Eigen::MatrixXd result = compliance;
+  for (int i = 0; i < problem.wheelsets_per_group; ++i) {
+    for (int j = 0; j < problem.wheelsets_per_group; ++j) {
+      result.block<6, 6>(wheelset_unknowns * i, wheelset_unknowns * j) -= stiffening.block<6, 6>(6 * i, 6 * j);
+    }
+  }
+  return result;
+}
+
 // (I − C T)⁻¹ of the wheelsets of one group.
 void invert(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
   const Eigen::MatrixXd& compliance = ws.compliance[index(group)];
@@ -68,9 +85,10 @@ void invert(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
     inverse = jacobian.partialPivLu().inverse();
     return;
   }
+  const Eigen::MatrixXd stiffened = with_elements(problem, group, compliance);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(compliance.rows(), compliance.cols());
   for (int j = 0; j < problem.wheelsets_per_group; ++j) {
-    jacobian.middleCols<12>(12 * j) -= compliance.middleCols<12>(12 * j) * ws.tangent[index(first + j)];
+    jacobian.middleCols<12>(12 * j) -= stiffened.middleCols<12>(12 * j) * ws.tangent[index(first + j)];
   }
   inverse = jacobian.partialPivLu().inverse();
 }

@@ -11,6 +11,8 @@
 
 namespace railtab {
 
+class TrainElements;
+
 /// Contact unknowns of one wheelset: its six displacements, then y, z, roll of the left and of the right rail head.
 inline constexpr int wheelset_unknowns = 12;
 /// First of the three rail-head unknowns of a wheel; wheel = 2·wheelset + side, left first.
@@ -52,7 +54,8 @@ struct ContactProblem {
   double rail_velocity_rate = 0.0;
   Eigen::VectorXd free, predicted, predicted_velocity;  ///< 12 per wheelset
   Eigen::MatrixXd vehicle_compliance;                   ///< of one vehicle's wheelsets, 6w × 6w, times the load weight
-  std::vector<RailCoupling> rail;                       ///< times the load weight; empty on rigid track
+  TrainElements* elements = nullptr;  ///< force elements of the vehicles, which follow the contact forces; or none
+  std::vector<RailCoupling> rail;     ///< times the load weight; empty on rigid track
   std::vector<std::array<RailHeadMotion, 2>> deviation;  ///< irregularity and the rails' slopes, per wheelset and side
   double largest_move = 5e-3;                            ///< bound on one Newton correction [m or rad]
   /// Contact at the start of the step where f = mean_weight·(mean force over the step − half of that at its start);

@@ -11,6 +11,18 @@ namespace {
 
 constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
 
+// Of bump stops, and of friction that has not begun to slide.
+double stored(const ForceElements& elements, const Eigen::VectorXd& x, const Eigen::VectorXd& friction) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < elements.element.size(); ++i) {
+    const ForceElement& e = elements.element[i];
+    if (e.kind == ForceElementKind::stop) sum += e.curve.integral(x[e.row]);
+    const double force = friction[static_cast<Eigen::Index>(i)];
+    if (e.kind == ForceElementKind::friction) sum += 0.5 * force * force / e.stiffness;
+  }
+  return sum;
+}
+
 }  // namespace
 
 EnergyAccount::EnergyAccount(const VsiModel& model, const VsiState& state)
@@ -29,6 +41,12 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
   for (const LinearMotion& m : state.vehicle) {
     b.kinetic += 0.5 * m.velocity.dot(model_.vehicle.mass * m.velocity);
     b.strain += 0.5 * m.displacement.dot(model_.vehicle.stiffness * m.displacement);
+    if (!model_.vehicle.elements.empty()) {
+      const std::size_t v = now.elongation.size();
+      now.elongation.emplace_back(model_.vehicle.elements.rows * m.displacement);
+      now.friction.push_back(state.friction[v]);
+      b.strain += stored(model_.vehicle.elements, now.elongation[v], now.friction[v]);
+    }
     b.gravity -= model_.vehicle.static_load.dot(m.displacement);
     now.vehicle_displacement.push_back(m.displacement);
     now.vehicle_velocity.push_back(m.velocity);
@@ -81,6 +99,23 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
   return now;
 }
 
+double EnergyAccount::dissipated_by_elements(double time_step, const Instant& now) const {
+  double sum = 0.0;
+  for (std::size_t v = 0; v < now.elongation.size(); ++v) {
+    const Eigen::VectorXd &x0 = last_.elongation[v], &x1 = now.elongation[v];
+    for (std::size_t i = 0; i < model_.vehicle.elements.element.size(); ++i) {
+      const ForceElement& e = model_.vehicle.elements.element[i];
+      const double moved = x1[e.row] - x0[e.row];
+      if (e.kind == ForceElementKind::damper) sum += e.curve.at(moved / time_step).force * moved;
+      if (e.kind != ForceElementKind::friction) continue;
+      const double begin = last_.friction[v][static_cast<Eigen::Index>(i)];
+      const FrictionStep path = slide(begin, e.stiffness * moved, e.limit(x0).force, e.limit(x1).force);
+      sum += path.mean * moved - 0.5 * (path.end * path.end - begin * begin) / e.stiffness;
+    }
+  }
+  return sum;
+}
+
 void EnergyAccount::step(double gamma, const VsiState& state) {
   const double time_step = state.time - balance_.time;
   const double contact_before = balance_.contact;
@@ -93,6 +128,7 @@ void EnergyAccount::step(double gamma, const VsiState& state) {
         0.5 *
         (last_.vehicle_load[v] + now.vehicle_load[v]).dot(now.vehicle_displacement[v] - last_.vehicle_displacement[v]);
   }
+  balance_.dissipated += dissipated_by_elements(time_step, now);
   if (model_.structure) {
     const Eigen::VectorXd mean = 0.5 * (last_.structure_velocity + now.structure_velocity);
     balance_.dissipated += time_step * mean.dot(model_.structure->damping * mean);

@@ -13,11 +13,11 @@ namespace railtab {
 struct EnergyBalance {
   double time = 0;  ///< [s]
   double kinetic = 0;
-  double strain = 0;   ///< suspension and structure
+  double strain = 0;   ///< suspension and structure, bump stops and dry friction that sticks included
   double gravity = 0;  ///< of the static loads, zero in the nominal position
   double contact = 0;  ///< Hertz springs: (2/5) F d of every patch
 
-  double dissipated = 0;     ///< by dampers of train and structure
+  double dissipated = 0;     ///< by dampers of train and structure and by dry friction
   double creep_work = 0;     ///< of creep forces on train and track; negative where they slow the motion down
   double load_work = 0;      ///< of loads on bodies (VsiModel::loads, changing speed)
   double traction_work = 0;  ///< what the drive does against normal forces as wheels run up rails and irregularities
@@ -57,6 +57,7 @@ class EnergyAccount {
   /// What a step's works are made of.
   struct Instant {
     std::vector<Eigen::VectorXd> vehicle_displacement, vehicle_velocity;
+    std::vector<Eigen::VectorXd> elongation, friction;  ///< of force elements, per vehicle
     Eigen::VectorXd structure_velocity;
     Eigen::VectorXd wheel_displacement;          ///< 12 per wheelset: wheelset, rail heads with irregularity [m, rad]
     Eigen::VectorXd wheel_velocity;              ///< likewise, of the rails' material [m/s, rad/s]
@@ -67,6 +68,7 @@ class EnergyAccount {
     std::vector<double> contact_energy;             ///< of the contact springs, per wheelset [J]
   };
   [[nodiscard]] Instant observe(const VsiState& state);
+  [[nodiscard]] double dissipated_by_elements(double time_step, const Instant& now) const;
 
   const VsiModel& model_;
   WheelContactModel contact_, frictionless_;  ///< at the speed of the instant

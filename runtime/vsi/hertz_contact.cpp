@@ -38,6 +38,7 @@ class HertzContacts : public ContactLaw {
     free_.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
     problem_.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
     problem_.wheelsets_per_group = 1;
+    if (!model.vehicle.elements.empty()) elements_.emplace(model.vehicle, n);
     problem_.free = problem_.predicted = problem_.predicted_velocity =
         Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
   }
@@ -58,6 +59,9 @@ class HertzContacts : public ContactLaw {
       gather_wheelsets(step.model, v, p.velocity, problem_.predicted_velocity);
       gather_wheelsets(step.model, v, free, problem_.free);
       gather_wheelsets(step.model, v, start, ws.solution.displacement);
+      if (!elements_) continue;
+      elements_->free[index(v)].noalias() = step.model.vehicle.elements.rows * free;
+      elements_->vehicle[index(v)].begin(element_step(hht), motion, state.friction[index(v)], p, start);
     }
   }
 
@@ -81,6 +85,8 @@ class HertzContacts : public ContactLaw {
     problem_.velocity_rate = Vector6::Constant(step.hht.velocity_rate());
     problem_.rail_velocity_rate = step.hht.velocity_rate();
     problem_.vehicle_compliance = step.hht.load_weight() * step.operators.vehicle.compliance();
+    if (elements_) elements_->compliance = &*step.operators.elements;
+    problem_.elements = elements_ ? &*elements_ : nullptr;
     const bool energy = step.hht.contact_force == ContactForceRule::energy;
     problem_.start = energy ? &state.contact : nullptr;
     problem_.mean_weight = energy ? 1.0 / (step.hht.gamma() * step.hht.load_weight()) : 1.0;
@@ -122,10 +128,15 @@ class HertzContacts : public ContactLaw {
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
+      if (elements_) elements_->vehicle[index(v)].add_share(ws.vehicle_load);
       const Eigen::VectorXd increment =
           free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
       close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
+      if (elements_) {
+        elements_->vehicle[index(v)].add_end_force(motion.contact_load);
+        state.friction[index(v)] = elements_->vehicle[index(v)].friction();
+      }
       update(hht, prediction_[index(v)], increment, motion);
     }
     ws.solution.step_load = state.contact.step_load;
@@ -136,6 +147,12 @@ class HertzContacts : public ContactLaw {
   void reinitialise() override { newton_.forget_tangents(); }
 
  private:
+  static ElementForces::Step element_step(const HhtScheme& hht) {
+    const bool energy = hht.contact_force == ContactForceRule::energy;
+    return {energy ? ElementRule::energy : ElementRule::endpoint, hht.time_step, hht.velocity_rate(),
+            energy ? 1.0 / (hht.gamma() * hht.load_weight()) : 1.0};
+  }
+
   void gather_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
     const Prediction& p = ws.structure_prediction;
     gather_rails(step.contacts, p.displacement, problem_.predicted);
@@ -154,9 +171,10 @@ class HertzContacts : public ContactLaw {
   std::optional<ContactGeometry> search_;  // made when first needed
   WheelContactModel contact_;              // at the speed of the step's end
   ContactProblem problem_;
-  std::vector<Prediction> prediction_;  // per vehicle
-  std::vector<Eigen::VectorXd> free_;   // per vehicle: increment without contact forces
-  NewtonWorkspace newton_;              // tangents and loads are kept from step to step, until reinitialise()
+  std::optional<TrainElements> elements_;  // where vehicles have force elements
+  std::vector<Prediction> prediction_;     // per vehicle
+  std::vector<Eigen::VectorXd> free_;      // per vehicle: increment without contact forces
+  NewtonWorkspace newton_;                 // tangents and loads are kept from step to step, until reinitialise()
 };
 
 }  // namespace

@@ -35,6 +35,23 @@ void record_wheel_extremes(const VsiModel& model, VsiState& state) {
   }
 }
 
+void record_stops(const VsiModel& model, VsiState& state) {
+  const ForceElements& elements = model.vehicle.elements;
+  if (elements.empty()) return;
+  for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
+    const Eigen::VectorXd x = elements.rows * state.vehicle[v].displacement;
+    for (std::size_t i = 0; i < elements.element.size(); ++i) {
+      const ForceElement& e = elements.element[i];
+      if (e.kind != ForceElementKind::stop) continue;
+      const StopEvent event{state.time, std::abs(e.curve.at(x[e.row]).force),
+                            static_cast<int>(v * elements.element.size() + i)};
+      if (event.force <= 0.0) continue;
+      if (!state.stops.first.found()) state.stops.first = event;
+      if (event.force > state.stops.largest.force) state.stops.largest = event;
+    }
+  }
+}
+
 Integrator::Integrator(const VsiModel& model, const IntegrationParameters& parameters,
                        std::function<void(const EnergyBalance&)> energy, bool contact_energy)
     : model_(model),
@@ -136,7 +153,10 @@ void Integrator::after_step(const StepReport& report, int level, ContactForceRul
   force_rule_.after_step(report.contact_change, rule, op.scheme.time_step, state);
   if (account_) account_->step(op.scheme.gamma(), state);
   if (energy_record_) energy_record_->step(*account_, state);
-  if (state.time > 0.0) record_wheel_extremes(model_, state);
+  if (state.time > 0.0) {
+    record_wheel_extremes(model_, state);
+    record_stops(model_, state);
+  }
   if (account_ && energy_) energy_(account_->balance());
 }
 

@@ -17,6 +17,9 @@ namespace railtab {
 /// Adds the wheel forces of a state to its extremes.
 void record_wheel_extremes(const VsiModel& model, VsiState& state);
 
+/// Adds the forces of the vehicles' bump stops to the extremes of a state.
+void record_stops(const VsiModel& model, VsiState& state);
+
 /// What an integrator has counted since it was made.
 struct StepCounts {
   long newton_iterations = 0, back_substitutions = 0, halved_steps = 0, impact_steps = 0, active_dofs = 0;

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
@@ -79,7 +80,9 @@ class RigidWheels : public ContactLaw {
       : per_vehicle_(model.wheelsets_per_vehicle()),
         prediction_(model.vehicle_x.size()),
         remainder_(model.vehicle_x.size()),
-        free_force_(model.wheelsets()) {}
+        free_force_(model.wheelsets()) {
+    if (!model.vehicle.elements.empty()) elements_.assign(model.vehicle_x.size(), ElementForces(model.vehicle));
+  }
 
   void predict_vehicles(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
@@ -90,6 +93,7 @@ class RigidWheels : public ContactLaw {
                                  prediction_[index(v)]);
       free_force_.segment(per_vehicle_ * v, per_vehicle_) = wheels(step).free_force(R);
     }
+    state_ = &state;
   }
 
   void present(const StepContext& step, const VsiState&, StepWorkspace& ws) override {
@@ -119,15 +123,17 @@ class RigidWheels : public ContactLaw {
 
   ContactSolve solve(const StepContext& step, int, StepWorkspace& ws, StepReport& report) override {
     const Stopwatch watch = report.times.measure(Phase::contact);
-    std::vector<Vector3d> free(free_.size());
-    for (std::size_t w = 0; w < free_.size(); ++w) {
-      increment_[w] = free_[w] + ws.far_field.segment<3>(3 * static_cast<Eigen::Index>(w));
-      free[w] = heave(step.hht, w, increment_[w]);
+    for (int v = 0; v < static_cast<int>(elements_.size()); ++v) set_element_load(step, v, Eigen::VectorXd());
+    constexpr int most_passes = 50;
+    double change = 0.0;
+    for (int k = 0; k < most_passes; ++k) {
+      follow(step, ws);
+      ++report.newton_iterations;
+      if (!force_.allFinite()) return ContactSolve::diverged;  // the system of the forces is singular
+      change = respond_by_elements(step);
+      if (!(change > 0.0)) break;
     }
-    solve_forces(step, free);
-    ++report.newton_iterations;
-    if (!force_.allFinite()) return ContactSolve::diverged;  // the system of the forces is singular
-    for (const LineCoupling& c : couplings_) increment_[index(c.i)] -= c.line * force_[c.j];
+    if (!(change <= 0.0)) return ContactSolve::diverged;
     set_vertical_forces(force_, ws.solution);
     return ContactSolve::changed;
   }
@@ -144,18 +150,16 @@ class RigidWheels : public ContactLaw {
   }
 
   void close(const StepContext& step, VsiState& state, StepWorkspace& ws) override {
-    WheelsetHeave moved{Eigen::VectorXd(per_vehicle_), Eigen::VectorXd(per_vehicle_), Eigen::VectorXd(per_vehicle_)};
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
+      const WheelsetHeave moved = heave_of(step, v);
       for (int i = 0; i < per_vehicle_; ++i) {
-        const int w = per_vehicle_ * v + i;
-        const Vector3d h = heave(step.hht, index(w), increment_[index(w)]);
-        moved.z[i] = h[0];
-        moved.v[i] = h[1];
-        moved.a[i] = h[2];
-        ws.solution.displacement[wheelset_unknowns * w + 2] = h[0];
+        ws.solution.displacement[wheelset_unknowns * (per_vehicle_ * v + i) + 2] = moved.z[i];
       }
-      wheels(step).update(step.hht, prediction_[index(v)], remainder_[index(v)], moved,
+      wheels(step).update(step.hht, prediction_[index(v)], loaded(v), moved,
                           force_.segment(per_vehicle_ * v, per_vehicle_), state.vehicle[index(v)]);
+      if (elements_.empty()) continue;
+      elements_[index(v)].add_end_force(state.vehicle[index(v)].contact_load);
+      state.friction[index(v)] = elements_[index(v)].friction();
     }
     std::swap(state.contact, ws.solution);
   }
@@ -165,6 +169,67 @@ class RigidWheels : public ContactLaw {
  private:
   [[nodiscard]] static const RigidWheelResponse& wheels(const StepContext& step) {
     return *step.operators.rigid_wheels;
+  }
+
+  // R of a vehicle with the load of its force elements.
+  [[nodiscard]] Eigen::VectorXd loaded(int v) const {
+    if (elements_.empty()) return remainder_[index(v)];
+    return remainder_[index(v)] + element_load_[index(v)];
+  }
+
+  void set_element_load(const StepContext& step, int v, const Eigen::VectorXd& force) {
+    element_load_.resize(elements_.size());
+    Eigen::VectorXd& load = element_load_[index(v)];
+    load.setZero(step.model.vehicle.dofs());
+    if (force.size() > 0) load = -step.hht.load_weight() * (step.model.vehicle.elements.rows.transpose() * force);
+    free_force_.segment(per_vehicle_ * v, per_vehicle_) = wheels(step).free_force(loaded(v));
+  }
+
+  // Contact forces, and the lines under them, for what acts on the vehicles.
+  void follow(const StepContext& step, const StepWorkspace& ws) {
+    std::vector<Vector3d> free(free_.size());
+    for (std::size_t w = 0; w < free_.size(); ++w) {
+      increment_[w] = free_[w] + ws.far_field.segment<3>(3 * static_cast<Eigen::Index>(w));
+      free[w] = heave(step.hht, w, increment_[w]);
+    }
+    solve_forces(step, free);
+    for (const LineCoupling& c : couplings_) increment_[index(c.i)] -= c.line * force_[c.j];
+  }
+
+  // The force elements for the wheelsets' heave, which they change through the rails alone: little in a step. Returns
+  // what their forces have changed by where that is more than rounding, or NaN.
+  double respond_by_elements(const StepContext& step) {
+    constexpr double rounding = 1e-11;
+    double change = 0.0;
+    for (int v = 0; v < static_cast<int>(elements_.size()); ++v) {
+      ElementForces& elements = elements_[index(v)];
+      const RigidWheelResponse& response = wheels(step);
+      const LinearMotion& motion = state_->vehicle[index(v)];
+      const WheelsetHeave heave = heave_of(step, v);
+      const Eigen::VectorXd free = response.displacement(prediction_[index(v)], remainder_[index(v)], heave);
+      elements.begin({ElementRule::endpoint, step.hht.time_step, step.hht.velocity_rate()}, motion,
+                     state_->friction[index(v)], response.prescribed(prediction_[index(v)], heave), free);
+      if (!elements.solve(*response.elements(), step.model.vehicle.elements.rows * free)) {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+      const Eigen::VectorXd before = element_load_[index(v)];
+      set_element_load(step, v, elements.share());
+      const double difference = (element_load_[index(v)] - before).cwiseAbs().maxCoeff();
+      if (difference > rounding * (1.0 + before.cwiseAbs().maxCoeff())) change = std::max(change, difference);
+    }
+    return change;
+  }
+
+  [[nodiscard]] WheelsetHeave heave_of(const StepContext& step, int v) const {
+    WheelsetHeave moved{Eigen::VectorXd(per_vehicle_), Eigen::VectorXd(per_vehicle_), Eigen::VectorXd(per_vehicle_)};
+    for (int i = 0; i < per_vehicle_; ++i) {
+      const int w = per_vehicle_ * v + i;
+      const Vector3d h = heave(step.hht, index(w), increment_[index(w)]);
+      moved.z[i] = h[0];
+      moved.v[i] = h[1];
+      moved.a[i] = h[2];
+    }
+    return moved;
   }
 
   // (z, v, a) of a wheelset for an increment of its line.
@@ -215,9 +280,12 @@ class RigidWheels : public ContactLaw {
   }
 
   int per_vehicle_;
-  std::vector<Prediction> prediction_;      // per vehicle
-  std::vector<Eigen::VectorXd> remainder_;  // per vehicle: R
-  Eigen::VectorXd free_force_, force_;      // per wheelset: without heave, and solved [N]
+  std::vector<Prediction> prediction_;         // per vehicle
+  std::vector<Eigen::VectorXd> remainder_;     // per vehicle: R
+  const VsiState* state_ = nullptr;            // at the begin of the step
+  std::vector<ElementForces> elements_;        // per vehicle; empty where there are none
+  std::vector<Eigen::VectorXd> element_load_;  // per vehicle: on its dofs, in R
+  Eigen::VectorXd free_force_, force_;         // per wheelset: without heave, and solved [N]
   Eigen::MatrixXd system_;
   Running running_{};
   std::vector<LineCoupling> couplings_;

@@ -23,6 +23,7 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   const Eigen::MatrixXd effective = effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness);
   const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
   inverse_bb_ = b_.empty() ? effective_bb : effective_inverse(effective_bb);
+  if (!vehicle.elements.empty()) elements_.emplace(vehicle, b_, inverse_bb_, load_weight_);
   E_inverse_ = effective(c_, b_) * inverse_bb_;
   K_bc_ = vehicle.stiffness(b_, c_);
   C_bc_ = damping(b_, c_);
@@ -50,13 +51,32 @@ Eigen::VectorXd RigidWheelResponse::free_force(const Eigen::VectorXd& R) const {
   return (E_inverse_ * R(b_) - R(c_)) / load_weight_;
 }
 
+Eigen::VectorXd RigidWheelResponse::increment(const Eigen::VectorXd& R, const WheelsetHeave& h) const {
+  const Eigen::VectorXd load = R(b_) - M_bc_ * h.a - load_weight_ * (C_bc_ * h.v + K_bc_ * h.z);
+  return inverse_bb_ * load;
+}
+
+Eigen::VectorXd RigidWheelResponse::displacement(const Prediction& p, const Eigen::VectorXd& R,
+                                                 const WheelsetHeave& h) const {
+  Eigen::VectorXd u = p.displacement;
+  u(b_) += increment(R, h);
+  u(c_) = h.z;
+  return u;
+}
+
+Prediction RigidWheelResponse::prescribed(const Prediction& p, const WheelsetHeave& h) const {
+  Prediction result = p;
+  result.displacement(c_) = h.z;
+  result.velocity(c_) = h.v;
+  return result;
+}
+
 void RigidWheelResponse::update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& R,
                                 const WheelsetHeave& h, const Eigen::VectorXd& force, LinearMotion& motion) const {
-  const Eigen::VectorXd load = R(b_) - M_bc_ * h.a - load_weight_ * (C_bc_ * h.v + K_bc_ * h.z);
-  const Eigen::VectorXd increment = inverse_bb_ * load;
-  motion.displacement(b_) = p.displacement(b_) + increment;
-  motion.velocity(b_) = p.velocity(b_) + scheme.velocity_rate() * increment;
-  motion.acceleration(b_) = scheme.acceleration_rate() * increment;
+  const Eigen::VectorXd moved = increment(R, h);
+  motion.displacement(b_) = p.displacement(b_) + moved;
+  motion.velocity(b_) = p.velocity(b_) + scheme.velocity_rate() * moved;
+  motion.acceleration(b_) = scheme.acceleration_rate() * moved;
   motion.displacement(c_) = h.z;
   motion.velocity(c_) = h.v;
   motion.acceleration(c_) = h.a;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "railtab/runtime/vsi/contact_newton.hpp"
+#include "railtab/runtime/vsi/element_forces.hpp"
 #include "railtab/runtime/vsi/hht.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
@@ -29,6 +31,11 @@ class RigidWheelResponse {
                                           const LinearMotion& motion, Prediction& prediction) const;
   /// Contact forces on the wheelsets (down) [N] where these end the step with no heave, velocity and acceleration.
   [[nodiscard]] Eigen::VectorXd free_force(const Eigen::VectorXd& R) const;
+  /// Displacement of all dofs at the end of the step.
+  [[nodiscard]] Eigen::VectorXd displacement(const Prediction& prediction, const Eigen::VectorXd& R,
+                                             const WheelsetHeave& heave) const;
+  /// The prediction with the wheelsets' heave at the end of the step in place of theirs.
+  [[nodiscard]] Prediction prescribed(const Prediction& prediction, const WheelsetHeave& heave) const;
   /// Closes the step with the wheelsets' heave and the forces that it needs.
   void update(const HhtScheme& scheme, const Prediction& prediction, const Eigen::VectorXd& R,
               const WheelsetHeave& heave, const Eigen::VectorXd& force, LinearMotion& motion) const;
@@ -37,9 +44,14 @@ class RigidWheelResponse {
   [[nodiscard]] const Eigen::MatrixXd& stiffness() const noexcept { return Z_; }
   [[nodiscard]] const Eigen::MatrixXd& damping() const noexcept { return W_; }
   [[nodiscard]] const Eigen::MatrixXd& mass() const noexcept { return A_; }
+  /// Of force elements while the wheelsets' heave is held; none where the vehicle has none.
+  [[nodiscard]] const std::optional<ElementCompliance>& elements() const noexcept { return elements_; }
 
  private:
+  [[nodiscard]] Eigen::VectorXd increment(const Eigen::VectorXd& R, const WheelsetHeave& heave) const;
+
   double load_weight_;
+  std::optional<ElementCompliance> elements_;
   std::vector<int> b_, c_;                  // other dofs, heave of the wheelsets
   Eigen::MatrixXd inverse_bb_, E_inverse_;  // K̄_bb⁻¹; K̄_cb K̄_bb⁻¹
   Eigen::MatrixXd K_bc_, C_bc_, M_bc_, Z_, W_, A_;

@@ -32,6 +32,16 @@ void add_times(const StepTimes& times, RunSummary& summary) {
   summary.seconds_output = times.seconds(Phase::output);
 }
 
+std::optional<StopSummary> stop_summary(const VsiModel& model, const StopExtremes& stops) {
+  if (!stops.first.found()) return std::nullopt;
+  const std::vector<ForceElement>& elements = model.vehicle.elements.element;
+  const auto name = [&](const StopEvent& event) {
+    const auto i = static_cast<std::size_t>(event.element);
+    return fmt::format("coach-{}: {}", i / elements.size() + 1, elements[i % elements.size()].name);
+  };
+  return StopSummary{name(stops.first), name(stops.largest), stops.first.time, stops.largest.force, stops.largest.time};
+}
+
 // A run of whole time steps and those who listen to it.
 class Run {
  public:
@@ -53,6 +63,7 @@ class Run {
     summary.steps = summary.counted_from = first;
     if (first == 0) {
       record_wheel_extremes(model_, state_);
+      record_stops(model_, state_);
       emit();
     }
     while (summary.steps < last && summary.message.empty()) {
@@ -68,6 +79,7 @@ class Run {
     }
     summary.contact_energy = integrator_.contact_energy();
     summary.wheel_extremes = state_.wheel_extremes;
+    summary.stops = stop_summary(model_, state_.stops);
     if (!recorded) emit();  // after a checkpoint: a resumed run leaves the record away again
     add_counts(integrator_.counts(), summary);
     add_times(integrator_.times(), summary);

@@ -127,7 +127,9 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   now.displacement = problem.predicted;
   static_cast<void>(evaluate_contact(contact, problem, now));
   for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
-    scatter_wheelset_forces(model, v, now.end_force, state.vehicle[static_cast<std::size_t>(v)].contact_load);
+    Eigen::VectorXd& load = state.vehicle[static_cast<std::size_t>(v)].contact_load;
+    scatter_wheelset_forces(model, v, now.end_force, load);
+    add_element_forces(model, state, v, load);
   }
   if (model.structure) scatter_rail_forces(contacts, now.end_force, state.structure.contact_load);
   state.contact.end_force = std::move(now.end_force);

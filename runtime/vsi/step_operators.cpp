@@ -21,8 +21,14 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   if (model.normal_contact == NormalContact::rigid) {
     rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
   }
+  respond_to_elements(model);
   if (!model.structure) return;
   structure = std::make_unique<StructureResponse>(*model.structure, hht);
+}
+
+void StepOperators::respond_to_elements(const VsiModel& model) {
+  if (model.vehicle.elements.empty() || rigid_wheels) return;
+  elements.emplace(model.vehicle, vehicle.inverse(), scheme.load_weight());
 }
 
 double StepOperators::vehicle_bytes(const VsiModel& model) {
@@ -49,6 +55,7 @@ void StepOperators::update_for_time(const VsiModel& model, double time, const Do
     vehicle_damping = model.vehicle_damping(speed_);
     vehicle = VehicleResponse(model.vehicle, vehicle_damping, scheme);
     if (rigid_wheels) rigid_wheels.emplace(model.vehicle, vehicle_damping, scheme);
+    respond_to_elements(model);
   }
   const double front = model.wheelset_x(0, time);
   const double rear = model.wheelset_x(model.wheelsets() - 1, time);

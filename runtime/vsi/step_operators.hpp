@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "railtab/runtime/vsi/element_forces.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -15,6 +16,7 @@ class StepOperators {
   HhtScheme scheme;
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
+  std::optional<ElementCompliance> elements;       ///< where vehicles have force elements and NormalContact::hertz
   std::unique_ptr<StructureResponse> structure;    ///< null on rigid track
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
@@ -31,6 +33,8 @@ class StepOperators {
   [[nodiscard]] static double largest_table(const VsiModel& model, double duration, double time_step);
 
  private:
+  void respond_to_elements(const VsiModel& model);
+
   double speed_;  ///< of the gyroscopic terms [m/s]
   double covered_from_ = 0.0,
          covered_to_ = -1.0;  ///< positions along the track [m]; none at first

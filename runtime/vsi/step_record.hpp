@@ -86,6 +86,23 @@ struct WheelExtremes {
   void add(double time, int wheel, double Y, double Q, double static_load) noexcept;
 };
 
+/// A bump stop in action: a force element of a vehicle.
+struct StopEvent {
+  double time = 0, force = 0;  ///< end of the step [s], [N]
+  int element = -1;            ///< index over the elements of all vehicles, front first; -1: there is none
+  [[nodiscard]] bool found() const noexcept { return element >= 0; }
+};
+/// Over all steps of a run from t = 0 on: when a stop was first engaged, and where one bore most.
+struct StopExtremes {
+  StopEvent first, largest;
+};
+/// The same for the summary. @see RunSummary::stops
+struct StopSummary {
+  std::string first_name, largest_name;        ///< "coach-1: secondary suspension along y, bogie-1 to car-body, right"
+  double first_time = 0;                       ///< [s]
+  double largest_force = 0, largest_time = 0;  ///< [N], [s]
+};
+
 /// How the run ended and where its time went.
 struct RunSummary {
   bool complete = false;
@@ -105,6 +122,7 @@ struct RunSummary {
                          ///< in result files
   std::string contact_mode;                     ///< table, online, paper
   std::optional<ContactEnergy> contact_energy;  ///< where output.energy asks for it
+  std::optional<StopSummary> stops;             ///< where a bump stop of the vehicles was engaged
   WheelExtremes wheel_extremes;                 ///< none where wheels are not recorded, and in older files
 };
 

@@ -42,6 +42,8 @@ RailDeviation VsiModel::rail_line(RailSide side, double x) const noexcept {
 VsiState::VsiState(const VsiModel& model)
     : vehicle(model.vehicle_x.size(), LinearMotion(model.vehicle.dofs())),
       structure(model.structure ? model.structure->dofs() : 0) {
+  friction.assign(vehicle.size(),
+                  Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.vehicle.elements.element.size())));
   const int wheelsets = model.wheelsets();
   contact.displacement = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
   contact.force = Eigen::VectorXd::Zero(wheelset_unknowns * wheelsets);
@@ -81,6 +83,14 @@ void visit_numbers(State& state, Visitor&& visit) {
     visit(&extreme->value, 1);
     visit(&extreme->time, 1);
     visit(&extreme->wheel, 1);
+  }
+  if (!state.friction.empty() && state.friction.front().size() > 0) {
+    for (auto& force : state.friction) visit_vector(force);
+    for (auto* event : {&state.stops.first, &state.stops.largest}) {
+      visit(&event->time, 1);
+      visit(&event->force, 1);
+      visit(&event->element, 1);
+    }
   }
   visit(&state.landing_until, 1);
   visit(&state.impact_until, 1);
@@ -243,6 +253,15 @@ void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::Vect
   for (int wheel = 0; wheel < static_cast<int>(contacts.size()); ++wheel) {
     add_rail_load(contacts[index(wheel)], force.segment<3>(rail_unknown(wheel)), load);
   }
+}
+
+void add_element_forces(const VsiModel& model, const VsiState& state, int vehicle, Eigen::VectorXd& load) {
+  const ForceElements& elements = model.vehicle.elements;
+  if (elements.empty()) return;
+  const LinearMotion& motion = state.vehicle[index(vehicle)];
+  const Eigen::VectorXd force = elements.force(elements.rows * motion.displacement, elements.rows * motion.velocity,
+                                               state.friction[index(vehicle)]);
+  load.noalias() -= elements.rows.transpose() * force;
 }
 
 ContactProblem present_contact(const VsiModel& model, const VsiState& state) {

@@ -86,6 +86,8 @@ struct VsiState {
   std::vector<LinearMotion> vehicle;
   LinearMotion structure;
   Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
+  std::vector<Eigen::VectorXd> friction;  ///< per vehicle: force of each force element that is dry friction [N]
+  StopExtremes stops;                     ///< where vehicles have force elements
   ContactSolution contact;
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].
@@ -120,6 +122,9 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
 /// speed; and the vertical motion of the ground there, which rails that are rigid follow.
 [[nodiscard]] VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double time) noexcept;
 [[nodiscard]] VerticalDeviation ground_under(const VsiModel& model, int wheelset, double time) noexcept;
+
+/// Adds to the load of a vehicle what its force elements exert as a state has them.
+void add_element_forces(const VsiModel& model, const VsiState& state, int vehicle, Eigen::VectorXd& load);
 
 /// The contact unknowns and their velocities as a state has them (`predicted`, with the track's deviation), nothing
 /// left to solve: for what is asked of the contacts outside the steps.

@@ -44,6 +44,7 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
                             .largest_impact = -6.5,
                             .largest_impact_time = 7.5,
                             .largest_impact_stored = 8.5};
+  summary.stops = {"coach-1: stop, left", "coach-2: stop, right", 0.25, 8e3, 0.5};
   summary.wheel_extremes = {
       .largest_Q = {1e5, 0.1, 0}, .smallest_Q = {2e4, 0.2, 1}, .derailment = {0.8, 0.3, 2}, .unloading = {0.6, 0.4, 3}};
   {
@@ -89,6 +90,11 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
                                  e.largest_impact_time, e.largest_impact_stored}),
             (std::vector<double>{1.5, -2.5, 3.5, 4.5, -6.5, 7.5, 8.5}));
   const auto numbers = [](const WheelExtreme& x) { return std::array{x.value, x.time, double(x.wheel)}; };
+  ASSERT_TRUE(s.stops.has_value());
+  EXPECT_EQ(s.stops->first_name, "coach-1: stop, left");
+  EXPECT_EQ(s.stops->largest_name, "coach-2: stop, right");
+  EXPECT_EQ((std::array{s.stops->first_time, s.stops->largest_force, s.stops->largest_time}),
+            (std::array{0.25, 8e3, 0.5}));
   EXPECT_EQ(numbers(s.wheel_extremes.largest_Q), (std::array{1e5, 0.1, 0.0}));
   EXPECT_EQ(numbers(s.wheel_extremes.smallest_Q), (std::array{2e4, 0.2, 1.0}));
   EXPECT_EQ(numbers(s.wheel_extremes.derailment), (std::array{0.8, 0.3, 2.0}));
@@ -108,6 +114,7 @@ TEST_F(ResultFile, RefusesTheExtremeOfAWheelThatTheRunDoesNotHave) {
 TEST_F(ResultFile, HasNoEnergyWhereNoneWasAccountedFor) {
   { ResultWriter(file_, header_, 7).finish({}); }
   EXPECT_FALSE(read_results(file_).summary.contact_energy.has_value());
+  EXPECT_FALSE(read_results(file_).summary.stops.has_value());
 }
 
 TEST_F(ResultFile, ARunWithoutNodesOrRecordsIsReadable) {

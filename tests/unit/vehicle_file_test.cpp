@@ -11,6 +11,7 @@
 #include "railtab/runtime/scene/scene.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_warnings.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
@@ -187,17 +188,51 @@ TEST(VehicleFile, SaysWhatIsNotLinear) {
   const VehicleData data = parse_vehicle(
       wagon +
           "damper_curve_y = [[0.1, 2500], [0.3, 3585]]\nstop_y = [[0.025, 0], [0.03, 600]]\nfriction_x = 4e3\n"
-          "friction_z = 2e3\nstand_in_for = \"leaf springs\"\n",
+          "friction_ratio_z = 0.2\nfriction_yaw = 5e3\nstand_in_for = \"leaf springs\"\n",
       "wagon.toml");
   EXPECT_EQ(data.parts.suspension[0].damping.y(), 25000.0);  // the slope of the first segment
-  ASSERT_EQ(data.linearised.size(), 3U);
-  EXPECT_EQ(data.linearised[0],
-            "springs along y: its damper of 2 points, up to 3585 N at 0.3 m/s, runs linearly with 25000 N s/m");
-  EXPECT_EQ(data.linearised[1], "springs along z: dry friction of 2000 N runs as a linear damper of 30000 N s/m");
-  EXPECT_EQ(data.linearised[2], "springs: a linear stand-in for leaf springs");
-  ASSERT_EQ(data.left_out.size(), 2U);
-  EXPECT_EQ(data.left_out[0], "springs along x: dry friction of 4000 N");
-  EXPECT_EQ(data.left_out[1], "springs along y: its stop, from 0 N at 25 mm to 600 N at 30 mm");
+  EXPECT_EQ(data.nonlinear, (std::vector<std::string>{"springs along x: dry friction of 4000 N",
+                                                      "springs along y: damper of 2 points, up to 3585 N at 0.3 m/s",
+                                                      "springs along y: stop from 0 N at 25 mm to 600 N at 30 mm",
+                                                      "springs along z: dry friction of 0.2 times the load along z",
+                                                      "springs about z: dry friction of 5000 N m"}));
+  EXPECT_EQ(data.stand_ins, (std::vector<std::string>{"springs: a linear stand-in for leaf springs"}));
+  EXPECT_EQ(data.linearised,
+            (std::vector<std::string>{
+                "springs along y: its damper of 2 points, up to 3585 N at 0.3 m/s, runs linearly with 25000 N s/m",
+                "springs along z: dry friction of 0.2 times the load along z runs as a linear damper of 30000 N s/m",
+                "springs: a linear stand-in for leaf springs"}));
+  EXPECT_EQ(data.left_out, (std::vector<std::string>{"springs along x: dry friction of 4000 N",
+                                                     "springs along y: its stop, from 0 N at 25 mm to 600 N at 30 mm",
+                                                     "springs about z: dry friction of 5000 N m"}));
+}
+
+// The model of a run has the elements in place of their stand-ins, that of natural motions the stand-ins.
+TEST(VehicleFile, BuildsTheElementsOrTheirStandIns) {
+  const VehicleData data = parse_vehicle(
+      wagon +
+          "damper_curve_y = [[0.1, 2500], [0.3, 3585]]\nseries_ky = 1e6\nstop_y = [[0.025, 0], [0.03, 600]]\n"
+          "friction_ratio_z = 0.2\n",
+      "wagon.toml");
+  const VehicleModel linear = build_vehicle(data, MotionPlane::spatial);
+  const VehicleModel built = build_vehicle(data, MotionPlane::spatial, {}, ForceElementChoice::nonlinear);
+  EXPECT_TRUE(linear.elements.empty());
+  const std::size_t units = data.parts.suspension.size();
+  ASSERT_EQ(built.elements.element.size(), 3 * units);
+  EXPECT_EQ(built.dofs(), linear.dofs());
+  EXPECT_EQ(built.stiffness, linear.stiffness);
+  // dampers along y in series and along z are elements now; the wagon has no others
+  EXPECT_GT(linear.damping.norm(), 0.0);
+  EXPECT_EQ(built.damping.norm(), 0.0);
+  // all springs together carry the car body: 20 t
+  double load = 0.0;
+  for (const ForceElement& e : built.elements.element) load += e.load;
+  double weight = 0.0;
+  for (int w = 0; w < 2; ++w) weight += 2.0 * static_wheel_load(built, w);
+  weight -= 9.81 * (data.parts.bodies[1].mass + data.parts.bodies[2].mass);
+  EXPECT_NEAR(load, weight, 1e-6 * weight);
+  // rigid motions of the whole vehicle stretch nothing
+  EXPECT_LT((built.elements.rows * built.lateral_shift).norm(), 1e-12);
 }
 
 TEST(VehicleFile, RejectsKeysThatItDoesNotKnow) {
@@ -232,6 +267,14 @@ TEST(VehicleFile, RejectsValuesWithFileLineAndKey) {
   expect_rejected(wagon + "series_ky = 1e6\n",
                   {"connection[1].series_ky: found a stiffness in series without damper, expected cy too"});
   expect_rejected(wagon + "stop_y = [[0.03, 600], [0.02, 900]]\n", {"connection[1].stop_y", "points", "m and N"});
+  expect_rejected(wagon + "stop_y = [[0.02, 600], [0.03, 900]]\n",
+                  {"connection[1].stop_y: found 2 points, first 600 N", "there the free travel ends"});
+  expect_rejected(wagon + "damper_curve_y = [[0.02, 600], [0.03, 500]]\n",
+                  {"connection[1].damper_curve_y: found [0.03, 500]", "whose forces do not fall"});
+  expect_rejected(wagon + "friction_y = 600\ndamper_curve_y = [[0.02, 600]]\n",
+                  {"connection[1].friction_y: found dry friction in a connection with a damper of its own",
+                   "a [[connection]] for each"});
+  expect_rejected(wagon + "friction_ratio_y = 11\n", {"connection[1].friction_ratio_y: found 11"});
   expect_rejected("name = ", {"coach.toml:1: "});
 }
 
@@ -327,7 +370,7 @@ TEST_P(VehicleRun, CrossesTheDemoBridge) {
                           "damping_ratio = 0.01\n[integration]\ntime_step = 2e-3\nduration = 1.0\n");
   const SceneParameters scene = read_scene(folder_ / "scene.toml");
   const RunPlan plan = plan_run(scene);
-  EXPECT_EQ(plan.warnings.size(), data.linearised.empty() ? 0U : 1U);
+  EXPECT_EQ(plan.warnings.size(), data.stand_ins.empty() ? 0U : 1U);
   for (const std::string& warning : plan.warnings) {
     EXPECT_TRUE(warning.starts_with(GetParam() + " has force elements that are not linear: ")) << warning;
   }

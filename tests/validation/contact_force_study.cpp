@@ -29,6 +29,7 @@ using namespace railtab;
 SceneParameters rough_track(double speed) {
   SceneParameters scene;
   scene.train.speed = speed;
+  scene.train.force_elements = ForceElementChoice::linear;  // of the committed tables
   scene.contact.mode = ContactMode::online;
   scene.contact.creep_law = "polach";  // of the committed figures
   scene.track.length_before = 36.0;

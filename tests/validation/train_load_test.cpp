@@ -29,6 +29,7 @@ SceneParameters coach_on_rigid_track() {
   scene.contact.mode = ContactMode::online;
   scene.track_kind = TrackKind::rigid;
   scene.train.speed = 40.0;
+  scene.train.force_elements = ForceElementChoice::linear;  // closed forms of a coach without stops
   return scene;
 }
 

@@ -76,11 +76,12 @@ int main(int argc, char** argv) {
            "scene,t_s,unloading_left,unloading_right,car_body_y_mm\n";
     std::ofstream extremes(folder + "/wind_and_earthquake_extremes.csv");
     extremes << "# Of all wheels and steps, made by tests/validation/wind_earthquake_figure from docs/examples\n"
-                "scene,complete,t_s,unloading,Y_over_Q,halved_steps\n";
+                "scene,complete,t_s,unloading,Y_over_Q,halved_steps,stop_engaged_s\n";
     for (const std::string name : {"wind", "earthquake"}) {
       const Unloading u = run(std::string(RAILTAB_SOURCE_DIR) + "/docs/examples/" + name + ".toml");
-      extremes << fmt::format("{},{},{:.3f},{:.4f},{:.4f},{}\n", name, u.summary.complete ? 1 : 0, u.time.back(),
-                              u.largest, u.derailment, u.summary.halved_steps);
+      extremes << fmt::format("{},{},{:.3f},{:.4f},{:.4f},{},{}\n", name, u.summary.complete ? 1 : 0, u.time.back(),
+                              u.largest, u.derailment, u.summary.halved_steps,
+                              u.summary.stops ? fmt::format("{:.3f}", u.summary.stops->first_time) : "");
       for (std::size_t i = 0; i < u.time.size(); i += 5) {
         csv << fmt::format("{},{:.3f},{:.4f},{:.4f},{:.2f}\n", name, u.time[i], u.side[0][i], u.side[1][i], u.shift[i]);
       }

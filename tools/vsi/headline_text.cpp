@@ -85,6 +85,12 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
     fmt::format_to(std::back_inserter(text), "Outside the creep table, by Polach: {} creep forces\n",
                    summary.outside_creep_table);
   }
+  if (summary.stops) {
+    fmt::format_to(std::back_inserter(text),
+                   "Bump stops: engaged at t = {:.3f} s ({}), largest force {:.4g} kN at t = {:.3f} s ({})\n",
+                   summary.stops->first_time, summary.stops->first_name, 1e-3 * summary.stops->largest_force,
+                   summary.stops->largest_time, summary.stops->largest_name);
+  }
   if (summary.contact_energy) text += contact_energy_text(*summary.contact_energy);
   const double total = summary.seconds_total;
   const std::string speed =
@@ -141,6 +147,13 @@ nlohmann::ordered_json headline_json(const report::Headline& headline, const Run
                      {"lookup", summary.seconds_lookup},       {"contact", summary.seconds_contact},
                      {"structure", summary.seconds_structure}, {"vehicle", summary.seconds_vehicle},
                      {"output", summary.seconds_output}};
+  if (summary.stops) {
+    json["stops"] = {{"first", {{"time", summary.stops->first_time}, {"where", summary.stops->first_name}}},
+                     {"largest_force",
+                      {{"value", summary.stops->largest_force},
+                       {"time", summary.stops->largest_time},
+                       {"where", summary.stops->largest_name}}}};
+  }
   if (summary.contact_energy) json["contact_energy"] = contact_energy_json(*summary.contact_energy);
   if (headline.real_time_factor > 0.0) json["real_time_factor"] = headline.real_time_factor;
   return json;

@@ -125,8 +125,11 @@ void print(const Described& v) {
     print_formatted("    {:8.3f} Hz, damping ratio {:5.3f}  {}{}\n", mode.frequency, mode.damping, mode.motion,
                     mode.damping < 1.0 ? "" : ", without oscillation");
   }
-  for (const std::string& element : data.linearised) print_formatted("  linear stand-in: {}\n", element);
-  for (const std::string& element : data.left_out) print_formatted("  left out: {}\n", element);
+  for (const std::string& element : data.nonlinear) print_formatted("  not linear: {}\n", element);
+  for (const std::string& element : data.stand_ins) print_formatted("  {}\n", element);
+  for (const std::string& element : data.linearised) {
+    print_formatted("  in natural motions and with train.force_elements = \"linear\": {}\n", element);
+  }
   for (const ClosingCheck& check : v.checks) {
     print_formatted("  {}: {} {} {}, stated {:.6g} to {:.6g} {}\n", check.holds() ? "closes" : "does not close",
                     check.stated.quantity, check.found ? fmt::format("{:.6g}", *check.found) : "none",
@@ -197,6 +200,7 @@ Json as_json(const Described& v) {
           {"wheelsets", wheelsets},
           {"bodies", bodies_as_json(data)},
           {"modes", modes},
+          {"nonlinear", data.nonlinear},
           {"linearised", data.linearised},
           {"left_out", data.left_out},
           {"checks", checks},

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <vector>
+
+#include "railtab/runtime/vehicle/vehicle_model.hpp"
+#include "railtab/runtime/vsi/linear_motion.hpp"
+
+namespace railtab {
+
+/// Compliance of one vehicle in the elongations of its force elements for one time-step size, times the load weight.
+struct ElementCompliance {
+  Eigen::MatrixXd own;             ///< elongations per forces of the elements
+  Eigen::MatrixXd from_wheelsets;  ///< elongations per contact forces on the wheelsets, 6 each
+  Eigen::MatrixXd to_wheelsets;    ///< wheelsets' displacements per forces of the elements
+
+  /// @param inverse of the vehicle's effective matrix
+  ElementCompliance(const VehicleModel& vehicle, const Eigen::MatrixXd& inverse, double load_weight);
+  /// For a state of rest, whose pitch unknowns of the wheelsets are no displacements.
+  void leave_out_pitch();
+  /// Elongations only, of a vehicle whose dofs `free` have the inverse effective matrix `inverse`.
+  ElementCompliance(const VehicleModel& vehicle, const std::vector<int>& free, const Eigen::MatrixXd& inverse,
+                    double load_weight);
+};
+
+/// Which force of an element stands in a step.
+enum class ElementRule {
+  endpoint,  ///< at the end of the step
+  energy,    ///< its mean over the step's path: a stop keeps its energy, dampers and friction only take some
+  rest,      ///< stops alone; a damper exerts nothing, and friction what it did
+};
+
+/// The force elements of one vehicle in one step. The linear rest of the vehicle responds to their forces f as
+///
+///     x = x_free + C_xw f_w − C_xx f(x),     q_w = … − C_wx f(x)                          (E1)
+///
+/// with the contact forces f_w on the wheelsets: their elongations x are solved for given f_w, exactly, in every
+/// evaluation of the contacts' residual (docs/theory/coupling.md, section 9).
+class ElementForces {
+ public:
+  /// What a step begins with: elongations x and rates v at its begin, the predictor's, and those that the step ends
+  /// with where the elements exert nothing at its end.
+  struct Step {
+    ElementRule rule = ElementRule::endpoint;
+    double time_step = 0.0, velocity_rate = 0.0;  ///< [s], [1/s]
+    double mean_weight = 1.0;                     ///< as ContactProblem::mean_weight
+  };
+
+  explicit ElementForces(const VehicleModel& vehicle);
+
+  /// @param friction force of every element at the step's begin, zero but of those of that kind [N]
+  /// @param prediction of the step  @param guess displacement of the dofs that the iteration starts from
+  void begin(const Step& step, const LinearMotion& motion, const Eigen::VectorXd& friction,
+             const Prediction& prediction, const Eigen::VectorXd& guess);
+  /// At rest: from the displacement reached.
+  void begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction);
+
+  /// Solves (E1). @param free x without the elements' forces at the end. False where it does not converge.
+  [[nodiscard]] bool solve(const ElementCompliance& compliance, const Eigen::VectorXd& free);
+  /// Derivative of the wheelsets' displacements by their contact forces that the elements take away.
+  [[nodiscard]] Eigen::MatrixXd stiffening(const ElementCompliance& compliance) const;
+
+  [[nodiscard]] const Eigen::VectorXd& elongation() const noexcept { return x_; }
+  /// The elements' share f in the step, dual to the elongations; and their forces at its end.
+  [[nodiscard]] const Eigen::VectorXd& share() const noexcept { return share_; }
+  [[nodiscard]] const Eigen::VectorXd& end_force() const noexcept { return end_; }
+  /// The same as loads on the vehicle's dofs, added.
+  void add_share(Eigen::VectorXd& load) const { load.noalias() -= elements_.rows.transpose() * share_; }
+  void add_end_force(Eigen::VectorXd& load) const { load.noalias() -= elements_.rows.transpose() * end_; }
+  /// By element, of those of kind friction.
+  [[nodiscard]] const Eigen::VectorXd& friction() const noexcept { return friction_end_; }
+
+ private:
+  struct Evaluated {
+    double begin = 0.0;  // force at the step's begin
+    ForceCurve::Value end, mean;
+    double end_by_load_row = 0.0, mean_by_load_row = 0.0;
+  };
+  [[nodiscard]] Evaluated evaluated(std::size_t element) const;
+  void evaluate();
+
+  ForceElements elements_;
+  Step step_;
+  Eigen::VectorXd x0_, v0_, friction_;          // at the begin
+  Eigen::VectorXd predicted_, predicted_rate_;  // of the step
+  Eigen::VectorXd x_, share_, end_, friction_end_;
+  Eigen::MatrixXd slope_;  // ∂share/∂x
+  Eigen::VectorXd residual_, correction_, x_before_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> solver_;
+};
+
+/// The force elements of a train as the contacts' condensed system has them (ContactProblem::elements).
+class TrainElements {
+ public:
+  TrainElements(const VehicleModel& kind, std::size_t vehicles);
+
+  /// Solves the elements of every vehicle for contact forces and adds what theirs displace the wheelsets by; NaN where
+  /// that fails. @param force, displacement 12 per wheelset
+  void respond(const Eigen::VectorXd& force, Eigen::VectorXd& displacement);
+
+  const ElementCompliance* compliance = nullptr;  ///< of the step
+  std::vector<ElementForces> vehicle;
+  std::vector<Eigen::VectorXd> free;  ///< per vehicle: elongations without contact and element forces
+
+ private:
+  Eigen::VectorXd wheelset_force_, elongation_, wheelset_displacement_;
+};
+
+}  // namespace railtab
