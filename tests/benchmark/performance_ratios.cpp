@@ -14,6 +14,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
@@ -21,6 +22,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
@@ -31,7 +33,7 @@
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
-#include "railtab/tablegen/geometry_sweep.hpp"
+#include "railtab/tablegen/loaded_sweep.hpp"
 
 namespace {
 
@@ -60,11 +62,15 @@ double median_ratio(const Work& part, const Work& whole) {
   return ratios[rounds / 2];
 }
 
+ContactSearch s1002_on_60e1() {
+  return ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 1.0 / 40)),
+                                     ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40)),
+                                     PairDimensions{}));
+}
+
 /// Contact patches of S1002 on 60E1 from the table and by the search: y ±4 mm, yaw ±2 mrad, 0 to 0.3 mm below touch.
 double geometry_table_to_search() {
-  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 1.0 / 40)),
-                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40)),
-                                           PairDimensions{}));
+  const ContactSearch search = s1002_on_60e1();
   GeometrySweepOptions options;
   options.lateral = {-0.004, 0.004};
   options.yaw = {0.0, 0.002};
@@ -86,6 +92,59 @@ double geometry_table_to_search() {
   };
   return median_ratio([&] { return sum([&](const WheelsetPose& pose) { return contact.patches(pose); }); },
                       [&] { return sum([&](const WheelsetPose& pose) { return contact.search().patches(pose); }); });
+}
+
+/// Contact forces of a wheel with their tangent in a time step: from a table of the loaded contact, and of an ellipse
+/// per patch from a geometry table. S1002 on 60E1, y −2.5 to −1 mm, 40 to 80 µm below touch.
+double loaded_table_to_patches() {
+  const ContactSearch search = s1002_on_60e1();
+  GeometrySweepOptions geometry;
+  geometry.lateral = {-0.004, 0.001};
+  geometry.yaw = {0.0, 0.004};
+  geometry.roll = {-0.001, 0.001};
+  const TableContact table(GeometryTable(sweep_geometry(search, geometry)));
+  LoadedSweepOptions options;
+  options.lateral = {-3e-3, -0.5e-3};
+  options.roll = geometry.roll;
+  options.yaw = 4e-3;
+  options.levels = 13;
+  options.largest_load = 150e3;
+  options.force_error = 5e-3;
+  options.light_error = 2e-2;
+  options.contact.elements.across_narrowest = 14;
+  const ContactGeometry loaded(table, std::make_shared<const LoadedTable>(sweep_loaded(search, options)));
+  const ContactGeometry patches(table);
+  struct Query {
+    WheelsetMotion wheelset;
+    WheelsetPose pose;
+  };
+  std::vector<Query> queries(512);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> y(-0.0025, -0.001), yaw(-3e-3, 3e-3), lowering(4e-5, 8e-5), slip(-0.05, 0.05);
+  for (Query& q : queries) {
+    q.wheelset.displacement << 0.0, y(random), 0.0, 0.0, 0.0, yaw(random);
+    q.wheelset.displacement[2] =
+        search.touch_height(q.wheelset.displacement[1], 0.0, q.wheelset.displacement[5]) + lowering(random);
+    q.wheelset.velocity << slip(random), slip(random), 0.0, 0.0, slip(random), 0.0;
+    q.pose = relative_pose(search.pair(), WheelSide::right, q.wheelset, {});
+  }
+  const auto forces = [&](const ContactGeometry& of) {
+    WheelContactModel model;
+    model.geometry = &of;
+    model.creep_law = creep_law("table", 0.28);
+    model.speed = 50.0;
+    const StepRates rates{Vector6::Constant(2000.0), 2000.0, nullptr};
+    return [&queries, &of, model, rates] {
+      double sum = 0.0;
+      for (const Query& q : queries) {
+        const WheelContact contact = wheel_contact(of, q.pose);
+        sum += wheel_force(model, WheelSide::right, q.wheelset, {}, contact).wheelset[2];
+        sum += wheel_force_tangent(model, WheelSide::right, q.wheelset, {}, contact, rates)(2, 2);
+      }
+      return sum;
+    };
+  };
+  return median_ratio(forces(loaded), forces(patches));
 }
 
 /// Creep forces of the shipped table and of FASTSIM with 20 × 20 elements, at cases that have nothing to do with each
@@ -205,6 +264,7 @@ int main(int argc, char** argv) {
     double (*ratio)();
   };
   for (const auto& [name, measure] : {Price{"contact geometry: table / online search", geometry_table_to_search},
+                                      Price{"contact forces: loaded table / patches", loaded_table_to_patches},
                                       Price{"creep forces: table / FASTSIM 20 x 20", creep_table_to_fastsim},
                                       Price{"time step / back-substitution", step_to_back_substitution},
                                       Price{"force elements: as built / linear", force_elements_to_linear}}) {

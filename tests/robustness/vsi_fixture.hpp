@@ -21,9 +21,10 @@ struct Outcome {
 /// Runs the built vsi in a folder of its own; stdout and stderr together.
 class VsiCommand : public testing::InFolder {
  protected:
-  [[nodiscard]] Outcome vsi(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" VSI_COMMAND "' " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
+  [[nodiscard]] Outcome vsi(const std::string& arguments) const { return run("'" VSI_COMMAND "' " + arguments); }
+
+  [[nodiscard]] Outcome run(const std::string& command) const {
+    FILE* pipe = popen(("cd '" + folder_.string() + "' && " + command + " 2>&1").c_str(), "r");
     if (!pipe) return {-1, "no shell"};
     Outcome outcome{0, ""};
     std::array<char, 4096> buffer;

@@ -1,0 +1,118 @@
+// tablegen loaded and what vsi contact makes of it, by the commands.
+
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "railtab/tables/files/geometry_table_file.hpp"
+#include "vsi_fixture.hpp"
+
+namespace railtab {
+namespace {
+
+class LoadedCommand : public VsiCommand {
+ protected:
+  /// A geometry table of the tread only, with its loaded part where asked for.
+  void make_table(const std::string& file) {
+    ASSERT_EQ(run(std::string(TABLEGEN_COMMAND) +
+                  " geometry --wheel S1002 --rail 60E1 --lateral=-0.004:0.001 "
+                  "--yaw 0:0.005 --roll=-0.001:0.001 --quiet -o " +
+                  file)
+                  .exit_code,
+              0);
+  }
+  std::string loaded_options =
+      " --lateral=-0.003:-0.001 --roll=-0.001:0.001 --yaw 0.004 --levels 9 --elements 12 "
+      "--force-error 0.02 --light-error 0.05 --largest-load 150e3 --quiet";
+  void add_loaded_part(const std::string& file) {
+    const Outcome made = run(std::string(TABLEGEN_COMMAND) + " loaded " + file + loaded_options);
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+  }
+  std::vector<std::vector<std::string>> rows(const std::string& file) const {
+    std::ifstream in(folder_ / file);
+    std::vector<std::vector<std::string>> table;
+    for (std::string line; std::getline(in, line);) {
+      std::istringstream cells(line);
+      table.emplace_back();
+      for (std::string cell; std::getline(cells, cell, ',');) table.back().push_back(cell);
+    }
+    return table;
+  }
+};
+
+TEST_F(LoadedCommand, FirstTouchIsPartOfTheRange) {
+  make_table("t.h5");
+  std::string queries = "y,yaw,roll,dz\n";
+  constexpr int count = 60;
+  for (int i = 0; i < count; ++i) {
+    queries += std::to_string(-0.0035 + 7e-5 * i) + "," + std::to_string(0.004 * (i % 7) / 7.0) + "," +
+               std::to_string(9e-4 * (i % 5 - 2) / 2.0) + ",0\n";
+  }
+  write("q.csv", queries);
+  ASSERT_EQ(vsi("contact t.h5 --query q.csv -o r.csv --quiet").exit_code, 0);
+  const auto table = rows("r.csv");
+  std::array<bool, count> answered{};
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    answered[std::stoul(table[i][0])] = true;
+    EXPECT_LE(std::stod(table[i][9]), 1e-13);  // penetration
+  }
+  for (const bool found : answered) EXPECT_TRUE(found);
+}
+
+TEST_F(LoadedCommand, LoadsTotalsAndColumnsOfBothKindsOfTable) {
+  make_table("t.h5");
+  write("load.csv", "y,yaw,roll,load\n-0.002,0,0,60e3\n-0.0018,0.001,0.0004,20e3\n");
+  for (const bool loaded : {false, true}) {
+    if (loaded) add_loaded_part("t.h5");
+    ASSERT_EQ(vsi("contact t.h5 --query load.csv -o total.csv --total --quiet").exit_code, 0);
+    const auto total = rows("total.csv");
+    ASSERT_EQ(total.size(), 3U);
+    EXPECT_EQ(total[0], (std::vector<std::string>{"query", "dz", "fy", "fz", "mx"}));
+    EXPECT_NEAR(std::stod(total[1][3]), 60e3, 1e-3);
+    EXPECT_NEAR(std::stod(total[2][3]), 20e3, 1e-3);
+    EXPECT_GT(std::stod(total[1][2]), 0.0);  // a right rail is pushed to the field side
+    write("dz.csv", "y,yaw,roll,dz\n-0.002,0,0," + total[1][1] + "\n-0.0018,0.001,0.0004," + total[2][1] + "\n");
+    std::filesystem::remove(folder_ / "patches.csv");
+    ASSERT_EQ(vsi("contact t.h5 --query dz.csv -o patches.csv --quiet").exit_code, 0);
+    const auto patches = rows("patches.csv");
+    ASSERT_EQ(patches.size(), 3U);
+    ASSERT_EQ(patches[0].size(), loaded ? 18U : 14U);
+    if (!loaded) continue;
+    for (std::size_t i = 1; i < 3; ++i) {
+      const double angle = std::stod(patches[i][7]), N = std::stod(patches[i][14]);
+      EXPECT_NEAR(N * std::cos(angle), std::stod(total[i][3]), 1e-3 * N);
+      const double a = std::stod(patches[i][15]), b = std::stod(patches[i][16]);
+      EXPECT_NEAR(std::stod(patches[i][17]), 1.5 * N / (3.14159265 * a * b), 0.1 * std::stod(patches[i][17]));
+    }
+  }
+  // The approach under 60 kN: an ellipse per patch and the half-space solution agree on a tread.
+  const Outcome info = run(std::string(TABLEGEN_COMMAND) + " info t.h5");
+  EXPECT_NE(info.output.find("loaded part"), std::string::npos) << info.output;
+  const Outcome verified =
+      run(std::string(TABLEGEN_COMMAND) + " verify t.h5 --samples 200 --loaded-samples 20 --json --quiet");
+  EXPECT_EQ(verified.exit_code, 0) << verified.output;
+  EXPECT_NE(verified.output.find("\"light_force\""), std::string::npos) << verified.output;
+}
+
+TEST_F(LoadedCommand, WrongInputIsSaid) {
+  write("q.csv", "y,yaw,roll,load\n0,0,0,-5\n");
+  make_table("t.h5");
+  expect_refused("contact t.h5 --query q.csv -o out", "load = -5, expected above 0");
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = run(std::string(TABLEGEN_COMMAND) + " loaded " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+  };
+  refused("absent.h5", "absent.h5");
+  refused("t.h5 --lateral 0.001:-0.001", "lateral");
+  refused("t.h5 --levels 2", "levels");
+  refused("t.h5 --yaw -1", "yaw");
+  write("scene.toml",
+        "[contact]\ntable = \"t.h5\"\nelastic = \"half-space\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = "
+        "0.1\n");
+  expect_refused("run scene.toml -o out", "a table with a loaded part (tablegen loaded adds it)");
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,244 @@
+// Forces of a loaded table against CONTACT's loaded cases and against half-space solutions. Not a test:
+//
+//     loaded_table_study TABLE.h5 REFERENCE FOLDER
+//
+// TABLE.h5 is a geometry table with a loaded part of the profiles that CONTACT used (profiles/MBench_*), of steel with
+// G = 82 GPa; REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, steps of the force
+// along random lines, work on closed paths.
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "contact_reference.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/contact/contact_response.hpp"
+#include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
+
+namespace {
+
+using namespace railtab;
+using namespace railtab::contact_reference;
+namespace fs = std::filesystem;
+
+class Study {
+ public:
+  Study(const fs::path& table, const fs::path& reference) : reference_(reference / "contact_loaded") {
+    GeometryTableData data = read_geometry_table(table);
+    if (!data.loaded) throw std::runtime_error(table.string() + " has no loaded part");
+    loaded_ = std::make_shared<const LoadedTable>(std::move(*data.loaded));
+    data.loaded.reset();
+    const TableContact contact(GeometryTable(std::move(data)));
+    search_ = std::make_unique<ContactSearch>(contact.search());
+    geometry_ = std::make_unique<ContactGeometry>(contact, loaded_);
+    model_.geometry = geometry_.get();
+    model_.normal.material = {2.0 * shear_modulus * (1.0 + poisson), poisson};
+    model_.creep_law = creep_law("table", poisson);
+    model_.speed = 30.0;
+    frictionless_ = model_;
+    frictionless_.friction = 0.0;
+    model_.friction = friction;
+  }
+
+  void rolling() {
+    std::map<std::string, Row> patches;
+    for (const Row& row : read_rows(reference_ / "A_patches.csv")) patches.emplace(row.text("case"), row);
+    for (const Row& row : read_rows(reference_ / "A_cases.csv")) {
+      const Row& patch = patches.at(row.text("case"));
+      WheelsetMotion motion = placed(row["y"], row["roll"], row["yaw"]);
+      motion.velocity[4] = row["pitch_rate"] + model_.speed / pair().nominal_radius();
+      const double touch = touch_height(motion);
+      const WheelForce force = at_load(model_, motion, touch, row["fz_prescribed"]);
+      const std::string kind = kind_of(patch["delta"], patch["bands_1pct"]);
+      if (!answered(motion)) {
+        differences_.add("A", kind, "beyond the table", 1.0);
+        continue;
+      }
+      const double bound = friction * patch["fn"];
+      differences_.add("A", kind, "approach", (motion.displacement[2] - touch) / row["approach"] - 1.0);
+      differences_.add("A", kind, "total force D2",
+                       std::hypot(force.rail_x - row["fx"], force.rail[0] - row["fy"]) / bound);
+      differences_.add("A", kind, "largest pressure", pressure(motion) / patch["pmax"] - 1.0);
+    }
+  }
+
+  void frictionless() {
+    for (const Row& row : read_rows(reference_ / "B_curves.csv")) {
+      WheelsetMotion motion = placed(row["y"], row["roll"], row["yaw"]);
+      motion.displacement[2] = row["z_touch"] + row["approach"];
+      const LoadedLookup found = lookup(motion);
+      const std::string kind = kind_of(std::atan2(row["fy"], row["fz"]), row["bands_1pct"]);
+      if (found.table_share < 1.0) {
+        differences_.add("B", kind, "beyond the table", 1.0);
+        continue;
+      }
+      differences_.add("B", kind, "force",
+                       std::hypot(found.force[0] - row["fy"], found.force[1] - row["fz"]) / row["fn_sum"]);
+    }
+  }
+
+  void wheelset() {
+    for (const Row& row : read_rows(reference_ / "C_wheels.csv")) {
+      const double side = row.text("side") == "R" ? 1.0 : -1.0;
+      WheelsetMotion motion = placed(side * row["y"], side * row["roll"], side * row["yaw"]);
+      const double touch = touch_height(motion);
+      const WheelForce force = at_load(frictionless_, motion, touch, row["load"]);
+      const std::string kind = kind_of(std::atan2(row["fy"], row["load"]), row["bands_1pct"]);
+      if (!answered(motion)) {
+        differences_.add("C", kind, "beyond the table", 1.0);
+        continue;
+      }
+      differences_.add("C", kind, "approach", (motion.displacement[2] - row["z_ws"]) / (row["z_ws"] - touch));
+      differences_.add("C", kind, "lateral force", (side * force.rail[0] - row["fy"]) / row["load"]);
+      differences_.add("C", kind, "largest pressure", pressure(motion) / row["pmax"] - 1.0);
+    }
+  }
+
+  /// The largest step of the force along random lines, by bisection of their largest change.
+  void lines(int count) {
+    for (int n = 0; n < count; ++n) {
+      const Eigen::Vector4d from = random_pose(), to = random_pose();
+      const auto force = [&](double t) {
+        const Eigen::Vector4d p = from + t * (to - from);
+        return Eigen::Vector2d(geometry_->loaded()->lookup(p[0], p[1], p[2], p[3]).force.head<2>());
+      };
+      constexpr int points = 2000;
+      double low = 0.0, high = 0.0, largest = 0.0;
+      for (int i = 0; i < points; ++i) {
+        const double change = (force((i + 1.0) / points) - force(static_cast<double>(i) / points)).norm();
+        if (change <= largest) continue;
+        largest = change;
+        low = static_cast<double>(i) / points;
+        high = (i + 1.0) / points;
+      }
+      while (high - low > 1e-13) {
+        const double middle = 0.5 * (low + high);
+        ((force(middle) - force(low)).norm() > (force(high) - force(middle)).norm() ? high : low) = middle;
+      }
+      differences_.add("lines", "all", "step of the force [N]", (force(high) - force(low)).norm());
+    }
+  }
+
+  /// Work of the elastic forces around ellipses of poses, over what goes in and out.
+  void closed_paths(int count) {
+    for (int n = 0; n < count; ++n) {
+      const Eigen::Vector4d centre = random_pose();
+      const Eigen::Vector4d across(uniform(0, 5e-4), uniform(0, 4e-5), uniform(0, 4e-4), uniform(0, 1e-3));
+      const Eigen::Vector4d along(uniform(0, 5e-4), uniform(0, 4e-5), uniform(0, 4e-4), uniform(0, 1e-3));
+      const auto pose = [&](double angle) -> Eigen::Vector4d {
+        return centre + std::cos(angle) * across + std::sin(angle) * along;
+      };
+      constexpr int steps = 20000;
+      double work = 0.0, amount = 0.0;
+      Eigen::Vector4d before = pose(0.0), force_before = loaded_force(before);
+      bool inside = true;
+      for (int i = 1; i <= steps; ++i) {
+        const Eigen::Vector4d at = pose(2.0 * std::numbers::pi * i / steps), force = loaded_force(at);
+        inside = inside && geometry_->loaded()->lookup(at[0], at[1], at[2], at[3]).table_share == 1.0;
+        const double step = 0.5 * (force + force_before).dot(at - before);
+        work += step;
+        amount += std::abs(step);
+        before = at;
+        force_before = force;
+      }
+      if (inside && amount > 0.0) differences_.add("closed paths", "all", "work", work / amount);
+    }
+  }
+
+  [[nodiscard]] std::string summary() const {
+    return "# Forces of a loaded table: absolute differences from CONTACT's loaded cases, relative to its value "
+           "(forces "
+           "of\n# set A in mu F_n, of set B in the normal force, lateral force of set C in the load); steps along "
+           "lines, work on\n# closed paths over its amount. Made by tests/validation/loaded_table_study, " +
+           fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))) +
+           "\nset,kind,quantity,cases,mean,p95,largest\n" + differences_.csv();
+  }
+
+ private:
+  [[nodiscard]] const WheelRailPair& pair() const { return geometry_->pair(); }
+  [[nodiscard]] static WheelsetMotion placed(double y, double roll, double yaw) {
+    WheelsetMotion motion;
+    motion.displacement << 0.0, y, 0.0, roll, 0.0, yaw;
+    return motion;
+  }
+  [[nodiscard]] double touch_height(const WheelsetMotion& m) const {
+    return search_->touch_height(m.displacement[1], m.displacement[3], m.displacement[5]);
+  }
+  [[nodiscard]] LoadedLookup lookup(const WheelsetMotion& m) const {
+    return loaded_->lookup(m.displacement[1], m.displacement[2], m.displacement[3], m.displacement[5]);
+  }
+  [[nodiscard]] bool answered(const WheelsetMotion& m) const { return lookup(m).table_share == 1.0; }
+  [[nodiscard]] double pressure(const WheelsetMotion& m) const {
+    const LoadedLookup found = lookup(m);
+    double largest = 0.0;
+    for (std::size_t p = 0; p < found.parts; ++p) largest = std::max(largest, found.part[p].pressure);
+    return largest;
+  }
+  [[nodiscard]] Eigen::Vector4d loaded_force(const Eigen::Vector4d& p) const {
+    return loaded_->lookup(p[0], p[1], p[2], p[3]).force;
+  }
+  /// Lowers the wheel until the rail carries the load.
+  WheelForce at_load(const WheelContactModel& model, WheelsetMotion& motion, double touch, double load) const {
+    WheelForce force;
+    const auto excess = [&](double dz) {
+      motion.displacement[2] = touch + dz;
+      const WheelsetPose pose = relative_pose(pair(), WheelSide::right, motion, {});
+      force = wheel_force(model, WheelSide::right, motion, {}, wheel_contact(*geometry_, pose));
+      return force.rail[1] - load;
+    };
+    boost::uintmax_t passes = 200;
+    const auto close = [](double a, double b) { return std::abs(a - b) < 1e-14; };
+    const auto [low, high] = boost::math::tools::toms748_solve(excess, 1e-9, 3e-3, close, passes);
+    excess(0.5 * (low + high));
+    return force;
+  }
+  double uniform(double low, double high) { return low + (high - low) * uniform_(random_); }
+  Eigen::Vector4d random_pose() {
+    const LoadedTableData& data = loaded_->data();
+    const double roll = 0.8 * uniform(data.roll.front(), data.roll.back()),
+                 yaw = 0.8 * std::sqrt(data.yaw_squared.back());
+    const double y = 0.9 * uniform(data.lateral.front(), data.lateral.back()) + 0.6 * roll, turned = uniform(-yaw, yaw);
+    const TouchPoint touch = search_->first_touch(y, roll, turned);
+    return {y, touch.z_touch + uniform(1e-5, 1e-4) * std::hypot(1.0, touch.z_touch_dy), roll, turned};
+  }
+
+  fs::path reference_;
+  std::shared_ptr<const LoadedTable> loaded_;
+  std::unique_ptr<ContactSearch> search_;
+  std::unique_ptr<ContactGeometry> geometry_;
+  WheelContactModel model_, frictionless_;
+  Differences differences_;
+  std::mt19937_64 random_{20261122};
+  std::uniform_real_distribution<double> uniform_;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 4) {
+    std::fprintf(stderr, "usage: loaded_table_study TABLE.h5 REFERENCE FOLDER\n");
+    return 2;
+  }
+  try {
+    Study study(arguments[1], arguments[2]);
+    study.rolling();
+    study.frictionless();
+    study.wheelset();
+    study.lines(1000);
+    study.closed_paths(200);
+    write_text_file(fs::path(arguments[3]) / "loaded_table.csv", study.summary(), "# Forces of a loaded table");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "loaded_table_study: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
