@@ -50,7 +50,8 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
       }
       if (pairs == Pairs::searched) {
         ++counts.queries;
-        if (!contact.by_patches() || contact.patches.from_table) ++counts.table_queries;
+        const bool served = model.geometry->loaded() ? !contact.by_patches() : contact.patches.from_table;
+        if (served) ++counts.table_queries;
       }
       const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, contact);
       const int r = 6 + 3 * side;

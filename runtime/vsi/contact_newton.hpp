@@ -66,7 +66,8 @@ struct ContactProblem {
 
 /// What evaluations of the contact forces asked of the tables.
 struct ContactCounts {
-  long queries = 0, table_queries = 0;  ///< of the contact geometry, and those that the table alone answered
+  /// Of the contact, and those that the table alone answered, by its loaded part where it has one.
+  long queries = 0, table_queries = 0;
   long outside_creep_table = 0;         ///< creep forces that the creep table left to Polach, wholly or in part
   double seconds_lookup = 0.0;          ///< in the contact geometry
 
