@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "loaded_table_fixture.hpp"
@@ -89,6 +90,63 @@ TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) {
     EXPECT_NEAR(part.b, band.b, 0.03 * band.b);
     EXPECT_NEAR(part.s_rail, band.s_rail, 0.05 * band.b);
     EXPECT_NEAR(part.pressure, exact.largest_pressure, 0.04 * exact.largest_pressure);
+  }
+}
+
+TEST(LoadedTable, ForcesDoNoWorkOnClosedPaths) {
+  const LoadedTable table(tread_table());
+  Poses poses;
+  for (int n = 0; n < 20; ++n) {
+    const WheelsetPose centre = poses.next();
+    const auto at = [&](double angle) {
+      const double c = std::cos(angle), s = std::sin(angle + 0.1 * n);
+      return WheelsetPose{centre.y + 2e-4 * c, centre.z + 3e-5 * s, centre.roll + 1e-4 * s, centre.yaw + 4e-4 * c * s};
+    };
+    constexpr int steps = 4000;
+    const auto coordinates = [](const WheelsetPose& p) { return Eigen::Vector4d(p.y, p.z, p.roll, p.yaw); };
+    double work = 0.0, amount = 0.0;
+    WheelsetPose before = at(0.0);
+    for (int i = 1; i <= steps; ++i) {
+      const WheelsetPose next = at(2.0 * std::numbers::pi * i / steps);
+      const double step =
+          0.5 * (look(table, before).force + look(table, next).force).dot(coordinates(next) - coordinates(before));
+      work += step;
+      amount += std::abs(step);
+      before = next;
+    }
+    EXPECT_GT(amount, 0.1);
+    EXPECT_LT(std::abs(work), 1e-5 * amount);  // of the trapezoidal rule
+  }
+}
+
+TEST(LoadedTable, ForcesHaveNoStepsAlongLines) {
+  const LoadedTable table(tread_table());
+  Poses poses;
+  for (int n = 0; n < 40; ++n) {
+    const WheelsetPose from = poses.next(), to = poses.next();
+    const auto force = [&](double t) {
+      return look(table, {from.y + t * (to.y - from.y), from.z + t * (to.z - from.z),
+                          from.roll + t * (to.roll - from.roll), from.yaw + t * (to.yaw - from.yaw)})
+          .force;
+    };
+    constexpr int points = 500;
+    double low = 0.0, high = 1.0, largest = 0.0;
+    for (int i = 0; i < points; ++i) {
+      const double t = static_cast<double>(i) / points, next = t + 1.0 / points;
+      const double change = (force(next) - force(t)).head<2>().norm();
+      if (change > largest) {
+        largest = change;
+        low = t;
+        high = next;
+      }
+    }
+    // the half with the greater change, down to rounding of the place
+    while (high - low > 1e-13) {
+      const double middle = 0.5 * (low + high);
+      ((force(middle) - force(low)).head<2>().norm() > (force(high) - force(middle)).head<2>().norm() ? high : low) =
+          middle;
+    }
+    EXPECT_LT((force(high) - force(low)).head<2>().norm(), 1e-2) << "of " << largest << " N";
   }
 }
 
