@@ -45,7 +45,7 @@ ContactBand describe(const WheelRailPair& pair, const ContactElements& e, const 
   band.x_low = band.s_low = std::numeric_limits<double>::infinity();
   band.x_high = band.s_high = -std::numeric_limits<double>::infinity();
   const auto x = [&](int k) { return e.x[static_cast<std::size_t>(k % e.nx)]; };
-  const auto line = [&](int k) -> const RailLine& { return e.line[static_cast<std::size_t>(k / e.nx)]; };
+  const auto line = [&](int k) -> const SurfaceLine& { return e.line[static_cast<std::size_t>(k / e.nx)]; };
   for (const int k : members) {
     const double force = pressure[k] * e.area(), angle = line(k).angle;
     band.normal_force += force;

@@ -22,18 +22,18 @@ struct Slice {
   [[nodiscard]] double area() const { return 4.0 / 3.0 * half * overlap; }
 };
 
-Slice slice(const RailLine& line) {
+Slice slice(const SurfaceLine& line) {
   const double overlap = std::max(0.0, line.overlap);
   return {line.s, overlap, line.x, std::sqrt(2.0 * overlap / line.curvature)};
 }
 
 /// Slices from one line to the end of the overlap, which may be that of a profile; sign ±1 along s.
-void walk(const UndeformedDistance& distance, RailLine line, double sign, std::vector<Slice>& slices) {
+void walk(const UndeformedDistance& distance, SurfaceLine line, double sign, std::vector<Slice>& slices) {
   const ProfileCurve& rail = distance.pair().rail();
   while (true) {
     const double s = line.s + sign * walk_step;
     if (!rail.contains(s)) return;
-    const std::optional<RailLine> next = distance.line(s, line.s_wheel);
+    const std::optional<SurfaceLine> next = distance.line(s, line.s_wheel);
     if (!next) return;
     if (next->overlap <= 0.0) {
       // the end, from the overlap on both sides of it
@@ -87,7 +87,7 @@ std::vector<SurfaceOverlap> surface_overlaps(const ContactSearch& search, const 
     const bool known = std::any_of(regions.begin(), regions.end(), [&](const SurfaceOverlap& r) {
       return patch.s_rail >= r.s_low && patch.s_rail <= r.s_high;
     });
-    const std::optional<RailLine> line = distance.line(patch.s_rail, patch.s_wheel);
+    const std::optional<SurfaceLine> line = distance.line(patch.s_rail, patch.s_wheel);
     if (!line) {
       throw ComputationError(
           fmt::format("no undeformed distance at the contact of s_rail = {} m, s_wheel = {} m: the "
@@ -131,7 +131,7 @@ SurfaceOverlap bounding_box(const std::vector<SurfaceOverlap>& regions) {
 }
 
 /// Overlap of the row's elements: from where the wheel is deepest to both sides.
-void fill_row(const UndeformedDistance& distance, const RailLine& line, int row, ContactElements& e) {
+void fill_row(const UndeformedDistance& distance, const SurfaceLine& line, int row, ContactElements& e) {
   const auto fill = [&](int first, int step) {
     OverlapDepth point{line.overlap, line.s_wheel};
     for (int i = first; i >= 0 && i < e.nx; i += step) {
@@ -164,13 +164,13 @@ ContactElements contact_elements(const UndeformedDistance& distance, const std::
   for (int i = 0; i < nx; ++i) e.x.push_back(x_first + (i + 0.5) * e.dx);
   e.overlap = Eigen::VectorXd::Constant(e.count(), no_wheel);
   e.s_wheel.assign(static_cast<std::size_t>(e.count()), 0.0);
-  std::optional<RailLine> before;
+  std::optional<SurfaceLine> before;
   for (int j = 0; j < ns; ++j) {
     const double s = s_first + (j + 0.5) * e.ds;
     const bool overlaps = std::any_of(regions.begin(), regions.end(), [&](const SurfaceOverlap& r) {
       return s > r.s_low - 2.0 * e.ds && s < r.s_high + 2.0 * e.ds;
     });
-    std::optional<RailLine> line;
+    std::optional<SurfaceLine> line;
     if (overlaps && before) line = distance.line(s, before->s_wheel);
     if (overlaps && !line) line = distance.line(s);
     if (line) {

@@ -51,11 +51,11 @@ class TooManyElements : public std::runtime_error {
 /// Rectangles dx × ds of the developed rail surface over the bounding box of all overlap regions, ns rows of nx.
 struct ContactElements {
   int nx = 0, ns = 0;
-  double dx = 0.0, ds = 0.0;    ///< sides [m]
-  std::vector<double> x;        ///< centres along the rail, relative to the wheelset centre [m]
-  std::vector<RailLine> line;   ///< of each row; overlap is −reach where no wheel surface was found
-  Eigen::VectorXd overlap;      ///< undeformed, at the centres [m]; negative: a gap
-  std::vector<double> s_wheel;  ///< of the wheel's point at the centres [m]
+  double dx = 0.0, ds = 0.0;      ///< sides [m]
+  std::vector<double> x;          ///< centres along the rail, relative to the wheelset centre [m]
+  std::vector<SurfaceLine> line;  ///< of each row; overlap is −reach where no wheel surface was found
+  Eigen::VectorXd overlap;        ///< undeformed, at the centres [m]; negative: a gap
+  std::vector<double> s_wheel;    ///< of the wheel's point at the centres [m]
 
   [[nodiscard]] double area() const noexcept { return dx * ds; }
   [[nodiscard]] int count() const noexcept { return nx * ns; }

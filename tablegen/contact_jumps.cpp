@@ -52,7 +52,7 @@ double widest_gap(const ContactSearch& search, const ContactJump& jump) {
   constexpr int steps = 400;
   for (int i = 1; i < steps; ++i) {
     const double s = low + (high - low) * i / steps;
-    const std::optional<RailLine> line = distance.line(s);
+    const std::optional<SurfaceLine> line = distance.line(s);
     if (!line || line->overlap >= widest) continue;
     widest = line->overlap;
     at = s;

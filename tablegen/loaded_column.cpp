@@ -28,7 +28,7 @@ std::vector<PartSums> part_sums(const ContactSearch& search, const LoadedContact
   const WheelsetCentre centre = wheelset_centre(search.pair(), contact.pose);
   std::vector<double> density(static_cast<std::size_t>(e.ns), 0.0);
   for (int j = 0; j < e.ns; ++j) {
-    const RailLine& line = e.line[static_cast<std::size_t>(j)];
+    const SurfaceLine& line = e.line[static_cast<std::size_t>(j)];
     const ContactAxes axes(line.angle);
     const Eigen::Vector3d deepest =
         Eigen::Vector3d(0.0, line.y - centre.y, line.z - centre.z) + line.overlap * axes.normal;

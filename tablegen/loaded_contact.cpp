@@ -60,7 +60,7 @@ LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, co
                                : contact_elements(distance, contact.regions, options.elements);
   const ContactElements& e = contact.elements;
   std::vector<double> angle;
-  for (const RailLine& line : e.line) angle.push_back(line.angle);
+  for (const SurfaceLine& line : e.line) angle.push_back(line.angle);
   NormalInfluence influence({e.nx, e.ns, e.dx, e.ds}, angle, options.contact_modulus());
   NormalPressure found = normal_pressure(
       influence, e.overlap, neighbour ? neighbour->pressure : first_guess(influence, e.overlap), options.tolerance);
@@ -71,7 +71,7 @@ LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, co
   contact.bands = contact_bands(search.pair(), e, contact.pressure, contact.band);
   for (int k = 0; k < e.count(); ++k) {
     if (contact.pressure[k] <= 0.0) continue;
-    const RailLine& line = e.line[static_cast<std::size_t>(k / e.nx)];
+    const SurfaceLine& line = e.line[static_cast<std::size_t>(k / e.nx)];
     const double force = contact.pressure[k] * e.area();
     contact.on_rail.add({e.x[static_cast<std::size_t>(k % e.nx)], line.y, line.z},
                         force * Eigen::Vector3d(0.0, -std::sin(line.angle), std::cos(line.angle)));

@@ -71,7 +71,7 @@ PressedRectangle pressed_rectangle(const LoadedContact& contact, double bound_pe
 }
 
 /// Creepages at the wheel's deepest point of one line of the rail.
-PatchCreepage line_creepage(const RailLine& line, const WheelsetCentre& centre, const RelativeMotion& motion,
+PatchCreepage line_creepage(const SurfaceLine& line, const WheelsetCentre& centre, const RelativeMotion& motion,
                             double speed) {
   const ContactAxes axes(line.angle);
   const Eigen::Vector3d arm =
@@ -89,14 +89,14 @@ std::vector<LineSlip> curved_slip(const ContactElements& e, const PressedRectang
                                   const RelativeMotion& motion, double speed) {
   std::vector<LineSlip> slip;
   for (int j = r.row; j < r.row + r.grid.ny; ++j) {
-    const RailLine& line = e.line[static_cast<std::size_t>(j)];
+    const SurfaceLine& line = e.line[static_cast<std::size_t>(j)];
     slip.push_back({line_creepage(line, centre, motion, speed), line.x});
   }
   return slip;
 }
 
 /// The same on a plane: one set of creepages, at the line through the centre of pressure.
-std::vector<LineSlip> planar_slip(const PressedRectangle& r, const RailLine& line, const PatchCreepage& creepage) {
+std::vector<LineSlip> planar_slip(const PressedRectangle& r, const SurfaceLine& line, const PatchCreepage& creepage) {
   std::vector<LineSlip> slip;
   for (const double s : r.grid.y) {
     slip.push_back({{creepage.x - creepage.spin * (s - line.s), creepage.y, creepage.spin}, line.x});
@@ -117,19 +117,19 @@ RigidSlip rigid_slip(const std::vector<LineSlip>& slip, const PressedRectangle& 
 }
 
 /// The line of the rail through the centre of pressure of all bands.
-std::optional<RailLine> central_line(const UndeformedDistance& distance, const LoadedContact& contact) {
+std::optional<SurfaceLine> central_line(const UndeformedDistance& distance, const LoadedContact& contact) {
   double s_rail = 0.0, s_wheel = 0.0;
   for (const ContactBand& band : contact.bands) {
     s_rail += band.normal_force / contact.normal_force * band.s_rail;
     s_wheel += band.normal_force / contact.normal_force * band.s_wheel;
   }
-  const std::optional<RailLine> line = distance.line(s_rail, s_wheel);
+  const std::optional<SurfaceLine> line = distance.line(s_rail, s_wheel);
   return line ? line : distance.line(s_rail);
 }
 
 void add_element(const ContactElements& e, const std::vector<ContactBand>& bands, int element, int band,
                  const Eigen::Vector2d& force, LoadedRolling& result) {
-  const RailLine& line = e.line[static_cast<std::size_t>(element / e.nx)];
+  const SurfaceLine& line = e.line[static_cast<std::size_t>(element / e.nx)];
   const double x = e.x[static_cast<std::size_t>(element % e.nx)];
   const Eigen::Vector3d on_wheel(force.x(), std::cos(line.angle) * force.y(), std::sin(line.angle) * force.y());
   result.on_rail.add({x, line.y, line.z}, -on_wheel);
@@ -158,7 +158,7 @@ LoadedRolling loaded_rolling(const WheelRailPair& pair, const LoadedContact& con
   const UndeformedDistance distance(pair, contact.pose);
   std::vector<LineSlip> slip = curved_slip(e, r, centre, motion, options.speed);
   if (options.slip == LoadedRollingOptions::SlipField::planar) {
-    const std::optional<RailLine> line = central_line(distance, contact);
+    const std::optional<SurfaceLine> line = central_line(distance, contact);
     if (line) slip = planar_slip(r, *line, line_creepage(*line, centre, motion, options.speed));
   }
   RollingContact rolling(r.grid, combined.nu, options.solution);
@@ -166,7 +166,7 @@ LoadedRolling loaded_rolling(const WheelRailPair& pair, const LoadedContact& con
   result.bands.resize(contact.bands.size());
   for (std::size_t b = 0; b < contact.bands.size(); ++b) {
     const ContactBand& band = contact.bands[b];
-    const std::optional<RailLine> line = distance.line(band.s_rail, band.s_wheel);
+    const std::optional<SurfaceLine> line = distance.line(band.s_rail, band.s_wheel);
     if (line) result.bands[b].creepage = line_creepage(*line, centre, motion, options.speed);
   }
   const int m = r.grid.count();

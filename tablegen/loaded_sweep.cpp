@@ -19,7 +19,8 @@ void LoadedSweepOptions::validate() const {
   };
   require(lateral.low >= -0.1 && lateral.high <= 0.1, "lateral", lateral.low, "within -0.1..0.1 m");
   require(lateral.low < lateral.high, "lateral", lateral.high, "more than the lower end");
-  require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low <= roll.high, "roll", roll.low, "an interval in +-0.1 rad");
+  require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low < roll.high, "roll", roll.low,
+          "an interval within +-0.1 rad: moments are derivatives with respect to roll");
   require(yaw >= 0.0 && yaw <= 0.2, "yaw", yaw, "0..0.2 rad");
   require(largest_load >= 1e3 && largest_load <= 1e7, "largest load", largest_load, "1e3..1e7 N");
   require(levels >= 5 && levels <= 1000, "levels", levels, "5..1000");

@@ -28,13 +28,13 @@ UndeformedDistance::UndeformedDistance(const WheelRailPair& pair, const Wheelset
   }
 }
 
-RailLine UndeformedDistance::rail_point(double s_rail) const noexcept {
+SurfaceLine UndeformedDistance::rail_point(double s_rail) const noexcept {
   const CurvePoint rail = pair_.rail().at(s_rail);
   return {s_rail, rail.y, rail.z, std::atan2(rail.dz, rail.dy), 0.0, 0.0, 0.0, 0.0};
 }
 
 /// Wheel arc length at which the silhouette crosses the rail's normal, where several do the deepest one.
-std::optional<double> UndeformedDistance::start(const RailLine& line) const noexcept {
+std::optional<double> UndeformedDistance::start(const SurfaceLine& line) const noexcept {
   const PlaneVector<double> tangent{std::cos(line.angle), std::sin(line.angle)};
   std::optional<double> found;
   double deepest = -reach, before = 0.0;
@@ -54,7 +54,7 @@ std::optional<double> UndeformedDistance::start(const RailLine& line) const noex
   return found;
 }
 
-std::optional<OverlapDepth> UndeformedDistance::at(const RailLine& line, double x,
+std::optional<OverlapDepth> UndeformedDistance::at(const SurfaceLine& line, double x,
                                                    const OverlapDepth& start) const noexcept {
   const PoseTrigonometry& t = trigonometry_;
   const double ny = -std::sin(line.angle), nz = std::cos(line.angle);
@@ -86,7 +86,7 @@ std::optional<OverlapDepth> UndeformedDistance::at(const RailLine& line, double 
 
 /// line.s_wheel as start: x, overlap, s_wheel and curvature where overlap is greatest along x. There the wheel's normal
 /// has no component along x: the silhouette's point.
-std::optional<RailLine> UndeformedDistance::deepest(RailLine line) const noexcept {
+std::optional<SurfaceLine> UndeformedDistance::deepest(SurfaceLine line) const noexcept {
   OverlapDepth point{line.overlap, line.s_wheel};
   for (int i = 0; i < 3; ++i) {
     const SilhouettePoint p = silhouette_point(pair_.wheel().at(point.s_wheel), pair_.tape_circle_offset(),
@@ -111,13 +111,13 @@ std::optional<RailLine> UndeformedDistance::deepest(RailLine line) const noexcep
   return line;
 }
 
-std::optional<RailLine> UndeformedDistance::line(double s_rail, double s_wheel) const {
-  RailLine line = rail_point(s_rail);
+std::optional<SurfaceLine> UndeformedDistance::line(double s_rail, double s_wheel) const {
+  SurfaceLine line = rail_point(s_rail);
   line.s_wheel = s_wheel;
   return deepest(line);
 }
 
-std::optional<RailLine> UndeformedDistance::line(double s_rail) const {
+std::optional<SurfaceLine> UndeformedDistance::line(double s_rail) const {
   const std::optional<double> from = start(rail_point(s_rail));
   return from ? line(s_rail, *from) : std::nullopt;
 }

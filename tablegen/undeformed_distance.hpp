@@ -9,7 +9,7 @@
 namespace railtab {
 
 /// A line along the rail, x = any, at one arc length of the rail profile, and where the wheel is deepest on it.
-struct RailLine {
+struct SurfaceLine {
   double s;          ///< arc length on the rail profile [m]
   double y, z;       ///< of the rail's surface, rail-head frame [m]
   double angle;      ///< rotation about x from z to the rail's normal, which points into the rail [rad]
@@ -36,16 +36,16 @@ class UndeformedDistance {
   UndeformedDistance(const WheelRailPair& pair, const WheelsetPose& pose);
 
   /// @returns nothing where the normal of the rail at s meets no wheel surface that faces it within 5 mm
-  [[nodiscard]] std::optional<RailLine> line(double s_rail) const;
+  [[nodiscard]] std::optional<SurfaceLine> line(double s_rail) const;
   /// The same from a wheel point near by.
-  [[nodiscard]] std::optional<RailLine> line(double s_rail, double s_wheel) const;
+  [[nodiscard]] std::optional<SurfaceLine> line(double s_rail, double s_wheel) const;
 
   /// @param start of a neighbouring point @returns nothing where Newton's method finds no point near the start
-  [[nodiscard]] std::optional<OverlapDepth> at(const RailLine& line, double x,
+  [[nodiscard]] std::optional<OverlapDepth> at(const SurfaceLine& line, double x,
                                                const OverlapDepth& start) const noexcept;
 
   /// The rail alone: s, y, z and angle; overlap and what follows from the wheel are zero.
-  [[nodiscard]] RailLine rail_point(double s_rail) const noexcept;
+  [[nodiscard]] SurfaceLine rail_point(double s_rail) const noexcept;
 
   [[nodiscard]] const WheelRailPair& pair() const noexcept { return pair_; }
   [[nodiscard]] const WheelsetCentre& centre() const noexcept { return centre_; }
@@ -54,8 +54,8 @@ class UndeformedDistance {
   struct Sample {
     double s_wheel, y, z, ty, tz;
   };
-  [[nodiscard]] std::optional<double> start(const RailLine& line) const noexcept;
-  [[nodiscard]] std::optional<RailLine> deepest(RailLine line) const noexcept;
+  [[nodiscard]] std::optional<double> start(const SurfaceLine& line) const noexcept;
+  [[nodiscard]] std::optional<SurfaceLine> deepest(SurfaceLine line) const noexcept;
 
   const WheelRailPair& pair_;
   PoseTrigonometry trigonometry_;

@@ -108,7 +108,7 @@ struct LoadedTable::Cell {
 LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
   constexpr std::size_t many = 100000;
   require_increasing("lateral", data_.lateral, 2, many);
-  require_increasing("roll", data_.roll, 1, most_nodes);
+  require_increasing("roll", data_.roll, 2, most_nodes);
   require_increasing("yaw_squared", data_.yaw_squared, 1, most_nodes);
   if (data_.levels < 3 || data_.levels > 10000 || !(data_.largest_level > 0.0)) {
     throw input_error("loaded table: levels", fmt::format("{} up to {}", data_.levels, data_.largest_level),
@@ -353,13 +353,8 @@ void LoadedTable::add_parts(const Cell& cell, const LevelPlace& place, double ro
 }
 
 double LoadedTable::margin_share(double roll, double yaw) const noexcept {
-  double share = 1.0;
-  if (data_.roll.size() == 1) {
-    share = roll == data_.roll.front() ? 1.0 : 0.0;
-  } else {
-    const double margin = border * (data_.roll.back() - data_.roll.front());
-    share = inside_share(std::min(roll - data_.roll.front(), data_.roll.back() - roll), margin);
-  }
+  const double margin = border * (data_.roll.back() - data_.roll.front());
+  const double share = inside_share(std::min(roll - data_.roll.front(), data_.roll.back() - roll), margin);
   const double largest = data_.yaw_squared.back();
   if (data_.yaw_squared.size() == 1) return yaw * yaw <= largest ? share : 0.0;
   return share * inside_share(largest - yaw * yaw, border * largest);

@@ -23,7 +23,7 @@ namespace railtab {
 /// contact jumps between the same places of the rail whatever roll and yaw (docs/theory/contact_table.md).
 struct LoadedTableData {
   std::vector<double> lateral;      ///< nodes of y0, increasing [m]
-  std::vector<double> roll;         ///< nodes, increasing [rad]
+  std::vector<double> roll;         ///< nodes, two or more, increasing [rad]
   std::vector<double> yaw_squared;  ///< nodes, increasing [rad²]; the first may stand for 0
   int levels = 0;                   ///< nodes of w, equally spaced from 0
   double largest_level = 0.0;       ///< [J^(1/5)]

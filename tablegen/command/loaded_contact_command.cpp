@@ -231,7 +231,7 @@ std::string elements_csv(const Case& c) {
   std::string text = fmt::format("{}\n", csv_header);
   for (int n = 0; n < e.count(); ++n) {
     if (k.pressure[n] <= 0.0) continue;
-    const RailLine& line = e.line[static_cast<std::size_t>(n / e.nx)];
+    const SurfaceLine& line = e.line[static_cast<std::size_t>(n / e.nx)];
     const double tx = c.rolling ? c.friction.traction_x[n] : 0.0, ty = c.rolling ? c.friction.traction_y[n] : 0.0;
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{}\n", e.x[static_cast<std::size_t>(n % e.nx)],
                    line.s, line.y, line.z, line.angle, e.overlap[n], k.pressure[n], tx, ty,

@@ -64,7 +64,7 @@ void write_loaded_table(ArrayFileWriter& file, const LoadedTableData& table) {
   file.attribute(group, "levels", static_cast<std::int64_t>(table.levels));
   file.attribute(group, "largest_level", table.largest_level);
   file.attribute(group, "contact_modulus", table.contact_modulus);
-  for (const auto& [name, value] : table.statistics) file.attribute("loaded/height", name, value);
+  for (const auto& [name, value] : table.statistics) file.attribute("loaded/statistics", name, value);
 }
 
 std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
@@ -83,8 +83,8 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
   table.height = in.floats(height_field);
   table.pressed = in.counts(pressed_field);
   table.part = in.floats(part_field);
-  for (const std::string& name : file.attribute_names("loaded/height")) {
-    if (name != "unit" && name != "description") table.statistics.emplace_back(name, in.number("loaded/height", name));
+  for (const std::string& name : file.attribute_names("loaded/statistics")) {
+    table.statistics.emplace_back(name, in.number("loaded/statistics", name));
   }
   return table;
 }

@@ -142,7 +142,7 @@ TEST(LoadedContact, PressureAndGapExcludeEachOther) {
   ASSERT_TRUE(c.converged);
   EXPECT_GE(c.pressure.minCoeff(), 0.0);
   std::vector<double> angle;
-  for (const RailLine& line : c.elements.line) angle.push_back(line.angle);
+  for (const SurfaceLine& line : c.elements.line) angle.push_back(line.angle);
   const Eigen::VectorXd gap =
       direct_influence({c.elements.nx, c.elements.ns, c.elements.dx, c.elements.ds}, angle, options.contact_modulus()) *
           c.pressure -
