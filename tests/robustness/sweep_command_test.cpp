@@ -204,14 +204,14 @@ TEST_F(SweepCommand, MissingAndDamagedResultsAreMadeAgain) {
 
   // changed bytes beside a good row, where the file is full of numbers: what no dataset uses may be anything
   std::string bytes = text("out/v030.000.h5");
-  constexpr std::ptrdiff_t changed = 2000;
+  constexpr std::ptrdiff_t block = 2000;
   const auto filled = [&](std::ptrdiff_t from) {
-    return changed - std::count(bytes.begin() + from, bytes.begin() + from + changed, '\0');
+    return block - std::count(bytes.begin() + from, bytes.begin() + from + block, '\0');
   };
   std::ptrdiff_t densest = 0;
-  for (std::ptrdiff_t at = changed; at + changed <= std::ssize(bytes); at += changed)
+  for (std::ptrdiff_t at = block; at + block <= std::ssize(bytes); at += block)
     if (filled(at) > filled(densest)) densest = at;
-  for (std::ptrdiff_t k = densest; k < densest + changed; ++k) {
+  for (std::ptrdiff_t k = densest; k < densest + block; ++k) {
     char& byte = bytes[static_cast<std::size_t>(k)];
     byte = static_cast<char>(~byte);
   }
