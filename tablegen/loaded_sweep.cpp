@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -57,7 +58,9 @@ std::vector<double> yaw_squared_nodes(double yaw, int count) {
 struct ColumnPlace {
   double y0;
   std::size_t roll, yaw;
-  auto operator<=>(const ColumnPlace&) const = default;
+  friend bool operator<(const ColumnPlace& a, const ColumnPlace& b) noexcept {
+    return std::tie(a.y0, a.roll, a.yaw) < std::tie(b.y0, b.roll, b.yaw);
+  }
 };
 
 using Column = LoadedSweepColumn;
