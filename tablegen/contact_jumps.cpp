@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "railtab/tablegen/undeformed_distance.hpp"
+#include "railtab/tables/hermite_basis.hpp"
 
 namespace railtab {
 
@@ -77,12 +78,10 @@ LateralWarp::Place LateralWarp::at(double y0) const noexcept {
   if (y0 >= y0_.back()) return {y0 + displacement_.back(), 1.0};
   const auto next = static_cast<std::size_t>(std::upper_bound(y0_.begin(), y0_.end(), y0) - y0_.begin());
   const std::size_t i = next - 1;
-  const double h = y0_[next] - y0_[i], t = (y0 - y0_[i]) / h, s = 1.0 - t;
-  const double d = s * s * (1.0 + 2.0 * t) * displacement_[i] + t * t * (3.0 - 2.0 * t) * displacement_[next] +
-                   h * t * s * (s * slope_[i] - t * slope_[next]);
-  const double slope = 6.0 * t * s * (displacement_[next] - displacement_[i]) / h + s * (1.0 - 3.0 * t) * slope_[i] +
-                       t * (3.0 * t - 2.0) * slope_[next];
-  return {y0 + d, 1.0 + slope};
+  const double h = y0_[next] - y0_[i];
+  const HermiteBasis basis((y0 - y0_[i]) / h, h);
+  const std::array<double, 4> ends{displacement_[i], slope_[i], displacement_[next], slope_[next]};
+  return {y0 + HermiteBasis::sum(basis.value, ends), 1.0 + HermiteBasis::sum(basis.first, ends)};
 }
 
 }  // namespace railtab

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <optional>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/parallel_failure.hpp"
 #include "railtab/tablegen/rolling_contact.hpp"
 
 namespace railtab {
@@ -124,24 +123,16 @@ void sweep_creep(std::span<const CreepCase> cases, std::span<const CreepLine> li
                  const CreepSink& sink) {
   options.validate();
   InOrder in_order(sink);
-  std::exception_ptr error;
-  std::atomic<bool> stop = false;
+  ParallelFailure failure;
 #pragma omp parallel
   {
     LineSolver solver(options);
 #pragma omp for schedule(monotonic : dynamic, 1)
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (stop) continue;
-      try {
-        in_order.add(i, solver.solve(cases.subspan(lines[i].first, lines[i].count)));
-      } catch (...) {
-#pragma omp critical(railtab_creep_sweep)
-        if (!error) error = std::current_exception();
-        stop = true;
-      }
+      failure.guard([&] { in_order.add(i, solver.solve(cases.subspan(lines[i].first, lines[i].count))); });
     }
   }
-  if (error) std::rethrow_exception(error);
+  failure.rethrow();
 }
 
 }  // namespace railtab

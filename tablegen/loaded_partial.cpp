@@ -119,9 +119,7 @@ void certify(const ContactSearch& search, const LoadedSweepOptions& options, Loa
   const LoadedVerification found = verify_loaded_table(search, LoadedTable(table), check);
   table.statistics.emplace_back("certified.samples", found.samples);
   table.statistics.emplace_back("certified.answered", found.answered);
-  for (const auto& [quantity, errors] : found.errors())
-    for (const auto& [name, value] : errors->named())
-      table.statistics.emplace_back(fmt::format("certified.error.{}.{}", quantity, name), value);
+  add_certified_errors(found, table.statistics);
 }
 
 }  // namespace

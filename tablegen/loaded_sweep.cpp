@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <optional>
 #include <tuple>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/parallel_failure.hpp"
 
 namespace railtab {
 
@@ -38,7 +39,6 @@ namespace {
 
 /// Points of Chebyshev and Lobatto, ends included.
 std::vector<double> chebyshev_nodes(double low, double high, int count) {
-  if (low == high) return {low};
   std::vector<double> nodes;
   for (int i = 0; i < count; ++i) {
     nodes.push_back(0.5 * (low + high) - 0.5 * (high - low) * std::cos(std::numbers::pi * i / (count - 1)));
@@ -163,11 +163,12 @@ class LoadedSweep {
     for (const ColumnPlace& place : wanted)
       if (!solved_.contains(place)) missing.push_back(place);
     std::vector<Column> found(missing.size());
-    std::exception_ptr error;
+    ParallelFailure failure;
+    std::mutex one_at_a_time;
     std::size_t done = 0;
 #pragma omp parallel for schedule(dynamic)
     for (std::size_t i = 0; i < missing.size(); ++i) {
-      try {
+      failure.guard([&] {
         const ColumnPlace& p = missing[i];
         found[i].y0 = p.y0;
         found[i].roll = p.roll;
@@ -175,27 +176,20 @@ class LoadedSweep {
         found[i].shift = warp_[p.roll * yaw_squared_.size() + p.yaw].at(p.y0);
         found[i].solution =
             loaded_column(search_, {found[i].shift.y, 0.0, roll_[p.roll], std::sqrt(yaw_squared_[p.yaw])}, column_);
-      } catch (...) {
-#pragma omp critical
-        error = std::current_exception();
-      }
-#pragma omp critical
-      {
+        const std::scoped_lock lock(one_at_a_time);
         ++done;
-        if (keep_ && !error) keep_(found[i]);
+        if (keep_) keep_(found[i]);
         if (progress_ && last) progress_(static_cast<double>(done) / static_cast<double>(missing.size()));
-      }
+      });
     }
-    if (error) std::rethrow_exception(error);
+    failure.rethrow();
     for (std::size_t i = 0; i < missing.size(); ++i) solved_.emplace(missing[i], std::move(found[i]));
   }
 
   /// Where the interpolation between two nodes is held against a solution: (roll, yaw).
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> trials() const {
     const std::size_t r = roll_.size() - 1, s = yaw_squared_.size() - 1;
-    std::vector<std::pair<std::size_t, std::size_t>> places{{roll_.size() / 2, 0}};
-    if (r > 0 || s > 0) places.insert(places.end(), {{0, s}, {r, s}});
-    return places;
+    return {{roll_.size() / 2, 0}, {0, s}, {r, s}};
   }
 
   std::vector<double> lateral_nodes() {

@@ -4,11 +4,12 @@
 
 #include <chrono>
 #include <cmath>
-#include <exception>
+#include <mutex>
 #include <random>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/loaded_contact.hpp"
+#include "railtab/tablegen/parallel_failure.hpp"
 
 namespace railtab {
 
@@ -41,9 +42,7 @@ Sample compare(const ContactSearch& search, const LoadedTable& table, const Whee
   const double error_y = found.force[0] - exact.on_rail.force.y(), error_z = found.force[1] - exact.on_rail.force.z();
   sample.force = std::hypot(error_y, error_z) / sample.normal_force;
   if (sample.normal_force < 5e3) return sample;
-  sample.pressure = 0.0;
-  for (std::size_t p = 0; p < found.parts; ++p) sample.pressure = std::max(sample.pressure, found.part[p].pressure);
-  sample.pressure = std::abs(sample.pressure / exact.largest_pressure - 1.0);
+  sample.pressure = std::abs(found.largest_pressure() / exact.largest_pressure - 1.0);
   // A difference of solutions over a hundredth of a Hertzian approach.
   const double step = 0.01 * 2.5 * exact.elastic_energy / exact.on_rail.force.z();
   WheelsetPose above = pose, below = pose;
@@ -94,23 +93,21 @@ LoadedVerification verify_loaded_table(const ContactSearch& search, const Loaded
   }
   std::vector<Sample> samples(poses.size());
   std::size_t done = 0;
-  std::exception_ptr error;
+  ParallelFailure failure;
+  std::mutex one_at_a_time;
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    try {
-      samples[i] = compare(search, table, poses[i], contact);
-    } catch (const TooManyElements&) {  // not answered: no solution to compare with
-    } catch (...) {
-#pragma omp critical
-      error = std::current_exception();
-    }
-#pragma omp critical
-    {
+    failure.guard([&] {
+      try {
+        samples[i] = compare(search, table, poses[i], contact);
+      } catch (const TooManyElements&) {  // not answered: no solution to compare with
+      }
+      const std::scoped_lock lock(one_at_a_time);
       ++done;
       if (progress) progress(static_cast<double>(done) / static_cast<double>(poses.size()));
-    }
+    });
   }
-  if (error) std::rethrow_exception(error);
+  failure.rethrow();
   LoadedVerification result;
   result.samples = options.samples;
   std::vector<double> force, light, stiffness, pressure;

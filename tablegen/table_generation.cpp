@@ -25,11 +25,7 @@ void store_statistics(const GeometryVerification& v, GeometryTableData& table) {
   table.statistics.emplace_back("certified.searched_share", v.searched_share);
   table.statistics.emplace_back("certified.finer_mismatch_share", v.finer_mismatch_share);
   table.statistics.emplace_back("certified.patch_mismatch_share", v.patch_mismatch_share);
-  for (const auto& [quantity, errors] : v.errors()) {
-    for (const auto& [name, value] : errors->named()) {
-      table.statistics.emplace_back(fmt::format("certified.error.{}.{}", quantity, name), value);
-    }
-  }
+  add_certified_errors(v, table.statistics);
 }
 
 GeometryVerification certify(GeometryTableData& table) {

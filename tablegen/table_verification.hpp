@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -61,6 +64,16 @@ struct GeometryVerification {
              {"normal_force_relative", &normal_force_relative}}};
   }
 };
+
+/// Adds certified.error.<quantity>.<mean, p50, ...> of a verification to a table's statistics.
+template <class Verification>
+void add_certified_errors(const Verification& verification, std::vector<std::pair<std::string, double>>& statistics) {
+  for (const auto& [quantity, errors] : verification.errors()) {
+    for (const auto& [name, value] : errors->named()) {
+      statistics.emplace_back(fmt::format("certified.error.{}.{}", quantity, name), value);
+    }
+  }
+}
 
 /// @throws InputError for options out of range, ComputationError where the wheel hardly ever meets the rail.
 [[nodiscard]] GeometryVerification verify_geometry_table(const TableContact& contact,

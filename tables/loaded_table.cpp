@@ -9,6 +9,8 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/smooth_step.hpp"
+#include "railtab/tables/hermite_basis.hpp"
 
 namespace railtab {
 
@@ -49,26 +51,7 @@ struct Lagrange {
   }
 };
 
-// Cubic Hermite polynomials over a cell of width h, of its place t = 0..1: order value at 0, slope at 0, value at 1,
-// slope at 1; with two derivatives with respect to the coordinate.
-struct Hermite {
-  std::array<double, 4> value, first, second;
-
-  Hermite(double t, double h) noexcept {
-    const double s = 1.0 - t;
-    value = {s * s * (1.0 + 2.0 * t), h * t * s * s, t * t * (3.0 - 2.0 * t), -h * t * t * s};
-    first = {-6.0 * t * s / h, s * (1.0 - 3.0 * t), 6.0 * t * s / h, t * (3.0 * t - 2.0)};
-    second = {(12.0 * t - 6.0) / (h * h), (6.0 * t - 4.0) / h, (6.0 - 12.0 * t) / (h * h), (6.0 * t - 2.0) / h};
-  }
-};
-
 constexpr std::size_t buckets = 2048;
-
-// 0 at the border and beyond, 1 from `margin` inside on, with continuous slope.
-double inside_share(double distance, double margin) noexcept {
-  const double t = std::clamp(distance / margin, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 // Derivatives along the pose and its reductions.
 enum Direction : std::size_t { here, by_roll, by_yaw, by_roll_roll, by_roll_yaw, by_yaw_yaw, directions };
@@ -99,7 +82,7 @@ struct LoadedTable::Cell {
   std::size_t lateral = 0;  ///< the lower node
   double width = 0.0;       ///< [m]
   double t = 0.0;           ///< 0..1
-  Hermite across{0.0, 1.0};
+  HermiteBasis across{0.0, 1.0};
   std::array<double, 2> touch{};  ///< height of first touch at both lateral nodes, in this roll and yaw [m]
   int level = 0;                  ///< the lower node
   double u = 0.0;
@@ -187,18 +170,16 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
     corner[3] += weight * at_high[1];
   }
   if (!(y >= corner[0] && y <= corner[2])) return false;
-  const auto sum = [&](const std::array<double, 4>& basis) {
-    return basis[0] * corner[0] + basis[1] * corner[1] + basis[2] * corner[2] + basis[3] * corner[3];
-  };
   double t = (y - corner[0]) / (corner[2] - corner[0]);
   for (int iteration = 0; iteration < 20; ++iteration) {  // nearly linear: two or three suffice
-    const Hermite basis(t, cell.width);
-    const double change = (sum(basis.value) - y) / (sum(basis.first) * cell.width);
+    const HermiteBasis basis(t, cell.width);
+    const double change =
+        (HermiteBasis::sum(basis.value, corner) - y) / (HermiteBasis::sum(basis.first, corner) * cell.width);
     t -= change;
     if (std::abs(change) < 1e-13) break;
   }
   cell.t = std::clamp(t, 0.0, 1.0);
-  cell.across = Hermite(cell.t, cell.width);
+  cell.across = HermiteBasis(cell.t, cell.width);
   for (std::size_t i = 0; i < 2; ++i) {
     for (std::size_t k = 0; k < weights.columns; ++k) {
       cell.touch[i] += weights.column[k][here] * data_.touch[(low + i) * weights.columns + k];
@@ -354,10 +335,10 @@ void LoadedTable::add_parts(const Cell& cell, const LevelPlace& place, double ro
 
 double LoadedTable::margin_share(double roll, double yaw) const noexcept {
   const double margin = border * (data_.roll.back() - data_.roll.front());
-  const double share = inside_share(std::min(roll - data_.roll.front(), data_.roll.back() - roll), margin);
+  const double share = smooth_step(std::min(roll - data_.roll.front(), data_.roll.back() - roll) / margin);
   const double largest = data_.yaw_squared.back();
   if (data_.yaw_squared.size() == 1) return yaw * yaw <= largest ? share : 0.0;
-  return share * inside_share(largest - yaw * yaw, border * largest);
+  return share * smooth_step((largest - yaw * yaw) / (border * largest));
 }
 
 template <bool slopes>
@@ -370,7 +351,7 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   if (!find_lateral(y, weights, cell)) return result;
   const double y0 = data_.lateral[cell.lateral] + cell.t * cell.width;
   const double lateral_range = data_.lateral.back() - data_.lateral.front();
-  inside *= inside_share(std::min(y0 - data_.lateral.front(), data_.lateral.back() - y0), border * lateral_range);
+  inside *= smooth_step(std::min(y0 - data_.lateral.front(), data_.lateral.back() - y0) / (border * lateral_range));
   if (!(inside > 0.0) || !find_level(z, weights, cell)) return result;
   if (cell.level < 0) {
     result.table_share = inside;
@@ -397,7 +378,7 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
       }
     }
   }
-  const Hermite& t = cell.across;
+  const HermiteBasis& t = cell.across;
   // Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
   const auto across_at = [&](const std::array<double, 4>& basis, Direction d) {
     const std::array<double, 4> r{basis[0] * corner[0][d][0] + basis[1] * corner[0][d][2] + basis[2] * corner[2][d][0] +
@@ -410,15 +391,13 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
                                       basis[3] * corner[3][d][3]};
     return r;
   };
-  const auto sum = [](const std::array<double, 4>& basis, const std::array<double, 4>& r) {
-    return basis[0] * r[0] + basis[1] * r[1] + basis[2] * r[2] + basis[3] * r[3];
-  };
+  const auto& sum = HermiteBasis::sum;
   const std::array<double, 4> line = across_at(t.value, here);
   // The level: the root of a cubic that grows from z or less to z or more.
   double low = 0.0, high = 1.0, u = (z - line[0]) / (line[2] - line[0]);
   if (cell.level == 0) u = std::sqrt(std::max(0.0, u));
   for (int iteration = 0; iteration < 60; ++iteration) {
-    const Hermite basis(u, level_step_);
+    const HermiteBasis basis(u, level_step_);
     const double excess = sum(basis.value, line) - z, slope = sum(basis.first, line) * level_step_;
     (excess > 0.0 ? high : low) = u;
     double next = u - excess / slope;
@@ -429,12 +408,12 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   }
   cell.u = u;
   const double w = (cell.level + u) * level_step_;
-  inside *= inside_share(data_.levels - 1 - (cell.level + u), border * (data_.levels - 1));
-  const Hermite level(u, level_step_);
+  inside *= smooth_step((data_.levels - 1 - (cell.level + u)) / (border * (data_.levels - 1)));
+  const HermiteBasis level(u, level_step_);
 
   // y0(y, roll, yaw), then w(y, z, roll, yaw) from Z(w, y0(y, roll, yaw), roll, yaw) = z.
   const auto along = [&](const std::array<double, 4>& basis, Direction d) {
-    return basis[0] * shift[0][d] + basis[1] * shift[1][d] + basis[2] * shift[2][d] + basis[3] * shift[3][d];
+    return sum(basis, {shift[0][d], shift[1][d], shift[2][d], shift[3][d]});
   };
   const double Y_y0 = along(t.first, here), Z_w = sum(level.first, line);
   if (!(Z_w > 0.0)) return result;

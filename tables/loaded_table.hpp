@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -79,8 +80,14 @@ struct LoadedLookup {
   double energy = 0.0;  ///< U [J]; 0: no contact
   Eigen::Vector4d force = Eigen::Vector4d::Zero();
   std::size_t parts = 0;
-  std::array<LoadedPart, capacity>
-      part;  ///< the first `parts`, in increasing arc length on the rail, each with a share
+  /// The first `parts`, in increasing arc length on the rail, each with a share.
+  std::array<LoadedPart, capacity> part;
+
+  [[nodiscard]] double largest_pressure() const noexcept {  ///< [Pa]
+    double largest = 0.0;
+    for (std::size_t p = 0; p < parts; ++p) largest = std::max(largest, part[p].pressure);
+    return largest;
+  }
 };
 
 /// Derivatives with respect to the pose.

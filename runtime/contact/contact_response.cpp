@@ -12,18 +12,18 @@ WheelContact wheel_contact(const ContactGeometry& geometry, const WheelsetPose& 
   return contact;
 }
 
-WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                       const RailHeadMotion& rail, const WheelContact& contact) noexcept {
+LoadedWheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                             const RailHeadMotion& rail, const WheelContact& contact) noexcept {
   const double share = contact.loaded.table_share;
-  if (share == 0.0) return wheel_force(model, side, wheelset, rail, contact.patches);
-  WheelForce loaded = loaded_wheel_force(model, side, wheelset, rail, contact.loaded);
+  if (share == 0.0) return {wheel_force(model, side, wheelset, rail, contact.patches), {}};
+  const LoadedWheelForce loaded = loaded_wheel_force(model, side, wheelset, rail, contact.loaded);
   if (share == 1.0) return loaded;
   WheelForce force = wheel_force(model, side, wheelset, rail, contact.patches);
   force.wheelset = (1.0 - share) * force.wheelset + share * loaded.wheelset;
   force.rail = (1.0 - share) * force.rail + share * loaded.rail;
   force.rail_x = -force.wheelset[0];
   for (int i = 0; i < contact.patches.count; ++i) force.patch[static_cast<std::size_t>(i)] *= 1.0 - share;
-  return force;
+  return {force, loaded.memory};
 }
 
 ContactPatches recorded_patches(const WheelRailPair& pair, const WheelContact& contact) noexcept {
@@ -40,11 +40,10 @@ double elastic_energy(const WheelContactModel& model, const WheelContact& contac
   return sum;
 }
 
-ContactMemory contact_memory(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                             const RailHeadMotion& rail, const WheelContact& contact,
-                             const WheelForce& force) noexcept {
-  ContactMemory memory = remembered(model.geometry->pair(), contact.pose, contact.patches, force);
-  if (contact.loaded.table_share > 0.0) memory.loaded = loaded_memory(model, side, wheelset, rail, contact.loaded);
+ContactMemory contact_memory(const WheelRailPair& pair, const WheelContact& contact,
+                             const LoadedWheelForce& force) noexcept {
+  ContactMemory memory = remembered(pair, contact.pose, contact.patches, force);
+  memory.loaded = force.memory;
   return memory;
 }
 

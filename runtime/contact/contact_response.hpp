@@ -19,8 +19,9 @@ struct WheelContact {
 [[nodiscard]] WheelContact wheel_contact(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept;
 
 /// @param contact at the pose that relative_pose() returns
-[[nodiscard]] WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                                     const RailHeadMotion& rail, const WheelContact& contact) noexcept;
+[[nodiscard]] LoadedWheelForce wheel_force(const WheelContactModel& model, WheelSide side,
+                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                           const WheelContact& contact) noexcept;
 
 /// What records show of a contact: its patches, or the parts of the loaded one.
 [[nodiscard]] ContactPatches recorded_patches(const WheelRailPair& pair, const WheelContact& contact) noexcept;
@@ -28,9 +29,8 @@ struct WheelContact {
 /// Elastic energy: of patches (2/5) F d [J].
 [[nodiscard]] double elastic_energy(const WheelContactModel& model, const WheelContact& contact) noexcept;
 
-[[nodiscard]] ContactMemory contact_memory(const WheelContactModel& model, WheelSide side,
-                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
-                                           const WheelContact& contact, const WheelForce& force) noexcept;
+[[nodiscard]] ContactMemory contact_memory(const WheelRailPair& pair, const WheelContact& contact,
+                                           const LoadedWheelForce& force) noexcept;
 
 /// Mean force over a step that ends at `contact` with `force`.
 [[nodiscard]] Vector9 mean_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,

@@ -96,7 +96,6 @@ class LoadedContactForce {
     }
     return wheel_.generalised(sum.force, sum.moment);
   }
-  [[nodiscard]] const T& normal() const { return normal_; }
   [[nodiscard]] const std::array<double, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
   [[nodiscard]] int outside_creep_table() const { return outside_; }
 
@@ -136,7 +135,6 @@ class LoadedContactForce {
       const T elastic = quantity(&LoadedPart::share) * force_[1] / part.cos_angle;
       part.normal = elastic;
       if (model_.damping != 0.0) add_damping(elastic, part);
-      normal_ += part.normal;
       part_normal_[p] = number(part.normal);
     }
     if (model_.friction > 0.0) add_groups(parts);
@@ -249,7 +247,7 @@ class LoadedContactForce {
   const LoadedLookup& lookup_;
   const LoadedSlopes* slopes_;
   std::array<T, 4> pose_, force_;
-  T energy_, normal_ = T(0.0);
+  T energy_;
   Wrench<T> rest_{};
   std::array<double, LoadedLookup::capacity> part_normal_{};
   int outside_ = 0;
@@ -303,9 +301,9 @@ Generalised<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& sta
 
 }  // namespace
 
-WheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                              const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
-  WheelForce result;
+LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                                    const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
+  LoadedWheelForce result;
   const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
   const LoadedContactForce<double> force(model, wheel, lookup);
   const Vector9 total = in_track(side, force.total());
@@ -314,13 +312,19 @@ WheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, co
   result.rail_x = -result.wheelset[0];
   std::copy_n(force.part_normal().begin(), lookup.parts, result.normal.begin());
   result.outside_creep_table = force.outside_creep_table();
+  const Generalised<double> rest = force.rest();
+  result.memory = {.weight = lookup.table_share,
+                   .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
+                   .energy = lookup.energy,
+                   .force = lookup.force,
+                   .rest = lookup.table_share * Eigen::Map<const Vector9>(rest.data()),
+                   .total = lookup.table_share * total};
   return result;
 }
 
 ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pose,
                               const LoadedLookup& lookup) noexcept {
   ContactPatches patches;
-  patches.from_table = true;
   if (!(lookup.energy > 0.0)) return patches;
   const PoseTrigonometry trigonometry(pose);
   const double approach = 2.5 * lookup.energy / lookup.force.head<2>().norm();
@@ -335,19 +339,6 @@ ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pos
     ++patches.count;
   }
   return patches;
-}
-
-LoadedMemory loaded_memory(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                           const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
-  const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
-  const LoadedContactForce<double> force(model, wheel, lookup);
-  const Generalised<double> rest = force.rest();
-  return {.weight = lookup.table_share,
-          .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
-          .energy = lookup.energy,
-          .force = lookup.force,
-          .rest = lookup.table_share * Eigen::Map<const Vector9>(rest.data()),
-          .total = lookup.table_share * in_track(side, force.total())};
 }
 
 Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,

@@ -15,14 +15,19 @@ struct LoadedMemory {
   Vector9 total = Vector9::Zero();                  ///< all forces, weighted, of the wheel as it is (track frame)
 };
 
+/// Forces of a wheel, with what the next step wants to know of its loaded contact.
+struct LoadedWheelForce : WheelForce {
+  LoadedMemory memory;
+};
+
 /// Forces of the loaded contact of one wheel: elastic forces are the derivative of the tabulated energy. Each part of
 /// the contact has its creep force, by the model's law for the ellipse with the pressure's second moments, from the
 /// creepage at the mean point of the wheel in contact; parts that merge count as one ellipse by the depth of the saddle
 /// between them (docs/theory/contact_table.md).
 /// @param lookup at the pose that relative_pose() returns
-[[nodiscard]] WheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side,
-                                            const WheelsetMotion& wheelset, const RailHeadMotion& rail,
-                                            const LoadedLookup& lookup) noexcept;
+[[nodiscard]] LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side,
+                                                  const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                                  const LoadedLookup& lookup) noexcept;
 
 /// The parts that bear load as patches, for records: penetration is the approach of a Hertzian contact with the same
 /// energy and force, (5/2) U/N.
@@ -35,9 +40,6 @@ struct LoadedMemory {
 [[nodiscard]] Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
                                         const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                         const LoadedLookup& lookup) noexcept;
-
-[[nodiscard]] LoadedMemory loaded_memory(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                                         const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept;
 
 /// As wheel_force_tangent(), by the chain rule from the table's derivatives, the law's and those of the kinematics.
 /// @param start of the mean force over a step, or null

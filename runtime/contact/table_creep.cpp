@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/smooth_step.hpp"
 #include "railtab/runtime/contact/polach.hpp"
 
 namespace railtab {
@@ -11,12 +12,6 @@ namespace {
 
 constexpr double ratio_border = 1.25;    ///< factor of a/b over which the table fades out at the ends of its axis
 constexpr double creepage_border = 0.8;  ///< share of the largest creepage at which it begins to fade out
-
-/// 0 at and below 0, 1 at and above 1, continuous slope.
-double smooth_step(double x) {
-  const double s = std::clamp(x, 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
 
 }  // namespace
 

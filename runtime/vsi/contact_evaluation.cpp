@@ -53,14 +53,14 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
         const bool served = model.geometry->loaded() ? !contact.by_patches() : contact.patches.from_table;
         if (served) ++counts.table_queries;
       }
-      const WheelForce wheel = wheel_force(model, wheel_side, motion, rail, contact);
+      const LoadedWheelForce wheel = wheel_force(model, wheel_side, motion, rail, contact);
       const int r = 6 + 3 * side;
       end_force.head<6>() += wheel.wheelset;
       end_force.segment<3>(r) = wheel.rail;
       s.rail_x[number] = wheel.rail_x;
       counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
-      s.memory[number] = contact_memory(model, wheel_side, motion, rail, contact, wheel);
+      s.memory[number] = contact_memory(model.geometry->pair(), contact, wheel);
       if (problem.start) {
         const ContactMemory& start = problem.start->memory[number];
         const Vector9 share =

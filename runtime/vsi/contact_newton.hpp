@@ -37,7 +37,7 @@ struct ContactSolution {
   std::vector<double> rail_x;  ///< longitudinal force on the rail per wheel [N]
   std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
   std::vector<WheelContact> contact;  ///< per wheel, of its own (mirrored on the left) side
-  std::vector<ContactMemory> memory;    ///< per wheel, what the next step wants to know of this one's end
+  std::vector<ContactMemory> memory;  ///< per wheel, what the next step wants to know of this one's end
 };
 
 /// The contact problem of one step, condensed to the contact unknowns q: the linear rest of the train and the structure
@@ -68,8 +68,8 @@ struct ContactProblem {
 struct ContactCounts {
   /// Of the contact, and those that the table alone answered, by its loaded part where it has one.
   long queries = 0, table_queries = 0;
-  long outside_creep_table = 0;         ///< creep forces that the creep table left to Polach, wholly or in part
-  double seconds_lookup = 0.0;          ///< in the contact geometry
+  long outside_creep_table = 0;  ///< creep forces that the creep table left to Polach, wholly or in part
+  double seconds_lookup = 0.0;   ///< in the contact geometry
 
   ContactCounts& operator+=(const ContactCounts& more) noexcept;
 };

@@ -84,8 +84,8 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
       now.wheel_velocity.segment<3>(r) = rail.velocity;
       const auto add = [&](const WheelContactModel& contact, const std::vector<ContactMemory>& before,
                            std::vector<ContactMemory>& memory, Eigen::VectorXd& mean) {
-        const WheelForce force = wheel_force(contact, wheel_side, motion, rail, found);
-        memory.push_back(contact_memory(contact, wheel_side, motion, rail, found, force));
+        const LoadedWheelForce force = wheel_force(contact, wheel_side, motion, rail, found);
+        memory.push_back(contact_memory(pair, found, force));
         if (before.empty()) return;  // the account begins
         const Vector9 f = mean_force(contact, wheel_side, motion, rail, before[number], found, force);
         mean.segment<6>(k) += f.head<6>();

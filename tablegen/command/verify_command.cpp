@@ -18,6 +18,27 @@ namespace railtab {
 
 namespace {
 
+template <class Verification>
+nlohmann::ordered_json errors_json(const Verification& v) {
+  nlohmann::ordered_json j;
+  for (const auto& [quantity, errors] : v.errors()) {
+    for (const auto& [name, value] : errors->named()) j[std::string(quantity)][std::string(name)] = value;
+  }
+  return j;
+}
+
+template <class Verification>
+std::string errors_text(std::string_view heading, const Verification& v) {
+  std::string out =
+      fmt::format("{:24}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", heading, "mean", "p50", "p95", "p99", "p99.9", "max");
+  for (const auto& [quantity, errors] : v.errors()) {
+    out += fmt::format("{:24}", quantity);
+    for (const auto& [name, value] : errors->named()) out += fmt::format("{:11.2e}", value);
+    out += '\n';
+  }
+  return out;
+}
+
 nlohmann::ordered_json description(const GeometryVerification& v) {
   nlohmann::ordered_json j;
   j["kind"] = "geometry";
@@ -29,9 +50,7 @@ nlohmann::ordered_json description(const GeometryVerification& v) {
   j["searched_share"] = v.searched_share;
   j["patch_mismatch_share"] = v.patch_mismatch_share;
   j["finer_mismatch_share"] = v.finer_mismatch_share;
-  for (const auto& [quantity, errors] : v.errors()) {
-    for (const auto& [name, value] : errors->named()) j["error"][std::string(quantity)][std::string(name)] = value;
-  }
+  j["error"] = errors_json(v);
   j["time_ns"] = {{"table", v.time_table_ns},
                   {"online", v.time_online_ns},
                   {"table_with_fallback", v.time_with_fallback_ns},
@@ -47,13 +66,7 @@ std::string text(const GeometryVerification& v) {
       "patches missed or invented at {:.4f} % of the queries answered ({:.4f} % against a finer search)\n\n",
       v.samples, v.answered_by_table, 100 * v.fallback_share, 100 * v.searched_share, v.patches_compared,
       100 * v.patch_mismatch_share, 100 * v.finer_mismatch_share);
-  out +=
-      fmt::format("{:24}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "error", "mean", "p50", "p95", "p99", "p99.9", "max");
-  for (const auto& [quantity, errors] : v.errors()) {
-    out += fmt::format("{:24}", quantity);
-    for (const auto& [name, value] : errors->named()) out += fmt::format("{:11.2e}", value);
-    out += '\n';
-  }
+  out += errors_text("error", v);
   out += fmt::format(
       "\ntime per query: table {:.0f} ns, online {:.0f} ns, table with fallback {:.0f} ns, "
       "point-discretised search with 1000 points {:.0f} ns\n",
@@ -67,9 +80,7 @@ nlohmann::ordered_json description(const LoadedVerification& v) {
   j["answered"] = v.answered;
   j["above_5_kn"] = v.above_5_kn;
   j["from_1_to_5_kn"] = v.from_1_to_5_kn;
-  for (const auto& [quantity, errors] : v.errors()) {
-    for (const auto& [name, value] : errors->named()) j["error"][std::string(quantity)][std::string(name)] = value;
-  }
+  j["error"] = errors_json(v);
   j["time_ns"] = v.time_ns;
   return j;
 }
@@ -78,14 +89,9 @@ std::string text(const LoadedVerification& v) {
   std::string out = fmt::format(
       "\nloaded part: {} random poses, {} answered by the table alone; {} above 5 kN and {} from 1 to 5 kN compared "
       "with "
-      "half-space solutions\n\n{:24}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n",
-      v.samples, v.answered, v.above_5_kn, v.from_1_to_5_kn, "relative error", "mean", "p50", "p95", "p99", "p99.9",
-      "max");
-  for (const auto& [quantity, errors] : v.errors()) {
-    out += fmt::format("{:24}", quantity);
-    for (const auto& [name, value] : errors->named()) out += fmt::format("{:11.2e}", value);
-    out += '\n';
-  }
+      "half-space solutions\n\n",
+      v.samples, v.answered, v.above_5_kn, v.from_1_to_5_kn);
+  out += errors_text("relative error", v);
   return out + fmt::format("\ntime per look-up: {:.0f} ns\n", v.time_ns);
 }
 

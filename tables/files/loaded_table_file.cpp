@@ -40,7 +40,8 @@ const Field height_field{"loaded/height",
 const Field pressed_field{"loaded/pressed",
                           {"nodes"},
                           "1",
-                          "at the nodes (lateral, level), the parts of the rail that are pressed anywhere in roll and yaw, bit by bit from the first"};
+                          "at the nodes (lateral, level), the parts of the rail that are pressed anywhere in roll and "
+                          "yaw, bit by bit from the first"};
 const Field part_field{"loaded/part",
                        {"pressed", "roll", "yaw", "12"},
                        "1; m; rad; N/m; Pa",

@@ -122,8 +122,8 @@ TEST(LoadedWheel, TangentIsTheDerivativeInATimeStep) {
     before.wheelset.displacement[1] += states.at(-1e-5, 1e-5);
     before.wheelset.displacement[2] -= states.at(0.0, 4e-5);
     const WheelContact start = before.contact();
-    const ContactMemory memory = contact_memory(model, s.side, before.wheelset, before.rail, start,
-                                                wheel_force(model, s.side, before.wheelset, before.rail, start));
+    const ContactMemory memory =
+        contact_memory(geometry().pair(), start, wheel_force(model, s.side, before.wheelset, before.rail, start));
     for (const bool mean : {false, true}) {
       StepRates in_step = rates;
       in_step.start = mean ? &memory : nullptr;
@@ -184,8 +184,8 @@ TEST(LoadedWheel, MeanForceDoesTheWorkOfTheEnergysChange) {
     start.wheelset.displacement[2] -= states.at(-2e-5, 2e-4);  // lifted off in most cases
     start.wheelset.displacement[3] += states.at(-1e-5, 1e-5);
     const WheelContact from = start.contact(), to = end.contact();
-    const ContactMemory memory = contact_memory(model, start.side, start.wheelset, start.rail, from,
-                                                wheel_force(model, start.side, start.wheelset, start.rail, from));
+    const ContactMemory memory =
+        contact_memory(geometry().pair(), from, wheel_force(model, start.side, start.wheelset, start.rail, from));
     const WheelForce force = wheel_force(model, end.side, end.wheelset, end.rail, to);
     const Vector9 mean = mean_force(model, end.side, end.wheelset, end.rail, memory, to, force);
     // on the wheelset, against the energy; roll turns about the track's x, which the force's moment is about

@@ -67,7 +67,7 @@ class Study {
       differences_.add("A", kind, "approach", (motion.displacement[2] - touch) / row["approach"] - 1.0);
       differences_.add("A", kind, "total force D2",
                        std::hypot(force.rail_x - row["fx"], force.rail[0] - row["fy"]) / bound);
-      differences_.add("A", kind, "largest pressure", pressure(motion) / patch["pmax"] - 1.0);
+      differences_.add("A", kind, "largest pressure", lookup(motion).largest_pressure() / patch["pmax"] - 1.0);
     }
   }
 
@@ -99,7 +99,7 @@ class Study {
       }
       differences_.add("C", kind, "approach", (motion.displacement[2] - row["z_ws"]) / (row["z_ws"] - touch));
       differences_.add("C", kind, "lateral force", (side * force.rail[0] - row["fy"]) / row["load"]);
-      differences_.add("C", kind, "largest pressure", pressure(motion) / row["pmax"] - 1.0);
+      differences_.add("C", kind, "largest pressure", lookup(motion).largest_pressure() / row["pmax"] - 1.0);
     }
   }
 
@@ -177,12 +177,6 @@ class Study {
     return loaded_->lookup(m.displacement[1], m.displacement[2], m.displacement[3], m.displacement[5]);
   }
   [[nodiscard]] bool answered(const WheelsetMotion& m) const { return lookup(m).table_share == 1.0; }
-  [[nodiscard]] double pressure(const WheelsetMotion& m) const {
-    const LoadedLookup found = lookup(m);
-    double largest = 0.0;
-    for (std::size_t p = 0; p < found.parts; ++p) largest = std::max(largest, found.part[p].pressure);
-    return largest;
-  }
   [[nodiscard]] Eigen::Vector4d loaded_force(const Eigen::Vector4d& p) const {
     return loaded_->lookup(p[0], p[1], p[2], p[3]).force;
   }

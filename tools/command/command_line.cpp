@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string_view>
+#include <thread>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
@@ -121,6 +123,10 @@ double CommandLine::slope(const std::string& name) const {
   const std::optional<Pair> fraction = parse_pair(text(name), ':');
   if (fraction && fraction->second != 0.0) return fraction->first / fraction->second;
   throw input_error("--" + name, fmt::format("\"{}\"", text(name)), "a slope such as 1:40 or 0.025");
+}
+
+int CommandLine::workers() const {
+  return threads_.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
 }
 
 }  // namespace railtab

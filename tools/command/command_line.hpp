@@ -49,6 +49,8 @@ class CommandLine {
 
   /// --threads; none where all processors are to be used.
   [[nodiscard]] std::optional<int> threads() const { return threads_; }
+  /// threads(), or the number of processors.
+  [[nodiscard]] int workers() const;
   [[nodiscard]] bool json() const { return given("json"); }
   [[nodiscard]] bool quiet() const { return given("quiet"); }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <thread>
 
 #include "command/command_line.hpp"
 #include "command/output_place.hpp"
@@ -174,7 +173,6 @@ void check_effort(const DeckResponse& response, double slowest_speed) {
 /// All trains on all decks.
 std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optional<SpeedRange>& speeds,
                                   const CommandLine& line) {
-  const int threads = line.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   ProgressBar bar("trains", !line.quiet() && !line.json());
   std::vector<DeckResponse> responses;
   for (ModalDeck& deck : decks) {
@@ -190,7 +188,7 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optio
     }
     const double done = static_cast<double>(responses.size() - 1), all = static_cast<double>(decks.size());
     if (speeds) check_effort(response, speeds->low);
-    response.responses = train_responses(response.deck, response.trains, speeds.value_or(SpeedRange{}), threads,
+    response.responses = train_responses(response.deck, response.trains, speeds.value_or(SpeedRange{}), line.workers(),
                                          [&](double share) { bar.show((done + share) / all); });
   }
   bar.wipe();

@@ -12,7 +12,6 @@
 #include <optional>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
@@ -321,8 +320,7 @@ int sweep_command(const Arguments& arguments) {
   make_folder(folder);
   remove_abandoned_of(all, folder);
   check_same_scene(scene, folder);
-  const auto processes = static_cast<std::size_t>(
-      line.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))));
+  const auto processes = static_cast<std::size_t>(line.workers());
   Sweep sweep(scene, scene_file, folder, line.quiet() || line.json());
   const int code = sweep.run(own, processes);
   const bool whole = shard.count == 1;
