@@ -49,21 +49,48 @@ std::string heading_of(const std::string& section) {
   return list ? "### `[[" + section + "]]`" : "### `[" + section + "]`";
 }
 
+/// What a key accepts: "0.001 to 200 m/s", "integer 1 to 100", "table, online, paper", "file".
+std::string values_of(const SceneKey& key) {
+  const bool range_alone =
+      key.type == "number" || key.type == "choice" || key.type == "profile" || key.type == "vehicle";
+  const bool type_alone = key.type == "text" || key.type == "file" || key.type == "list of texts";
+  const std::string unit = key.unit.empty() || key.unit == "1" ? "" : " " + key.unit;
+  return (range_alone ? "" : key.type) + (range_alone || type_alone ? "" : " ") + (type_alone ? "" : key.range) + unit;
+}
+
+/// Conditions of more than two thirds of the keys: the heading of the table names them once.
+Cells shared_conditions(const std::vector<SceneKey>& keys) {
+  Cells shared;
+  for (const SceneKey& key : keys) {
+    for (const std::string& condition : key.applies) {
+      const auto holds = [&](const SceneKey& k) { return std::ranges::count(k.applies, condition) > 0; };
+      const bool known = std::ranges::count(shared, condition) > 0;
+      if (!known && 3 * std::ranges::count_if(keys, holds) > 2 * std::ssize(keys)) shared.push_back(condition);
+    }
+  }
+  return shared;
+}
+
+/// Conditions of a key in brackets: those beyond the shared ones, or all of its own where it lacks a shared one.
+std::string conditions_of(const SceneKey& key, const Cells& shared) {
+  Cells further = key.applies;
+  for (const std::string& condition : shared) {
+    if (std::erase(further, condition) == 0)
+      return key.applies.empty() ? " (always)" : " (only with " + joined(key.applies) + ")";
+  }
+  return further.empty() ? "" : " (with " + joined(further) + ")";
+}
+
 std::string keys_of(const std::string& section) {
+  std::vector<SceneKey> keys = scene_keys();
+  std::erase_if(keys, [&](const SceneKey& key) { return section_of(key) != section; });
+  const Cells shared = shared_conditions(keys);
   std::vector<Cells> rows;
-  bool conditions = false;
-  for (const SceneKey& key : scene_keys()) {
-    if (section_of(key) != section) continue;
-    rows.push_back(
-        {"`" + key.path + "`", key.type, key.unit, key.range, key.default_value, key.meaning, joined(key.applies)});
-    conditions = conditions || !key.applies.empty();
+  for (const SceneKey& key : keys) {
+    rows.push_back({"`" + key.path + "`", values_of(key), key.default_value, key.meaning + conditions_of(key, shared)});
   }
-  Cells heading{"key", "type", "unit", "range", "default", "meaning", "applies with"};
-  if (!conditions) {
-    heading.pop_back();
-    for (Cells& cells : rows) cells.pop_back();
-  }
-  return table(heading, rows);
+  const std::string condition = shared.empty() ? "" : " (with " + joined(shared) + ")";
+  return table({"key", "values", "default", "meaning" + condition}, rows);
 }
 
 std::string warnings() {
