@@ -1,5 +1,6 @@
 // The tables of keys in docs/guide/scene.md are those of the reader's own table.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,13 +50,21 @@ std::string heading_of(const std::string& section) {
   return list ? "### `[[" + section + "]]`" : "### `[" + section + "]`";
 }
 
-/// What a key accepts: "0.001 to 200 m/s", "integer 1 to 100", "table, online, paper", "file".
-std::string values_of(const SceneKey& key) {
-  const bool range_alone =
-      key.type == "number" || key.type == "choice" || key.type == "profile" || key.type == "vehicle";
-  const bool type_alone = key.type == "text" || key.type == "file" || key.type == "list of texts";
+/// What a number accepts, with its unit: "0.001…200 m/s", "±0.02 m".
+std::string interval_of(const SceneKey& key) {
+  const KeyRange& bounds = *key.bounds;
   const std::string unit = key.unit.empty() || key.unit == "1" ? "" : " " + key.unit;
-  return (range_alone ? "" : key.type) + (range_alone || type_alone ? "" : " ") + (type_alone ? "" : key.range) + unit;
+  const std::string sign = bounds.either_sign || bounds.low == -bounds.high ? "±" : "";
+  const std::string low = bounds.low == -bounds.high ? "" : fmt::format("{:g}…", bounds.low);
+  return fmt::format("{}{}{}{:g}{}", bounds.zero ? "0 or " : "", sign, low, bounds.high, unit);
+}
+
+/// What a key accepts: "integer 1…100", "table, online, paper", "file", "point -1e+09 to 1e+09".
+std::string values_of(const SceneKey& key) {
+  if (key.bounds) return (key.type == "number" ? "" : key.type + " ") + interval_of(key);
+  if (key.type == "point" || key.type == "numbers")
+    return key.type + " " + key.range + (key.unit.empty() ? "" : " " + key.unit);
+  return key.type == "choice" || key.type == "profile" || key.type == "vehicle" ? key.range : key.type;
 }
 
 /// Conditions of more than two thirds of the keys: the heading of the table names them once.
@@ -87,7 +96,15 @@ std::string keys_of(const std::string& section) {
   const Cells shared = shared_conditions(keys);
   std::vector<Cells> rows;
   for (const SceneKey& key : keys) {
-    rows.push_back({"`" + key.path + "`", values_of(key), key.default_value, key.meaning + conditions_of(key, shared)});
+    const Cells cells{values_of(key), key.default_value, key.meaning + conditions_of(key, shared)};
+    const auto alike = [&](const Cells& row) { return std::equal(cells.begin(), cells.end(), row.begin() + 1); };
+    const auto found = std::ranges::find_if(rows, alike);  // keys that differ by their names alone share a row
+    const std::string name = "`" + key.path + "`";
+    if (found != rows.end()) {
+      found->front() += ", " + name;
+    } else {
+      rows.push_back({name, cells[0], cells[1], cells[2]});
+    }
   }
   const std::string condition = shared.empty() ? "" : " (with " + joined(shared) + ")";
   return table({"key", "values", "default", "meaning" + condition}, rows);
