@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "railtab/runtime/base/pack.hpp"
-
 namespace railtab {
 
 /// The loaded contact of a pair: the half-space solution over all poses of a wheelset against its right rail head.
@@ -95,8 +93,9 @@ struct LoadedLookup {
 
 /// Derivatives with respect to the pose.
 struct LoadedSlopes {
-  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();          ///< of the forces
-  std::array<LoadedPartOf<Pack>, LoadedLookup::capacity> part;  ///< of the parts, as many as these
+  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();  ///< of the forces
+  /// Of the parts, as many as these, along y, z, roll, yaw.
+  std::array<LoadedPartOf<std::array<double, 4>>, LoadedLookup::capacity> part;
 };
 
 /// Look-up: const, allocation-free, thread-safe. Energy and forces are continuous; stiffness and the parts' derivatives

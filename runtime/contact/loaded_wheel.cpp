@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 #include "railtab/runtime/base/dual.hpp"
@@ -23,9 +24,9 @@ constexpr std::size_t pose_directions = 4;
 
 // Of a quantity of the table with its slope along the pose, which are the first directions of dual numbers.
 template <class T>
-T quantity(double value, const Pack& slope) {
+T quantity(double value, const Pose& slope) {
   T result(value);
-  if constexpr (!std::is_same_v<T, double>) result.slope[0] = slope;
+  if constexpr (!std::is_same_v<T, double>) std::memcpy(&result.slope[0], slope.data(), sizeof slope);
   return result;
 }
 
@@ -101,20 +102,18 @@ class LoadedContactForce {
     for (std::size_t k = 0; k < pose_directions; ++k) pose_[k] = coordinate<T>(pose[k], k);
     centre_y_ = coordinate<T>(wheel.centre_y, 0);
     centre_z_ = coordinate<T>(wheel.centre_z, 1);
-    const Pack of_cos_roll{0.0, 0.0, -wheel.sin_roll, 0.0}, of_sin_roll{0.0, 0.0, wheel.cos_roll, 0.0};
+    const Pose of_cos_roll{0.0, 0.0, -wheel.sin_roll, 0.0}, of_sin_roll{0.0, 0.0, wheel.cos_roll, 0.0};
     cos_roll_ = quantity<T>(wheel.cos_roll, of_cos_roll);
     sin_roll_ = quantity<T>(wheel.sin_roll, of_sin_roll);
-    const Pack of_cos_yaw{0.0, 0.0, 0.0, -wheel.sin_yaw}, of_sin_yaw{0.0, 0.0, 0.0, wheel.cos_yaw};
+    const Pose of_cos_yaw{0.0, 0.0, 0.0, -wheel.sin_yaw}, of_sin_yaw{0.0, 0.0, 0.0, wheel.cos_yaw};
     cos_yaw_ = quantity<T>(wheel.cos_yaw, of_cos_yaw);
     sin_yaw_ = quantity<T>(wheel.sin_yaw, of_sin_yaw);
-    Pack slope{};
+    Pose slope{};
     for (Eigen::Index j = 0; j < 4; ++j) {
-      if constexpr (derivatives) {
-        for (Eigen::Index i = 0; i < 4; ++i) slope[i] = slopes_->stiffness(i, j);
-      }
+      if constexpr (derivatives) std::memcpy(slope.data(), slopes_->stiffness.col(j).data(), sizeof slope);
       force_[static_cast<std::size_t>(j)] = quantity<T>(lookup.force[j], slope);
     }
-    for (Eigen::Index i = 0; i < 4; ++i) slope[i] = lookup.force[i];
+    std::memcpy(slope.data(), lookup.force.data(), sizeof slope);
     energy_ = quantity<T>(lookup.energy, slope);
     if (lookup.energy > 0.0) add_parts();
   }
