@@ -25,9 +25,10 @@ RunResults made_run() {
   results.header.body_names = {"coach-1/car-body"};
   results.header.node_names = {"deck-midspan-1", "rail-left-midspan-1"};
   results.header.node_x = {12.5, 12.5};
-  for (int i = 0; i <= 40; ++i) {  // a flank of 70°
+  for (int i = -45; i <= 40; ++i) {  // the flange's back at 80°, its tip at y = −40 mm, a flank of 70°, a flat tread
     results.header.wheel_y.push_back(1e-3 * i);
-    results.header.wheel_z.push_back(1e-3 * (i < 20 ? 0.0 : (i - 20) * std::tan(70.0 * pi / 180.0)));
+    const double flank = 20.0 * std::tan(70.0 * pi / 180.0), back = (i + 40) * std::tan(80.0 * pi / 180.0);
+    results.header.wheel_z.push_back(1e-3 * (i < -40 ? flank + back : i < -20 ? -(i + 20) * flank / 20.0 : 0.0));
   }
   for (int k = 0; k <= 8000; ++k) {
     const double t = step * k;

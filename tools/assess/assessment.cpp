@@ -22,9 +22,9 @@ std::string verdict_in_words(const Assessment& assessment) {
   const int failed = assessment.failures(false), verified = assessment.failures(true),
             passed = assessment.count(Outcome::pass), open = assessment.count(Outcome::not_judged);
   const auto clauses = [](int n) { return fmt::format("{} limit{}", n, n == 1 ? "" : "s"); };
-  const std::string rest = fmt::format("{} met, {} not judged", clauses(passed), open);
+  const std::string rest = fmt::format("{} met, {} not judged", passed, open);
   if (failed == 0 && passed == 0) return fmt::format("NOTHING JUDGED: {} not judged", open);
-  if (failed == 0) return fmt::format("PASSES as far as it was judged: {}", rest);
+  if (failed == 0) return fmt::format("PASSES as far as it was judged: {} met, {} not judged", clauses(passed), open);
   const std::string how = verified == failed ? "" : fmt::format(" ({} of them verified)", verified);
   return fmt::format("FAILS: {} not met{}, {}", clauses(failed), how, rest);
 }
@@ -41,6 +41,30 @@ std::string place_in_words(const MeasuredValue& value) {
   add(value.where);
   if (value.time) add(fmt::format("t = {:.3f} s", *value.time));
   return text;
+}
+
+std::string onset_in_words(const Assessment& assessment, const Verdict& verdict) {
+  if (verdict.outcome != Outcome::fail || verdict.stage != AssessmentStage::moving_load) return {};
+  const auto quantity = verdict.clause->measure == "deck_acceleration"   ? &PassagePeaks::acceleration
+                        : verdict.clause->measure == "deck_displacement" ? &PassagePeaks::displacement
+                                                                         : &PassagePeaks::end_rotation;
+  const PassagePeaks* first = nullptr;
+  std::string train;
+  for (const DeckAssessment& deck : assessment.decks) {
+    for (const TrainResponse& response : deck.responses) {
+      for (const PassagePeaks& p : response.passages) {
+        if (!((p.*quantity).value > verdict.limit) || (first && p.speed >= first->speed)) continue;
+        first = &p;
+        train = deck.trains[response.train].name;
+      }
+    }
+  }
+  return first ? fmt::format("exceeded from {:.0f} km/h on ({})", 3.6 * first->speed, train) : "";
+}
+
+bool needs_no_dynamic_analysis(const Assessment& assessment) {
+  return std::all_of(assessment.decks.begin(), assessment.decks.end(),
+                     [](const DeckAssessment& d) { return d.need.need == DynamicNeed::not_required; });
 }
 
 std::string amount_in_words(double value, std::string_view unit) {

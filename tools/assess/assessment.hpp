@@ -65,6 +65,11 @@ struct Assessment {
 [[nodiscard]] std::string verdict_in_words(const Assessment& assessment);
 /// "hslm-a8 at 200 km/h, span 1, x = 12.5 m, t = 3.2 s"
 [[nodiscard]] std::string place_in_words(const MeasuredValue& value);
+/// Where a limit that moving loads exceed is exceeded first: "exceeded from 158.2 km/h on (hslm-a9)"; empty for other
+/// verdicts.
+[[nodiscard]] std::string onset_in_words(const Assessment& assessment, const Verdict& verdict);
+/// Whether EN 1991-2 asks for a dynamic analysis of no deck.
+[[nodiscard]] bool needs_no_dynamic_analysis(const Assessment& assessment);
 /// A measure's value or limit with its unit as pages show it: "3.50 m/s²".
 [[nodiscard]] std::string amount_in_words(double value, std::string_view unit);
 /// Verdicts in the order of pages: failures, consequences, passes by how near they are, those not judged.

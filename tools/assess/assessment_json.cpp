@@ -19,7 +19,7 @@ Json value_json(const MeasuredValue& value) {
   return json;
 }
 
-Json verdict_json(const Verdict& verdict) {
+Json verdict_json(const Assessment& assessment, const Verdict& verdict) {
   const Clause& clause = *verdict.clause;
   Json json{{"id", clause.id},
             {"outcome", outcome_name(verdict.outcome)},
@@ -40,6 +40,8 @@ Json verdict_json(const Verdict& verdict) {
     json["utilisation"] = verdict.utilisation();
     json["value"] = verdict.at->value;
     json["at"] = value_json(*verdict.at);
+    const std::string onset = onset_in_words(assessment, verdict);
+    if (!onset.empty()) json["onset"] = onset;
   }
   return json;
 }
@@ -104,7 +106,7 @@ Json assessment_json(const Assessment& assessment) {
   }
   json["stages"] = stages;
   Json verdicts = Json::array(), decks = Json::array(), runs = Json::array(), measures = Json::array();
-  for (const Verdict& verdict : assessment.verdicts) verdicts.push_back(verdict_json(verdict));
+  for (const Verdict& verdict : assessment.verdicts) verdicts.push_back(verdict_json(assessment, verdict));
   for (const DeckAssessment& deck : assessment.decks) decks.push_back(deck_json(deck));
   for (const RunAssessment& run : assessment.runs) runs.push_back(run_json(run));
   for (const MeasuredValue& value : assessment.values) measures.push_back(value_json(value));

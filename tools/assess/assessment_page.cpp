@@ -20,7 +20,7 @@ constexpr const char* style = R"(<style>
 .verdict.bad{border-color:#c8442f;background:#fdf3f1}.verdict.good{border-color:#2e7d52;background:#f1f8f3}
 .verdict p{margin:4px 0 0;font-size:14px;font-weight:400}
 .limits{width:100%}.limits td,.limits th{padding:6px 12px 6px 0;border-bottom:1px solid var(--line);font-size:13px}
-.limits th{color:var(--soft)}.limits td.n{white-space:nowrap}.limits small{color:var(--soft)}
+.limits th{color:var(--soft)}.limits th.n{text-align:right}.limits td.n{white-space:nowrap}.limits small{color:var(--soft)}
 .mark{display:inline-block;min-width:76px;border-radius:4px;padding:1px 8px;text-align:center;color:#fff;background:#8795a6}
 .mark.fail{background:#c8442f}.mark.pass{background:#2e7d52}.mark.note{background:#b57a00}
 .bar{display:inline-block;width:64px;height:8px;background:#e9edf1;border-radius:2px;overflow:hidden;margin-left:6px}
@@ -52,7 +52,7 @@ std::string clause_cell(const Clause& clause) {
   return cell;
 }
 
-std::string verdict_row(const Verdict& v) {
+std::string verdict_row(const Assessment& assessment, const Verdict& v) {
   const Clause& clause = *v.clause;
   std::string row = fmt::format("<tr><td><span class=\"mark {}\">{}</span></td><td>{}</td>", mark_class(v),
                                 mark_text(v), clause_cell(clause));
@@ -64,6 +64,8 @@ std::string verdict_row(const Verdict& v) {
       amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤", amount_in_words(v.limit, clause.unit),
       share, mark_class(v), std::min(100.0, share), escaped(place_in_words(*v.at)), stage_name(v.at->stage),
       v.at->run.empty() ? "" : ", run " + escaped(v.at->run));
+  const std::string onset = onset_in_words(assessment, v);
+  if (!onset.empty()) row += fmt::format("<tr><td></td><td colspan=\"5\">→ {}</td></tr>\n", escaped(onset));
   if (v.outcome == Outcome::fail && !clause.consequence.empty()) {
     row += fmt::format("<tr><td></td><td colspan=\"5\">→ {}</td></tr>\n", escaped(clause.consequence));
   }
@@ -76,7 +78,7 @@ std::string verdict_row(const Verdict& v) {
 std::string verdict_table(const Assessment& assessment, bool judged) {
   std::string rows;
   for (const Verdict* verdict : ordered(assessment.verdicts)) {
-    if (verdict->at.has_value() == judged) rows += verdict_row(*verdict);
+    if (verdict->at.has_value() == judged) rows += verdict_row(assessment, *verdict);
   }
   if (rows.empty()) return "";
   return "<div class=\"scroll\"><table class=\"limits\"><tr><th>verdict</th><th>limit of</th><th class=\"n\">"
@@ -94,6 +96,13 @@ std::string banner(const Assessment& assessment) {
                         amount_in_words(v->at->value, v->clause->unit), v->clause->limit.lower ? "at least" : "at most",
                         amount_in_words(v->limit, v->clause->unit), v->clause->limit.lower ? "required" : "permitted",
                         escaped(place_in_words(*v->at)));
+    const std::string onset = onset_in_words(assessment, *v);
+    if (!onset.empty()) html += fmt::format("<p>It is {}.</p>", escaped(onset));
+  }
+  if (bad && needs_no_dynamic_analysis(assessment)) {
+    html +=
+        "<p>By the flow chart of EN 1991-2, 6.4.4, no dynamic analysis is required here: what fails under moving loads "
+        "is resonance near or above the line speed.</p>";
   }
   return html + "</div>";
 }
@@ -310,10 +319,10 @@ std::string assessment_page(const Assessment& assessment) {
                           : "No moving loads");
   body += banner(assessment);
   body += report::html_section("Limits", verdict_table(assessment, true));
+  body += report::html_section("Decks", deck_table(assessment));
   body += report::html_section("Resonance of moving loads", resonance(assessment));
   body += report::html_section("Runs with wheel–rail contact", run_table(assessment) + run_charts(assessment));
   body += report::html_section("Not judged", verdict_table(assessment, false));
-  body += report::html_section("Decks", deck_table(assessment));
   body += report::html_section("All measures", measure_table(assessment));
   body += report::html_section("What was computed", stage_list(assessment));
   body += report::html_section("More", others(assessment));

@@ -13,7 +13,7 @@ std::string_view mark(const Verdict& verdict) {
   return verdict.outcome == Outcome::pass ? "pass" : "  - ";
 }
 
-void verdict_line(const Verdict& verdict, std::string& text) {
+void verdict_line(const Assessment& assessment, const Verdict& verdict, std::string& text) {
   const Clause& clause = *verdict.clause;
   const auto out = std::back_inserter(text);
   const char* standing = clause.verified ? "" : ", unverified";
@@ -26,6 +26,8 @@ void verdict_line(const Verdict& verdict, std::string& text) {
                  amount_in_words(verdict.limit, clause.unit));
   fmt::format_to(out, "       {}; {} {}{} [{}]\n", place_in_words(*verdict.at), clause.edition, clause.clause, standing,
                  stage_name(verdict.at->stage));
+  const std::string onset = onset_in_words(assessment, verdict);
+  if (!onset.empty()) fmt::format_to(out, "       {}\n", onset);
   if (verdict.outcome == Outcome::fail && !clause.consequence.empty()) {
     fmt::format_to(out, "       {}\n", clause.consequence);
   }
@@ -43,11 +45,17 @@ std::string assessment_text(const Assessment& assessment) {
   }
   text += "\n";
   bool open = false;
+  int elsewhere = 0;
   for (const Verdict* verdict : ordered(assessment.verdicts)) {
+    if (!verdict->at && verdict->reason.starts_with("needs stage")) {
+      ++elsewhere;
+      continue;
+    }
     if (!verdict->at && !open) text += "Not judged:\n";
     open = open || !verdict->at;
-    verdict_line(*verdict, text);
+    verdict_line(assessment, *verdict, text);
   }
+  if (elsewhere > 0) fmt::format_to(out, "{} limits need a stage that was not computed.\n", elsewhere);
   text += "\n";
   for (const StageReport& stage : assessment.stages) {
     fmt::format_to(out, "Stage {}: {}\n", stage_name(stage.stage),

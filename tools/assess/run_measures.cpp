@@ -19,22 +19,20 @@ namespace {
 using Series = std::vector<double>;
 constexpr int lateral = 1, vertical = 2;  // of MotionRecord's six
 
-/// The steepest flank of a wheel profile against the horizontal [rad], over chords of a millimetre at least.
+/// The steepest place of a wheel profile between the flange tip and the field side, against the horizontal [rad], over
+/// chords of a millimetre at least.
 double flange_angle(const ResultHeader& header) {
   constexpr double chord = 1e-3;  // [m]
+  const std::vector<double>&y = header.wheel_y, &z = header.wheel_z;
+  const auto tip = std::max_element(z.begin(), z.end()) - z.begin();  // z down: the lowest point
+  const double y_tip = y[static_cast<std::size_t>(tip)];
   double steepest = 0.0;
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < header.wheel_y.size(); ++i) {
-    const auto length = [&] {
-      return std::hypot(header.wheel_y[i] - header.wheel_y[first], header.wheel_z[i] - header.wheel_z[first]);
-    };
-    while (first + 1 < i && std::hypot(header.wheel_y[i] - header.wheel_y[first + 1],
-                                       header.wheel_z[i] - header.wheel_z[first + 1]) >= chord) {
-      ++first;
-    }
-    if (length() < chord) continue;
-    steepest = std::max(steepest, std::atan2(std::abs(header.wheel_z[i] - header.wheel_z[first]),
-                                             std::abs(header.wheel_y[i] - header.wheel_y[first])));
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (y[i] < y_tip) continue;
+    std::size_t j = i + 1;
+    while (j < y.size() && std::hypot(y[j] - y[i], z[j] - z[i]) < chord) ++j;
+    if (j == y.size() || y[j] < y_tip) continue;
+    steepest = std::max(steepest, std::atan2(std::abs(z[j] - z[i]), std::abs(y[j] - y[i])));
   }
   return steepest;
 }

@@ -153,9 +153,8 @@ void moving_loads(const std::optional<AxleTrain>& own, const Request& request, S
   report.notes.emplace_back(
       "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
       "accelerations by the modes up to the cut-off frequency of each deck.");
-  const bool needed = std::any_of(assessment.decks.begin(), assessment.decks.end(),
-                                  [](const auto& d) { return d.need.need != DynamicNeed::not_required; });
-  if (!needed) report.notes.emplace_back("EN 1991-2 does not ask for it here (stage check).");
+  if (assess::needs_no_dynamic_analysis(assessment))
+    report.notes.emplace_back("EN 1991-2 does not ask for it here (stage check).");
 }
 
 /// Speeds of the runs: those asked for, or the line's and the critical one below it.

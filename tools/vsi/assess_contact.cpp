@@ -57,13 +57,14 @@ void lengthen_track(const AxleTrain& own, ContactPlan& plan) {
   }
 }
 
-void record_all(SceneParameters& scene) {
+/// What is judged, a millisecond apart at most.
+void record_what_is_judged(SceneParameters& scene) {
   constexpr double longest = 1e-3;  // [s] between records
   const double steps = std::floor(longest / scene.integration.time_step * (1.0 + 1e-9));
   scene.output.every = std::max(1, static_cast<int>(std::min(1e6, steps)));
   scene.output.wheels = true;
-  scene.output.bodies = {"*"};
-  scene.output.nodes = {"*"};
+  scene.output.bodies = {scene.train.vehicle == imported_vehicle ? "*" : "*car-body"};
+  scene.output.nodes = {scene.track_kind == TrackKind::flexible ? "deck*" : "*"};
 }
 
 /// Values of a run for the whole assessment.
@@ -131,7 +132,7 @@ ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
   ContactPlan plan{scene, {}, {}, {}};
   fade_in(plan);
   lengthen_track(own, plan);
-  record_all(plan.scene);
+  record_what_is_judged(plan.scene);
   const SceneParameters& made = plan.scene;
   plan.window.begin = made.assessment.begin.value_or(made.train.start + (made.spectrum ? made.spectrum->fade_in : 0.0));
   plan.window.friction = made.contact.friction;

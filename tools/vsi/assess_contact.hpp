@@ -11,7 +11,7 @@ namespace railtab::vsi {
 
 /// Runs with contact of an assessment.
 struct ContactPlan {
-  SceneParameters scene;  ///< that of the runs: with room for the fade-in, all records, the whole crossing
+  SceneParameters scene;  ///< that of the runs: with room for the fade-in, what is judged recorded, the whole crossing
   std::vector<SweepRun> runs;
   assess::RunWindow window;
   std::vector<std::string> notes;  ///< what was changed of the user's scene, sentence by sentence

@@ -19,7 +19,11 @@ namespace {
 using assess::Assessment;
 using assess::DeckAssessment;
 
-constexpr double slowest = 40.0;  // [m/s] from which EN 1991-2 asks for moving loads
+/// EN 1991-2 asks for moving loads from 40 m/s on: lines that are hardly faster begin at half their speed.
+double lowest_speed(double highest) {
+  constexpr double standard = 40.0, hardly = 1.25;
+  return highest > hardly * standard ? standard : 0.5 * highest;
+}
 
 const BridgeParameters* span_at(const SceneParameters& scene, double start) {
   double at = 0.0;
@@ -125,7 +129,7 @@ AxleTrain axle_train_of(const SceneParameters& scene) {
 void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const std::function<void(double)>& progress,
                       Assessment& assessment) {
   assessment.high_speed = 1.2 * assessment.facts.line_speed;
-  assessment.low_speed = std::min(slowest, 0.5 * assessment.high_speed);
+  assessment.low_speed = lowest_speed(assessment.high_speed);
   const SpeedRange search{assessment.low_speed, assessment.high_speed, {}};
   const SpeedRange grid{search.low, search.high, even_speeds(search.low, search.high)};
   double done = 0.0;
@@ -152,7 +156,7 @@ void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const st
 }
 
 double governing_speed(const AxleTrain& own, const std::vector<DeckAssessment>& decks, double highest) {
-  const double lowest = std::min(slowest, 0.5 * highest);
+  const double lowest = lowest_speed(highest);
   double speed = highest, largest = -1.0;
   for (const DeckAssessment& deck : decks) {
     for (const PassagePeaks& p : search_critical_speeds(deck.deck, own, lowest, highest)) {
