@@ -156,7 +156,7 @@ class RunJudge {
       return miss(guiding, reason);
     }
     if (!guided) miss(guiding, "the scene's wheels have no lateral forces (contact.normal = \"rigid\")");
-    nadal_ = nadal_limit(flange_angle(header_), window_.friction);
+    if (guided) nadal_ = nadal_limit(flange_angle(header_), window_.friction);
     for (std::size_t w = 0; w + 1 < header_.static_wheel_load.size(); w += 2) wheelset(w, guided);
     if (best_.empty()) {
       const std::string reason = fmt::format("no wheel comes to x = {:.4g} m, where judging begins", window_.begin);
