@@ -17,7 +17,7 @@ constexpr const char* usage =
     "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
     "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
-    "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n"
+    "  report  RESULTS.h5... -o REPORT.html                   results as one page; several: compared\n"
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
     "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
     "contact\n"
