@@ -185,6 +185,14 @@ const railtab = (function () {
     function take(v) { if (v !== null && isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); } }
     rows.forEach(function (row) { for (let i = 1; i < row.length; ++i) take(row[i]); });
     this.data.limits.forEach(function (limit) { take(limit.value); });
+    if (this.kind() === this.over) {
+      const range = window_of(this.over);
+      this.bands.forEach(function (band) {
+        for (let i = 0; i < band.x.length; ++i) {
+          if (band.x[i] >= range[0] && band.x[i] <= range[1]) { take(band.low[i]); take(band.high[i]); }
+        }
+      });
+    }
     if (!(high >= low)) return [0, 1];
     const pad = high > low ? 0.05 * (high - low) : Math.max(1e-9, 0.05 * Math.abs(high));
     return [low - pad, high + pad];
@@ -193,9 +201,10 @@ const railtab = (function () {
     const chart = this, lines = this.chosen(), range = window_of(this.kind());
     const columns = Math.max(200, Math.min(900, Math.floor(this.place.clientWidth || 800)));
     let rows = this.rows(range[0], range[1], columns);
-    const none = rows.length === 0;
-    if (none) rows = [range, [range[1], 0]].map(function (r, i) { return [range[i]].concat(lines.map(function () { return null; })); });
-    if (lines.length === 0) rows = [[range[0], null], [range[1], null]];
+    if (rows.length === 0) {
+      const nothing = new Array(Math.max(1, lines.length)).fill(null);
+      rows = range.map(function (x) { return [x].concat(nothing); });
+    }
     const series = {};
     lines.forEach(function (line, i) {
       if (DASHES[line.style % 8]) series['s' + i] = {strokePattern: DASHES[line.style % 8]};
@@ -223,7 +232,7 @@ const railtab = (function () {
         context.fillRect(a, area.y, 1, area.h); context.fillRect(b - 1, area.y, 1, area.h);
         context.fillStyle = colour('--soft');
         if (mark.label !== before && b > area.x && a < area.x + area.w) {
-          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + area.h - 5);
+          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + 12);
         }
         before = mark.label;
       });
@@ -465,7 +474,10 @@ const railtab = (function () {
         if (entry.isIntersecting) { visible.add(chart); chart.open(); } else visible.delete(chart);
       });
     }, {rootMargin: '300px'});
-    charts.forEach(function (chart) { observer.observe(chart.figure); });
+    charts.forEach(function (chart) {
+      observer.observe(chart.figure);
+      if (chart.figure.getBoundingClientRect().top < window.innerHeight + 300) { visible.add(chart); chart.open(); }
+    });
   } else {
     charts.forEach(function (chart) { chart.open(); });
   }

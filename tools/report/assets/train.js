@@ -19,7 +19,8 @@
     for (let i = 0; i < values.length; ++i) if (Math.abs(values[i]) > most) most = Math.abs(values[i]);
     return most;
   }
-  const most_deck = largest(array.deck_z), most_body = largest(array.body_z);
+  const most_deck = largest(array.deck_z), half_body = 12;
+  const most_body = Math.max(largest(array.body_z), half_body * largest(array.body_pitch));  // at its ends
   function wheel(name, w) { return array[name][frame * wheels + w]; }
   function kN(v) { return shown(1e-3 * v) + '\u00a0kN'; }
   function signed(v) { return isFinite(v) ? v : 0; }
@@ -111,7 +112,10 @@
   }
   function arrow(c, x, y, dx, dy, name) {
     const length = Math.hypot(dx, dy);
-    if (length < 2) return;
+    if (length < 2) {
+      if (name) c.fillText(name, x + 8, y - 6);
+      return;
+    }
     const ux = dx / length, uy = dy / length, head = Math.min(9, length);
     c.beginPath(); c.moveTo(x, y); c.lineTo(x + dx, y + dy); c.stroke();
     c.beginPath(); c.moveTo(x + dx, y + dy);
