@@ -150,6 +150,7 @@ struct KeyRow {
 [[nodiscard]] std::vector<KeyRow> irregularity_keys();  // and [span_deviation]
 [[nodiscard]] std::vector<KeyRow> load_keys();          // [[load]] and [[ground_motion]]
 [[nodiscard]] std::vector<KeyRow> integration_keys();   // and [output]
+[[nodiscard]] std::vector<KeyRow> assessment_keys();
 
 /// All, in the order of the guide.
 [[nodiscard]] const std::vector<KeyRow>& all_keys();

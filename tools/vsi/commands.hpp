@@ -13,6 +13,7 @@ int contact_command(const Arguments& arguments);
 int creep_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
+int assess_command(const Arguments& arguments);
 int moving_load_command(const Arguments& arguments);
 int report_command(const Arguments& arguments);
 int structure_command(const Arguments& arguments);

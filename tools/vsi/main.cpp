@@ -24,6 +24,7 @@ constexpr const char* usage =
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
     "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
     "contact\n"
+    "  assess  SCENE.toml [-o DIR]                            does its bridge pass? limits of the standards, one page\n"
     "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
     "library\n";
 
@@ -37,6 +38,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "sweep") return sweep_command(rest);
   if (name == "report") return report_command(rest);
   if (name == "structure") return structure_command(rest);
+  if (name == "assess") return assess_command(rest);
   if (name == "moving-load") return moving_load_command(rest);
   if (name == "vehicle") return vehicle_command(rest);
   if (name == "check") return check_command(rest);

@@ -203,7 +203,10 @@ class RunRecorder {
       collector_->add(step);
     };
     observer.checkpoint = [this](long step, std::span<const double> state) { writer_->checkpoint(state, step); };
-    observer.progress = [this](double fraction) { progress_.show(fraction); };
+    observer.progress = [this](double fraction) {
+      progress_.show(fraction);
+      if (options_.progress) options_.progress(fraction);
+    };
     return observer;
   }
 
