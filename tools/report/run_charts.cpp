@@ -43,6 +43,17 @@ std::vector<double> sliding_means(const RunResults& run, const std::function<dou
   return means;
 }
 
+/// Time between records [s]; none where they are unevenly spaced. The last one may come early.
+std::optional<double> even_spacing(const RunResults& run) {
+  constexpr double allowed = 1e-6;
+  if (run.steps.size() < 3) return std::nullopt;
+  const double first = run.steps[1].time - run.steps[0].time;
+  for (std::size_t i = 2; i + 1 < run.steps.size(); ++i) {
+    if (std::abs(run.steps[i].time - run.steps[i - 1].time - first) > allowed * first) return std::nullopt;
+  }
+  return first;
+}
+
 double largest_amount(const std::vector<double>& values) {
   double most = 0.0;
   for (const double value : values) {
@@ -217,6 +228,32 @@ std::string RunCharts::track_shift() {
     const double limit = 10.0 + kN * lightest / 3.0;
     chart.limits = {{limit, fmt::format("{:.1f} kN – EN 14363: 10 kN + P0/3", limit)}};
   }
+  chart.marks = bridge();
+  return chart_html(chart);
+}
+
+/// Low-passed as the limit is meant; not of records too far apart for it.
+std::string RunCharts::filtered_unloading() {
+  constexpr double cut_off = 20.0;  // Hz
+  Chart chart = chart_over(Over::position, "Wheel unloading ΔQ/Q0, low-passed at 20 Hz",
+                           "Share of the static wheel load that is missing in the force below 20 Hz, filtered without "
+                           "phase; 1 is lift-off.",
+                           "ΔQ/Q0 [–]");
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const ResultHeader& header = runs_[r].header;
+    const std::optional<double> spacing = even_spacing(runs_[r]);
+    if (!spacing || !samples_fast_enough(cut_off, *spacing)) continue;
+    for (std::size_t w = 0; w < header.wheel_x.size(); ++w) {
+      const double load = header.static_wheel_load[w];
+      if (!(load > 0.0)) continue;
+      const std::vector<double> filtered = low_passed(
+          values(r, [&](const StepRecord& step) { return 1.0 - step.wheels[w].Q / load; }), cut_off, *spacing);
+      LiveSeries line{.label = label(r, wheel_name(w)), .offset = header.wheel_x[w], .shown = at_first(r, w)};
+      line.history = store_.add(filtered, detail(line.shown));
+      add_line(chart, r, std::move(line), filtered);
+    }
+  }
+  chart.limits = {{0.6, "0.6 – EN 14363"}};
   chart.marks = bridge();
   return chart_html(chart);
 }
