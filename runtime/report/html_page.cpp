@@ -16,7 +16,8 @@ std::string page(std::string_view kind, std::string_view title, const std::strin
          fmt::format(
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" "
              "content=\"light dark\"><meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-             "style-src 'unsafe-inline'; script-src 'unsafe-inline'\"><title>{} – railtab</title><style>{}</style></head>\n"
+             "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
+             "<title>{} – railtab</title><style>{}</style></head>\n"
              "<body><main>{}</main>{}</body></html>\n",
              escaped(title), styles, main, scripts);
 }

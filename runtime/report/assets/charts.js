@@ -218,7 +218,7 @@ const railtab = (function () {
     };
   };
   Chart.prototype.underlay = function (context, area, graph) {
-    const kind = this.kind(), own = kind === this.over;
+    const kind = this.kind(), own = kind === this.over, limits = this.data.limits.length;
     context.save();
     context.beginPath(); context.rect(area.x, area.y, area.w, area.h); context.clip();
     context.font = '12px system-ui, sans-serif';
@@ -232,7 +232,7 @@ const railtab = (function () {
         context.fillRect(a, area.y, 1, area.h); context.fillRect(b - 1, area.y, 1, area.h);
         context.fillStyle = colour('--soft');
         if (mark.label !== before && b > area.x && a < area.x + area.w) {
-          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + 12);
+          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + (limits ? 30 : 12));
         }
         before = mark.label;
       });
