@@ -69,10 +69,16 @@ struct Part {
 template <class T>
 class LoadedContactForce {
  public:
+  /// @param rail_friction RailHeadMotion::friction
   /// @param slopes of the look-up, where T has derivatives
-  LoadedContactForce(const WheelContactModel& model, const WheelKinematics<T>& wheel, const LoadedLookup& lookup,
-                     const LoadedSlopes* slopes = nullptr)
-      : model_(model), wheel_(wheel), lookup_(lookup), slopes_(slopes), pose_{wheel.y, wheel.z, wheel.roll, wheel.yaw} {
+  LoadedContactForce(const WheelContactModel& model, double rail_friction, const WheelKinematics<T>& wheel,
+                     const LoadedLookup& lookup, const LoadedSlopes* slopes = nullptr)
+      : model_(model),
+        friction_(model.friction * rail_friction),
+        wheel_(wheel),
+        lookup_(lookup),
+        slopes_(slopes),
+        pose_{wheel.y, wheel.z, wheel.roll, wheel.yaw} {
     for (Eigen::Index j = 0; j < 4; ++j) {
       const auto k = static_cast<std::size_t>(j);
       force_[k] = slopes ? moved(lookup.force[j], row(slopes->stiffness.col(j)), pose_) : T(lookup.force[j]);
@@ -137,7 +143,7 @@ class LoadedContactForce {
       if (model_.damping != 0.0) add_damping(elastic, part);
       part_normal_[p] = number(part.normal);
     }
-    if (model_.friction > 0.0) add_groups(parts);
+    if (friction_ > 0.0) add_groups(parts);
   }
 
   void add_damping(const T& elastic, Part<T>& part) {
@@ -213,11 +219,16 @@ class LoadedContactForce {
     using std::sqrt;
     if (!(number(part.normal) > 0.0)) return;
     const Vector<T> slip = wheel_.slip_velocity(part.arm);
-    const double speed = model_.speed / model_.creepage_share;
-    const T bound = model_.friction * part.normal, root = sqrt(part.a * part.b);
+    const double speed = model_.creepage_speed() / model_.friction_law.initial_slope;
+    const T slip_across = part.cos_angle * slip[1] + part.sin_angle * slip[2], root = sqrt(part.a * part.b);
+    T bound = friction_ * part.normal;
+    if (model_.friction_law.falls()) {
+      constexpr double least = 1e-12;  // m²/s²: a root has no slope at zero
+      bound = bound * model_.friction_law.share(sqrt(slip[0] * slip[0] + slip_across * slip_across + T(least)));
+    }
     const T scale = model_.normal.material.shear_modulus() * part.a * part.b / (bound * speed);
     const std::array<T, 3> creepage{
-        slip[0] * scale, (part.cos_angle * slip[1] + part.sin_angle * slip[2]) * scale,
+        slip[0] * scale, slip_across * scale,
         (part.cos_angle * wheel_.rotation[2] - part.sin_angle * wheel_.rotation[1]) * scale * root};
     const T ratio = part.a / part.b;
     const std::array<T, 3> f = creep(model_.creep_law, ratio, creepage);
@@ -243,6 +254,7 @@ class LoadedContactForce {
   }
 
   const WheelContactModel& model_;
+  double friction_;  // without slip
   const WheelKinematics<T>& wheel_;
   const LoadedLookup& lookup_;
   const LoadedSlopes* slopes_;
@@ -305,7 +317,7 @@ LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide si
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
   LoadedWheelForce result;
   const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
-  const LoadedContactForce<double> force(model, wheel, lookup);
+  const LoadedContactForce<double> force(model, rail.friction, wheel, lookup);
   const Vector9 total = in_track(side, force.total());
   result.wheelset = total.head<6>();
   result.rail = total.tail<3>();
@@ -345,7 +357,7 @@ Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const 
                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                           const LoadedLookup& lookup) noexcept {
   const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
-  const LoadedContactForce<double> end(model, wheel, lookup);
+  const LoadedContactForce<double> end(model, rail.friction, wheel, lookup);
   return in_track(side, mean_over_step(model.geometry->pair(), start, end, lookup.table_share));
 }
 
@@ -367,7 +379,7 @@ Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, con
       model.geometry->loaded()->lookup(wheel.y.value, wheel.z.value, wheel.roll.value, wheel.yaw.value, slopes);
   const bool touches = lookup.energy > 0.0;
   if (!touches && !start) return Matrix9::Zero();
-  const LoadedContactForce<Dual> force(model, wheel, lookup, touches ? &slopes : nullptr);
+  const LoadedContactForce<Dual> force(model, rail.friction, wheel, lookup, touches ? &slopes : nullptr);
   Generalised<Dual> total;
   if (start) {
     total = mean_over_step(model.geometry->pair(), *start, force, lookup.table_share);

@@ -16,9 +16,10 @@ ResultHeader model_header(const VsiModel& model) {
       header.static_wheel_load.push_back(static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
     }
   }
-  for (std::size_t v = 0; v < model.vehicle_x.size(); ++v) {
-    for (const VehicleBody& body : model.vehicle.bodies)
-      header.body_names.push_back(fmt::format("coach-{}/{}", v + 1, body.name));
+  for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
+    for (const VehicleBody& body : model.vehicle.bodies) {
+      header.body_names.push_back(fmt::format("coach-{}/{}", v * model.vehicle.coaches + body.coach + 1, body.name));
+    }
   }
   if (model.structure) {
     for (const StructureNode& node : model.structure->nodes) {

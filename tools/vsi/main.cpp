@@ -21,6 +21,7 @@ constexpr const char* usage =
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
     "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
     "contact\n"
+    "  critical-speed SCENE.toml [--amplitude M]              linear critical speed of its vehicle on its profiles\n"
     "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
     "library\n";
 
@@ -35,6 +36,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "report") return report_command(rest);
   if (name == "structure") return structure_command(rest);
   if (name == "moving-load") return moving_load_command(rest);
+  if (name == "critical-speed") return critical_speed_command(rest);
   if (name == "vehicle") return vehicle_command(rest);
   if (name == "--help" || name == "-h") {
     print_formatted("{}", usage);
