@@ -44,7 +44,7 @@ set(railtab_solver_headers
 
 set(railtab_contact_layers base tables profile contact)
 set(railtab_contact_files_layers table_files contact_files)
-set(railtab_solver_layers algebra fe vehicle structure moving_load line vsi start stability results scene solver)
+set(railtab_solver_layers algebra fe measures vehicle assessment structure moving_load line vsi start stability results scene solver)
 foreach(component contact contact_files solver)
   list(TRANSFORM railtab_${component}_layers PREPEND railtab_ OUTPUT_VARIABLE layers)
   install(TARGETS ${layers} EXPORT railtab_${component})
@@ -59,6 +59,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/tables/data/creep_table_nu028.h5 DESTINATION
 # also compiled in; these are for users to read and to start their own from
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/vehicle/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab/vehicles)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/moving_load/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab/trains)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/assessment/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab/clauses)
 
 # Both commands in one folder of the build: build/<preset>/bin
 foreach(command tablegen_command vsi_command)

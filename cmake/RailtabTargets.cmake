@@ -54,3 +54,15 @@ function(railtab_library_source variable function header)
     VERBATIM)
   set(${variable} ${source} PARENT_SCOPE)
 endfunction()
+
+# railtab_text_source(<variable> <function> <header> <file>): a source with the text of the file, as what
+# `std::string_view function()` of the header returns, in the namespace railtab::report; its name in the variable.
+function(railtab_text_source variable function header file)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  add_custom_command(OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -D OUTPUT=${source} -D FUNCTION=${function} -D HEADER=${header} -D FILE=${file}
+            -P ${PROJECT_SOURCE_DIR}/cmake/EmbedText.cmake
+    DEPENDS ${file} ${PROJECT_SOURCE_DIR}/cmake/EmbedText.cmake
+    VERBATIM)
+  set(${variable} ${source} PARENT_SCOPE)
+endfunction()

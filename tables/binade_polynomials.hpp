@@ -31,20 +31,46 @@ class BinadePolynomials {
 
   /// @param x in [2^first, 2^(last+1))
   [[nodiscard]] std::array<double, lanes> operator()(double x) const noexcept {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
-    const std::size_t piece = (bits >> (52 - kBits)) - static_cast<std::uint64_t>((1023 + first) * kPieces);
-    assert(piece < pieces_.size());
-    // Mantissa bits below the piece's, as a number in [1, 2), mapped to [-1, 1).
-    const std::uint64_t rest = (bits << kBits) & 0x000fffffffffffffULL;
-    const double t = 2.0 * std::bit_cast<double>(rest | 0x3ff0000000000000ULL) - 3.0;
+    const Place place(x);
+    assert(place.piece < pieces_.size());
     Lanes sum;
-    evaluate<degree>(pieces_[piece].data(), t, sum);
+    evaluate<degree>(pieces_[place.piece].data(), place.t, sum);
+    std::array<double, lanes> value;
+    std::memcpy(value.data(), &sum, sizeof sum);
+    return value;
+  }
+  /// Derivatives of the polynomials.
+  [[nodiscard]] std::array<double, lanes> slope(double x) const noexcept {
+    const Place place(x);
+    assert(place.piece < pieces_.size());
+    const Coefficients& c = pieces_[place.piece];
+    const auto power = [&](std::size_t k, Lanes& lane) { std::memcpy(&lane, c[k].data(), sizeof lane); };
+    Lanes sum, next;
+    power(degree, sum);
+    sum *= double{degree};
+    for (int k = degree - 1; k > 0; --k) {
+      power(static_cast<std::size_t>(k), next);
+      sum = sum * place.t + static_cast<double>(k) * next;
+    }
+    const std::uint64_t exponent = std::bit_cast<std::uint64_t>(x) >> 52;
+    sum *= 2.0 * kPieces * std::bit_cast<double>((2046 - exponent) << 52);  // dt/dx, by the power of two below x
     std::array<double, lanes> value;
     std::memcpy(value.data(), &sum, sizeof sum);
     return value;
   }
 
  private:
+  struct Place {
+    std::size_t piece;
+    double t;  ///< mantissa bits below the piece's, as a number in [1, 2), mapped to [-1, 1)
+
+    explicit Place(double x) noexcept {
+      const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+      piece = (bits >> (52 - kBits)) - static_cast<std::uint64_t>((1023 + first) * kPieces);
+      const std::uint64_t rest = (bits << kBits) & 0x000fffffffffffffULL;
+      t = 2.0 * std::bit_cast<double>(rest | 0x3ff0000000000000ULL) - 3.0;
+    }
+  };
   static constexpr int kPieces = 1 << kBits;
   static_assert(std::has_single_bit(unsigned{lanes}));
   /// A vector type: arrays would be carried through memory from step to step.

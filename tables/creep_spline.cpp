@@ -117,6 +117,7 @@ void CreepSpline::set_coefficients(const CreepTableData& data) {
   }
 }
 
+template <bool by_ratio>
 void CreepSpline::evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept {
   std::array<std::size_t, 4> cell;
   Pack fraction;
@@ -127,10 +128,11 @@ void CreepSpline::evaluate(const std::array<double, 4>& steps, CreepSplineJet& j
   }
   const float* corner =
       coefficient_.data() + cell[0] * stride_[0] + cell[1] * stride_[1] + cell[2] * stride_[2] + cell[3] * components;
-  creep_spline_jet(corner, stride_, CreepSplineWeights(fraction), jet);
+  creep_spline_jet<by_ratio>(corner, stride_, CreepSplineWeights(fraction), jet);
 }
 
-CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creepage) const noexcept {
+template <bool by_ratio>
+CreepLookup CreepSpline::found(double ratio, const std::array<double, 3>& creepage) const noexcept {
   CreepLookup result;
   if (!(ratio >= ratio_first_ && ratio <= ratio_last_)) return result;
   result.inside = true;
@@ -144,9 +146,9 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
   const double h = 1.0 / (d.rho + radius_unit_);  // t/ρ
   const double t = d.rho * h;
   CreepSplineJet v;
-  evaluate({ratio_steps, inverse_step_[0] * t, inverse_step_[1] * angle(d.across, alpha_spread * d.x),
-            inverse_step_[2] * angle(d.spin, beta_spread * d.y)},
-           v);
+  evaluate<by_ratio>({ratio_steps, inverse_step_[0] * t, inverse_step_[1] * angle(d.across, alpha_spread * d.x),
+                      inverse_step_[2] * angle(d.spin, beta_spread * d.y)},
+                     v);
 
   // F = t V; its gradient over u in the directions of growing ρ, α, β.
   // What a spread axis moves by when the angle itself moves: q/(q² cos² + sin²).
@@ -168,7 +170,28 @@ CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creep
     result.force[i] = force[i];
     result.derivative[i] = {by_x[i], by_y[i], by_spin[i]};
   }
+  if constexpr (by_ratio) {
+    const auto [steps_1, x_1, y_1, spin_1, moment_1, alpha_1, beta_1, unused_1] = ratio_functions_.slope(ratio);
+    // What an angle's place moves by when its spread changes: d arctan(s/(q c))/dq.
+    const auto turned = [](double q, double c, double s) { return -s * c / (q * q * c * c + s * s); };
+    const Pack change =
+        unit * t *
+        (steps_1 * v.ratio + (alpha_1 * inverse_step_[1] * turned(alpha_spread, d.cosine, d.sine)) * v.alpha +
+         (beta_1 * inverse_step_[2] * turned(beta_spread, d.cos_beta, d.sin_beta)) * v.beta);
+    const Pack by_scale = (x_1 / scale_x * creepage[0]) * by_x + (y_1 / scale_y * creepage[1]) * by_y +
+                          (spin_1 / scale_spin * creepage[2]) * by_spin;
+    for (std::size_t i = 0; i < 3; ++i) result.by_ratio[i] = change[i] + by_scale[i];
+    result.by_ratio[2] += moment_1 / moment * force[2];
+  }
   return result;
+}
+
+CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  return found<false>(ratio, creepage);
+}
+
+CreepLookup CreepSpline::jet(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  return found<true>(ratio, creepage);
 }
 
 CreepLookup CreepSpline::beyond(double ratio, const std::array<double, 3>& creepage) const noexcept {
@@ -176,7 +199,7 @@ CreepLookup CreepSpline::beyond(double ratio, const std::array<double, 3>& creep
   const bool finite = std::isfinite(creepage[0]) && std::isfinite(creepage[1]) && std::isfinite(creepage[2]);
   if (finite) {
     const double down = largest_creepage / largest;
-    CreepLookup scaled = lookup(ratio, {down * creepage[0], down * creepage[1], down * creepage[2]});
+    CreepLookup scaled = jet(ratio, {down * creepage[0], down * creepage[1], down * creepage[2]});
     for (auto& row : scaled.derivative) row.fill(0.0);
     return scaled;
   }

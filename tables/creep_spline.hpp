@@ -19,6 +19,8 @@ class CreepSpline {
   explicit CreepSpline(const CreepTableData& data);
 
   [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  /// With derivatives with respect to a/b.
+  [[nodiscard]] CreepLookup jet(double ratio, const std::array<double, 3>& creepage) const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept { return coefficient_.size() * sizeof(float); }
 
  private:
@@ -28,7 +30,10 @@ class CreepSpline {
   [[nodiscard]] double angle(double y, double x) const noexcept;
   void set_coefficients(const CreepTableData& data);
   /// @param steps from the first nodes of the axes
+  template <bool by_ratio>
   void evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept;
+  template <bool by_ratio>
+  [[nodiscard]] CreepLookup found(double ratio, const std::array<double, 3>& creepage) const noexcept;
   /// Creepages that are not finite, or so large that their squares would not be.
   [[nodiscard]] CreepLookup beyond(double ratio, const std::array<double, 3>& creepage) const noexcept;
 

@@ -27,9 +27,10 @@ struct CreepSplineWeights {
   }
 };
 
-/// V = (F_x/t, F_y/t, M_z/(t m)), the fourth lane idle, and its derivatives with respect to t, α, β in their steps.
+/// V = (F_x/t, F_y/t, M_z/(t m)), the fourth lane idle, and its derivatives with respect to t, α, β and, where wanted,
+/// a/b in their steps.
 struct CreepSplineJet {
-  Pack value, t, alpha, beta, alpha_beta;
+  Pack value, t, alpha, beta, alpha_beta, ratio;
 };
 
 namespace creep_spline_detail {
@@ -52,21 +53,27 @@ inline void over_beta(const Pack* places, const Pack* weights, Pack& sum) noexce
 
 /// Contraction of the 4⁴ coefficients around a query. The coefficients are floats, the sums are not: what a query
 /// returns is as smooth as the spline, to rounding of doubles.
+/// @param by_ratio whether the derivative with respect to a/b is wanted
 /// @param corner of place (0, 0, 0, 0); three functions to a place, β fastest. @param stride of a/b, t, α, in floats
-inline void creep_spline_jet(const float* corner, const std::array<std::size_t, 3>& stride, const CreepSplineWeights& w,
-                             CreepSplineJet& jet) noexcept {
+template <bool by_ratio>
+void creep_spline_jet(const float* corner, const std::array<std::size_t, 3>& stride, const CreepSplineWeights& w,
+                      CreepSplineJet& jet) noexcept {
   using creep_spline_detail::over_beta, creep_spline_detail::separate;
-  enum Axis { ratio, t, alpha };
+  constexpr int ratio = 0, t = 1, alpha = 2;
   constexpr int packs = 3;  // four places of β, three functions
-  Pack value[packs]{}, by_t[packs]{}, by_alpha[packs]{};
-  // a/b first: it needs no derivative, and leaves a quarter of the numbers for the rest.
+  Pack value[packs]{}, by_t[packs]{}, by_alpha[packs]{}, along_ratio[packs]{};
+  // a/b first: it leaves a quarter of the numbers for the rest.
   for (std::size_t l = 0; l < 4; ++l) {
-    Pack at_alpha[packs]{}, slope_t[packs]{};
+    Pack at_alpha[packs]{}, slope_t[packs]{}, slope_ratio[packs]{};
     for (std::size_t j = 0; j < 4; ++j) {
       const float* row = corner + j * stride[1] + l * stride[2];
       for (int q = 0; q < packs; ++q, row += 4) {
         Pack c[4];
         for (std::size_t i = 0; i < 4; ++i) widen(row + i * stride[0], c[i]);
+        if constexpr (by_ratio) {
+          slope_ratio[q] += w.value[j][t] * (w.slope[0][ratio] * c[0] + w.slope[1][ratio] * c[1] +
+                                             w.slope[2][ratio] * c[2] + w.slope[3][ratio] * c[3]);
+        }
         c[0] =
             w.value[0][ratio] * c[0] + w.value[1][ratio] * c[1] + w.value[2][ratio] * c[2] + w.value[3][ratio] * c[3];
         at_alpha[q] += w.value[j][t] * c[0];
@@ -77,6 +84,7 @@ inline void creep_spline_jet(const float* corner, const std::array<std::size_t, 
       value[q] += w.value[l][alpha] * at_alpha[q];
       by_alpha[q] += w.slope[l][alpha] * at_alpha[q];
       by_t[q] += w.value[l][alpha] * slope_t[q];
+      if constexpr (by_ratio) along_ratio[q] += w.value[l][alpha] * slope_ratio[q];
     }
   }
   Pack v[4], v_t[4], v_alpha[4];
@@ -88,6 +96,11 @@ inline void creep_spline_jet(const float* corner, const std::array<std::size_t, 
   over_beta(v_alpha, w.value, jet.alpha);
   over_beta(v, w.slope, jet.beta);
   over_beta(v_alpha, w.slope, jet.alpha_beta);
+  if constexpr (by_ratio) {
+    Pack v_ratio[4];
+    separate(along_ratio, v_ratio);
+    over_beta(v_ratio, w.value, jet.ratio);
+  }
 }
 
 }  // namespace railtab

@@ -84,9 +84,11 @@ CreepLookup linear_lookup(const std::vector<GridAxis>& axes, const std::vector<d
     const std::array<double, 4> product{
         weight[0] * weight[1] * weight[2] * weight[3], weight[0] * slope[1] * weight[2] * weight[3],
         weight[0] * weight[1] * slope[2] * weight[3], weight[0] * weight[1] * weight[2] * slope[3]};
+    const double along_ratio = slope[0] * weight[1] * weight[2] * weight[3];
     for (std::size_t c = 0; c < 3; ++c) {
       const double value = sign[c] * values[3 * node + c];
       result.force[c] += product[0] * value;
+      result.by_ratio[c] += along_ratio * value;
       for (std::size_t j = 0; j < 3; ++j) result.derivative[c][j] += sign[j] * product[j + 1] * value;
     }
   }
@@ -137,6 +139,10 @@ CreepTable& CreepTable::operator=(CreepTable&&) noexcept = default;
 
 CreepLookup CreepTable::lookup(double ratio, const std::array<double, 3>& creepage) const noexcept {
   return spline_ ? spline_->lookup(ratio, creepage) : linear_lookup(axes_, data_.values, ratio, creepage);
+}
+
+CreepLookup CreepTable::jet(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  return spline_ ? spline_->jet(ratio, creepage) : linear_lookup(axes_, data_.values, ratio, creepage);
 }
 
 std::size_t CreepTable::bytes() const noexcept {

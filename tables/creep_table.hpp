@@ -46,6 +46,7 @@ struct CreepTableData {
 struct CreepLookup {
   std::array<double, 3> force{};
   std::array<std::array<double, 3>, 3> derivative{};  ///< [i][j] = d force_i / d creepage_j, at constant a/b
+  std::array<double, 3> by_ratio{};                   ///< d force_i / d(a/b), at constant creepage; of jet() only
   bool inside = false;                                ///< false outside the table: force and derivative are zero
 };
 
@@ -64,6 +65,8 @@ class CreepTable {
   /// smooth: inside for a/b within the axis and every finite creepage; C2 except at zero creepage, where it is C1.
   /// paper: inside for a/b and all creepages within the axes; continuous, the derivatives are those of the cell.
   [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  /// lookup() with the derivatives with respect to a/b.
+  [[nodiscard]] CreepLookup jet(double ratio, const std::array<double, 3>& creepage) const noexcept;
 
   [[nodiscard]] const CreepTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].

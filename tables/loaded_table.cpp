@@ -32,14 +32,15 @@ void require_size(const char* name, std::size_t found, std::size_t expected) {
 
 // The polynomials of Lagrange with value 1 at one node, with two derivatives.
 struct Lagrange {
-  std::array<double, LoadedTable::most_nodes> value{}, first{}, second{};
+  std::array<double, LoadedTable::most_nodes> value, first, second;
 
-  Lagrange(const std::vector<double>& node, double x) noexcept {
+  /// @param inverse 1/(node i − node j), j fastest
+  Lagrange(const std::vector<double>& node, const std::vector<double>& inverse, double x) noexcept {
     for (std::size_t i = 0; i < node.size(); ++i) {
       double p = 1.0, dp = 0.0, ddp = 0.0;
       for (std::size_t j = 0; j < node.size(); ++j) {
         if (j == i) continue;
-        const double slope = 1.0 / (node[i] - node[j]), factor = (x - node[j]) * slope;
+        const double slope = inverse[i * node.size() + j], factor = (x - node[j]) * slope;
         ddp = ddp * factor + 2.0 * dp * slope;
         dp = dp * factor + p * slope;
         p *= factor;
@@ -50,6 +51,13 @@ struct Lagrange {
     }
   }
 };
+
+std::vector<double> inverse_distances(const std::vector<double>& node) {
+  std::vector<double> inverse;
+  for (const double a : node)
+    for (const double b : node) inverse.push_back(a == b ? 0.0 : 1.0 / (a - b));
+  return inverse;
+}
 
 constexpr std::size_t buckets = 2048;
 
@@ -62,19 +70,22 @@ enum Direction : std::size_t { here, by_roll, by_yaw, by_roll_roll, by_roll_yaw,
 struct LoadedTable::Weights {
   static constexpr std::size_t most = most_nodes * most_nodes;
   std::size_t columns;
-  std::array<std::array<double, directions>, most> column;
+  std::array<std::array<Pack, 2>, most> column;  ///< over Direction, of which the last two are idle
 
-  Weights(const LoadedTableData& data, double roll, double yaw) noexcept : columns(data.columns()) {
-    const Lagrange r(data.roll, roll), s(data.yaw_squared, yaw * yaw);
+  Weights(const LoadedTable& table, double roll, double yaw) noexcept : columns(table.data_.columns()) {
+    const LoadedTableData& data = table.data_;
+    const Lagrange r(data.roll, table.inverse_roll_, roll), s(data.yaw_squared, table.inverse_yaw_, yaw * yaw);
     std::size_t k = 0;
     for (std::size_t i = 0; i < data.roll.size(); ++i) {
       for (std::size_t j = 0; j < data.yaw_squared.size(); ++j, ++k) {
         const double yaw_1 = 2.0 * yaw * s.first[j], yaw_2 = 2.0 * s.first[j] + 4.0 * yaw * yaw * s.second[j];
-        column[k] = {r.value[i] * s.value[j],  r.first[i] * s.value[j], r.value[i] * yaw_1,
-                     r.second[i] * s.value[j], r.first[i] * yaw_1,      r.value[i] * yaw_2};
+        column[k][0] =
+            Pack{r.value[i] * s.value[j], r.first[i] * s.value[j], r.value[i] * yaw_1, r.second[i] * s.value[j]};
+        column[k][1] = Pack{r.first[i] * yaw_1, r.value[i] * yaw_2, 0.0, 0.0};
       }
     }
   }
+  [[nodiscard]] double value(std::size_t k) const noexcept { return column[k][0][here]; }
 };
 
 /// Where a pose lies.
@@ -116,6 +127,8 @@ LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
     part_size += static_cast<std::size_t>(std::popcount(pressed)) * columns * LoadedPart::quantities;
   }
   require_size("part", data_.part.size(), part_size);
+  inverse_roll_ = inverse_distances(data_.roll);
+  inverse_yaw_ = inverse_distances(data_.yaw_squared);
   level_step_ = data_.largest_level / (data_.levels - 1);
   for (std::size_t i = 0, node = 0; i < buckets; ++i) {
     const double y0 = data_.lateral.front() + (data_.lateral.back() - data_.lateral.front()) * static_cast<double>(i) /
@@ -138,11 +151,15 @@ std::size_t LoadedTable::bytes() const noexcept {
 }
 
 bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) const noexcept {
-  const auto place = [&](std::size_t node) {
-    double at = 0.0;
+  // y and its derivative at a node.
+  const auto place = [&](std::size_t node, double& derivative) {
+    double at = 0.0, slope = 0.0;
+    const double* const shift = &data_.shift[2 * node * weights.columns];
     for (std::size_t k = 0; k < weights.columns; ++k) {
-      at += weights.column[k][here] * data_.shift[2 * (node * weights.columns + k)];
+      at += weights.value(k) * shift[2 * k];
+      slope += weights.value(k) * shift[2 * k + 1];
     }
+    derivative = slope;
     return at;
   };
   const std::size_t last = data_.lateral.size() - 1;
@@ -152,23 +169,21 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
     return static_cast<std::size_t>(bucket_[std::min(static_cast<std::size_t>(at), buckets - 1)]);
   };
   // The displacement changes little along y0: from the node at y to that at y less its displacement, and on from there.
+  double slope = 0.0;
   const std::size_t near = node_of(y);
-  std::size_t low = node_of(y - (place(near) - data_.lateral[near]));
-  while (low > 0 && place(low) > y) --low;
-  while (low + 1 < last && place(low + 1) <= y) ++low;
+  std::size_t low = node_of(y - (place(near, slope) - data_.lateral[near]));
+  std::array<double, 4> corner{};
+  corner[0] = place(low, corner[1]);
+  while (low > 0 && corner[0] > y) corner[0] = place(--low, corner[1]);
+  corner[2] = place(low + 1, corner[3]);
+  while (low + 1 < last && corner[2] <= y) {
+    corner[0] = corner[2];
+    corner[1] = corner[3];
+    corner[2] = place(++low + 1, corner[3]);
+  }
   const std::size_t high = low + 1;
   cell.lateral = low;
   cell.width = data_.lateral[high] - data_.lateral[low];
-  std::array<double, 4> corner{};
-  for (std::size_t k = 0; k < weights.columns; ++k) {
-    const double weight = weights.column[k][here];
-    const double* const at_low = &data_.shift[2 * (low * weights.columns + k)];
-    const double* const at_high = &data_.shift[2 * (high * weights.columns + k)];
-    corner[0] += weight * at_low[0];
-    corner[1] += weight * at_low[1];
-    corner[2] += weight * at_high[0];
-    corner[3] += weight * at_high[1];
-  }
   if (!(y >= corner[0] && y <= corner[2])) return false;
   double t = (y - corner[0]) / (corner[2] - corner[0]);
   for (int iteration = 0; iteration < 20; ++iteration) {  // nearly linear: two or three suffice
@@ -181,9 +196,8 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
   cell.t = std::clamp(t, 0.0, 1.0);
   cell.across = HermiteBasis(cell.t, cell.width);
   for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t k = 0; k < weights.columns; ++k) {
-      cell.touch[i] += weights.column[k][here] * data_.touch[(low + i) * weights.columns + k];
-    }
+    const double* const touch = &data_.touch[(low + i) * weights.columns];
+    for (std::size_t k = 0; k < weights.columns; ++k) cell.touch[i] += weights.value(k) * touch[k];
   }
   return true;
 }
@@ -192,14 +206,17 @@ double LoadedTable::height_at(const Cell& cell, int level, const Weights& weight
   const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
   const float* const low = &data_.height[4 * (cell.lateral * levels + static_cast<std::size_t>(level)) * columns];
   const float* const high = low + 4 * levels * columns;
-  const std::array<double, 4>& basis = cell.across.value;
-  double z = basis[0] * cell.touch[0] + basis[2] * cell.touch[1];
+  Pack at_low{}, at_high{};  // value and slope across are the first and the third
   for (std::size_t k = 0; k < columns; ++k) {
-    const auto of = [&](const float* node, std::size_t q) { return static_cast<double>(node[4 * k + q]); };
-    z += weights.column[k][here] *
-         (basis[0] * of(low, 0) + basis[1] * of(low, 2) + basis[2] * of(high, 0) + basis[3] * of(high, 2));
+    Pack node;
+    widen(low + 4 * k, node);
+    at_low += weights.value(k) * node;
+    widen(high + 4 * k, node);
+    at_high += weights.value(k) * node;
   }
-  return z;
+  const std::array<double, 4>& basis = cell.across.value;
+  return basis[0] * (cell.touch[0] + at_low[0]) + basis[1] * at_low[2] + basis[2] * (cell.touch[1] + at_high[0]) +
+         basis[3] * at_high[2];
 }
 
 bool LoadedTable::find_level(double z, const Weights& weights, Cell& cell) const noexcept {
@@ -225,6 +242,16 @@ struct LoadedTable::LevelPlace {
 
 namespace {
 
+/// Element i of each of four packs as the pack i.
+void transpose(const Pack& a, const Pack& b, const Pack& c, const Pack& d, Pack* rows) noexcept {
+  const Pack ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Pack cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  rows[0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  rows[2] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
 // Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
 struct Linear {
   std::size_t low = 0, high = 0;
@@ -241,6 +268,20 @@ struct Linear {
 };
 
 }  // namespace
+
+void LoadedTable::fetch_parts(const Cell& cell, double roll, double yaw) const noexcept {
+  const Linear r(data_.roll, roll), s(data_.yaw_squared, yaw * yaw);
+  const std::size_t levels = static_cast<std::size_t>(data_.levels), yaws = data_.yaw_squared.size();
+  const std::size_t first = cell.lateral * levels + static_cast<std::size_t>(cell.level);
+  for (const std::size_t node : {first, first + levels, first + 1, first + levels + 1}) {
+    if (data_.pressed[node] == 0) continue;
+    for (const std::size_t i : {r.low, r.high}) {
+      const float* const stored = &data_.part[part_at_[node] + (i * yaws + s.low) * LoadedPart::quantities];
+      __builtin_prefetch(stored);
+      __builtin_prefetch(stored + LoadedPart::quantities);
+    }
+  }
+}
 
 template <bool slopes>
 void LoadedTable::add_parts(const Cell& cell, const LevelPlace& place, double roll, double yaw, LoadedLookup& result,
@@ -316,18 +357,22 @@ void LoadedTable::add_parts(const Cell& cell, const LevelPlace& place, double ro
         sum[d][0] = means * sum[d][0] + (1.0 - means) * slope;
       }
       const Pack scale_w[packs]{{0.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 1.0, 2.0 * w}, {2.0 * w, 0.0, 0.0, 1.0}};
+      Pack slope[4][packs];
       for (std::size_t j = 0; j < 4; ++j) {
         const auto k = static_cast<Eigen::Index>(j);
-        Pack slope[packs];
         for (std::size_t q = 0; q < packs; ++q) {
-          slope[q] = scale[q] * (sum[by_lateral][q] * place.y0_1[k] + sum[by_level][q] * place.w_1[k]) +
-                     scale_w[q] * mean[q] * place.w_1[k];
-          if (j == 2) slope[q] += scale[q] * sum[by_roll_node][q];
-          if (j == 3) slope[q] += 2.0 * yaw * scale[q] * sum[by_yaw_node][q];
+          slope[j][q] = scale[q] * (sum[by_lateral][q] * place.y0_1[k] + sum[by_level][q] * place.w_1[k]) +
+                        scale_w[q] * mean[q] * place.w_1[k];
+          if (j == 2) slope[j][q] += scale[q] * sum[by_roll_node][q];
+          if (j == 3) slope[j][q] += 2.0 * yaw * scale[q] * sum[by_yaw_node][q];
         }
-        if (j == 3) slope[0][1] += mean[0][1];
-        store(slope, derivatives->part[result.parts][j]);
+        if (j == 3) slope[j][0][1] += mean[0][1];
       }
+      Pack along[LoadedPart::quantities];
+      for (std::size_t q = 0; q < packs; ++q) {
+        transpose(slope[0][q], slope[1][q], slope[2][q], slope[3][q], &along[4 * q]);
+      }
+      std::memcpy(&derivatives->part[result.parts], along, sizeof along);
     }
     ++result.parts;
   }
@@ -346,7 +391,7 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   LoadedLookup result;
   double inside = margin_share(roll, yaw);
   if (!(inside > 0.0)) return result;
-  const Weights weights(data_, roll, yaw);
+  const Weights weights(*this, roll, yaw);
   Cell cell;
   if (!find_lateral(y, weights, cell)) return result;
   const double y0 = data_.lateral[cell.lateral] + cell.t * cell.width;
@@ -358,24 +403,37 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
     return result;
   }
 
+  fetch_parts(cell, roll, yaw);
   // The corners' values, slopes along w and y0 and mixed derivatives, with their derivatives along roll and yaw.
   const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
   constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
+  constexpr std::size_t packs = slopes ? 2 : 1;
   Pack corner[4][directions]{};
-  std::array<std::array<double, directions>, 4> shift{};
-  for (std::size_t c = 0; c < 4; ++c) {  // c = 2·lateral + level
-    const float* const value =
-        &data_.height[4 * ((cell.lateral + c / 2) * levels + static_cast<std::size_t>(cell.level) + c % 2) * columns];
-    const double* const touch = &data_.touch[(cell.lateral + c / 2) * columns];
+  Pack shift[4][2]{};  // over the directions: y and ∂y/∂y0 of the lower lateral node, then of the upper one
+  for (std::size_t lateral = 0; lateral < 2; ++lateral) {
+    const std::size_t node = cell.lateral + lateral;
+    const float* const height = &data_.height[4 * (node * levels + static_cast<std::size_t>(cell.level)) * columns];
+    const double* const touch = &data_.touch[node * columns];
+    const double* const place = &data_.shift[2 * node * columns];
+    Pack touches[2]{};
     for (std::size_t k = 0; k < columns; ++k) {
-      Pack v;
-      widen(value + 4 * k, v);
-      v[0] += touch[k];
-      const double s = data_.shift[2 * ((cell.lateral + c / 2) * columns + k) + c % 2];
+      const auto& weight = weights.column[k];
+      Pack below, above;
+      widen(height + 4 * k, below);
+      widen(height + 4 * (columns + k), above);
       for (std::size_t d = 0; d < wanted; ++d) {
-        corner[c][d] += weights.column[k][d] * v;
-        shift[c][d] += weights.column[k][d] * s;
+        corner[2 * lateral][d] += weight[d / 4][d % 4] * below;
+        corner[2 * lateral + 1][d] += weight[d / 4][d % 4] * above;
       }
+      for (std::size_t q = 0; q < packs; ++q) {
+        shift[2 * lateral][q] += place[2 * k] * weight[q];
+        shift[2 * lateral + 1][q] += place[2 * k + 1] * weight[q];
+        touches[q] += touch[k] * weight[q];
+      }
+    }
+    for (std::size_t d = 0; d < wanted; ++d) {
+      corner[2 * lateral][d][0] += touches[d / 4][d % 4];
+      corner[2 * lateral + 1][d][0] += touches[d / 4][d % 4];
     }
   }
   const HermiteBasis& t = cell.across;
@@ -413,7 +471,7 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
 
   // y0(y, roll, yaw), then w(y, z, roll, yaw) from Z(w, y0(y, roll, yaw), roll, yaw) = z.
   const auto along = [&](const std::array<double, 4>& basis, Direction d) {
-    return sum(basis, {shift[0][d], shift[1][d], shift[2][d], shift[3][d]});
+    return sum(basis, {shift[0][d / 4][d % 4], shift[1][d / 4][d % 4], shift[2][d / 4][d % 4], shift[3][d / 4][d % 4]});
   };
   const double Y_y0 = along(t.first, here), Z_w = sum(level.first, line);
   if (!(Z_w > 0.0)) return result;

@@ -49,26 +49,27 @@ struct LoadedTableData {
   [[nodiscard]] std::size_t columns() const noexcept { return roll.size() * yaw_squared.size(); }
 };
 
-/// What presses on one part of the rail's surface.
-struct LoadedPart {
-  double share;  ///< of the vertical force on the rail, without friction [-]
-  double arm_x, arm_y,
-      arm_z;               ///< mean of the wheel's points in contact, from the wheelset centre [m]
-  double angle;            ///< contact angle: that of the part's force [rad]
-  double a, b;             ///< semi-axes of the ellipse with the second moments of the pressure [m]
-  double peak;             ///< largest force per length across the rail [N/m]
-  double saddle;           ///< force per length at the part's upper end [N/m]
-  double s_rail, s_wheel;  ///< mean arc lengths on the profiles [m]
-  double pressure;         ///< largest [Pa]
+/// What presses on one part of the rail's surface: numbers, or their derivatives.
+template <class T>
+struct LoadedPartOf {
+  T share;                ///< of the vertical force on the rail, without friction [-]
+  T arm_x, arm_y, arm_z;  ///< mean of the wheel's points in contact, from the wheelset centre [m]
+  T angle;                ///< contact angle: that of the part's force [rad]
+  T a, b;                 ///< semi-axes of the ellipse with the second moments of the pressure [m]
+  T peak;                 ///< largest force per length across the rail [N/m]
+  T saddle;               ///< force per length at the part's upper end [N/m]
+  T s_rail, s_wheel;      ///< mean arc lengths on the profiles [m]
+  T pressure;             ///< largest [Pa]
 
   static constexpr std::size_t quantities = 12;
-  [[nodiscard]] std::array<double, quantities> values() const noexcept {
+  [[nodiscard]] std::array<T, quantities> values() const noexcept {
     return {share, arm_x, arm_y, arm_z, angle, a, b, peak, saddle, s_rail, s_wheel, pressure};
   }
-  [[nodiscard]] static LoadedPart of(const std::array<double, quantities>& v) noexcept {
+  [[nodiscard]] static LoadedPartOf of(const std::array<T, quantities>& v) noexcept {
     return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11]};
   }
 };
+using LoadedPart = LoadedPartOf<double>;
 
 /// The contact at a pose. Generalised forces on the rail, order y, z, roll, yaw: the derivatives of the energy with
 /// respect to the wheelset's motions [N, N m].
@@ -92,8 +93,9 @@ struct LoadedLookup {
 
 /// Derivatives with respect to the pose.
 struct LoadedSlopes {
-  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();                 ///< of the forces
-  std::array<std::array<LoadedPart, 4>, LoadedLookup::capacity> part;  ///< of the parts, as many as these
+  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();  ///< of the forces
+  /// Of the parts, as many as these, along y, z, roll, yaw.
+  std::array<LoadedPartOf<std::array<double, 4>>, LoadedLookup::capacity> part;
 };
 
 /// Look-up: const, allocation-free, thread-safe. Energy and forces are continuous; stiffness and the parts' derivatives
@@ -130,6 +132,8 @@ class LoadedTable {
   [[nodiscard]] bool find_lateral(double y, const Weights& weights, Cell& cell) const noexcept;
   [[nodiscard]] double height_at(const Cell& cell, int level, const Weights& weights) const noexcept;
   [[nodiscard]] bool find_level(double z, const Weights& weights, Cell& cell) const noexcept;
+  /// Asks the memory for what add_parts() will read of the first part.
+  void fetch_parts(const Cell& cell, double roll, double yaw) const noexcept;
   template <bool slopes>
   void add_parts(const Cell& cell, const LevelPlace& place, double roll, double yaw, LoadedLookup& result,
                  LoadedSlopes* derivatives) const noexcept;
@@ -138,6 +142,7 @@ class LoadedTable {
   std::vector<double> steepness_;      ///< of each lateral node, (z − z_touch)/w², for the first guess of a level
   std::vector<std::size_t> part_at_;   ///< of each (lateral, level), where its parts begin
   std::vector<std::uint32_t> bucket_;  ///< of equal stretches of y0, the node at or below their beginning
+  std::vector<double> inverse_roll_, inverse_yaw_;  ///< inverse distances between nodes of roll, and of yaw²
   double level_step_ = 0.0;
 };
 

@@ -7,10 +7,10 @@
 
 namespace railtab {
 
-/// A number with its derivatives in up to twelve directions: what is computed with dual numbers carries the exact
-/// derivative along.
+/// A number with its derivatives in 4·packs directions: what is computed with dual numbers carries the exact derivative
+/// along.
+template <std::size_t packs>
 struct Dual {
-  static constexpr std::size_t packs = 3, directions = 4 * packs;
   double value = 0.0;
   Pack slope[packs]{};
 

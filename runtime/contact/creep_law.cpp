@@ -58,15 +58,16 @@ CreepForceJet creep_force_jet(const CreepLaw& law, double ratio, const Creepage&
   const bool from_table = table && table->share(ratio, creepage) == 1.0;
   if (from_table) {
     const Creepage c = within_range(creepage);
-    const CreepLookup found = table->table->lookup(ratio, {c.x, c.y, c.spin});
+    const CreepLookup found = table->table->jet(ratio, {c.x, c.y, c.spin});
     jet.force = {found.force[0], found.force[1], found.force[2]};
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) jet.derivative[i][j + 1] = found.derivative[i][j];
-  } else {
-    jet.force = creep_force(law, ratio, creepage);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<double, 3>& d = found.derivative[i];
+      jet.derivative[i] = {found.by_ratio[i], d[0], d[1], d[2]};
+    }
+    return jet;
   }
+  jet.force = creep_force(law, ratio, creepage);
   set_column(jet.force, creep_force(law, (1.0 + share) * ratio, creepage), share * ratio, 0, jet);
-  if (from_table) return jet;
   const auto along = [&](double Creepage::*member, std::size_t j) {
     Creepage moved = creepage;
     const double step = share * std::max(1.0, std::abs(creepage.*member));

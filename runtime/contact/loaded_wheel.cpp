@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 #include "railtab/runtime/base/dual.hpp"
 #include "railtab/runtime/contact/contact_pair.hpp"
@@ -16,44 +18,61 @@ template <class T>
 using Vector = std::array<T, 3>;
 template <class T>
 using Generalised = std::array<T, 9>;
+using Pose = std::array<double, 4>;  // y, z, roll, yaw
 
-double number(double x) { return x; }
-double number(const Dual& x) { return x.value; }
+constexpr std::size_t pose_directions = 4;
 
-// A quantity of the table at a pose that moves: to first order from where it was looked up.
-double moved(double value, const std::array<double, 4>&, const std::array<double, 4>&) { return value; }
-Dual moved(double value, const std::array<double, 4>& slope, const std::array<Dual, 4>& pose) {
-  Dual result(value);
-  for (std::size_t i = 0; i < Dual::packs; ++i) {
-    result.slope[i] = slope[0] * pose[0].slope[i] + slope[1] * pose[1].slope[i] + slope[2] * pose[2].slope[i] +
-                      slope[3] * pose[3].slope[i];
-  }
+// Of a quantity of the table with its slope along the pose, which are the first directions of dual numbers.
+template <class T>
+T quantity(double value, const Pose& slope) {
+  T result(value);
+  if constexpr (!std::is_same_v<T, double>) std::memcpy(&result.slope[0], slope.data(), sizeof slope);
   return result;
 }
 
-std::array<double, 4> row(const Eigen::Vector4d& v) { return {v[0], v[1], v[2], v[3]}; }
+template <class T>
+T coordinate(double value, std::size_t direction) {
+  T result(value);
+  if constexpr (!std::is_same_v<T, double>) result.slope[direction / 4][direction % 4] = 1.0;
+  return result;
+}
 
-// Normalised creep force (F_x, F_y, M_z).
-std::array<double, 3> creep(const CreepLaw& law, double ratio, const std::array<double, 3>& c) {
-  const CreepForce f = creep_force(law, ratio, {c[0], c[1], c[2]});
-  return {f.x, f.y, f.moment};
+double number(double x) { return x; }
+template <std::size_t packs>
+double number(const Dual<packs>& x) {
+  return x.value;
 }
-std::array<Dual, 3> creep(const CreepLaw& law, const Dual& ratio, const std::array<Dual, 3>& c) {
-  const CreepForceJet jet = creep_force_jet(law, ratio.value, {c[0].value, c[1].value, c[2].value});
-  std::array<Dual, 3> f{Dual(jet.force.x), Dual(jet.force.y), Dual(jet.force.moment)};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::array<double, 4>& d = jet.derivative[k];
-    for (std::size_t i = 0; i < Dual::packs; ++i) {
-      f[k].slope[i] = d[0] * ratio.slope[i] + d[1] * c[0].slope[i] + d[2] * c[1].slope[i] + d[3] * c[2].slope[i];
+
+/// Creep force with its derivatives, if wanted.
+struct Creep {
+  CreepForceJet jet;
+
+  template <class T>
+  [[nodiscard]] std::array<T, 3> of(const T& ratio, const std::array<T, 3>& c) const {
+    std::array<T, 3> f{T(jet.force.x), T(jet.force.y), T(jet.force.moment)};
+    if constexpr (!std::is_same_v<T, double>) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::array<double, 4>& d = jet.derivative[k];
+        for (std::size_t i = 0; i < std::size(ratio.slope); ++i) {
+          f[k].slope[i] = d[0] * ratio.slope[i] + d[1] * c[0].slope[i] + d[2] * c[1].slope[i] + d[3] * c[2].slope[i];
+        }
+      }
     }
+    return f;
   }
-  return f;
-}
+};
 
 /// On the wheel, moment about the wheelset centre, in rail-head axes.
 template <class T>
 struct Wrench {
-  Vector<T> force, moment;
+  Vector<T> force{}, moment{};
+
+  void add(const Wrench& other, const T& factor) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      force[i] += factor * other.force[i];
+      moment[i] += factor * other.moment[i];
+    }
+  }
 };
 
 /// A part of the contact that bears load, or several as one.
@@ -66,24 +85,37 @@ struct Part {
   T peak, saddle;          ///< LoadedPart
 };
 
+/// Derivatives of a wrench with respect to the wheel's motion: velocity (3), rotation (3), the rail's roll rate.
+using MotionSlope = Eigen::Matrix<double, 6, 7>;
+using MotionRow = Eigen::Matrix<double, 1, 7>;
+
+/// Forces of numbers, or of dual numbers whose first directions are those of the pose; derivatives with respect to
+/// velocities are summed up apart (motion_slope()), since every part answers to three components of slip only.
 template <class T>
 class LoadedContactForce {
  public:
   /// @param rail_friction RailHeadMotion::friction
   /// @param slopes of the look-up, where T has derivatives
-  LoadedContactForce(const WheelContactModel& model, double rail_friction, const WheelKinematics<T>& wheel,
-                     const LoadedLookup& lookup, const LoadedSlopes* slopes = nullptr)
-      : model_(model),
-        friction_(model.friction * rail_friction),
-        wheel_(wheel),
-        lookup_(lookup),
-        slopes_(slopes),
-        pose_{wheel.y, wheel.z, wheel.roll, wheel.yaw} {
+  LoadedContactForce(const WheelContactModel& model, double rail_friction, const WheelKinematics& wheel,
+                     const LoadedLookup& lookup, const LoadedSlopes* slopes)
+      : model_(model), friction_(model.friction * rail_friction), wheel_(wheel), lookup_(lookup), slopes_(slopes) {
+    const Pose pose{wheel.y, wheel.z, wheel.roll, wheel.yaw};
+    for (std::size_t k = 0; k < pose_directions; ++k) pose_[k] = coordinate<T>(pose[k], k);
+    centre_y_ = coordinate<T>(wheel.centre_y, 0);
+    centre_z_ = coordinate<T>(wheel.centre_z, 1);
+    const Pose of_cos_roll{0.0, 0.0, -wheel.sin_roll, 0.0}, of_sin_roll{0.0, 0.0, wheel.cos_roll, 0.0};
+    cos_roll_ = quantity<T>(wheel.cos_roll, of_cos_roll);
+    sin_roll_ = quantity<T>(wheel.sin_roll, of_sin_roll);
+    const Pose of_cos_yaw{0.0, 0.0, 0.0, -wheel.sin_yaw}, of_sin_yaw{0.0, 0.0, 0.0, wheel.cos_yaw};
+    cos_yaw_ = quantity<T>(wheel.cos_yaw, of_cos_yaw);
+    sin_yaw_ = quantity<T>(wheel.sin_yaw, of_sin_yaw);
+    Pose slope{};
     for (Eigen::Index j = 0; j < 4; ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      force_[k] = slopes ? moved(lookup.force[j], row(slopes->stiffness.col(j)), pose_) : T(lookup.force[j]);
+      if constexpr (derivatives) std::memcpy(slope.data(), slopes_->stiffness.col(j).data(), sizeof slope);
+      force_[static_cast<std::size_t>(j)] = quantity<T>(lookup.force[j], slope);
     }
-    energy_ = slopes ? moved(lookup.energy, row(lookup.force), pose_) : T(lookup.energy);
+    std::memcpy(slope.data(), lookup.force.data(), sizeof slope);
+    energy_ = quantity<T>(lookup.energy, slope);
     if (lookup.energy > 0.0) add_parts();
   }
 
@@ -91,32 +123,45 @@ class LoadedContactForce {
   [[nodiscard]] const std::array<T, 4>& elastic() const { return force_; }
   [[nodiscard]] const T& energy() const { return energy_; }
   [[nodiscard]] const std::array<T, 4>& pose() const { return pose_; }
-  /// Creep and damping forces, generalised.
-  [[nodiscard]] Generalised<T> rest() const { return wheel_.generalised(rest_.force, rest_.moment); }
-  /// All forces at the pose, generalised.
-  [[nodiscard]] Generalised<T> total() const {
+  /// Creep and damping forces, and their derivatives with respect to velocities.
+  [[nodiscard]] const Wrench<T>& rest() const { return rest_; }
+  [[nodiscard]] const MotionSlope& motion_slope() const { return motion_slope_; }
+  /// All forces at the pose.
+  [[nodiscard]] Wrench<T> total() const {
     Wrench<T> sum = wrench(force_);
-    for (std::size_t i = 0; i < 3; ++i) {
-      sum.force[i] += rest_.force[i];
-      sum.moment[i] += rest_.moment[i];
-    }
-    return wheel_.generalised(sum.force, sum.moment);
+    sum.add(rest_, T(1.0));
+    return sum;
   }
   [[nodiscard]] const std::array<double, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
   [[nodiscard]] int outside_creep_table() const { return outside_; }
 
-  /// Elastic forces as generalised forces on wheelset and rail.
-  [[nodiscard]] Generalised<T> generalised(const std::array<T, 4>& on_rail) const {
-    const Wrench<T> w = wrench(on_rail);
-    return wheel_.generalised(w.force, w.moment);
+  /// Elastic forces on the wheel. The moment of the normal forces about the axle is zero.
+  [[nodiscard]] Wrench<T> wrench(const std::array<T, 4>& on_rail) const {
+    const T moment_x = -on_rail[2], moment_up = -on_rail[3], moment_y = sin_yaw_ / cos_yaw_ * moment_x;
+    const T &c = cos_roll_, &s = sin_roll_;
+    return {{T(0.0), -on_rail[0], -on_rail[1]}, {moment_x, c * moment_y - s * moment_up, s * moment_y + c * moment_up}};
+  }
+
+  /// Generalised forces on wheelset (6) and rail head (3) in track axes: as WheelForce::patch, of the right wheel.
+  [[nodiscard]] Generalised<T> generalised(const Wrench<T>& w) const {
+    const double c = wheel_.rail_cos, s = wheel_.rail_sin;
+    const Vector<T>&f = w.force, &m = w.moment;
+    const T fy = c * f[1] - s * f[2], fz = s * f[1] + c * f[2];
+    const T about_axle = cos_yaw_ * (cos_roll_ * m[1] + sin_roll_ * m[2]) - sin_yaw_ * m[0];
+    return {
+        f[0], fy, fz, m[0], about_axle, s * m[1] + c * m[2], -fy, -fz, -(m[0] + centre_y_ * f[2] - centre_z_ * f[1])};
   }
 
  private:
-  // On the wheel. The moment of the normal forces about the axle is zero.
-  [[nodiscard]] Wrench<T> wrench(const std::array<T, 4>& on_rail) const {
-    const T moment_x = -on_rail[2], moment_up = -on_rail[3], moment_y = wheel_.sin_yaw / wheel_.cos_yaw * moment_x;
-    const T &c = wheel_.cos_roll, &s = wheel_.sin_roll;
-    return {{T(0.0), -on_rail[0], -on_rail[1]}, {moment_x, c * moment_y - s * moment_up, s * moment_y + c * moment_up}};
+  static constexpr bool derivatives = !std::is_same_v<T, double>;
+
+  /// Velocity of the wheel's particle at `arm` from the wheelset centre against the rail's particle there. The rail's
+  /// own roll rate turns its surface about the rail-head origin; `rotation` counts it about the wheelset centre.
+  [[nodiscard]] Vector<T> slip_velocity(const Vector<T>& arm) const {
+    const auto &v = wheel_.velocity, &r = wheel_.rotation;
+    return {v[0] + (r[1] * arm[2] - r[2] * arm[1]),
+            v[1] + (r[2] * arm[0] - r[0] * arm[2] + wheel_.rail_rate * centre_z_),
+            v[2] + (r[0] * arm[1] - r[1] * arm[0] - wheel_.rail_rate * centre_y_)};
   }
 
   void add_parts() {
@@ -124,36 +169,67 @@ class LoadedContactForce {
     std::array<Part<T>, LoadedLookup::capacity> parts;
     for (std::size_t p = 0; p < lookup_.parts; ++p) {
       Part<T>& part = parts[p];
-      const auto quantity = [&](double LoadedPart::*member) {
-        if (!slopes_) return T(lookup_.part[p].*member);
-        const std::array<LoadedPart, 4>& d = slopes_->part[p];
-        return moved(lookup_.part[p].*member, {d[0].*member, d[1].*member, d[2].*member, d[3].*member}, pose_);
+      const auto of = [&](auto&& member) {
+        if constexpr (derivatives) {
+          return quantity<T>(member(lookup_.part[p]), member(slopes_->part[p]));
+        } else {
+          return member(lookup_.part[p]);
+        }
       };
-      const T angle = quantity(&LoadedPart::angle);
+      const T angle = of([](const auto& q) { return q.angle; });
       part.cos_angle = cos(angle);
       part.sin_angle = sin(angle);
-      part.arm = {quantity(&LoadedPart::arm_x), quantity(&LoadedPart::arm_y), quantity(&LoadedPart::arm_z)};
-      part.a = quantity(&LoadedPart::a);
-      part.b = quantity(&LoadedPart::b);
-      part.s = quantity(&LoadedPart::s_rail);
-      part.peak = quantity(&LoadedPart::peak);
-      part.saddle = quantity(&LoadedPart::saddle);
-      const T elastic = quantity(&LoadedPart::share) * force_[1] / part.cos_angle;
+      part.arm = {of([](const auto& q) { return q.arm_x; }), of([](const auto& q) { return q.arm_y; }),
+                  of([](const auto& q) { return q.arm_z; })};
+      part.a = of([](const auto& q) { return q.a; });
+      part.b = of([](const auto& q) { return q.b; });
+      part.s = of([](const auto& q) { return q.s_rail; });
+      part.peak = of([](const auto& q) { return q.peak; });
+      part.saddle = of([](const auto& q) { return q.saddle; });
+      const T elastic = of([](const auto& q) { return q.share; }) * force_[1] / part.cos_angle;
       part.normal = elastic;
-      if (model_.damping != 0.0) add_damping(elastic, part);
+      if (model_.damping != 0.0) add_damping(elastic, p, part);
       part_normal_[p] = number(part.normal);
     }
     if (friction_ > 0.0) add_groups(parts);
+    if constexpr (derivatives) {
+      if (model_.damping != 0.0) add_damped_normals();
+    }
   }
 
-  void add_damping(const T& elastic, Part<T>& part) {
-    const Vector<T> slip = wheel_.slip_velocity(part.arm);
+  // Where T has derivatives, those of all that follows with respect to the part's normal force are carried along in a
+  // direction of its own: the normal force depends on velocities, too.
+  void add_damping(const T& elastic, std::size_t p, Part<T>& part) {
+    const Vector<T> slip = slip_velocity(part.arm);
     const T approach = part.cos_angle * slip[2] - part.sin_angle * slip[1];
     part.normal = elastic * (1.0 + model_.damping * approach);
-    if (number(part.normal) < 0.0) part.normal = T(0.0);
+    const bool pulls = number(part.normal) < 0.0;
+    if (pulls) part.normal = T(0.0);
+    if constexpr (derivatives) {
+      const double c = part.cos_angle.value, s = part.sin_angle.value;
+      const double x = part.arm[0].value, y = part.arm[1].value, z = part.arm[2].value;
+      MotionRow& row = damped_[p];
+      row << 0.0, -s, c, y * c + z * s, -x * c, -x * s, -(s * wheel_.centre_z + c * wheel_.centre_y);
+      row *= pulls ? 0.0 : elastic.value * model_.damping;
+      const std::size_t direction = pose_directions + p;
+      part.normal.slope[direction / 4][direction % 4] = 1.0;
+    }
     const T more = part.normal - elastic;
-    const Vector<T> force{T(0.0), more * part.sin_angle, -more * part.cos_angle};
-    add(force, part.arm, Vector<T>{T(0.0), T(0.0), T(0.0)}, T(1.0));
+    add(Vector<T>{T(0.0), more * part.sin_angle, -more * part.cos_angle}, part.arm, Vector<T>{T(0.0), T(0.0), T(0.0)},
+        T(1.0));
+  }
+
+  void add_damped_normals() {
+    for (std::size_t p = 0; p < lookup_.parts; ++p) {
+      const std::size_t direction = pose_directions + p;
+      Eigen::Matrix<double, 6, 1> along;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        along[i] = rest_.force[k].slope[direction / 4][direction % 4];
+        along[3 + i] = rest_.moment[k].slope[direction / 4][direction % 4];
+      }
+      motion_slope_ += along * damped_[p];
+    }
   }
 
   // Every run of neighbouring parts, as one ellipse, weighted with how far its parts have merged with each other, and
@@ -218,28 +294,62 @@ class LoadedContactForce {
   void add_creep(const Part<T>& part, const T& weight) {
     using std::sqrt;
     if (!(number(part.normal) > 0.0)) return;
-    const Vector<T> slip = wheel_.slip_velocity(part.arm);
+    const Vector<T> slip = slip_velocity(part.arm);
+    const auto& rotation = wheel_.rotation;
     const double speed = model_.creepage_speed() / model_.friction_law.initial_slope;
-    const T slip_across = part.cos_angle * slip[1] + part.sin_angle * slip[2], root = sqrt(part.a * part.b);
-    T bound = friction_ * part.normal;
-    if (model_.friction_law.falls()) {
-      constexpr double least = 1e-12;  // m²/s²: a root has no slope at zero
-      bound = bound * model_.friction_law.share(sqrt(slip[0] * slip[0] + slip_across * slip_across + T(least)));
-    }
-    const T scale = model_.normal.material.shear_modulus() * part.a * part.b / (bound * speed);
-    const std::array<T, 3> creepage{
-        slip[0] * scale, slip_across * scale,
-        (part.cos_angle * wheel_.rotation[2] - part.sin_angle * wheel_.rotation[1]) * scale * root};
+    const T bound = coefficient(part, slip) * part.normal, root = sqrt(part.a * part.b);
+    const T scale = model_.normal.material.shear_modulus() / speed * (part.a * part.b) / bound;
+    const std::array<T, 3> creepage{slip[0] * scale, (part.cos_angle * slip[1] + part.sin_angle * slip[2]) * scale,
+                                    (rotation[2] * part.cos_angle - rotation[1] * part.sin_angle) * scale * root};
     const T ratio = part.a / part.b;
-    const std::array<T, 3> f = creep(model_.creep_law, ratio, creepage);
-    const auto* table = std::get_if<TableCreep>(&model_.creep_law);
-    if (table && table->share(number(ratio), {number(creepage[0]), number(creepage[1]), number(creepage[2])}) < 1.0) {
-      ++outside_;
+    const Creepage at{number(creepage[0]), number(creepage[1]), number(creepage[2])};
+    Creep creep;
+    if constexpr (derivatives) {
+      creep.jet = creep_force_jet(model_.creep_law, ratio.value, at);
+      add_motion_slope(part, weight.value * bound.value * scale.value, root.value, creep.jet);
+    } else {
+      creep.jet.force = creep_force(model_.creep_law, ratio, at);
+      const auto* table = std::get_if<TableCreep>(&model_.creep_law);
+      if (table && table->share(ratio, at) < 1.0) ++outside_;
     }
+    const std::array<T, 3> f = creep.of(ratio, creepage);
     const T across = f[1] * bound, spin = f[2] * bound * root;
     const Vector<T> force{f[0] * bound, across * part.cos_angle, across * part.sin_angle};
     const Vector<T> moment{T(0.0), -spin * part.sin_angle, spin * part.cos_angle};
     add(force, part.arm, moment, weight);
+  }
+
+  // Of friction at the part's slip velocity. Tangents take it as constant.
+  [[nodiscard]] double coefficient(const Part<T>& part, const Vector<T>& slip) const {
+    if (!model_.friction_law.falls()) return friction_;
+    const double across = number(part.cos_angle) * number(slip[1]) + number(part.sin_angle) * number(slip[2]);
+    return friction_ * model_.friction_law.share(std::hypot(number(slip[0]), across));
+  }
+
+  // The slips of a part, along x, across and about its normal, are Eᵀ (velocity, rotation) of the wheel, and its creep
+  // forces act on the wheel by E.
+  void add_motion_slope(const Part<T>& part, double weight, double root, const CreepForceJet& jet) {
+    const double c = part.cos_angle.value, s = part.sin_angle.value;
+    const double x = part.arm[0].value, y = part.arm[1].value, z = part.arm[2].value;
+    Eigen::Matrix<double, 6, 3> E;
+    E << 1.0, 0.0, 0.0,           //
+        0.0, c, 0.0,              //
+        0.0, s, 0.0,              //
+        0.0, y * s - z * c, 0.0,  //
+        z, -x * s, -s,            //
+        -y, x * c, c;
+    const std::array<double, 3> scale{1.0, 1.0, root};
+    Eigen::Matrix3d slope;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        const auto l = static_cast<std::size_t>(j);
+        slope(i, j) = weight * scale[k] * scale[l] * jet.derivative[k][l + 1];
+      }
+    }
+    const Eigen::Matrix<double, 6, 3> answer = E * slope;
+    motion_slope_.leftCols<6>() += answer * E.transpose();
+    motion_slope_.col(6) += (c * wheel_.centre_z - s * wheel_.centre_y) * answer.col(1);
   }
 
   // A force on the wheel at `arm`, and a moment.
@@ -247,43 +357,51 @@ class LoadedContactForce {
     const Vector<T> moment{own[0] + arm[1] * force[2] - arm[2] * force[1],
                            own[1] + arm[2] * force[0] - arm[0] * force[2],
                            own[2] + arm[0] * force[1] - arm[1] * force[0]};
-    for (std::size_t i = 0; i < 3; ++i) {
-      rest_.force[i] += weight * force[i];
-      rest_.moment[i] += weight * moment[i];
-    }
+    rest_.add({force, moment}, weight);
   }
 
   const WheelContactModel& model_;
-  double friction_;  // without slip
-  const WheelKinematics<T>& wheel_;
+  double friction_;  ///< without slip
+  const WheelKinematics& wheel_;
   const LoadedLookup& lookup_;
   const LoadedSlopes* slopes_;
-  std::array<T, 4> pose_, force_;
+  std::array<T, pose_directions> pose_, force_;
+  T centre_y_, centre_z_, cos_roll_, sin_roll_, cos_yaw_, sin_yaw_;
   T energy_;
-  Wrench<T> rest_{};
+  Wrench<T> rest_;
+  MotionSlope motion_slope_ = MotionSlope::Zero();
+  std::array<MotionRow, LoadedLookup::capacity> damped_;  ///< of the parts' normal forces
   std::array<double, LoadedLookup::capacity> part_normal_{};
   int outside_ = 0;
 };
 
-template <class T>
-WheelMotions<T> on_right(WheelSide side, const WheelsetMotion& wheelset, const RailHeadMotion& rail) {
-  WheelMotions<T> motions = WheelMotions<T>::of(wheelset, rail);
+WheelKinematics on_right(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                         const RailHeadMotion& rail) {
+  WheelMotions motions{wheelset, rail};
   if (side == WheelSide::left) motions.reflect();
-  return motions;
+  return {model.geometry->pair(), motions, model.speed};
 }
 
-Vector9 in_track(WheelSide side, Generalised<double> force) {
+Vector9 in_track(WheelSide side, const Generalised<double>& on_right) {
+  Vector9 force = Eigen::Map<const Vector9>(on_right.data());
   if (side == WheelSide::left) reflect_force(force);
-  return Eigen::Map<const Vector9>(force.data());
+  return force;
 }
 
-/// Mean over a step, of the right wheel.
+/// Mean force over a step, of the right wheel: what depends on the end of the step, and the share of the creep forces
+/// at its start.
 template <class T>
-Generalised<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& start, const LoadedContactForce<T>& end,
-                              double weight) {
+struct MeanForce {
+  Wrench<T> end;
+  T of_start;
+};
+
+template <class T>
+MeanForce<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& start, const LoadedContactForce<T>& end,
+                            double weight) {
   const double radius = pair.nominal_radius();
-  const std::array<double, 4> metric{1.0, 1.0, radius * radius, radius * radius};
-  const std::array<double, 4> from{start.pose.y, start.pose.z, start.pose.roll, start.pose.yaw};
+  const Pose metric{1.0, 1.0, radius * radius, radius * radius};
+  const Pose from{start.pose.y, start.pose.z, start.pose.roll, start.pose.yaw};
   std::array<T, 4> mean, path;
   T work = weight * end.energy() - start.weight * start.energy, length = T(0.0);
   for (std::size_t j = 0; j < 4; ++j) {
@@ -296,19 +414,102 @@ Generalised<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& sta
   T share = T(1.0);
   if (number(length) > 0.0) {
     T along = T(0.0);
+    const T correction = work / length;
     for (std::size_t j = 0; j < 4; ++j) {
-      const T more = work / length * metric[j] * path[j];
+      const T more = metric[j] * correction * path[j];
       if (j < 2) along += more * mean[j];
       mean[j] += more;
     }
     if (number(ends) > 0.0) share += along / ends;
   }
-  Generalised<T> result = end.generalised(mean);
-  const Generalised<T> rest = end.rest();
-  for (std::size_t i = 0; i < 9; ++i) {
-    result[i] += 0.5 * share * (start.rest[static_cast<Eigen::Index>(i)] + weight * rest[i]);
-  }
+  MeanForce<T> result{end.wrench(mean), 0.5 * share};
+  result.end.add(end.rest(), weight * result.of_start);
   return result;
+}
+
+/// Derivatives with respect to the nine displacements, which velocities follow.
+class DisplacementSlopes {
+ public:
+  DisplacementSlopes(const WheelKinematics& wheel, const StepRates& rates) : w_(wheel), rates_(rates) {}
+
+  /// @param pose derivatives of the generalised forces with respect to the pose. @param motion with respect to the
+  /// wheel's motion. @param turned of those that turn with the rail, their values
+  [[nodiscard]] Matrix9 of(const Eigen::Matrix<double, 9, 4>& pose, const Eigen::Matrix<double, 9, 7>& motion,
+                           const Vector9& turned) const {
+    const double c = w_.rail_cos, s = w_.rail_sin, rail = rates_.rail;
+    const Vector6& rate = rates_.wheelset;
+    Matrix9 t;
+    // along the track's y and z
+    const Vector9 pose_y = c * pose.col(0) - s * pose.col(1), pose_z = s * pose.col(0) + c * pose.col(1);
+    const Vector9 motion_y = c * motion.col(1) - s * motion.col(2), motion_z = s * motion.col(1) + c * motion.col(2);
+    t.col(0) = rate[0] * motion.col(0);
+    t.col(1) = pose_y + rate[1] * motion_y;
+    t.col(2) = pose_z + rate[2] * motion_z;
+    t.col(6) = -(pose_y + rail * motion_y);
+    t.col(7) = -(pose_z + rail * motion_z);
+    // rotations: the axle turns with roll and yaw
+    const auto about = [&](double x, double y, double z) -> Vector9 {
+      return w_.turning * (x * motion.col(3) + y * motion.col(4) + z * motion.col(5));
+    };
+    const Vector9 roll = pose.col(2) + about(0.0, -w_.axle[2], w_.axle[1]);
+    t.col(3) = roll + rate[3] * motion.col(3);
+    t.col(4) = rate[4] * (w_.axle[0] * motion.col(3) + w_.axle[1] * motion.col(4) + w_.axle[2] * motion.col(5));
+    t.col(5) = pose.col(3) + about(-w_.cos_yaw, -w_.sin_yaw * w_.cos_roll, -w_.sin_yaw * w_.sin_roll) +
+               rate[5] * (s * motion.col(4) + c * motion.col(5));
+    t.col(8) = w_.centre_z * pose.col(0) - w_.centre_y * pose.col(1) - roll + rail * (motion.col(6) - motion.col(3)) +
+               w_.velocity[2] * motion.col(1) - w_.velocity[1] * motion.col(2) + w_.swaying[2] * motion.col(4) -
+               w_.swaying[1] * motion.col(5) + turned;
+    return t;
+  }
+
+ private:
+  const WheelKinematics& w_;
+  const StepRates& rates_;
+};
+
+/// @param T dual numbers with a direction for every part's normal force where these are damped
+template <class T>
+Matrix9 tangent_on_right(const WheelContactModel& model, double friction, const WheelKinematics& wheel,
+                         const LoadedLookup& lookup, const LoadedSlopes& slopes, const StepRates& rates,
+                         const LoadedMemory* start) {
+  const LoadedContactForce<T> force(model, friction, wheel, lookup, &slopes);
+  Generalised<T> total;
+  double of_motion = 1.0;
+  Vector9 turned = Vector9::Zero();
+  const auto turn = [&](const Wrench<T>& w) {
+    const double c = wheel.rail_cos, s = wheel.rail_sin;
+    const double fy = c * number(w.force[1]) - s * number(w.force[2]);
+    const double fz = s * number(w.force[1]) + c * number(w.force[2]);
+    turned << 0.0, -fz, fy, 0.0, 0.0, c * number(w.moment[1]) - s * number(w.moment[2]), fz, -fy, 0.0;
+  };
+  if (start) {
+    const MeanForce<T> mean = mean_over_step(model.geometry->pair(), *start, force, lookup.table_share);
+    turn(mean.end);
+    total = force.generalised(mean.end);
+    for (std::size_t i = 0; i < 9; ++i) total[i] += start->rest[static_cast<Eigen::Index>(i)] * mean.of_start;
+    of_motion = lookup.table_share * number(mean.of_start);
+  } else {
+    const Wrench<T> sum = force.total();
+    turn(sum);
+    total = force.generalised(sum);
+  }
+  Eigen::Matrix<double, 9, 4> pose;
+  for (Eigen::Index i = 0; i < 9; ++i)
+    for (Eigen::Index j = 0; j < 4; ++j) pose(i, j) = total[static_cast<std::size_t>(i)].slope[0][j];
+  // As LoadedContactForce::generalised().
+  const MotionSlope w = of_motion * force.motion_slope();
+  const double c = wheel.rail_cos, s = wheel.rail_sin;
+  Eigen::Matrix<double, 9, 7> motion;
+  motion.row(0) = w.row(0);
+  motion.row(1) = c * w.row(1) - s * w.row(2);
+  motion.row(2) = s * w.row(1) + c * w.row(2);
+  motion.row(3) = w.row(3);
+  motion.row(4) = wheel.axle[0] * w.row(3) + wheel.axle[1] * w.row(4) + wheel.axle[2] * w.row(5);
+  motion.row(5) = s * w.row(4) + c * w.row(5);
+  motion.row(6) = -motion.row(1);
+  motion.row(7) = -motion.row(2);
+  motion.row(8) = -(w.row(3) + wheel.centre_y * w.row(2) - wheel.centre_z * w.row(1));
+  return DisplacementSlopes(wheel, rates).of(pose, motion, turned);
 }
 
 }  // namespace
@@ -316,15 +517,15 @@ Generalised<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& sta
 LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
   LoadedWheelForce result;
-  const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
-  const LoadedContactForce<double> force(model, rail.friction, wheel, lookup);
-  const Vector9 total = in_track(side, force.total());
+  const WheelKinematics wheel = on_right(model, side, wheelset, rail);
+  const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
+  const Vector9 total = in_track(side, force.generalised(force.total()));
   result.wheelset = total.head<6>();
   result.rail = total.tail<3>();
   result.rail_x = -result.wheelset[0];
   std::copy_n(force.part_normal().begin(), lookup.parts, result.normal.begin());
   result.outside_creep_table = force.outside_creep_table();
-  const Generalised<double> rest = force.rest();
+  const Generalised<double> rest = force.generalised(force.rest());
   result.memory = {.weight = lookup.table_share,
                    .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
                    .energy = lookup.energy,
@@ -356,41 +557,33 @@ ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pos
 Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                           const LoadedLookup& lookup) noexcept {
-  const WheelKinematics<double> wheel(model.geometry->pair(), on_right<double>(side, wheelset, rail), model.speed);
-  const LoadedContactForce<double> end(model, rail.friction, wheel, lookup);
-  return in_track(side, mean_over_step(model.geometry->pair(), start, end, lookup.table_share));
+  const WheelKinematics wheel = on_right(model, side, wheelset, rail);
+  const LoadedContactForce<double> end(model, rail.friction, wheel, lookup, nullptr);
+  const MeanForce<double> mean = mean_over_step(model.geometry->pair(), start, end, lookup.table_share);
+  Generalised<double> force = end.generalised(mean.end);
+  for (std::size_t i = 0; i < 9; ++i) force[i] += mean.of_start * start.rest[static_cast<Eigen::Index>(i)];
+  return in_track(side, force);
 }
 
 Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                              const RailHeadMotion& rail, const StepRates& rates, const LoadedMemory* start) noexcept {
-  // Along the nine displacements, which velocities follow.
-  WheelMotions<Dual> motions = WheelMotions<Dual>::of(wheelset, rail);
-  const auto seed = [](std::size_t direction, double rate, Dual& displacement, Dual& velocity) {
-    displacement.slope[direction / 4][direction % 4] = 1.0;
-    velocity.slope[direction / 4][direction % 4] = rate;
-  };
-  for (std::size_t i = 0; i < 6; ++i)
-    seed(i, rates.wheelset[static_cast<Eigen::Index>(i)], motions.displacement[i], motions.velocity[i]);
-  for (std::size_t i = 0; i < 3; ++i) seed(6 + i, rates.rail, motions.rail[i], motions.rail_velocity[i]);
-  if (side == WheelSide::left) motions.reflect();
-  const WheelKinematics<Dual> wheel(model.geometry->pair(), motions, model.speed);
+  constexpr std::size_t normal_packs = (LoadedLookup::capacity + 3) / 4;
+  const WheelKinematics wheel = on_right(model, side, wheelset, rail);
   LoadedSlopes slopes;
-  const LoadedLookup lookup =
-      model.geometry->loaded()->lookup(wheel.y.value, wheel.z.value, wheel.roll.value, wheel.yaw.value, slopes);
-  const bool touches = lookup.energy > 0.0;
-  if (!touches && !start) return Matrix9::Zero();
-  const LoadedContactForce<Dual> force(model, rail.friction, wheel, lookup, touches ? &slopes : nullptr);
-  Generalised<Dual> total;
-  if (start) {
-    total = mean_over_step(model.geometry->pair(), *start, force, lookup.table_share);
-  } else {
-    total = force.total();
+  const LoadedLookup lookup = model.geometry->loaded()->lookup(wheel.y, wheel.z, wheel.roll, wheel.yaw, slopes);
+  if (!(lookup.energy > 0.0) && !start) return Matrix9::Zero();
+  Matrix9 tangent =
+      model.damping != 0.0
+          ? tangent_on_right<Dual<1 + normal_packs>>(model, rail.friction, wheel, lookup, slopes, rates, start)
+          : tangent_on_right<Dual<1>>(model, rail.friction, wheel, lookup, slopes, rates, start);
+  if (side == WheelSide::left) {
+    for (Eigen::Index i = 0; i < 9; ++i) {
+      constexpr std::array<double, 9> reflected{1.0, -1.0, 1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0};
+      for (Eigen::Index j = 0; j < 9; ++j) {
+        tangent(i, j) *= reflected[static_cast<std::size_t>(i)] * reflected[static_cast<std::size_t>(j)];
+      }
+    }
   }
-  if (side == WheelSide::left) reflect_force(total);
-  Matrix9 tangent;
-  for (std::size_t i = 0; i < 9; ++i)
-    for (std::size_t j = 0; j < 9; ++j)
-      tangent(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = total[i].slope[j / 4][j % 4];
   return tangent;
 }
 

@@ -43,6 +43,9 @@ class Passage {
     a_.setZero(modes_);
     factor_.resize(static_cast<std::size_t>(modes_));
     jumps_ = has_free_end(deck);
+    for (std::size_t e = 0; e < ends; ++e) {
+      end_slope_[e] = deck.shape_at(e == 0 ? 0.0 : deck.length(), 1).head(modes_).matrix();
+    }
     longest_step_ = 2.0 * pi / deck.omega[modes_ - 1] / (jumps_ ? samples_with_jumps : samples_per_period);
   }
 
@@ -67,6 +70,7 @@ class Passage {
         bound_w += std::abs(q_[n]) * deck_.largest_shape[n];
         bound_a += std::abs(a_[n]) * deck_.largest_shape[n];
       }
+      look_at_ends(start + tau);
       if (bound_w > near_peak * displacement_.value) look(q_, start, tau, displacement_);
       if (bound_a > near_peak * acceleration_.value) look(a_, start, tau, acceleration_);
     }
@@ -75,20 +79,38 @@ class Passage {
 
   /// Whether no later free vibration can exceed the peaks.
   [[nodiscard]] bool decided() const {
-    double w = 0.0, a = 0.0;
+    double w = 0.0, a = 0.0, r = 0.0;
     for (int n = 0; n < modes_; ++n) {
-      const double amplitude = std::abs(motion_[index(n)].free_part()) * deck_.largest_shape[n];
+      const double free = std::abs(motion_[index(n)].free_part()), amplitude = free * deck_.largest_shape[n];
       w += amplitude;
       a += amplitude * deck_.omega[n] * deck_.omega[n];
+      r += free * std::max(std::abs(end_slope_[0][n]), std::abs(end_slope_[1][n]));
     }
-    return w <= displacement_.value && a <= acceleration_.value;
+    return w <= displacement_.value && a <= acceleration_.value && r <= end_rotation_.value;
   }
 
   [[nodiscard]] DeckPeak acceleration() const { return top(acceleration_, nullptr); }
   [[nodiscard]] DeckPeak displacement(const AxleTrain& train) const { return top(displacement_, &train); }
+  /// With what the modes beyond the dynamic ones add at that time.
+  [[nodiscard]] DeckPeak end_rotation(const AxleTrain& train) const {
+    const int others = deck_.modes() - modes_;
+    if (others == 0 || end_rotation_.value == 0.0) return end_rotation_;
+    const Eigen::ArrayXd q = modal_force_at(deck_, train, speed_ * end_rotation_.time) / deck_.omega.square();
+    const double added = (q * deck_.shape_at(end_rotation_.x, 1)).tail(others).sum();
+    return {std::abs(std::copysign(end_rotation_.value, end_sign_) + added), end_rotation_.x, end_rotation_.time};
+  }
 
  private:
   static std::size_t index(int n) { return static_cast<std::size_t>(n); }
+
+  void look_at_ends(double time) {
+    for (std::size_t e = 0; e < ends; ++e) {
+      const double rotation = end_slope_[e].dot(q_);
+      if (!(std::abs(rotation) > end_rotation_.value)) continue;
+      end_rotation_ = {std::abs(rotation), e == 0 ? 0.0 : deck_.length(), time};
+      end_sign_ = rotation;
+    }
+  }
 
   /// Looks at all points for a motion higher than the candidate, by a step of Newton's to the top beside the sample.
   void look(const Eigen::VectorXd& mode_values, double start, double tau, Candidate& best) {
@@ -171,6 +193,10 @@ class Passage {
   std::vector<std::complex<double>> factor_;
   Eigen::VectorXd q_, dq_, a_, at_points_;
   Candidate displacement_{0}, acceleration_{2};
+  static constexpr std::size_t ends = 2;
+  std::array<Eigen::VectorXd, ends> end_slope_;  // of the modes that vibrate, at x = 0 and at the deck's length
+  DeckPeak end_rotation_;
+  double end_sign_ = 1.0;
 };
 
 }  // namespace
@@ -187,7 +213,7 @@ PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const 
   for (int i = 0; i < most_periods && !passage.decided(); ++i) {
     passage.advance(none.data(), force.start.back() / speed + i * period, period);
   }
-  return {speed, passage.acceleration(), passage.displacement(train)};
+  return {speed, passage.acceleration(), passage.displacement(train), passage.end_rotation(train)};
 }
 
 }  // namespace railtab

@@ -16,6 +16,7 @@ struct PassagePeaks {
   double speed = 0.0;     ///< [m/s]
   DeckPeak acceleration;  ///< of the modes that vibrate, without filter
   DeckPeak displacement;  ///< with what the other modes add without inertia
+  DeckPeak end_rotation;  ///< of the line's ends about the lateral axis [rad], likewise; of the samples
 };
 
 /// A train crosses a deck at rest at constant speed. In each piece of ModalForce the solution of (ML1) is known,

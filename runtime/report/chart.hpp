@@ -23,6 +23,24 @@ struct Limit {
   std::string label;
 };
 
+/// A part of the x axis with its name: the bridge, or the time during which a train is on it.
+struct Mark {
+  double from, to;
+  std::string label;
+};
+
+/// A line that the page's script draws from a stored history: value·factor + shift over the chart's own x, or over
+/// time. @see HistoryStore
+struct LiveSeries {
+  std::string label;
+  std::size_t run = 0, history = 0;
+  double offset = 0.0;  ///< added to the run's position where the chart is over position [m]
+  double factor = 1.0, shift = 0.0;
+  bool shown = false;  ///< when the page opens
+};
+
+enum class Over { quantity, position, time };  ///< quantity: a chart that is not drawn live
+
 struct Chart {
   std::string title;
   std::string note;            ///< sign, place, filter: one sentence
@@ -31,10 +49,17 @@ struct Chart {
   std::vector<Series> series;  ///< up to four are told apart by colour
   std::vector<Band> bands;
   std::vector<Limit> limits;  ///< the y axis always reaches them
+  std::vector<Mark> marks{};
+  Over over = Over::quantity;
+  std::vector<LiveSeries> live{};
 };
 
+/// Lines that colour and dash tell apart.
+inline constexpr std::size_t line_styles = 8;
+
 /// A chart as HTML: text is laid out by the page at its own size, lines are an inline SVG that stretches with it, so
-/// that the chart reads the same at any width. Empty where no series has a point.
+/// that the chart reads the same at any width. Where it has live series, the page's script draws these in its place on
+/// a screen; paper and browsers without scripts show the static lines. Empty where no series has a point.
 [[nodiscard]] std::string chart_html(const Chart& chart);
 
 }  // namespace railtab::report

@@ -34,7 +34,12 @@ inline constexpr std::array wheel{
     WheelColumn{"wheels/second_normal_force", "N", "normal force of the next patch; 0 where there is none",
                 &WheelRecord::second_normal_force}};
 /// Stored as floating-point numbers like all that grows.
-inline constexpr Column<WheelRecord, int> patches{"wheels/patches", "1", "patches in contact", &WheelRecord::patches};
+using WheelCount = Column<WheelRecord, int>;
+inline constexpr WheelCount patches{"wheels/patches", "1", "patches in contact", &WheelRecord::patches};
+/// Absent in older files.
+inline constexpr WheelCount from_table{"wheels/from_table", "1",
+                                       "1 where the table alone answered, 0 where the online search did",
+                                       &WheelRecord::from_table};
 
 using StepColumn = Column<StepRecord, double>;
 inline constexpr std::array step{
@@ -73,11 +78,15 @@ struct HeaderTexts {
   const char* dimension;  ///< name of the extent: datasets that share it have equal lengths
   const char* description;
   std::vector<std::string> ResultHeader::*values;
+  bool in_all_files = true;  ///< else empty where an older file lacks it
 };
 inline constexpr std::array header_text_lists{
     HeaderTexts{"header/input_files", "files", "files that the scene names", &ResultHeader::input_files},
     HeaderTexts{"header/input_checksums", "files", "of their contents when the run began",
-                &ResultHeader::input_checksums}};
+                &ResultHeader::input_checksums},
+    HeaderTexts{"header/built", "parts built", "what the run was built of", &ResultHeader::built, false},
+    HeaderTexts{"header/left_out", "parts left out", "what was left out of it", &ResultHeader::left_out, false},
+    HeaderTexts{"header/warnings", "warnings", "of the scene and its start", &ResultHeader::warnings, false}};
 
 struct HeaderColumn {
   const char* path;
@@ -85,12 +94,18 @@ struct HeaderColumn {
   const char* unit;
   const char* description;
   std::vector<double> ResultHeader::*values;
+  bool in_all_files = true;  ///< else empty where an older file lacks it
 };
 inline constexpr std::array header{
     HeaderColumn{"header/wheel_x", "wheels", "m",
                  "offset of each wheel behind the first wheelset; left, right, front first", &ResultHeader::wheel_x},
     HeaderColumn{"header/static_wheel_load", "wheels", "N", "vertical force of each wheel at rest",
                  &ResultHeader::static_wheel_load},
+    HeaderColumn{"header/body_x", "bodies", "m", "offset of each body behind the first wheelset", &ResultHeader::body_x,
+                 false},
+    HeaderColumn{"header/span_from", "spans", "m", "begin of each span of the bridge along the track",
+                 &ResultHeader::span_from, false},
+    HeaderColumn{"header/span_to", "spans", "m", "its end", &ResultHeader::span_to, false},
     HeaderColumn{"header/node_x", "nodes", "m", "position of the nodes along the track", &ResultHeader::node_x},
     HeaderColumn{"header/wheel_y", "wheel points", "m", "outline of the wheel, lateral, to the field side",
                  &ResultHeader::wheel_y},

@@ -48,6 +48,7 @@ Field field_of(const columns::StepColumn& column) {
 
 const Field iterations_field = field_of(columns::newton_iterations, {"records"});
 const Field patches_field = field_of(columns::patches, {"records", "wheels"});
+const Field source_field = field_of(columns::from_table, {"records", "wheels"});
 const Field speed_field{"header/speed", {}, "m/s", "speed of the train"};
 const Field scene_field{"header/scene_text", {"1"}, "text", "the scene that was run, TOML"};
 
@@ -70,10 +71,12 @@ ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
   for (const columns::HeaderText& text : columns::header_texts) header.*text.value = in.text("header", text.name);
   header.scene_text = fields.texts(scene_field).front();
   for (const columns::HeaderTexts& list : columns::header_text_lists) {
-    header.*list.values = fields.texts(field_of(list));
+    if (list.in_all_files || in.contains(list.path)) header.*list.values = fields.texts(field_of(list));
   }
   header.speed = fields.numbers(speed_field).front();
-  for (const columns::HeaderColumn& column : columns::header) header.*column.values = fields.numbers(field_of(column));
+  for (const columns::HeaderColumn& column : columns::header) {
+    if (column.in_all_files || in.contains(column.path)) header.*column.values = fields.numbers(field_of(column));
+  }
   for (const columns::MotionGroup& group : columns::motion_groups) {
     header.*group.names = fields.texts(field_of(group));
   }
@@ -153,6 +156,7 @@ void create_histories(ArrayFileWriter& out, const ResultHeader& header) {
   if (!header.wheel_x.empty()) {
     for (const columns::WheelColumn& column : columns::wheel) fields.create_growing(field_of(column));
     fields.create_growing(patches_field);
+    fields.create_growing(source_field);
   }
   for (const columns::MotionGroup& group : columns::motion_groups) {
     const std::size_t members = (header.*group.names).size();
@@ -210,6 +214,7 @@ struct ResultWriter::Impl {
   std::map<std::string, std::vector<double>> rows;
   long checkpoints = 0;
   bool finished = false;
+  bool has_source = true;  // else an older file that is resumed
 
   Impl(ArrayFileWriter&& writer, int every, const ResultHeader& header)
       : out(std::move(writer)),
@@ -249,10 +254,12 @@ ResultWriter::ResultWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Checkpoint& from, int flush_every) {
   ResultHeader header;
   long checkpoints = 0;
+  bool has_source = true;
   {
     const ArrayFileReader in = open_results(file);
     FieldReader fields(in);
     header = read_header(in, fields);
+    has_source = in.contains(source_field.path);
     header.contact_mode = in.text(columns::summary_group, "contact_mode");
     for (const CheckpointSlot& slot : whole_checkpoints(in)) checkpoints = std::max(checkpoints, slot.sequence);
   }
@@ -265,6 +272,7 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
   write_summary(out, unfinished(header));
   auto impl = std::make_unique<Impl>(std::move(out), flush_every, header);
   impl->checkpoints = checkpoints;
+  impl->has_source = has_source;
   return ResultWriter(std::move(impl));
 }
 
@@ -292,6 +300,9 @@ void ResultWriter::append(const StepRecord& record) {
       for (const WheelRecord& wheel : record.wheels) values.push_back(wheel.*column.value);
     }
     for (const WheelRecord& wheel : record.wheels) rows[columns::patches.path].push_back(wheel.patches);
+    if (impl_->has_source) {
+      for (const WheelRecord& wheel : record.wheels) rows[columns::from_table.path].push_back(wheel.from_table);
+    }
   }
   for (const columns::MotionGroup& group : columns::motion_groups) {
     if ((record.*group.motions).empty()) continue;
@@ -351,6 +362,11 @@ void read_wheels(const ArrayFileReader& in, FieldReader& fields, std::size_t cou
   for (StepRecord& step : steps) step.wheels.resize(count);  // only now is it sure that the file has so many
   for (std::size_t i = 0; i < patches.size(); ++i) {
     steps[i / count].wheels[i % count].patches = static_cast<int>(patches[i]);
+  }
+  const bool has_source = in.contains(source_field.path);
+  const std::vector<double> source = has_source ? read_counts(in, fields, source_field) : std::vector<double>{};
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    steps[i / count].wheels[i % count].from_table = has_source ? static_cast<int>(source[i]) : -1;
   }
   for (const columns::WheelColumn& column : columns::wheel) {
     const std::vector<double> values = fields.numbers(field_of(column));

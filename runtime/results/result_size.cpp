@@ -12,7 +12,7 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
   namespace columns = result_columns;
   std::vector<double> row_sizes(columns::step.size() + 1, 1.0);  // numbers per record, of each history
   const auto wheels = static_cast<double>(header.wheel_x.size());
-  if (wheels > 0.0) row_sizes.insert(row_sizes.end(), columns::wheel.size() + 1, wheels);
+  if (wheels > 0.0) row_sizes.insert(row_sizes.end(), columns::wheel.size() + 2, wheels);
   for (const columns::MotionGroup& group : columns::motion_groups) {
     const auto members = static_cast<double>((header.*group.names).size());
     if (members > 0.0) row_sizes.insert(row_sizes.end(), columns::motion.size(), 6.0 * members);
@@ -34,6 +34,9 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
   size.file *= indices;
   for (const columns::HeaderColumn& column : columns::header) {
     size.file += number * static_cast<double>((header.*column.values).size());
+  }
+  for (const columns::HeaderTexts& list : columns::header_text_lists) {
+    for (const std::string& text : header.*list.values) size.file += static_cast<double>(text.size());
   }
   size.file += static_cast<double>(header.scene_text.size());
   constexpr double slots = 2.0, copies = 3.0;  // packed, with its counters, and HDF5's own

@@ -66,7 +66,7 @@ void require_ranges(const SceneParameters& scene) {
   if (scene.spectrum) draft.spectrum = *scene.spectrum;
   if (scene.span_deviation) draft.deviation = *scene.span_deviation;
   for (const char* section : {"train.", "vehicle.", "contact.", "structure.", "irregularity.", "span_deviation.",
-                              "integration.", "output."}) {
+                              "integration.", "output.", "assessment."}) {
     require_section(section, draft);
   }
   for (const FeSupport& support : scene.structure.supports) {

@@ -156,6 +156,7 @@ struct KeyRow {
 [[nodiscard]] std::vector<KeyRow> wheel_keys();         // [[wheel]]
 [[nodiscard]] std::vector<KeyRow> load_keys();          // [[load]] and [[ground_motion]]
 [[nodiscard]] std::vector<KeyRow> integration_keys();   // and [output]
+[[nodiscard]] std::vector<KeyRow> assessment_keys();
 
 /// All, in the order of the guide.
 [[nodiscard]] const std::vector<KeyRow>& all_keys();

@@ -42,7 +42,10 @@ std::vector<KeyRow> track_quality_keys() {
                                           {"irregularity.shortest_wave", "m", "shortest wavelength of the random track",
                                            NumberKey{of_spectrum<&SpectrumParameters::shortest>, {0.1, 500.0}}},
                                           {"irregularity.longest_wave", "m", "longest wavelength of the random track",
-                                           NumberKey{of_spectrum<&SpectrumParameters::longest>, {0.1, 500.0}}}})});
+                                           NumberKey{of_spectrum<&SpectrumParameters::longest>, {0.1, 500.0}}},
+                                          {"irregularity.fade_in", "m",
+                                           "length from train.start over which the random track rises from zero",
+                                           NumberKey{of_spectrum<&SpectrumParameters::fade_in>, {0.0, 1e4}}}})});
 }
 
 std::vector<KeyRow> deviation_keys() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "railtab/runtime/base/file_checksum.hpp"
+#include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
 namespace railtab {
@@ -16,15 +17,21 @@ ResultHeader model_header(const VsiModel& model) {
       header.static_wheel_load.push_back(static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
     }
   }
-  for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
+  for (std::size_t v = 0; v < model.vehicle_x.size(); ++v) {
+    const int first_coach = static_cast<int>(v) * model.vehicle.coaches + 1;
     for (const VehicleBody& body : model.vehicle.bodies) {
-      header.body_names.push_back(fmt::format("coach-{}/{}", v * model.vehicle.coaches + body.coach + 1, body.name));
+      header.body_names.push_back(fmt::format("coach-{}/{}", first_coach + body.coach, body.name));
+      header.body_x.push_back(model.vehicle_x[v] + body.position.x() - model.wheelset_x(0, 0.0));
     }
   }
   if (model.structure) {
     for (const StructureNode& node : model.structure->nodes) {
       header.node_names.push_back(node.name);
       header.node_x.push_back(node.x);
+    }
+    for (const std::array<double, 2>& span : model.structure->spans) {
+      header.span_from.push_back(span[0]);
+      header.span_to.push_back(span[1]);
     }
   }
   if (!model.geometry) return header;
@@ -48,6 +55,9 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
   }
   header.program_version = RAILTAB_VERSION;
   header.contact_mode = contact_mode_name(scene.contact);
+  ModelParts parts = model_parts(scene, model);
+  header.built = std::move(parts.built);
+  header.left_out = std::move(parts.left_out);
   return header;
 }
 

@@ -27,7 +27,7 @@ std::string reduction_text(const ReductionParameters& reduction) {
 }
 
 // A line for each coach of a train that is one system: where its wheelsets stand and what they carry.
-void describe_coaches(const VehicleModel& vehicle, RunPlan& plan) {
+void describe_coaches(const VehicleModel& vehicle, ModelParts& plan) {
   if (vehicle.coaches == 1) return;
   const double front = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position.x();
   for (int coach = 0; coach < vehicle.coaches; ++coach) {
@@ -44,7 +44,7 @@ void describe_coaches(const VehicleModel& vehicle, RunPlan& plan) {
   }
 }
 
-void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+void describe_vehicle(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   plan.built.push_back(fmt::format("{} x {}, {} degrees of freedom each", model.vehicle_x.size(),
                                    scene.train.vehicle == imported_vehicle ? scene.train.vehicle : model.vehicle.name,
                                    model.vehicle.dofs()));
@@ -66,7 +66,7 @@ void describe_vehicle(const SceneParameters& scene, const VsiModel& model, RunPl
                                    fmt::join(vehicle.frequencies, ", ")));
 }
 
-void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+void describe_contact(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   if (model.geometry) {
     plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
                                      model.geometry->pair().wheel().knots().name,
@@ -84,7 +84,7 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, RunPl
   }
 }
 
-void describe_structure(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+void describe_structure(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   if (model.structure) {
     plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",
                                      scene.track_kind == TrackKind::imported ? "imported" : "flexible",
@@ -96,7 +96,7 @@ void describe_structure(const SceneParameters& scene, const VsiModel& model, Run
   }
 }
 
-void describe_track(const SceneParameters& scene, const VsiModel& model, RunPlan& plan) {
+void describe_track(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   if (scene.spectrum) {
     plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
   } else if (scene.irregularity) {
@@ -110,6 +110,20 @@ constexpr double wide = 1000.0;  // entries per degree of freedom: tracks have 1
 
 }  // namespace
 
+ModelParts model_parts(const SceneParameters& scene, const VsiModel& model) {
+  ModelParts parts;
+  for (const scene::KeyRow& row : scene::all_keys()) {
+    std::string part = row.left_out ? row.left_out(scene) : "";
+    if (!part.empty()) parts.left_out.push_back(std::move(part));
+  }
+  describe_vehicle(scene, model, parts);
+  describe_contact(scene, model, parts);
+  describe_structure(scene, model, parts);
+  describe_track(scene, model, parts);
+  for (std::string& part : describe_loads(scene, model)) parts.built.push_back(std::move(part));
+  return parts;
+}
+
 RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::string_view part)>& setup) {
   if (setup) setup("building the model");
   const VsiModel model = build_model(scene);
@@ -122,15 +136,7 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   plan.duration = static_cast<double>(plan.steps) * scene.integration.time_step;
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
   plan.warnings = scene_warnings(scene, model);
-  for (const scene::KeyRow& row : scene::all_keys()) {
-    std::string part = row.left_out ? row.left_out(scene) : "";
-    if (!part.empty()) plan.left_out.push_back(std::move(part));
-  }
-  describe_vehicle(scene, model, plan);
-  describe_contact(scene, model, plan);
-  describe_structure(scene, model, plan);
-  describe_track(scene, model, plan);
-  for (std::string& part : describe_loads(scene, model)) plan.built.push_back(std::move(part));
+  static_cast<ModelParts&>(plan) = model_parts(scene, model);
   if (setup) setup(fmt::format("memory of a factor of {} degrees of freedom", plan.structure_dofs));
   plan.memory = planned_memory(scene, model, plan.duration);
   if (plan.memory.entries_per_dof > wide) {

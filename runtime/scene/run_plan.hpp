@@ -7,17 +7,23 @@
 
 #include "railtab/runtime/scene/plan_memory.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
 
+/// What a model has been built of and what was left out because nothing in the scene needs it.
+struct ModelParts {
+  std::vector<std::string> built, left_out;
+};
+[[nodiscard]] ModelParts model_parts(const SceneParameters& scene, const VsiModel& model);
+
 /// What a scene will build and what it leaves out, for `vsi run --plan`.
-struct RunPlan {
+struct RunPlan : ModelParts {
   long structure_dofs = 0, vehicle_dofs = 0;
   int wheels = 0;
   long steps = 0;
   double time_step = 0, duration = 0;  ///< [s]
   PlannedMemory memory;
-  std::vector<std::string> built, left_out;
   std::vector<std::string> warnings;  ///< as RunObserver::warning
 };
 

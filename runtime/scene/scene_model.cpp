@@ -172,7 +172,7 @@ Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
   constexpr double margin = 50.0;  // m
   const double end = run_duration(scene, model);
   return random_irregularity(*scene.spectrum, model.wheelset_x(model.wheelsets() - 1, 0.0) - margin,
-                             model.wheelset_x(0, end) + margin);
+                             model.wheelset_x(0, end) + margin, scene.train.start);
 }
 
 // The structure as the steps will have it.

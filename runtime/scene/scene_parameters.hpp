@@ -100,6 +100,16 @@ struct WheelParameters {
   std::filesystem::path file;          ///< contour; empty: none
 };
 
+enum class DeckTrack { ballasted, direct };
+
+/// What vsi assess asks besides what a run does.
+struct AssessmentParameters {
+  double line_speed_kmh = 0.0;             ///< highest speed of the line [km/h]; 0: the train's
+  DeckTrack track = DeckTrack::ballasted;  ///< by which limits of deck acceleration are chosen
+  int seeds = 3;                           ///< random tracks for each speed, from irregularity.seed on
+  std::optional<double> begin;             ///< where wheels and car bodies begin to be judged [m]
+};
+
 /// Ground motion by one record; several are stations along the track.
 struct GroundMotionParameters {
   std::filesystem::path file;
@@ -130,6 +140,7 @@ struct SceneParameters {
   std::vector<GroundMotionParameters> ground_motion;
   IntegrationParameters integration;
   OutputParameters output;
+  AssessmentParameters assessment;
 
   /// What no single key can tell: a table where contact.mode needs one, spans only on flexible track, integration.
   /// To be called again where a command changes a parameter. @throws InputError naming the keys.

@@ -207,7 +207,8 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   if (nearest.empty()) {
     return InputError(
         fmt::format("{}: unknown key '{}'; the sections are train, vehicle, contact, track, bridge, structure, "
-                    "support, irregularity, span_deviation, wheel, load, ground_motion, integration and output",
+                    "support, irregularity, span_deviation, wheel, load, ground_motion, integration, output and "
+                    "assessment",
                     place, leaf.path));
   }
   return InputError(fmt::format("{}: unknown key '{}'; did you mean '{}'?", place, leaf.path, nearest));

@@ -112,14 +112,18 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   const auto setup = [&](std::string_view part) {
     if (observer.setup) observer.setup(part);
   };
+  ResultHeader header;
   const auto warn = [&](const std::string& warning) {
-    if (observer.warning && !warning.empty()) observer.warning(warning);
+    if (warning.empty()) return;
+    header.warnings.push_back(warning);
+    if (observer.warning) observer.warning(warning);
   };
   if (observer.note) note_repairs(model, observer);
-  for (const std::string& warning : scene_warnings(scene, model)) warn(warning);
+  const std::vector<std::string> of_scene = scene_warnings(scene, model);
   const double duration = run_duration(scene, model);
   static_cast<void>(step_count(scene.integration, duration));
-  const ResultHeader header = result_header(scene, model);
+  header = result_header(scene, model);
+  for (const std::string& warning : of_scene) warn(warning);
   const OutputSelection selection(scene.output, header);
   VsiState state(model);
   std::string no_rest;

@@ -50,8 +50,7 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
       }
       if (pairs == Pairs::searched) {
         ++counts.queries;
-        const bool served = model.geometry->loaded() ? !contact.by_patches() : contact.patches.from_table;
-        if (served) ++counts.table_queries;
+        if (answered_by_table(*model.geometry, contact)) ++counts.table_queries;
       }
       const LoadedWheelForce wheel = wheel_force(model, wheel_side, motion, rail, contact);
       const int r = 6 + 3 * side;

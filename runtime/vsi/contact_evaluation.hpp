@@ -12,6 +12,11 @@ struct Wheelsets {
   int first, end;
 };
 
+/// Whether the table alone answered for a wheel, by its loaded part where it has one; else the online search did.
+[[nodiscard]] inline bool answered_by_table(const ContactGeometry& geometry, const WheelContact& contact) noexcept {
+  return geometry.loaded() ? !contact.by_patches() : contact.patches.from_table;
+}
+
 /// Contact forces at the solution's displacement, and what they are made of.
 ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& solution, NewtonWorkspace& workspace);

@@ -28,10 +28,13 @@ std::vector<ContactState> contact_states(const ContactSolution& contact) {
   return result;
 }
 
-ContactChange contact_change(const ContactSolution& before, const ContactSolution& after) {
+ContactChange contact_change(const ContactSolution& before, const ContactSolution& after, double light_touch) {
   const std::vector<ContactState> was = contact_states(before), is = contact_states(after);
   ContactChange change = ContactChange::none;
   for (std::size_t wheel = 0; wheel < is.size(); ++wheel) {
+    const bool stays = was[wheel] != ContactState::separated && is[wheel] != ContactState::separated;
+    const int rail = rail_unknown(static_cast<int>(wheel));
+    if (stays && (after.end_force - before.end_force).segment<2>(rail).norm() <= light_touch) continue;
     if (is[wheel] > was[wheel]) return ContactChange::gained;
     if (is[wheel] < was[wheel]) change = ContactChange::lost;
   }

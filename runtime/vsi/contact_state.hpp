@@ -17,7 +17,9 @@ inline constexpr double longest_impact = 10e-3;
 
 /// Of every wheel, by the patches that bear load.
 [[nodiscard]] std::vector<ContactState> contact_states(const ContactSolution& contact);
-[[nodiscard]] ContactChange contact_change(const ContactSolution& before, const ContactSolution& after);
+/// A flange that touches or leaves the rail counts where the wheel's force changes by more than `light_touch` [N].
+[[nodiscard]] ContactChange contact_change(const ContactSolution& before, const ContactSolution& after,
+                                           double light_touch);
 
 /// Largest change of the rails' vertical forces on wheels between two solutions [N].
 [[nodiscard]] double largest_force_change(const ContactSolution& before, const ContactSolution& after);

@@ -1,3 +1,4 @@
+#include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 
@@ -67,7 +68,10 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
     w = {};
-    if (model.geometry) fill_patches(model.geometry->pair(), state.contact, wheel, w);
+    if (model.geometry) {
+      fill_patches(model.geometry->pair(), state.contact, wheel, w);
+      w.from_table = answered_by_table(*model.geometry, state.contact.contact[wheel]) ? 1 : 0;
+    }
     const int unknown = rail_unknown(static_cast<int>(wheel));
     w.Y = state.contact.end_force[unknown];
     w.Q = state.contact.end_force[unknown + 1];

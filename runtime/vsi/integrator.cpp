@@ -116,6 +116,7 @@ StepReport Integrator::attempt(int level, VsiState& state) {
   StepLimits limits = limits_of(rule);
   limits.rejected = division_.rejected_events(level, rule);
   limits.force_jump = division_.force_jump();
+  limits.light_touch = division_.light_touch();
   const double end = state.time + length(parameters_.time_step, level);
   StepReport report;
   ContactForceRule used = rule;
@@ -130,6 +131,7 @@ StepReport Integrator::attempt(int level, VsiState& state) {
     used = ContactForceRule::energy;
     StepLimits accepting = limits_of(used);
     accepting.geometry = *geometry;
+    accepting.light_touch = limits.light_touch;
     report = solve(level, accepting, state);
   }
   if (report.outcome == StepOutcome::accepted) after_step(report, level, used, state);

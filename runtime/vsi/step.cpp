@@ -111,7 +111,7 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   predict(step, state, contacts, ws, report);
   contacts.present(step, state, ws);
   const bool converged = solve_condensed(step, contacts, ws, report);
-  if (converged) report.contact_change = contact_change(state.contact, ws.solution);
+  if (converged) report.contact_change = contact_change(state.contact, ws.solution, limits.light_touch);
   report.outcome = outcome(limits, converged, report.contact_change, largest_force_change(state.contact, ws.solution));
   if (report.outcome == StepOutcome::accepted) close(step, state, contacts, ws, report);
   return report;

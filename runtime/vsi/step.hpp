@@ -38,6 +38,7 @@ struct StepLimits {
   GeometrySource geometry = GeometrySource::model;
   RejectedEvents rejected = RejectedEvents::none;
   double force_jump = std::numeric_limits<double>::infinity();  ///< [N]
+  double light_touch = 0.0;                                     ///< contact_change() [N]
 };
 
 struct StepReport {

@@ -9,12 +9,16 @@ namespace {
 
 constexpr double longest_landing = 1e-3;   // s
 constexpr double impact_to_landing = 8.0;  // steps of an impact over those of a landing
+constexpr double touch_share = 0.05;       // of the static wheel load: a flange that touches with less makes no impact
 constexpr double impact_share = 0.25;  // of the static wheel load: a force that changes by more in a step has an impact
 
 }  // namespace
 
 StepDivision::StepDivision(const IntegrationParameters& p, bool automatic_rule, double wheel_load)
-    : automatic_(automatic_rule), max_halvings_(p.max_halvings), force_jump_(impact_share * wheel_load) {
+    : automatic_(automatic_rule),
+      max_halvings_(p.max_halvings),
+      force_jump_(impact_share * wheel_load),
+      light_touch_(touch_share * wheel_load) {
   if (!automatic_) return;
   const auto longer = [&](int level, double step) { return std::ldexp(p.time_step, -level) > step * (1.0 + 1e-9); };
   while (longer(impact_level_, impact_to_landing * p.impact_step)) ++impact_level_;

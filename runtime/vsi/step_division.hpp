@@ -23,6 +23,7 @@ class StepDivision {
   /// Events that reject a step of this level under a force rule.
   [[nodiscard]] RejectedEvents rejected_events(int level, ContactForceRule rule) const noexcept;
   [[nodiscard]] double force_jump() const noexcept { return force_jump_; }
+  [[nodiscard]] double light_touch() const noexcept { return light_touch_; }
 
   /// A step to `end` was rejected for an event: until there, and after a force jump for the time of an impact, steps
   /// take the level returned or a finer one. A wheel that runs onto a kink stays on its rail, but its force vibrates as
@@ -39,7 +40,7 @@ class StepDivision {
   int impact_level_ = 0;   // of a step of an impact
   int landing_level_ = 0;  // of one just after a wheel has met its rail
   int max_halvings_;
-  double force_jump_;  // [N]
+  double force_jump_, light_touch_;  // [N]
 };
 
 }  // namespace railtab

@@ -13,6 +13,7 @@ namespace railtab {
 struct WheelRecord {
   double Q = 0, Y = 0, X = 0;
   int patches = 0;                 ///< patches in contact
+  int from_table = 0;              ///< 1: the table alone answered, 0: the online search, -1: the file does not say
   double y_rail = 0, y_wheel = 0;  ///< of the patch with the largest normal force, own-side profile frames [m]
   double angle = 0;                ///< contact angle of that patch [rad]
   double rolling_radius = 0;       ///< of that patch [m]
@@ -50,10 +51,14 @@ struct ResultHeader {
   std::vector<double> wheel_x;            ///< offset of each wheel behind the first wheelset (<= 0) [m]
   std::vector<double> static_wheel_load;  ///< [N] per wheel
   std::vector<std::string> body_names;    ///< "coach-1/car-body", ...
+  std::vector<double> body_x;             ///< offset of each body behind the first wheelset; empty in older files [m]
   std::vector<std::string> node_names;
   std::vector<double> node_x;                            ///< [m]
+  std::vector<double> span_from, span_to;                ///< of the bridge's spans along the track [m]
   std::string wheel_profile, rail_profile;               ///< names
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]
+  /// What the run was built of, what was left out, and what it was warned of before its first step.
+  std::vector<std::string> built, left_out, warnings;
 };
 
 /// Nodes of the bridge deck are named deck….

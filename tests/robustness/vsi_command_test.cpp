@@ -11,7 +11,7 @@ namespace railtab {
 namespace {
 
 TEST_F(VsiCommand, HelpAndVersionOfEveryCommand) {
-  for (const char* command : {"", "contact ", "creep ", "run ", "moving-load ", "report "}) {
+  for (const char* command : {"", "contact ", "creep ", "run ", "moving-load ", "report ", "check ", "new "}) {
     const Outcome help = vsi(std::string(command) + "--help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.output.find("vsi " + std::string(command)), std::string::npos) << help.output;

@@ -138,6 +138,21 @@ TEST(CreepTable, NeighbouringQueriesDifferByTheDerivative) {
   }
 }
 
+TEST(CreepTable, DerivativesWithRespectToTheRatioAreThoseOfTheForce) {
+  for (const CreepCase& c : random_cases(500)) {
+    const std::array<double, 3> u{c.creepage.x, c.creepage.y, c.creepage.spin};
+    const CreepLookup found = table().jet(c.ratio, u);
+    const double step = 1e-5 * c.ratio, moment = creep_scale(c.ratio).moment;
+    const CreepLookup above = table().lookup(c.ratio + step, u), below = table().lookup(c.ratio - step, u);
+    EXPECT_EQ(found.force, lookup(table(), c).force);
+    if (!above.inside || !below.inside) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double difference = (above.force[i] - below.force[i]) / (2.0 * step);
+      EXPECT_NEAR(found.by_ratio[i] * c.ratio, difference * c.ratio, 1e-5 * (i == 2 ? 1.0 + moment : 1.0)) << c.ratio;
+    }
+  }
+}
+
 TEST(CreepTable, DerivativesAreThoseOfTheForce) {
   for (const CreepCase& c : random_cases(500)) {
     const CreepLookup found = lookup(table(), c);

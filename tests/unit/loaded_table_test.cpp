@@ -56,11 +56,10 @@ TEST(LoadedTable, ForcesStiffnessAndPartsHaveTheDerivativesOfTheEnergy) {
       // A difference across the border of a cell is no derivative: stiffness jumps there.
       if ((column - slopes.stiffness.col(j)).norm() > 1e-5 * slopes.stiffness.norm()) continue;
       ++compared;
-      const auto a = plus.part[0].values(), b = minus.part[0].values(),
-                 d = slopes.part[0][static_cast<std::size_t>(j)].values();
-      const auto value = found.part[0].values();
+      const auto a = plus.part[0].values(), b = minus.part[0].values(), value = found.part[0].values();
+      const auto d = slopes.part[0].values();
       for (std::size_t q = 0; q < LoadedPart::quantities; ++q) {
-        EXPECT_NEAR((a[q] - b[q]) / (2.0 * step), d[q], 1e-5 * std::abs(d[q]) + 1e-6 * std::abs(value[q]) / 1e-5)
+        EXPECT_NEAR((a[q] - b[q]) / (2.0 * step), d[q][j], 1e-5 * std::abs(d[q][j]) + 1e-6 * std::abs(value[q]) / 1e-5)
             << "quantity " << q << " along " << j;
       }
     }

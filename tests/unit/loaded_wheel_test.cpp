@@ -76,9 +76,9 @@ Vector9 total(const WheelForce& f) {
 }
 
 TEST(Dual, CarriesDerivativesAlong) {
-  Dual x(0.7);
+  Dual<3> x(0.7);
   x.slope[2][1] = 1.0;
-  const Dual f = sqrt(2.0 - sin(x) * x / (1.0 + cos(x))) * tan(x) - 3.0 / (x * x + 1.0);
+  const Dual<3> f = sqrt(2.0 - sin(x) * x / (1.0 + cos(x))) * tan(x) - 3.0 / (x * x + 1.0);
   const auto of = [](double v) {
     return std::sqrt(2.0 - std::sin(v) * v / (1.0 + std::cos(v))) * std::tan(v) - 3.0 / (v * v + 1.0);
   };

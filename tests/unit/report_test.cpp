@@ -11,7 +11,7 @@
 #include "railtab/runtime/report/chart.hpp"
 #include "railtab/runtime/report/html_text.hpp"
 #include "railtab/runtime/report/polyline.hpp"
-#include "report_page.hpp"
+#include "report_run.hpp"
 
 namespace railtab::report {
 namespace {
@@ -94,53 +94,6 @@ TEST(Chart, LimitIsInsideTheAxisAndNamed) {
   EXPECT_EQ(chart_html({"T", "", "x", "y", {{"line", {0, 1}, {nan, nan}}}, {}, {}}), "");
 }
 
-/// Two records of one wheelset, one coach and one deck node, with values that are told apart by their size.
-RunResults small_run() {
-  RunResults run;
-  run.header.scene_name = "small <run>";
-  run.header.scene_text = "[train]\nspeed = 50 # </pre><script>\n";
-  run.header.program_version = "9.8.7";
-  run.header.speed = 50.0;
-  run.header.wheel_x = {0.0, 0.0};
-  run.header.static_wheel_load = {50e3, 50e3};
-  run.header.body_names = {"coach-1/car-body", "coach-1/bogie-1"};
-  run.header.node_names = {"deck-midspan-1", "rail-left-midspan-1"};
-  run.header.node_x = {16.0, 16.0};
-  run.header.wheel_y = {-0.03, 0.0, 0.06};
-  run.header.wheel_z = {0.028, 0.0, -0.002};
-  run.header.rail_y = {-0.035, -0.03, 0.0, 0.035};
-  run.header.rail_z = {0.03, 0.008, 0.0, 0.02};
-  for (int i = 0; i < 2; ++i) {
-    StepRecord step;
-    step.time = 0.1 * i;
-    step.position = 5.0 * i;
-    step.wheels.resize(2);
-    step.wheels[0] = {.Q = i == 0 ? 50e3 : 40e3, .Y = -8e3, .patches = 1, .y_rail = 0.002, .y_wheel = 0.001};
-    step.wheels[1] = {.Q = i == 0 ? 50e3 : 60e3, .Y = 3e3, .patches = 1, .y_rail = -0.004, .y_wheel = -0.003};
-    step.bodies.resize(2);
-    step.bodies[0].acceleration[2] = -0.5 * i;
-    step.bodies[0].acceleration[1] = 0.25 * i;
-    step.bodies[1].acceleration[2] = 99.0;  // a bogie: no car body
-    step.nodes.resize(2);
-    step.nodes[0].acceleration[2] = -3.0 * i;
-    step.nodes[0].displacement[2] = 0.004 * i;
-    step.nodes[1].acceleration[2] = 77.0;  // a rail: no deck
-    run.steps.push_back(step);
-  }
-  run.summary.complete = true;
-  run.summary.contact_queries = 200;
-  run.summary.table_queries = 150;
-  run.summary.seconds_total = 0.05;
-  run.summary.seconds_contact = 0.02;
-  return run;
-}
-
-Headline headline_of(const RunResults& run) {
-  HeadlineCollector collector(run.header);
-  for (const StepRecord& step : run.steps) collector.add(step);
-  return collector.result(run.summary);
-}
-
 TEST(Headline, TakesTheExtremesOfTheRightBodiesAndWheels) {
   const Headline headline = headline_of(small_run());
   EXPECT_EQ(headline.deck_acceleration.value, 3.0);
@@ -214,62 +167,6 @@ TEST(Headline, LiftOffIsNoDerailmentCoefficientButWholeUnloading) {
   const Headline headline = headline_of(run);
   EXPECT_EQ(headline.unloading.value, 1.0);
   EXPECT_DOUBLE_EQ(headline.derailment.value, 0.16);  // of the first record
-}
-
-TEST(ReportPage, IsOneFileWithEverySection) {
-  const std::string page = report_page(small_run());
-  for (const char* part : {"Running safety", "Wheel forces", "Wheel and rail", "Car bodies", "Bridge and track",
-                           "Where the time went", "Scene", "railtab 9.8.7", "0.8 – EN 14363", "0.6 – EN 14363"}) {
-    EXPECT_NE(page.find(part), std::string::npos) << part;
-  }
-  for (const char* outside : {"http:", "https:", "src=", "href=", "@import", "url("}) {
-    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
-  }
-  EXPECT_EQ(page.find("nan"), std::string::npos);
-}
-
-TEST(ReportPage, EscapesTheScene) {
-  const std::string page = report_page(small_run());
-  EXPECT_NE(page.find("small &lt;run&gt;"), std::string::npos);
-  EXPECT_EQ(page.find("</pre><script>\n"), std::string::npos);
-}
-
-TEST(ReportPage, SaysWhenARunIsNotComplete) {
-  RunResults run = small_run();
-  EXPECT_EQ(report_page(run).find("not complete"), std::string::npos);
-  run.summary.complete = false;
-  run.summary.message = "the step at t = 0.3 s did not converge";
-  EXPECT_NE(report_page(run).find("not complete.</b> the step at t = 0.3 s"), std::string::npos);
-}
-
-// Of a run that was ended from outside nobody has written the times.
-TEST(ReportPage, TimesThatNobodyWroteAreNotShown) {
-  RunResults run = small_run();
-  run.summary.seconds_total = 2.0;
-  EXPECT_NE(report_page(run).find("Contact time"), std::string::npos);
-  run.summary.seconds_total = run.summary.seconds_lookup = run.summary.seconds_contact = 0.0;
-  EXPECT_EQ(report_page(run).find("Contact time"), std::string::npos);
-}
-
-TEST(ReportPage, RunWithoutRecordsBridgeOrOutlinesIsStillAPage) {
-  RunResults run;
-  run.header.scene_name = "empty";
-  const std::string page = report_page(run);
-  EXPECT_NE(page.find("not complete"), std::string::npos);
-  EXPECT_EQ(page.find("Bridge and track"), std::string::npos);
-  EXPECT_EQ(page.find("<figure"), std::string::npos);
-}
-
-// A scene records what it chooses: what it leaves out leaves no empty figure behind.
-TEST(ReportPage, ChannelsThatWereNotRecordedAreNotShown) {
-  RunResults run = small_run();
-  run.header.wheel_x.clear();
-  run.header.static_wheel_load.clear();
-  for (StepRecord& step : run.steps) step.wheels.clear();
-  const std::string page = report_page(run);
-  for (const char* part : {"Contact positions", "Wheel forces", "Running safety", "wheelsets", "Largest Y/Q"})
-    EXPECT_EQ(page.find(part), std::string::npos) << part;
-  EXPECT_NE(page.find("Bridge and track"), std::string::npos);
 }
 
 }  // namespace

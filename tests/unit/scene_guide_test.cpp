@@ -1,5 +1,6 @@
 // The tables of keys in docs/guide/scene.md are those of the reader's own table.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,21 +51,64 @@ std::string heading_of(const std::string& section) {
   return list ? "### `[[" + section + "]]`" : "### `[" + section + "]`";
 }
 
+/// What a number accepts, with its unit: "0.001…200 m/s", "±0.02 m".
+std::string interval_of(const SceneKey& key) {
+  const KeyRange& bounds = *key.bounds;
+  const std::string unit = key.unit.empty() || key.unit == "1" ? "" : " " + key.unit;
+  const std::string sign = bounds.either_sign || bounds.low == -bounds.high ? "±" : "";
+  const std::string low = bounds.low == -bounds.high ? "" : fmt::format("{:g}…", bounds.low);
+  return fmt::format("{}{}{}{:g}{}", bounds.zero ? "0 or " : "", sign, low, bounds.high, unit);
+}
+
+/// What a key accepts: "integer 1…100", "table, online, paper", "file", "point -1e+09 to 1e+09".
+std::string values_of(const SceneKey& key) {
+  if (key.bounds) return (key.type == "number" ? "" : key.type + " ") + interval_of(key);
+  if (key.type == "point" || key.type == "numbers")
+    return key.type + " " + key.range + (key.unit.empty() ? "" : " " + key.unit);
+  return key.type == "choice" || key.type == "profile" || key.type == "vehicle" ? key.range : key.type;
+}
+
+/// Conditions of more than two thirds of the keys: the heading of the table names them once.
+Cells shared_conditions(const std::vector<SceneKey>& keys) {
+  Cells shared;
+  for (const SceneKey& key : keys) {
+    for (const std::string& condition : key.applies) {
+      const auto holds = [&](const SceneKey& k) { return std::ranges::count(k.applies, condition) > 0; };
+      const bool known = std::ranges::count(shared, condition) > 0;
+      if (!known && 3 * std::ranges::count_if(keys, holds) > 2 * std::ssize(keys)) shared.push_back(condition);
+    }
+  }
+  return shared;
+}
+
+/// Conditions of a key in brackets: those beyond the shared ones, or all of its own where it lacks a shared one.
+std::string conditions_of(const SceneKey& key, const Cells& shared) {
+  Cells further = key.applies;
+  for (const std::string& condition : shared) {
+    if (std::erase(further, condition) == 0)
+      return key.applies.empty() ? " (always)" : " (only with " + joined(key.applies) + ")";
+  }
+  return further.empty() ? "" : " (with " + joined(further) + ")";
+}
+
 std::string keys_of(const std::string& section) {
+  std::vector<SceneKey> keys = scene_keys();
+  std::erase_if(keys, [&](const SceneKey& key) { return section_of(key) != section; });
+  const Cells shared = shared_conditions(keys);
   std::vector<Cells> rows;
-  bool conditions = false;
-  for (const SceneKey& key : scene_keys()) {
-    if (section_of(key) != section) continue;
-    rows.push_back(
-        {"`" + key.path + "`", key.type, key.unit, key.range, key.default_value, key.meaning, joined(key.applies)});
-    conditions = conditions || !key.applies.empty();
+  for (const SceneKey& key : keys) {
+    const Cells cells{values_of(key), key.default_value, key.meaning + conditions_of(key, shared)};
+    const auto alike = [&](const Cells& row) { return std::equal(cells.begin(), cells.end(), row.begin() + 1); };
+    const auto found = std::ranges::find_if(rows, alike);  // keys that differ by their names alone share a row
+    const std::string name = "`" + key.path + "`";
+    if (found != rows.end()) {
+      found->front() += ", " + name;
+    } else {
+      rows.push_back({name, cells[0], cells[1], cells[2]});
+    }
   }
-  Cells heading{"key", "type", "unit", "range", "default", "meaning", "applies with"};
-  if (!conditions) {
-    heading.pop_back();
-    for (Cells& cells : rows) cells.pop_back();
-  }
-  return table(heading, rows);
+  const std::string condition = shared.empty() ? "" : " (with " + joined(shared) + ")";
+  return table({"key", "values", "default", "meaning" + condition}, rows);
 }
 
 std::string warnings() {

@@ -41,7 +41,7 @@ std::string companion(const std::string& key) {
   const std::string both_waves = key.ends_with("shortest_wave")  ? "irregularity.longest_wave = 500.0\n"
                                  : key.ends_with("longest_wave") ? "irregularity.shortest_wave = 0.1\n"
                                                                  : "";
-  if (key.starts_with("irregularity."))
+  if (key.starts_with("irregularity.") || key == "assessment.seeds")
     return "irregularity.spectrum = \"" + spectrum_names().front() + "\"\n" + both_waves;
   if (key.starts_with("structure.window")) return "structure.reduction = \"window\"\n";
   if (key.starts_with("structure.rail_")) return imported_with(key) + "structure.damping_ratio = 0.01\n";

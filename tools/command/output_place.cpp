@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -25,6 +28,18 @@ void require_writable_place(const std::string& file, const std::string& option) 
   if (refused && refused != std::errc::no_such_file_or_directory) {
     throw input_error(place, refused.message(), "a name that a file can have");
   }
+}
+
+void require_fitting_name(const std::string& file, const std::string& option, std::string_view content,
+                          std::initializer_list<std::string_view> endings) {
+  constexpr std::array known{".html", ".htm", ".pdf",  ".png", ".jpg",  ".jpeg", ".svg", ".csv",  ".h5",  ".hdf5",
+                             ".toml", ".txt", ".json", ".md",  ".xlsx", ".xls",  ".doc", ".docx", ".vtu", ".zip"};
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
+  if (std::find(known.begin(), known.end(), ending) == known.end()) return;
+  throw input_error(fmt::format("{} {}", option, file), fmt::format("the ending {}", ending),
+                    fmt::format("{}, for the output is {}", *endings.begin(), content));
 }
 
 }  // namespace railtab

@@ -15,6 +15,20 @@ void raise(Extreme& extreme, double value, double time, const std::string& where
 
 }  // namespace
 
+Headline headline_of(const RunResults& results) {
+  HeadlineCollector collector(results.header);
+  for (const StepRecord& step : results.steps) collector.add(step);
+  return collector.result(results.summary);
+}
+
+std::string uncovered_queries(const RunSummary& summary) {
+  if (summary.contact_mode != "table" || 2 * summary.table_queries >= summary.contact_queries) return "";
+  return fmt::format(
+      "the table served {:.1f} % of the contact queries, the online search the rest; does it cover the run's roll, yaw "
+      "and lateral shift (tablegen info; tablegen geometry --roll)?",
+      100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
+}
+
 std::string_view steps_of_extremes(const RunSummary& summary) {
   return summary.wheel_extremes.largest_Q.found() ? "the recorded steps; Q, Y/Q and unloading of all steps"
                                                   : "the recorded steps";

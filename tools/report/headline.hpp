@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 #include "sliding_mean.hpp"
 
@@ -59,6 +60,11 @@ class HeadlineCollector {
   bool any_ = false;
   bool sparse_ = false;  // records too far apart for sliding means
 };
+
+[[nodiscard]] Headline headline_of(const RunResults& results);
+
+/// A warning where a table served less than half of the queries: it makes a run slow, not wrong. Else empty.
+[[nodiscard]] std::string uncovered_queries(const RunSummary& summary);
 
 /// Which steps the headline's values are of, in words.
 [[nodiscard]] std::string_view steps_of_extremes(const RunSummary& summary);

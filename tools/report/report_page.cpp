@@ -8,10 +8,10 @@
 
 #include "contact_figure.hpp"
 #include "headline.hpp"
-#include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"
 #include "run_charts.hpp"
+#include "train_frames.hpp"
 
 namespace railtab::report {
 namespace {
@@ -27,16 +27,9 @@ std::string tile(std::string_view name, const Extreme& extreme, double factor, s
               fmt::format("{}, t\u00a0=\u00a0{}\u00a0s", extreme.where, shown(extreme.time)));
 }
 
-std::string tiles(const Headline& headline, const RunSummary& summary) {
-  std::string html = "<dl class=\"tiles\">";
-  html += tile("Deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
-  html += tile("Deck displacement", headline.deck_displacement, 1e3, "mm");
-  html += tile("Car body, vertical", headline.car_body_vertical, 1.0, "m/s²");
-  html += tile("Car body, lateral", headline.car_body_lateral, 1.0, "m/s²");
-  html += tile("Largest Y/Q", headline.derailment, 1.0, "");
-  html += tile("Wheel unloading ΔQ/Q0", headline.unloading, 100.0, "%");
-  html += tile("Largest Q", headline.largest_Q, 1e-3, "kN");
-  html += tile("Smallest Q", headline.smallest_Q, 1e-3, "kN");
+/// Of the program itself: how the run was computed, not what came out.
+std::string program_tiles(const Headline& headline, const RunSummary& summary) {
+  std::string html;
   if (summary.contact_queries > 0) {
     html += tile("Served by the table", shown(100.0 * headline.table_share, 4), "%",
                  fmt::format("of {} contact queries", summary.contact_queries));
@@ -48,7 +41,23 @@ std::string tiles(const Headline& headline, const RunSummary& summary) {
   if (headline.real_time_factor > 0.0) {
     html += tile("Real-time factor", shown(headline.real_time_factor), "×", "simulated time over run time");
   }
-  return html + fmt::format("</dl><p class=\"lead\">Largest values of {}, unfiltered.</p>", steps_of_extremes(summary));
+  return html.empty() ? "" : fmt::format("<dl class=\"tiles\">{}</dl>", html);
+}
+
+std::string tiles(const Headline& headline, const RunSummary& summary) {
+  std::string html = "<dl class=\"tiles\">";
+  html += tile("Deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
+  html += tile("Deck displacement", headline.deck_displacement, 1e3, "mm");
+  html += tile("Car body, vertical", headline.car_body_vertical, 1.0, "m/s²");
+  html += tile("Car body, lateral", headline.car_body_lateral, 1.0, "m/s²");
+  html += tile("Largest Y/Q", headline.derailment, 1.0, "");
+  html += tile("Wheel unloading ΔQ/Q0", headline.unloading, 100.0, "%");
+  html += tile("Largest Q", headline.largest_Q, 1e-3, "kN");
+  html += tile("Smallest Q", headline.smallest_Q, 1e-3, "kN");
+  html += tile("Y/Q, mean over 2 m", headline.derailment_2m, 1.0, "");
+  html += tile("ΣY, mean over 2 m", headline.track_shift_2m, 1e-3, "kN");
+  return html + fmt::format("</dl><p class=\"lead\">Largest values of {}, unfiltered but for the means.</p>",
+                            steps_of_extremes(summary));
 }
 
 struct Share {
@@ -108,10 +117,8 @@ std::string run_table(const RunResults& results) {
   return "<table>" + rows + "</table></div>";
 }
 
-Headline headline_of(const RunResults& results) {
-  HeadlineCollector collector(results.header);
-  for (const StepRecord& step : results.steps) collector.add(step);
-  return collector.result(results.summary);
+std::string warning_text(const std::string& warning) {
+  return warning.empty() ? "" : fmt::format("<p class=\"warning\"><b>Warning:</b> {}</p>", escaped(warning));
 }
 
 std::string heading(const RunResults& results, const Headline& headline) {
@@ -127,29 +134,54 @@ std::string heading(const RunResults& results, const Headline& headline) {
                         escaped(results.summary.message.empty() ? "It was stopped; this page shows what was written."
                                                                 : results.summary.message));
   }
-  return html;
+  for (const std::string& warning : header.warnings) html += warning_text(warning);
+  return html + warning_text(uncovered_queries(results.summary));
+}
+
+std::string list(std::string_view title, const std::vector<std::string>& parts) {
+  if (parts.empty()) return "";
+  std::string items;
+  for (const std::string& part : parts) items += fmt::format("<li>{}</li>", escaped(part));
+  return fmt::format("<div><h3>{}</h3><ul class=\"parts\">{}</ul></div>", title, items);
+}
+
+/// What was run: the parts of the model, those left out, the files, the scene.
+std::string model(const ResultHeader& header) {
+  const std::string parts =
+      list("Built", header.built) + list("Left out", header.left_out) + list("Files read", header.input_files);
+  return fmt::format("{}<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
+                     parts.empty() ? "" : fmt::format("<div class=\"columns\">{}</div>", parts),
+                     escaped(header.scene_text));
+}
+
+std::string resolution_text(const HistoryStore& histories) {
+  if (histories.coarsest() == 1) return "Charts hold every record of all channels.";
+  return fmt::format(
+      "Charts hold every record of a channel where there are few, else the smallest and the largest value of so many "
+      "records that 40\u00a0000 values are left of the channels shown at first and 2000 of others: of these, of every "
+      "{} "
+      "records. Values are stored in 65\u00a0534 steps of their channel's range.",
+      histories.coarsest());
 }
 
 }  // namespace
 
 std::string report_page(const RunResults& results) {
   const Headline headline = headline_of(results);
-  const std::string time = time_figure(results.summary);
-  std::string body = heading(results, headline) + tiles(headline, results.summary);
-  body += html_section("Running safety", running_safety_charts(results));
-  body += html_section("Wheel forces", wheel_force_charts(results));
+  RunCharts charts({&results, 1}, {results.header.scene_name});
+  std::string body = heading(results, headline) + tiles(headline, results.summary) + train_section(results);
+  body += html_chart_section("Running safety", charts.running_safety());
+  body += html_chart_section("Wheel forces", charts.wheel_forces());
   body += html_section("Wheel and rail", contact_figure(results));
-  body += html_section("Car bodies", car_body_charts(results));
-  body += html_section("Bridge and track", structure_charts(results));
-  body += html_section("Where the time went", time.empty() ? "" : time + run_table(results));
-  body +=
-      html_section("Scene", fmt::format("<details><summary>The scene as it was run</summary><pre>{}</pre></details>",
-                                        escaped(results.header.scene_text)));
-  return html_page(page_kind, results.header.scene_name, body, results.header.program_version);
-}
-
-void write_report(const std::filesystem::path& file, const RunResults& results) {
-  write_text_file(file, report_page(results));
+  body += html_chart_section("Car bodies", charts.car_bodies());
+  body += html_chart_section("Bridge and track", charts.structure());
+  body += html_section("What was run", model(results.header));
+  const std::string time = time_figure(results.summary);
+  body += html_section("The program", program_tiles(headline, results.summary) +
+                                          (time.empty() ? "" : time + run_table(results)) +
+                                          fmt::format("<p class=\"lead\">{}</p>", resolution_text(charts.histories())));
+  return live_html_page(page_kind, results.header.scene_name, body, results.header.program_version, charts.histories(),
+                        train_script());
 }
 
 }  // namespace railtab::report

@@ -14,9 +14,14 @@ int critical_speed_command(const Arguments& arguments);
 int creep_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
+int assess_command(const Arguments& arguments);
 int moving_load_command(const Arguments& arguments);
 int report_command(const Arguments& arguments);
 int structure_command(const Arguments& arguments);
 int vehicle_command(const Arguments& arguments);
+int check_command(const Arguments& arguments);
+int new_command(const Arguments& arguments);
+/// vsi FILE: what the file is, and what can be done with it.
+int describe_command(const Arguments& arguments);
 
 }  // namespace railtab::vsi

@@ -7,20 +7,24 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/process_memory.hpp"
+#include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab::vsi {
 namespace {
 
 constexpr const char* usage =
-    "usage: vsi COMMAND [OPTIONS]; vsi COMMAND --help says more\n"
+    "usage: vsi COMMAND [OPTIONS]; vsi COMMAND --help says more; vsi FILE says what a file is\n"
+    "  new     SCENE.toml [--train NAME] [--span METRES]      write a scene to begin with\n"
+    "  check   SCENE.toml [-o LAYOUT.svg]                     validate a scene and draw what stands where\n"
     "  contact TABLE.h5 --query Q.csv -o R.csv [--online]     contact patches of a wheelset's positions\n"
     "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
     "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
-    "  report  RESULTS.h5 -o REPORT.html                      the results as one page\n"
+    "  report  RESULTS.h5... -o REPORT.html                   results as one page; several: compared\n"
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
     "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
     "contact\n"
+    "  assess  SCENE.toml [-o DIR]                            does its bridge pass? limits of the standards, one page\n"
     "  critical-speed SCENE.toml [--amplitude M]              linear critical speed of its vehicle on its profiles\n"
     "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
     "library\n";
@@ -35,9 +39,12 @@ int dispatch(const Arguments& arguments) {
   if (name == "sweep") return sweep_command(rest);
   if (name == "report") return report_command(rest);
   if (name == "structure") return structure_command(rest);
+  if (name == "assess") return assess_command(rest);
   if (name == "moving-load") return moving_load_command(rest);
   if (name == "critical-speed") return critical_speed_command(rest);
   if (name == "vehicle") return vehicle_command(rest);
+  if (name == "check") return check_command(rest);
+  if (name == "new") return new_command(rest);
   if (name == "--help" || name == "-h") {
     print_formatted("{}", usage);
     return 0;
@@ -46,6 +53,7 @@ int dispatch(const Arguments& arguments) {
     print_formatted("railtab {}\n", RAILTAB_VERSION);
     return 0;
   }
+  if (is_file(name)) return describe_command(arguments);
   throw InputError(fmt::format("unknown command '{}'\n{}", name, usage));
 }
 

@@ -79,15 +79,6 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   return 0;
 }
 
-/// A table that does not cover what the run does makes it slow, not wrong: say so.
-void warn_of_uncovered_queries(const RunSummary& summary) {
-  if (summary.contact_mode != "table" || 2 * summary.table_queries >= summary.contact_queries) return;
-  print_warning(fmt::format(
-      "the table served {:.1f} % of the contact queries, the online search the rest; does it cover the run's roll, yaw "
-      "and lateral shift (tablegen info; tablegen geometry --roll)?",
-      100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries)));
-}
-
 /// Wheel forces that the scene's track or contact cannot give, wherever they come from.
 void warn_of_negative_force(const report::Headline& headline, const SceneParameters& scene) {
   const report::Extreme& least = headline.smallest_Q;
@@ -138,7 +129,8 @@ int conclude(const SceneParameters& scene, const report::Headline& headline, con
     print_formatted("{}Results: {}\n", headline_text(headline, summary), options.output);
   }
   if (!options.quiet) {
-    warn_of_uncovered_queries(summary);
+    const std::string uncovered = report::uncovered_queries(summary);
+    if (!uncovered.empty()) print_warning(uncovered);
     warn_of_negative_force(headline, scene);
   }
   if (summary.complete) return 0;
@@ -211,7 +203,10 @@ class RunRecorder {
       collector_->add(step);
     };
     observer.checkpoint = [this](long step, std::span<const double> state) { writer_->checkpoint(state, step); };
-    observer.progress = [this](double fraction) { progress_.show(fraction); };
+    observer.progress = [this](double fraction) {
+      progress_.show(fraction);
+      if (options_.progress) options_.progress(fraction);
+    };
     return observer;
   }
 
@@ -269,6 +264,7 @@ void check_output(const SceneParameters& scene, const std::filesystem::path& sce
     static_cast<void>(array_file_type(output));
   }
   require_replaceable(output, {results_filetype});
+  require_fitting_name(output, "-o", "an HDF5 file", {".h5", ".hdf5"});
 }
 
 }  // namespace
@@ -301,9 +297,7 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     const RunResults before = read_results(options.output);
     check_same_run(before, scene, options.output);
     if (before.summary.complete) {
-      report::HeadlineCollector collector(before.header);
-      for (const StepRecord& step : before.steps) collector.add(step);
-      return conclude(scene, collector.result(before.summary), before.summary, options);
+      return conclude(scene, report::headline_of(before), before.summary, options);
     }
     from = recorder.take_up(before);
   }

@@ -14,6 +14,7 @@ struct RunOptions {
   bool json = false, quiet = false, resume = false;
   /// Told how a run has ended, before the program says it; may be empty.
   std::function<void(const report::Headline&, const RunSummary&)> ended{};
+  std::function<void(double share)> progress{};  ///< of the steps done, 0..1; may be empty
 };
 
 /// Runs a scene and writes its results; with `resume` it goes on from the checkpoint that they hold, and leaves

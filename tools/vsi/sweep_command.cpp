@@ -1,14 +1,7 @@
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstdio>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -24,7 +17,7 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
-#include "run_command.hpp"
+#include "run_pool.hpp"
 #include "sweep_plan.hpp"
 
 namespace railtab::vsi {
@@ -32,8 +25,7 @@ namespace po = boost::program_options;
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int done = 0, failed = 1, wrong_input = 2, interrupted = 130;
-constexpr int kept = 3;  // of a process whose run was finished before
+constexpr int done = 0, failed = 1;
 
 std::string whole_text(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -42,153 +34,12 @@ std::string whole_text(const fs::path& file) {
   return text.str();
 }
 
-bool is_readable(const fs::path& results) {
-  try {
-    static_cast<void>(read_results(results));
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
-/// The runs of a sweep in processes of their own: one that dies takes no other with it, and every one can be resumed.
-class Sweep {
- public:
-  Sweep(const SceneParameters& scene, fs::path scene_file, fs::path folder, bool quiet)
-      : scene_(scene), scene_file_(std::move(scene_file)), folder_(std::move(folder)), quiet_(quiet) {}
-
-  /// Input that is wrong for the first run that ends is wrong for all: the rest is not begun.
-  /// @return exit code: 1 where a run failed or ended early, 2 where the input of all is wrong, 130 after Ctrl-C
-  int run(const std::vector<SweepRun>& runs, std::size_t processes) {
-    signal(SIGINT, [](int) { asked_ = 1; });
-    int code = done;
-    std::size_t next = 0;
-    while (next < runs.size() || !going_.empty()) {
-      while (asked_ == 0 && next < runs.size() && going_.size() < processes) {
-        const SweepRun& run = runs[next++];
-        going_.emplace(begin(run), &run);
-      }
-      if (going_.empty()) break;
-      code = std::max(code, wait());
-      if (code == wrong_input) next = runs.size();
-    }
-    return asked_ != 0 ? interrupted : code;
-  }
-
-  /// A run is finished when its row is there, which is written last, where the train has derailed too, and so are its
-  /// results.
-  [[nodiscard]] bool finished(const SweepRun& run) const {
-    return fs::exists(file(run, ".row")) && fs::exists(file(run, ".h5"));
-  }
-  [[nodiscard]] fs::path file(const SweepRun& run, const char* suffix) const { return folder_ / (run.name + suffix); }
-
- private:
-  pid_t begin(const SweepRun& run) const {
-    std::fflush(nullptr);
-    const pid_t process = fork();
-    if (process < 0) throw ComputationError("vsi sweep: no more processes can be started");
-    if (process == 0) _exit(in_own_process(run));
-    return process;
-  }
-
-  /// Another name beside the old one, which nothing is lost by.
-  void set_aside(const SweepRun& run, const char* suffix, const std::string& why) const {
-    const fs::path old = file(run, suffix);
-    fs::path aside = old.string() + "." + why;
-    constexpr int most = 10000;
-    for (int k = 2; fs::exists(aside); ++k) {
-      if (k > most) throw input_error(old.string(), fmt::format("{} files set aside", most), "fewer: remove them");
-      aside = fmt::format("{}.{}-{}", old.string(), why, k);
-    }
-    fs::rename(old, aside);
-    print_message(fmt::format("vsi sweep: {}: {} is set aside as {}\n", run.name, old.filename().string(),
-                              aside.filename().string()));
-  }
-
-  /// Whether results there are the run's own, which it can keep or go on from. @throws InputError why they are not
-  void check_results(const SweepRun& run, const SceneParameters& scene) const {
-    const fs::path results = file(run, ".h5");
-    const RunResults before = read_results(results);
-    if (!finished(run)) return check_same_run(before, scene, results.string());
-    if (before.header.scene_text != scene.text) {
-      throw input_error(results.string(), "results of another scene", "those of this run");
-    }
-  }
-
-  /// Results that cannot be read, cut off by a full disk or a kill, or that are another run's would stand in the way of
-  /// their run for good; and a row is only believed beside its results.
-  void set_others_aside(const SweepRun& run, const SceneParameters& scene) const {
-    std::string why = "alone";
-    if (fs::exists(file(run, ".h5"))) {
-      try {
-        check_results(run, scene);
-        return;
-      } catch (const InputError& wrong) {
-        print_message(fmt::format("vsi sweep: {}: {}; the run is made again\n", run.name, wrong.what()));
-      }
-      why = is_readable(file(run, ".h5")) ? "other" : "damaged";
-      set_aside(run, ".h5", why);
-    }
-    if (fs::exists(file(run, ".row"))) set_aside(run, ".row", why);
-  }
-
-  [[nodiscard]] int in_own_process(const SweepRun& run) const {
-    const SceneParameters scene = scene_of(scene_, run);
-    try {
-      signal(SIGINT, SIG_DFL);
-      prctl(PR_SET_PDEATHSIG, SIGKILL);  // a sweep that is killed leaves no run behind that would hold its file
-      set_others_aside(run, scene);
-      if (finished(run)) return kept;
-      std::string row;
-      RunOptions options{file(run, ".h5").string(), false, true, true};
-      options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
-        if (!summary.interrupted) row = summary_row(run, headline, summary);
-      };
-      const int code = run_to_file(scene, options);
-      if (!row.empty()) write_text_file(file(run, ".row"), row);
-      return code;
-    } catch (const InputError& wrong) {
-      print_message(fmt::format("vsi sweep: {}: {}\n", run.name, with_scene_line(wrong, scene, scene_file_).what()));
-      return wrong_input;
-    } catch (const std::exception& failure) {
-      print_message(fmt::format("vsi sweep: {}: {}\n", run.name, failure.what()));
-    }
-    return failed;
-  }
-
-  /// Waits for one of the processes; its exit code, 2 only where no run has ended otherwise.
-  int wait() {
-    int status = 0;
-    const pid_t process = ::wait(&status);
-    if (process < 0) return done;  // a signal: those that go on are waited for again
-    const auto ended = going_.find(process);
-    if (ended == going_.end()) return done;
-    const SweepRun& run = *ended->second;
-    going_.erase(ended);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == wrong_input && !one_ended_) return wrong_input;
-    one_ended_ = true;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == kept) return done;
-    const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
-    if (!quiet_)
-      print_formatted("{}: {}\n", run.name, complete ? "done" : finished(run) ? "ended early" : "not finished");
-    std::fflush(stdout);
-    return complete ? done : failed;
-  }
-
-  static inline volatile std::sig_atomic_t asked_ = 0;
-  const SceneParameters& scene_;
-  fs::path scene_file_, folder_;
-  bool quiet_;
-  bool one_ended_ = false;  ///< with another exit code than that of wrong input
-  std::map<pid_t, const SweepRun*> going_;
-};
-
 struct SweepCount {
   std::size_t finished = 0, ended_early = 0;
 };
 
 /// Row of a finished run, and whether it came to its end. @throws InputError
-std::pair<std::string, bool> row_of(const Sweep& sweep, const SweepRun& run) {
+std::pair<std::string, bool> row_of(const RunPool& sweep, const SweepRun& run) {
   std::string row = whole_text(sweep.file(run, ".row"));
   const std::optional<bool> complete = complete_of_row(run, row);
   if (complete) return {std::move(row), *complete};
@@ -197,7 +48,7 @@ std::pair<std::string, bool> row_of(const Sweep& sweep, const SweepRun& run) {
 }
 
 /// Finished runs; `rows` takes theirs where it is not null. @throws InputError
-SweepCount count_runs(const Sweep& sweep, const std::vector<SweepRun>& runs, std::string* rows = nullptr) {
+SweepCount count_runs(const RunPool& sweep, const std::vector<SweepRun>& runs, std::string* rows = nullptr) {
   SweepCount count;
   for (const SweepRun& run : runs) {
     if (!sweep.finished(run)) continue;
@@ -210,24 +61,11 @@ SweepCount count_runs(const Sweep& sweep, const std::vector<SweepRun>& runs, std
 }
 
 /// All finished runs of the whole sweep, whichever process or shard made them. @throws InputError
-SweepCount write_summary(const Sweep& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
+SweepCount write_summary(const RunPool& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
   std::string text = summary_columns();
   const SweepCount count = count_runs(sweep, runs, &text);
   write_text_file(file, text);
   return count;
-}
-
-/// The folder of the results is made, but none that would hold it: a path with a slip is refused, as for every -o.
-void make_folder(const fs::path& folder) {
-  if (fs::is_directory(folder)) return;
-  if (fs::exists(folder)) throw input_error("-o", folder.string() + ", which is a file", "a folder");
-  const fs::path parent = fs::absolute(folder / "").parent_path().parent_path();
-  if (!fs::is_directory(parent)) {
-    throw input_error("-o", fmt::format("no folder {}", parent.string()), "a new folder in an existing one");
-  }
-  std::error_code failure;
-  fs::create_directory(folder, failure);
-  if (failure) throw input_error("-o", folder.string() + ": " + failure.message(), "a folder that can be made");
 }
 
 /// A folder holds the runs of one scene and of the same contents of the files that it names.
@@ -317,11 +155,11 @@ int sweep_command(const Arguments& arguments) {
     own.push_back(all[i]);
   }
 
-  make_folder(folder);
+  make_output_folder(folder);
   remove_abandoned_of(all, folder);
   check_same_scene(scene, folder);
   const auto processes = static_cast<std::size_t>(line.workers());
-  Sweep sweep(scene, scene_file, folder, line.quiet() || line.json());
+  RunPool sweep(scene, scene_file, folder, {"vsi sweep", line.quiet() || line.json()});
   const int code = sweep.run(own, processes);
   const bool whole = shard.count == 1;
   const fs::path summary = folder / "summary.csv";

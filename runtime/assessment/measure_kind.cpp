@@ -1,0 +1,68 @@
+#include "railtab/runtime/assessment/measure_kind.hpp"
+
+namespace railtab {
+
+std::string_view stage_name(AssessmentStage stage) noexcept {
+  switch (stage) {
+    case AssessmentStage::check:
+      return "check";
+    case AssessmentStage::moving_load:
+      return "moving-load";
+    case AssessmentStage::contact:
+      break;
+  }
+  return "contact";
+}
+
+const std::vector<MeasureKind>& measure_kinds() {
+  using enum AssessmentStage;
+  static const std::vector<MeasureKind> kinds{
+      {"first_frequency", "Hz", {check}, "first natural frequency of vertical bending"},
+      {"lateral_frequency", "Hz", {check}, "first natural frequency of lateral bending"},
+      {"deflection_lm71", "m", {check}, "largest deflection under load model 71 at rest, times Φ2"},
+      {"deck_acceleration", "m/s2", {moving_load, contact}, "largest vertical acceleration of the deck, low-passed"},
+      {"deck_acceleration_unfiltered", "m/s2", {contact}, "the same without a filter"},
+      {"deck_displacement", "m", {moving_load, contact}, "largest vertical displacement of the deck"},
+      {"deck_end_rotation", "rad", {moving_load}, "largest rotation of the deck's ends about the lateral axis"},
+      {"deck_twist", "m", {}, "change of the deck's cross level over 3 m of the track"},
+      {"horizontal_rotation", "rad", {}, "rotation of the deck's ends about the vertical axis"},
+      {"wheel_unloading", "-", {contact}, "largest ΔQ/Q0, low-passed at 20 Hz"},
+      {"wheel_unloading_unfiltered", "-", {contact}, "the same without a filter; 1 is lift-off"},
+      {"unloading_duration", "s", {contact}, "longest time with ΔQ/Q0 above 0.6, unfiltered"},
+      {"derailment_2m", "-", {contact}, "largest |Y/Q| of a wheel, low-passed at 20 Hz, mean over 2 m"},
+      {"derailment", "-", {contact}, "largest |Y/Q| of a wheel, low-passed at 20 Hz"},
+      {"weinstock_sum", "-", {contact}, "largest |Y/Q| of both wheels of a wheelset together, low-passed at 20 Hz"},
+      {"track_shift_2m", "N", {contact}, "largest |ΣY| of a wheelset, low-passed at 20 Hz, mean over 2 m"},
+      {"wheel_force", "N", {contact}, "largest Q, low-passed at 20 Hz"},
+      {"car_body_vertical", "m/s2", {contact}, "largest vertical acceleration of a car body, unfiltered"},
+      {"car_body_lateral", "m/s2", {contact}, "largest lateral acceleration of a car body, unfiltered"},
+      {"comfort_vertical", "m/s2", {contact}, "largest rms of 5 s of a car body's vertical acceleration, weighted W_b"},
+      {"comfort_lateral", "m/s2", {contact}, "largest rms of 5 s of a car body's lateral acceleration, weighted W_d"},
+      {"running_rms_vertical", "m/s2", {contact}, "largest rms of 1 s of a car body's vertical acceleration, W_k"},
+      {"vibration_dose_vertical", "m/s1.75", {contact}, "vibration dose of a car body's vertical acceleration, W_k"},
+      {"sperling_vertical", "-", {contact}, "largest W_z of 5 s of a car body, vertical"},
+      {"sperling_lateral", "-", {contact}, "largest W_z of 5 s of a car body, lateral"},
+  };
+  return kinds;
+}
+
+const MeasureKind* find_measure(std::string_view name) {
+  for (const MeasureKind& kind : measure_kinds()) {
+    if (kind.name == name) return &kind;
+  }
+  return nullptr;
+}
+
+ShownUnit shown_unit(std::string_view unit) noexcept {
+  constexpr double thousand = 1e3;
+  if (unit == "m") return {"mm", thousand};
+  if (unit == "N") return {"kN", 1.0 / thousand};
+  if (unit == "rad") return {"mrad", thousand};
+  if (unit == "s") return {"ms", thousand};
+  if (unit == "m/s2") return {"m/s²", 1.0};
+  if (unit == "m/s1.75") return {"m/s^1.75", 1.0};
+  if (unit == "-") return {"", 1.0};
+  return {unit, 1.0};
+}
+
+}  // namespace railtab

@@ -1,0 +1,142 @@
+#include "railtab/runtime/assessment/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace railtab {
+namespace {
+
+bool within(double value, const std::array<double, 2>& range) { return value > range[0] && value <= range[1]; }
+
+/// Why a clause does not apply to anything here; empty where it does.
+std::string excluded(const Clause& clause, const AssessmentFacts& facts) {
+  constexpr double kmh = 3.6;
+  if (!clause.track.empty() && clause.track != facts.track) {
+    return fmt::format("for {} track; this is {}", clause.track, facts.track);
+  }
+  if (clause.line_speed && !within(kmh * facts.line_speed * (1.0 - 1e-9), *clause.line_speed)) {
+    return fmt::format("for line speeds above {:g} up to {:g} km/h; this is {:.4g} km/h", (*clause.line_speed)[0],
+                       (*clause.line_speed)[1], kmh * facts.line_speed);
+  }
+  return {};
+}
+
+bool of_span(const Clause& clause, const MeasuredValue& value) {
+  const auto span = value.quantities.find("span");
+  return !clause.span || (span != value.quantities.end() && within(span->second, *clause.span));
+}
+
+std::optional<double> limit_for(const ClauseLimit& limit, const MeasuredValue& value) {
+  if (limit.of.empty()) return limit.constant;
+  const auto quantity = value.quantities.find(limit.of);
+  if (quantity == value.quantities.end()) return std::nullopt;
+  const double found = limit.constant + limit.factor * std::pow(quantity->second, limit.exponent);
+  return limit.at_most ? std::min(found, *limit.at_most) : found;
+}
+
+std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasure>& missing) {
+  std::string reasons;
+  for (const MissingMeasure& m : missing) {
+    if (m.measure == clause.measure) {
+      if (!reasons.empty()) reasons += "; ";
+      reasons += fmt::format("{}: {}", stage_name(m.stage), m.reason);
+    }
+  }
+  if (!reasons.empty()) return reasons;
+  const MeasureKind* kind = find_measure(clause.measure);
+  if (kind->stages.empty()) return fmt::format("not computed by vsi assess: {}", kind->meaning);
+  std::string stages;
+  for (const AssessmentStage stage : kind->stages) {
+    stages += fmt::format("{}{}", stages.empty() ? "" : " or ", stage_name(stage));
+  }
+  return fmt::format("needs stage {}", stages);
+}
+
+/// The verdict of one stage; none where the stage has no value that the clause is about.
+std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
+                                   const std::vector<MeasuredValue>& values, const std::vector<MissingMeasure>& missing,
+                                   bool& other_spans) {
+  Verdict verdict{&clause, stage, Outcome::pass, {}, 0.0, {}};
+  for (const MeasuredValue& value : values) {
+    if (value.measure != clause.measure || value.stage != stage) continue;
+    if (!of_span(clause, value)) {
+      other_spans = true;
+      continue;
+    }
+    const std::optional<double> limit = limit_for(clause.limit, value);
+    if (!limit) continue;
+    Verdict next = verdict;
+    next.at = value;
+    next.limit = *limit;
+    if (!verdict.at || next.utilisation() > verdict.utilisation()) verdict = std::move(next);
+  }
+  if (!verdict.at) return std::nullopt;
+  if (verdict.utilisation() > 1.0) {
+    verdict.outcome = Outcome::fail;
+    return verdict;
+  }
+  for (const MissingMeasure& m : missing) {
+    if (m.measure != clause.measure || m.stage != stage || !m.partly) continue;
+    verdict.outcome = Outcome::not_judged;
+    verdict.reason = m.reason;
+  }
+  return verdict;
+}
+
+}  // namespace
+
+std::string_view outcome_name(Outcome outcome) noexcept {
+  switch (outcome) {
+    case Outcome::pass:
+      return "pass";
+    case Outcome::fail:
+      return "fail";
+    case Outcome::not_applicable:
+      return "does not apply";
+    case Outcome::not_judged:
+      break;
+  }
+  return "not judged";
+}
+
+double Verdict::utilisation() const noexcept {
+  if (!at) return 0.0;
+  const double above = clause->limit.lower ? limit : at->value, below = clause->limit.lower ? at->value : limit;
+  return below > 0.0 ? above / below : above > 0.0 ? INFINITY : 0.0;
+}
+
+std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentFacts& facts,
+                           const std::vector<MeasuredValue>& values, const std::vector<MissingMeasure>& missing) {
+  using enum AssessmentStage;
+  std::vector<Verdict> verdicts;
+  for (const Clause& clause : clauses) {
+    std::string reason = excluded(clause, facts);
+    if (!reason.empty()) {
+      verdicts.push_back({&clause, {}, Outcome::not_applicable, std::move(reason), 0.0, {}});
+      continue;
+    }
+    bool any = false, other_spans = false;
+    for (const AssessmentStage stage : {check, moving_load, contact}) {
+      if (auto verdict = judge_stage(clause, stage, values, missing, other_spans)) {
+        verdicts.push_back(std::move(*verdict));
+        any = true;
+      }
+    }
+    if (any) continue;
+    if (other_spans) {
+      verdicts.push_back({&clause,
+                          {},
+                          Outcome::not_applicable,
+                          fmt::format("for spans above {:g} up to {:g} m", (*clause.span)[0], (*clause.span)[1]),
+                          0.0,
+                          {}});
+    } else {
+      verdicts.push_back({&clause, {}, Outcome::not_judged, no_value_reason(clause, missing), 0.0, {}});
+    }
+  }
+  return verdicts;
+}
+
+}  // namespace railtab

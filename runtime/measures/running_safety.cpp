@@ -1,0 +1,35 @@
+#include "railtab/runtime/measures/running_safety.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace railtab {
+
+double nadal_limit(double flange_angle, double friction) noexcept {
+  const double t = std::tan(flange_angle);
+  return (t - friction) / (1.0 + friction * t);
+}
+
+double weinstock_ratio(double Y_left, double Q_left, double Y_right, double Q_right) noexcept {
+  if (!(Q_left > 0.0 && Q_right > 0.0)) return 0.0;
+  return std::abs(Y_left / Q_left) + std::abs(Y_right / Q_right);
+}
+
+double prudhomme_limit(double axle_load, double k1) noexcept { return k1 * (10e3 + axle_load / 3.0); }
+
+void Unloading::add(double time, double Q, double Q0) noexcept {
+  const double value = (Q0 - Q) / Q0;
+  if (value > largest_) {
+    largest_ = value;
+    time_ = time;
+  }
+  const bool above = value > limit_, was_above = any_ && last_ > limit_;
+  const auto crossing = [&] { return last_time_ + (time - last_time_) * (limit_ - last_) / (value - last_); };
+  if (above && !was_above) since_ = any_ ? crossing() : time;
+  if (was_above) longest_ = std::max(longest_, (above ? time : crossing()) - since_);
+  any_ = true;
+  last_ = value;
+  last_time_ = time;
+}
+
+}  // namespace railtab

@@ -1,0 +1,34 @@
+#pragma once
+
+namespace railtab {
+
+/// Nadal's limit of Y/Q of the wheel that climbs, (tan δ − μ)/(1 + μ tan δ): flange angle δ [rad], friction μ.
+[[nodiscard]] double nadal_limit(double flange_angle, double friction) noexcept;
+
+/// Weinstock's criterion: |Y/Q| of both wheels of a wheelset together, against Nadal's limit + μ. 0 where a wheel bears
+/// nothing. Forces [N].
+[[nodiscard]] double weinstock_ratio(double Y_left, double Q_left, double Y_right, double Q_right) noexcept;
+
+/// Prud'homme's limit of the sum of both Y of a wheelset, k1 (10 kN + P/3), P the static axle load [N]. k1: 1, 0.85 of
+/// freight wagons. @return [N]
+[[nodiscard]] double prudhomme_limit(double axle_load, double k1 = 1.0) noexcept;
+
+/// Wheel unloading ΔQ/Q0 = (Q0 − Q)/Q0: the largest, and the longest time without a break above a limit, ends of it
+/// between samples by the line through them.
+class Unloading {
+ public:
+  /// @param limit of the duration [-]
+  explicit Unloading(double limit) : limit_(limit) {}
+  /// @param Q0 static load [N] @pre times rise
+  void add(double time, double Q, double Q0) noexcept;
+  [[nodiscard]] double largest() const noexcept { return largest_; }        ///< [-]
+  [[nodiscard]] double time() const noexcept { return time_; }              ///< of the largest [s]
+  [[nodiscard]] double longest_above() const noexcept { return longest_; }  ///< [s]
+
+ private:
+  double limit_, largest_ = -1e300, time_ = 0.0, longest_ = 0.0;
+  double last_time_ = 0.0, last_ = 0.0, since_ = 0.0;
+  bool any_ = false;
+};
+
+}  // namespace railtab

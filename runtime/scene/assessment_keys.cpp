@@ -1,0 +1,31 @@
+#include "railtab/runtime/scene/key_table.hpp"
+
+namespace railtab::scene {
+namespace {
+
+template <auto member>
+auto& of_assessment(SceneDraft& draft) {
+  return draft.parameters.assessment.*member;
+}
+
+}  // namespace
+
+std::vector<KeyRow> assessment_keys() {
+  return {
+      {"assessment.line_speed_kmh", "km/h", "highest speed of the line; 0: the train's",
+       NumberKey{of_assessment<&AssessmentParameters::line_speed_kmh>, {1.0, 600.0, true}}},
+      {"assessment.track", "", "track on the deck, for the limit of its acceleration",
+       choice<DeckTrack>(of_assessment<&AssessmentParameters::track>,
+                         {{"ballasted", DeckTrack::ballasted}, {"direct", DeckTrack::direct}})},
+      {"assessment.seeds",
+       "1",
+       "random tracks for each speed, from irregularity.seed on",
+       IntegerKey{of_assessment<&AssessmentParameters::seeds>, 1, 1000},
+       {&with_spectrum}},
+      {"assessment.begin", "m",
+       "where wheels and car bodies begin to be judged; absent: train.start, or behind it the end of the fade-in",
+       OptionalNumberKey{of_assessment<&AssessmentParameters::begin>, {-1e5, 1e5}}},
+  };
+}
+
+}  // namespace railtab::scene

@@ -1,0 +1,160 @@
+// vsi assess: verdicts, exit codes, files, runs that are kept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "vsi_fixture.hpp"
+
+namespace railtab {
+namespace {
+
+using nlohmann::json;
+
+/// The span of docs/examples/hslm_beam.toml: resonance of HSLM-A at 200 km/h · 1.2 exceeds 3.5 m/s².
+const std::string light_span = "[[bridge]]\nlength = 25.0\nmass = 15e3\nE = 30e9\nIy = 1.0\n";
+const std::string stiff_span = "[[bridge]]\nlength = 25.0\nmass = 25e3\nE = 30e9\nIy = 12.0\n";
+/// Wheels that follow the rails: a run takes a moment.
+const std::string vertical =
+    "[train]\nspeed_kmh = 160\n[contact]\nnormal = \"rigid\"\n[integration]\ntime_step = 1e-3\n[track]\nlength_before "
+    "= "
+    "30\nlength_after = 30\n";
+
+class AssessCommand : public VsiCommand {
+ protected:
+  [[nodiscard]] static json object(const Outcome& outcome) {
+    return json::parse(outcome.output.substr(outcome.output.find('{')));
+  }
+  [[nodiscard]] static json verdict(const json& assessment, const std::string& id, const std::string& stage = "") {
+    for (const json& v : assessment["verdicts"]) {
+      if (v["id"] == id && (stage.empty() || v.value("stage", "") == stage)) return v;
+    }
+    return {};
+  }
+  [[nodiscard]] std::string text_of(const std::string& name) const {
+    std::ifstream file(folder_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+};
+
+TEST_F(AssessCommand, ABridgeThatFailsUnderMovingLoads) {
+  write("scene.toml", vertical + "[assessment]\nline_speed_kmh = 250\n" + light_span);
+  const std::string stages = "assess scene.toml --stage check --stage moving-load -o out ";
+  const Outcome plain = vsi(stages);
+  EXPECT_EQ(plain.exit_code, 0) << "without --fail-on\n" << plain.output;
+  EXPECT_NE(plain.output.find("FAILS: 1 limit not met"), std::string::npos) << plain.output;
+  EXPECT_EQ(vsi(stages + "--fail-on any").exit_code, 3);
+  EXPECT_EQ(vsi(stages + "--fail-on verified").exit_code, 3) << "the limit is verified";
+  const Outcome asked = vsi(stages + "--json");
+  const json found = object(asked);
+  EXPECT_EQ(found, json::parse(text_of("out/assessment.json")));
+  const json deck = verdict(found, "en1990.deck-acceleration.ballasted");
+  EXPECT_EQ(deck["outcome"], "fail");
+  EXPECT_EQ(deck["limit"], 3.5);
+  EXPECT_GT(deck["value"].get<double>(), 3.5);
+  EXPECT_EQ(deck["at"]["train"].get<std::string>().substr(0, 6), "hslm-a");
+  EXPECT_NEAR(found["moving_load_speeds"][1].get<double>(), 1.2 * 250.0 / 3.6, 1e-9);
+  EXPECT_EQ(found["stages"]["contact"]["done"], false);
+  EXPECT_EQ(found["stages"]["contact"]["skipped"], "not asked for (--stage)");
+  EXPECT_EQ(verdict(found, "en14363.unloading")["reason"], "needs stage contact");
+  EXPECT_EQ(found["decks"][0]["dynamic_analysis"]["need"], "required") << "above 200 km/h";
+  EXPECT_EQ(found["decks"][0]["trains"].size(), 11U) << "HSLM-A and the scene's train";
+  EXPECT_EQ(text_of("out/assessment.html").find("<!DOCTYPE html>"), 0U);
+  EXPECT_EQ(found["summary"]["fail"], 1);
+}
+
+/// The value of the verdict is that of vsi moving-load.
+TEST_F(AssessCommand, AgreesWithMovingLoad) {
+  write("scene.toml", vertical + light_span);
+  const json found = object(vsi("assess scene.toml --stage moving-load -o out --json"));
+  const json deck = verdict(found, "en1990.deck-acceleration.ballasted");
+  const double speed = deck["at"]["speed"].get<double>();
+  const json direct = object(vsi("moving-load scene.toml --speed " + std::to_string(speed) + " --train " +
+                                 deck["at"]["train"].get<std::string>() + " --json"));
+  EXPECT_NEAR(direct["decks"][0]["acceleration"]["value"].get<double>(), deck["value"].get<double>(),
+              1e-4 * deck["value"].get<double>());
+  EXPECT_LE(speed, 1.2 * 160.0 / 3.6 * (1.0 + 1e-9)) << "1.2 times the train's speed";
+}
+
+TEST_F(AssessCommand, ABridgeThatPassesAllStages) {
+  write("scene.toml", vertical + stiff_span);
+  const Outcome outcome = vsi("assess scene.toml --fail-on any -o out --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const json found = object(outcome);
+  EXPECT_EQ(found["summary"]["fail"], 0);
+  EXPECT_EQ(verdict(found, "en1990.deck-acceleration.ballasted", "moving-load")["outcome"], "pass");
+  EXPECT_EQ(verdict(found, "en1990.deck-acceleration.ballasted", "contact")["outcome"], "pass");
+  EXPECT_EQ(verdict(found, "en14363.unloading")["outcome"], "pass");
+  EXPECT_NE(verdict(found, "en14363.derailment")["reason"].get<std::string>().find("no lateral forces"),
+            std::string::npos);
+  ASSERT_GE(found["runs"].size(), 1U);
+  EXPECT_EQ(found["runs"][0]["complete"], true);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / found["runs"][0]["results"].get<std::string>()));
+}
+
+TEST_F(AssessCommand, FinishedRunsAreKeptAndOthersMadeAgain) {
+  write("scene.toml", vertical + stiff_span);
+  const std::string command = "assess scene.toml --stage contact --speed-kmh 140:160:20 -o out --json";
+  const json first = object(vsi(command));
+  ASSERT_EQ(first["runs"].size(), 2U);
+  const std::filesystem::path run = folder_ / first["runs"][0]["results"].get<std::string>(),
+                              other = folder_ / first["runs"][1]["results"].get<std::string>();
+  const auto written = std::filesystem::last_write_time(run);
+  std::filesystem::remove(other);
+  json second = object(vsi(command)), before = first;
+  EXPECT_EQ(std::filesystem::last_write_time(run), written);
+  EXPECT_TRUE(std::filesystem::exists(other));
+  second.erase("stages");
+  before.erase("stages");
+  EXPECT_EQ(second, before) << "the same numbers";
+  write("scene.toml", vertical + light_span);
+  const json changed = object(vsi(command));
+  EXPECT_NE(changed["measures"], first["measures"]) << "results of another scene are not taken for this one's";
+}
+
+TEST_F(AssessCommand, RandomTracksOfSeveralSeedsRiseFromZero) {
+  write("scene.toml", vertical + stiff_span +
+                          "[irregularity]\nspectrum = \"german-low\"\nlongest_wave = 25\n[assessment]\nseeds = 2\n");
+  const json found = object(vsi("assess scene.toml --stage contact --speed-kmh 160 -o out --json"));
+  ASSERT_EQ(found["runs"].size(), 2U);
+  EXPECT_EQ(found["runs"][1]["seed"], 2);
+  EXPECT_NE(found["runs"][0]["measures"]["wheel_unloading"], found["runs"][1]["measures"]["wheel_unloading"]);
+  const json notes = found["stages"]["contact"]["notes"];
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const json& note) {
+    return note.get<std::string>().find("rises from zero over 25 m") != std::string::npos;
+  })) << notes;
+  for (const json& v : found["measures"]) {
+    if (v["measure"] != "wheel_unloading") continue;
+    EXPECT_GT(v["time"].get<double>(), 0.1) << "not in the first steps";
+  }
+  EXPECT_EQ(object(vsi("assess scene.toml --stage contact --seeds 1 --speed-kmh 160 -o out --json"))["runs"].size(),
+            1U);
+}
+
+TEST_F(AssessCommand, ClausesOfAUser) {
+  write("scene.toml", vertical + stiff_span);
+  write("own.toml",
+        "edition = \"client\"\n[[clause]]\nid = \"client.deck\"\nclause = \"3\"\ntitle = \"rotation\"\nmeasure = "
+        "\"deck_end_rotation\"\nunit = \"rad\"\nlimit = 1e-9\n");
+  const std::string command = "assess scene.toml --stage moving-load --clauses own.toml -o out ";
+  EXPECT_EQ(vsi(command + "--fail-on any").exit_code, 3);
+  EXPECT_EQ(vsi(command + "--fail-on verified").exit_code, 0) << "the client's limit has no source";
+  EXPECT_EQ(verdict(object(vsi(command + "--json")), "client.deck")["edition"], "client");
+}
+
+TEST_F(AssessCommand, WrongInput) {
+  write("scene.toml", vertical + light_span);
+  write("no_bridge.toml", vertical);
+  expect_refused("assess", "the argument scene is missing");
+  expect_refused("assess no_bridge.toml -o out", "no bridge");
+  expect_refused("assess scene.toml --stage all -o out", "--stage: found all, expected check, moving-load or contact");
+  expect_refused("assess scene.toml --fail-on all -o out", "--fail-on: found all, expected any or verified");
+  expect_refused("assess scene.toml --clauses no.toml -o out", "no.toml");
+  expect_refused("assess scene.toml -o no/out", "no folder");
+  write("typed.toml", vertical + light_span + "[assessment]\nline_speed = 200\n");
+  expect_refused("assess typed.toml -o out", "unknown key 'assessment.line_speed'; did you mean");
+  expect_refused("assess scene.toml --seeds 3 --stage contact -o out2", "irregularity.spectrum");
+}
+
+}  // namespace
+}  // namespace railtab

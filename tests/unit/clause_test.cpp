@@ -1,0 +1,149 @@
+// Clauses as data, and verdicts by them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "../folder_fixture.hpp"
+#include "railtab/runtime/assessment/verdict.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+
+namespace railtab {
+namespace {
+
+using enum AssessmentStage;
+
+const std::string own_clause =
+    "edition = \"NA to test\"\n[[clause]]\nid = \"own\"\nclause = \"1\"\ntitle = \"own limit\"\nmeasure = "
+    "\"track_shift_2m\"\nunit = \"N\"\nlimit_by = { of = \"axle_load\", factor = 0.5, constant = 1e3, at_most = 30e3 "
+    "}\n";
+
+MeasuredValue value(std::string measure, AssessmentStage stage, double amount, double span = 25.0) {
+  MeasuredValue v;
+  v.measure = std::move(measure);
+  v.stage = stage;
+  v.value = amount;
+  v.where = "here";
+  v.quantities = {{"span", span}, {"axle_load", 40e3}};
+  return v;
+}
+
+const Verdict& of(const std::vector<Verdict>& verdicts, std::string_view id) {
+  const auto found =
+      std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) { return v.clause->id == id; });
+  if (found == verdicts.end()) throw std::runtime_error("no verdict");
+  return *found;
+}
+
+class Clauses : public testing::InFolder {
+ protected:
+  [[nodiscard]] std::string message_of(const std::string& text) const {
+    write("own.toml", text);
+    try {
+      static_cast<void>(clauses_with({folder_ / "own.toml"}));
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "no error";
+  }
+};
+
+TEST_F(Clauses, OfTheLibraryAreWellFormed) {
+  const std::vector<Clause> clauses = library_clauses();
+  EXPECT_GE(clauses.size(), 25U);
+  std::set<std::string> ids;
+  for (const Clause& clause : clauses) {
+    EXPECT_TRUE(ids.insert(clause.id).second) << clause.id;
+    EXPECT_FALSE(clause.source.empty()) << clause.id;
+    EXPECT_FALSE(clause.verified && clause.source.find("from memory") != std::string::npos) << clause.id;
+  }
+}
+
+TEST_F(Clauses, OfAUsersFileAreAddedOrReplaceThoseOfTheSameId) {
+  write("own.toml", own_clause +
+                        "[[clause]]\nid = \"en1990.deck-acceleration.ballasted\"\nclause = \"NA.1\"\ntitle = "
+                        "\"t\"\nmeasure = \"deck_acceleration\"\nunit = \"m/s2\"\nlimit = 7.0\n");
+  const std::vector<Clause> clauses = clauses_with({folder_ / "own.toml"});
+  EXPECT_EQ(clauses.size(), library_clauses().size() + 1);
+  const auto replaced = std::find_if(clauses.begin(), clauses.end(),
+                                     [](const Clause& c) { return c.id == "en1990.deck-acceleration.ballasted"; });
+  EXPECT_EQ(replaced->limit.constant, 7.0);
+  EXPECT_EQ(replaced->edition, "NA to test");
+  EXPECT_FALSE(replaced->verified);
+  EXPECT_TRUE(replaced->track.empty()) << "the whole clause is replaced";
+}
+
+TEST_F(Clauses, WrongFilesAreRejectedWithTheirLine) {
+  EXPECT_NE(message_of("edition = \"x\"\n[[clause]]\nid = \"a\"\nclause = \"1\"\ntitle = \"t\"\nmeasure = \"deck\"\n")
+                .find("own.toml:6: clause[1].measure: found the text \"deck\", expected one of first_frequency"),
+            std::string::npos);
+  std::string wrong_unit = own_clause;
+  wrong_unit.replace(wrong_unit.find("\"N\""), 3, "\"kN\"");
+  EXPECT_NE(message_of(wrong_unit).find("clause[1].unit: found the text \"kN\", expected one of N"), std::string::npos);
+  EXPECT_NE(message_of(own_clause + "limit = 3\n").find("found limit and limit_by"), std::string::npos);
+  EXPECT_NE(message_of(own_clause + "verified = true\n").find("expected a text: where the limit was read"),
+            std::string::npos);
+  EXPECT_NE(message_of(own_clause + "limits = 3\n").find("unknown key 'clause[1].limits'; did you mean"),
+            std::string::npos);
+  EXPECT_NE(message_of("edition = \"x\"\n").find("expected at least one [[clause]]"), std::string::npos);
+  EXPECT_NE(message_of("edition = \n").find("own.toml:1"), std::string::npos);
+}
+
+TEST_F(Clauses, TheWorstValueDecides) {
+  const std::vector<Clause> clauses = library_clauses();
+  const AssessmentFacts facts{"ballasted", 200.0 / 3.6};
+  const std::vector<Verdict> verdicts =
+      judge(clauses, facts,
+            {value("deck_acceleration", moving_load, 3.0), value("deck_acceleration", moving_load, 3.6),
+             value("deck_acceleration", contact, 1.0), value("first_frequency", check, 3.0, 25.0),
+             value("lateral_frequency", check, 1.1), value("car_body_vertical", contact, 1.2)},
+            {});
+  const Verdict& deck = of(verdicts, "en1990.deck-acceleration.ballasted");
+  EXPECT_EQ(deck.outcome, Outcome::fail);
+  EXPECT_TRUE(deck.failed());
+  EXPECT_NEAR(deck.at->value, 3.6, 0.0);
+  EXPECT_NEAR(deck.utilisation(), 3.6 / 3.5, 1e-12);
+  EXPECT_EQ(std::count_if(verdicts.begin(), verdicts.end(),
+                          [&](const Verdict& v) { return v.clause == deck.clause && v.outcome == Outcome::pass; }),
+            1)
+      << "the contact stage's own verdict";
+  EXPECT_EQ(of(verdicts, "en1990.deck-acceleration.direct").outcome, Outcome::not_applicable);
+  EXPECT_EQ(of(verdicts, "en1990.twist.200").outcome, Outcome::not_judged);
+  EXPECT_NE(of(verdicts, "en1990.twist.200").reason.find("not computed"), std::string::npos);
+  EXPECT_EQ(of(verdicts, "en1990.twist.above-200").outcome, Outcome::not_applicable) << "200 km/h is not above 200";
+  const Verdict& n0 = of(verdicts, "en1991.n0.lower.100");
+  EXPECT_NEAR(n0.limit, 23.58 * std::pow(25.0, -0.592), 1e-12);
+  EXPECT_EQ(n0.outcome, Outcome::fail);
+  EXPECT_FALSE(n0.failed()) << "it has a consequence";
+  EXPECT_EQ(of(verdicts, "en1991.n0.lower.20").outcome, Outcome::not_applicable);
+  EXPECT_EQ(of(verdicts, "en1991.n0.upper").outcome, Outcome::pass);
+  EXPECT_EQ(of(verdicts, "en1990.lateral-frequency").outcome, Outcome::fail) << "at least 1.2 Hz";
+  EXPECT_EQ(of(verdicts, "en1990.comfort.acceptable").outcome, Outcome::pass);
+}
+
+TEST_F(Clauses, LimitsFollowTheQuantitiesOfTheValue) {
+  write("own.toml", own_clause);
+  const std::vector<Clause> clauses = clauses_with({folder_ / "own.toml"});
+  MeasuredValue light = value("track_shift_2m", contact, 20e3), heavy = light;
+  heavy.quantities["axle_load"] = 100e3;
+  heavy.value = 29e3;
+  const std::vector<Verdict> verdicts = judge(clauses, {}, {heavy, light}, {});
+  const Verdict& own = of(verdicts, "own");
+  EXPECT_NEAR(own.limit, 30e3, 1e-9) << "29 of 30 kN, the most, is nearer than 20 of 21 kN";
+  EXPECT_NEAR(of(verdicts, "en14363.track-shift").limit, 10e3 + 40e3 / 3.0, 0.1) << "20 of 23.3 kN against 29 of 43.3";
+}
+
+TEST_F(Clauses, AValueOfAPartFailsOrIsNotJudged) {
+  const std::vector<Clause> clauses = library_clauses();
+  const MissingMeasure part{"derailment_2m", contact, "one of two runs ended early", true};
+  EXPECT_EQ(of(judge(clauses, {}, {value("derailment_2m", contact, 0.9)}, {part}), "en14363.derailment").outcome,
+            Outcome::fail);
+  const std::vector<Verdict> partial = judge(clauses, {}, {value("derailment_2m", contact, 0.4)}, {part});
+  EXPECT_EQ(of(partial, "en14363.derailment").outcome, Outcome::not_judged);
+  EXPECT_EQ(of(partial, "en14363.derailment").reason, part.reason);
+  const MissingMeasure none{"derailment_2m", contact, "rigid contact", false};
+  EXPECT_EQ(of(judge(clauses, {}, {}, {none}), "en14363.derailment").reason, "contact: rigid contact");
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,293 @@
+// Filters against their transfer functions, measures against signals whose values follow by hand.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "railtab/runtime/measures/comfort.hpp"
+#include "railtab/runtime/measures/deck_twist.hpp"
+#include "railtab/runtime/measures/low_pass.hpp"
+#include "railtab/runtime/measures/percentile.hpp"
+#include "railtab/runtime/measures/running_safety.hpp"
+#include "railtab/runtime/measures/track_mean.hpp"
+#include "railtab/runtime/measures/weighting.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using Samples = std::vector<double>;
+
+Samples sampled(const std::function<double(double)>& f, double duration, double step) {
+  Samples samples;
+  for (long k = 0; static_cast<double>(k) * step < duration; ++k) samples.push_back(f(static_cast<double>(k) * step));
+  return samples;
+}
+
+Samples weighted(const Weighting& weighting, const Samples& samples, double step) {
+  WeightedSeries series(weighting, step);
+  Samples result;
+  for (const double a : samples) result.push_back(series.add(a));
+  return result;
+}
+
+/// Gain of a filter at a frequency: what is left of e^{iωt} after `settled` seconds, from its cosine and sine.
+template <class Filter>
+std::complex<double> gain(double f, double step, double settled, const Filter& filter) {
+  const double duration = 2.0 * settled;
+  const Samples c = filter(sampled([&](double t) { return std::cos(2.0 * pi * f * t); }, duration, step));
+  const Samples s = filter(sampled([&](double t) { return std::sin(2.0 * pi * f * t); }, duration, step));
+  const auto k = static_cast<std::size_t>(settled / step);
+  return std::complex(c[k], s[k]) * std::polar(1.0, -2.0 * pi * f * step * static_cast<double>(k));
+}
+
+std::array<double, 20> frequencies(double lowest) {
+  std::array<double, 20> f{};
+  for (std::size_t i = 0; i < f.size(); ++i) f[i] = lowest * std::pow(100.0 / lowest, static_cast<double>(i) / 19.0);
+  return f;
+}
+
+TEST(LowPass, HasItsTransferFunctionWithoutPhase) {
+  for (const double step : {1e-3, 5e-4}) {
+    for (const double cut_off : {20.0, 30.0, 90.0}) {
+      for (const double f : frequencies(1.0)) {
+        const std::complex<double> G =
+            gain(f, step, 1.5, [&](const Samples& s) { return low_passed(s, cut_off, step); });
+        EXPECT_NEAR(G.real(), low_pass_gain(f, cut_off), 5e-6) << f << " Hz of " << cut_off;
+        EXPECT_NEAR(G.imag(), 0.0, 5e-6) << f << " Hz of " << cut_off;
+      }
+      EXPECT_NEAR(low_pass_gain(cut_off, cut_off), std::sqrt(0.5), 1e-12);
+    }
+  }
+}
+
+TEST(LowPass, SamplesAtTheLimitOfItsStepAreWithinTheStatedAliasing) {
+  constexpr double step = 0.25 / 30.0;
+  ASSERT_TRUE(samples_fast_enough(30.0, step));
+  ASSERT_FALSE(samples_fast_enough(30.0, 1.01 * step));
+  for (const double f : {5.0, 15.0, 25.0, 30.0}) {
+    const auto G = gain(f, step, 1.5, [&](const Samples& s) { return low_passed(s, 30.0, step); });
+    EXPECT_NEAR(G.real(), low_pass_gain(f, 30.0), 4e-4) << f;
+  }
+}
+
+TEST(LowPass, StreamedAndStoredAgreeAndMemoryIsBounded) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const Samples samples = sampled([&](double t) { return 5e4 + 2e4 * normal(random) + 1e3 * t; }, 12.0, 1e-3);
+  const Samples stored = low_passed(samples, 30.0, 1e-3);
+  ZeroPhaseLowPass filter(30.0, 1e-3);
+  Samples streamed, piece;
+  std::size_t behind = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    piece.clear();
+    filter.add(samples[k], piece);
+    streamed.insert(streamed.end(), piece.begin(), piece.end());
+    behind = std::max(behind, k + 1 - streamed.size());
+  }
+  filter.finish(streamed);
+  ASSERT_EQ(streamed.size(), samples.size());
+  EXPECT_LT(behind, 2500U) << "of 12 000 samples";
+  const Samples reversed_in(samples.rbegin(), samples.rend());
+  const Samples reversed = low_passed(reversed_in, 30.0, 1e-3);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    ASSERT_NEAR(streamed[k], stored[k], 1e-12 * 1e5) << k;
+    ASSERT_NEAR(stored[k], reversed[samples.size() - 1 - k], 1e-12 * 1e5) << "symmetric in time, " << k;
+  }
+}
+
+TEST(LowPass, LeavesAConstantAndALineAlone) {
+  for (const double y : low_passed(Samples(3000, 57.5e3), 20.0, 1e-3)) ASSERT_NEAR(y, 57.5e3, 1e-8);
+  EXPECT_EQ(low_passed({1.0}, 20.0, 1e-3).size(), 1U);
+  const Samples line = low_passed(sampled([](double t) { return t; }, 6.0, 1e-3), 20.0, 1e-3);
+  EXPECT_NEAR(line[3000], 3.0, 1e-9);
+}
+
+TEST(LowPass, WhiteNoiseKeepsTheVarianceOfItsBand) {
+  constexpr double step = 1e-3, cut_off = 30.0;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const Samples out = low_passed(sampled([&](double) { return normal(random); }, 400.0, step), cut_off, step);
+  double variance = 0.0, band = 0.0;
+  for (const double y : out) variance += y * y / static_cast<double>(out.size());
+  for (double f = 0.005; f < 500.0; f += 0.01) band += 2.0 * step * 0.01 * std::pow(low_pass_gain(f, cut_off), 2);
+  // 2 B T = 2·30·400 degrees of freedom: a standard deviation of 0.9 %
+  EXPECT_NEAR(variance / band, 1.0, 3.0 * std::sqrt(2.0 / (2.0 * cut_off * 400.0)));
+}
+
+TEST(Weighting, IsThatOfTheStandardsAtTheCentresOfThirdOctaves) {
+  // ×1000 at 10^(n/10) Hz, from the formulas of EN 12299 and ISO 2631-1; the latter within 1 % of its printed table.
+  struct Row {
+    int n;
+    double k, d, b;
+  };
+  for (const Row& row : {Row{-4, 350, 710, 281}, Row{0, 482, 1011, 391}, Row{3, 531, 891, 436}, Row{6, 965, 514, 818},
+                         Row{8, 1054, 323, 1031}, Row{10, 988, 202, 1048}, Row{13, 637, 100, 799},
+                         Row{16, 316, 50, 416}, Row{19, 134, 21, 176}}) {
+    const double f = std::pow(10.0, row.n / 10.0);
+    EXPECT_NEAR(1e3 * std::abs(weighting_k.response(f)), row.k, 0.51) << f;
+    EXPECT_NEAR(1e3 * std::abs(weighting_d.response(f)), row.d, 0.51) << f;
+    EXPECT_NEAR(1e3 * std::abs(weighting_b.response(f)), row.b, 0.51) << f;
+  }
+}
+
+TEST(Weighting, SeriesHaveItsGainAndPhase) {
+  for (const double step : {1e-3, 5e-4}) {
+    for (const Weighting* weighting : {&weighting_b, &weighting_d, &weighting_k}) {
+      for (const double f : frequencies(0.4)) {
+        const auto found = gain(f, step, 8.0, [&](const Samples& s) { return weighted(*weighting, s, step); });
+        const auto expected = weighting->response(f);
+        EXPECT_NEAR(std::abs(found), std::abs(expected), 2e-3) << f << " Hz";
+        EXPECT_NEAR(std::abs(found - expected), 0.0, 2e-3) << f << " Hz";
+      }
+    }
+  }
+}
+
+TEST(Weighting, WhiteNoiseHasTheRmsOfItsWeighting) {
+  constexpr double step = 1e-3, duration = 600.0;
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  const Samples out = weighted(weighting_b, sampled([&](double) { return normal(random); }, duration, step), step);
+  double variance = 0.0, band = 0.0, fourth = 0.0;
+  for (const double y : out) variance += y * y / static_cast<double>(out.size());
+  for (double f = 0.005; f < 500.0; f += 0.01) {
+    const double G = std::norm(weighting_b.response(f));
+    band += 2.0 * step * 0.01 * G;
+    fourth += 0.01 * G * G;
+  }
+  const double bandwidth = std::pow(band / (2.0 * step), 2) / fourth;  // of equal degrees of freedom
+  EXPECT_NEAR(variance / band, 1.0, 3.0 * std::sqrt(1.0 / (bandwidth * duration)));
+}
+
+TEST(TrackMean, IsExactForALineAndForUnevenPositions) {
+  TrackMean mean(2.0);
+  std::optional<double> last;
+  for (const double s : {0.0, 0.3, 1.1, 1.9}) EXPECT_FALSE(mean.add(s, 3.0 * s));
+  for (const double s : {2.0, 2.7, 3.15, 5.9}) {
+    last = mean.add(s, 3.0 * s);
+    ASSERT_TRUE(last);
+    EXPECT_NEAR(*last, 3.0 * (s - 1.0), 1e-12) << s;
+  }
+}
+
+TEST(TrackMean, OfAHalfSineOfFourMetres) {
+  TrackMean mean(2.0);
+  double largest = 0.0;
+  for (int i = 0; i <= 6000; ++i) {
+    const double s = 1e-3 * i, value = s > 1.0 && s < 5.0 ? std::sin(pi * (s - 1.0) / 4.0) : 0.0;
+    largest = std::max(largest, mean.add(s, value).value_or(0.0));
+  }
+  EXPECT_NEAR(largest, 2.0 / pi * std::sqrt(2.0), 1e-6) << "(4/π) sin(π/4)";
+}
+
+TEST(Percentile, InterpolatesBetweenSortedValues) {
+  EXPECT_EQ(percentile({4.0, 1.0, 3.0, 2.0}, 0.0), 1.0);
+  EXPECT_EQ(percentile({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
+  EXPECT_NEAR(percentile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.5, 1e-15);
+  Samples thousand;
+  for (int i = 0; i <= 10000; ++i) thousand.push_back((i * 7919) % 10001);
+  EXPECT_NEAR(percentile(thousand, 0.9985), 9985.0, 1e-9);
+  EXPECT_NEAR(percentile(thousand, 0.0015), 15.0, 1e-9);
+}
+
+TEST(Comfort, RmsDoseAndRunningRmsOfASine) {
+  constexpr double step = 1e-3, a = 0.8;
+  WindowedRms windows(5.0, step);
+  VibrationDose dose(step);
+  for (const double y :
+       sampled([](double t) { return t < 10.0 ? a * std::sin(2.0 * pi * 4.0 * t) : 0.0; }, 20.0, step)) {
+    windows.add(y);
+    dose.add(y);
+  }
+  ASSERT_EQ(windows.values().size(), 4U);
+  EXPECT_NEAR(windows.values()[1], a / std::numbers::sqrt2, 1e-9);
+  EXPECT_NEAR(windows.values()[2], 0.0, 1e-9);
+  EXPECT_NEAR(dose.dose(), std::pow(0.375 * std::pow(a, 4) * 10.0, 0.25), 1e-6) << "mean of sin⁴ is 3/8";
+  EXPECT_NEAR(dose.largest_running_rms(), a / std::numbers::sqrt2, 1e-9);
+}
+
+TEST(Comfort, RunningRmsWaitsForAFullSecond) {
+  VibrationDose dose(0.01);
+  for (int i = 0; i < 99; ++i) dose.add(1.0);
+  EXPECT_EQ(dose.largest_running_rms(), 0.0);
+  dose.add(1.0);
+  EXPECT_NEAR(dose.largest_running_rms(), 1.0, 1e-12);
+}
+
+TEST(Comfort, MeanOfThreeDirections) {
+  const Samples x(60, 0.03), y(60, 0.04), z(60, 0.12);
+  EXPECT_NEAR(mean_comfort(x, y, z), 6.0 * 0.13, 1e-12);
+}
+
+TEST(Comfort, SperlingIndexOfTwoHarmonics) {
+  constexpr double step = 1e-3;
+  // 0.3 m/s² at 2 Hz and 0.1 m/s² at 6 Hz, harmonics of 5 s
+  SperlingIndex index(SperlingDirection::vertical, step);
+  for (const double a :
+       sampled([](double t) { return 0.3 * std::sin(2.0 * pi * 2.0 * t) + 0.1 * std::cos(2.0 * pi * 6.0 * t); }, 10.0,
+               step)) {
+    index.add(a);
+  }
+  ASSERT_EQ(index.values().size(), 2U);
+  const double B2 = 0.588 * std::sqrt((1.911 * 4.0 + 1.0) / (std::pow(1.0 - 1.108, 2) + std::pow(3.126 - 0.2944, 2)));
+  const double B6 = 0.588 * std::sqrt((1.911 * 36.0 + 81.0) / (std::pow(1.0 - 9.972, 2) + std::pow(9.378 - 7.9488, 2)));
+  EXPECT_NEAR(sperling_weighting(SperlingDirection::vertical, 2.0), B2, 1e-12);
+  EXPECT_NEAR(sperling_weighting(SperlingDirection::lateral, 6.0), 1.25 * B6, 1e-12);
+  for (const double W : index.values()) {
+    EXPECT_NEAR(W, std::pow(std::pow(30.0 * B2, 3) + std::pow(10.0 * B6, 3), 0.1), 1e-9);
+  }
+}
+
+TEST(RunningSafety, LimitsOfNadalWeinstockAndPrudhomme) {
+  EXPECT_NEAR(nadal_limit(70.0 * pi / 180.0, 0.36), 1.2004, 5e-4);
+  EXPECT_NEAR(nadal_limit(pi / 4.0, 0.0), 1.0, 1e-12);
+  EXPECT_NEAR(weinstock_ratio(30e3, 40e3, -10e3, 50e3), 0.95, 1e-12);
+  EXPECT_EQ(weinstock_ratio(30e3, 40e3, 0.0, 0.0), 0.0);
+  EXPECT_NEAR(prudhomme_limit(150e3), 60e3, 1e-9);
+  EXPECT_NEAR(prudhomme_limit(150e3, 0.85), 51e3, 1e-9);
+}
+
+TEST(RunningSafety, UnloadingOfATriangleWithItsDuration) {
+  // from 0 to 0.9 in 9 ms and back: above 0.6 for 6 ms, between samples too
+  Unloading unloading(0.6);
+  for (const double t : {0.0, 4e-3, 7e-3, 9e-3, 11.5e-3, 18e-3, 30e-3}) {
+    const double share = std::max(0.0, 0.9 - 100.0 * std::abs(t - 9e-3));
+    unloading.add(t, 60e3 * (1.0 - share), 60e3);
+  }
+  EXPECT_NEAR(unloading.largest(), 0.9, 1e-12);
+  EXPECT_NEAR(unloading.time(), 9e-3, 1e-15);
+  EXPECT_NEAR(unloading.longest_above(), 6e-3, 1e-12);
+}
+
+TEST(RunningSafety, UnloadingThatNeverExceedsTheLimitLastsNoTime) {
+  Unloading unloading(0.6);
+  for (const double t : {0.0, 1.0, 2.0}) unloading.add(t, 60e3 - 1e3 * t, 60e3);
+  EXPECT_EQ(unloading.longest_above(), 0.0);
+  EXPECT_NEAR(unloading.largest(), 2.0 / 60.0, 1e-12);
+}
+
+TEST(DeckTwist, OfAKinkedCrossLevel) {
+  // level to x = 10, then 2 mm/m over 2 m, then level: over 3 m at most 4 mm, from any place that spans the ramp
+  const Samples x{0.0, 10.0, 12.0, 20.0}, level{0.0, 0.0, 4e-3, 4e-3};
+  const Twist twist = largest_twist(x, level);
+  EXPECT_NEAR(twist.value, 4e-3, 1e-15);
+  EXPECT_GE(twist.x, 9.0);
+  EXPECT_LE(twist.x, 10.0);
+  // a parabola by its values at every metre: most at its end, 1e-4 (20² − 17²)
+  Samples places, parabola;
+  for (int i = 0; i <= 20; ++i) {
+    places.push_back(i);
+    parabola.push_back(1e-4 * i * i);
+  }
+  EXPECT_NEAR(largest_twist(places, parabola).value, 1e-4 * (400.0 - 289.0), 1e-15);
+  EXPECT_NEAR(largest_twist(places, parabola).x, 17.0, 1e-12);
+  EXPECT_EQ(largest_twist(Samples{0.0, 2.0}, Samples{0.0, 1.0}).value, 0.0) << "shorter than 3 m";
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,183 @@
+// Measures of a run from its records, which are made by hand: every value follows from them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "assessment.hpp"
+#include "assessment_json.hpp"
+#include "assessment_page.hpp"
+#include "assessment_text.hpp"
+#include "run_measures.hpp"
+
+namespace railtab::assess {
+namespace {
+
+constexpr double pi = std::numbers::pi, speed = 50.0, step = 1e-3, Q0 = 50e3;
+
+/// One wheelset at 50 m/s for 8 s under a coach, a deck node; slow motions, which filters leave alone.
+RunResults made_run() {
+  RunResults results;
+  results.header.speed = speed;
+  results.header.wheel_x = {0.0, 0.0};
+  results.header.static_wheel_load = {Q0, Q0};
+  results.header.body_names = {"coach-1/car-body"};
+  results.header.node_names = {"deck-midspan-1", "rail-left-midspan-1"};
+  results.header.node_x = {12.5, 12.5};
+  for (int i = -45; i <= 40; ++i) {  // the flange's back at 80°, its tip at y = −40 mm, a flank of 70°, a flat tread
+    results.header.wheel_y.push_back(1e-3 * i);
+    const double flank = 20.0 * std::tan(70.0 * pi / 180.0), back = (i + 40) * std::tan(80.0 * pi / 180.0);
+    results.header.wheel_z.push_back(1e-3 * (i < -40 ? flank + back : i < -20 ? -(i + 20) * flank / 20.0 : 0.0));
+  }
+  for (int k = 0; k <= 8000; ++k) {
+    const double t = step * k;
+    StepRecord r;
+    r.time = t;
+    r.position = speed * t - 100.0;
+    r.wheels.resize(2);
+    r.wheels[0].Q = Q0 * (1.0 - 0.3 * std::sin(2.0 * pi * 0.5 * t));
+    r.wheels[1].Q = Q0;
+    r.wheels[0].Y = 10e3;
+    r.wheels[1].Y = -2e3;
+    r.bodies.resize(1);
+    r.bodies[0].acceleration[2] = 0.2 * std::sin(2.0 * pi * 5.0 * t);
+    r.nodes.resize(2);
+    r.nodes[0].acceleration[2] = std::sin(2.0 * pi * 4.0 * t) + 3.0 * std::sin(2.0 * pi * 120.0 * t);
+    r.nodes[0].displacement[2] = 2e-3;
+    r.nodes[1].acceleration[2] = 50.0;
+    results.steps.push_back(r);
+  }
+  results.summary.complete = true;
+  return results;
+}
+
+const MeasuredValue& of(const RunMeasures& found, std::string_view measure) {
+  for (const MeasuredValue& value : found.values) {
+    if (value.measure == measure) return value;
+  }
+  throw std::runtime_error("no " + std::string(measure));
+}
+
+TEST(RunMeasures, OfARunMadeByHand) {
+  const RunMeasures found = run_measures(made_run(), {-100.0, 30.0, 20.0, 0.3});
+  EXPECT_NEAR(of(found, "deck_acceleration").value, 1.0, 2e-3) << "120 Hz are gone";
+  EXPECT_NEAR(of(found, "deck_acceleration_unfiltered").value, 4.0, 0.05);
+  EXPECT_NEAR(of(found, "deck_displacement").value, 2e-3, 1e-12);
+  EXPECT_NEAR(of(found, "wheel_unloading").value, 0.3, 1e-6);
+  EXPECT_EQ(of(found, "wheel_unloading").where, "wheelset 1 left");
+  EXPECT_NEAR(*of(found, "wheel_unloading").time, std::round(*of(found, "wheel_unloading").time * 2.0) / 2.0, 1e-2)
+      << "at 0.5 s and every 2 s after";
+  EXPECT_EQ(of(found, "unloading_duration").value, 0.0);
+  EXPECT_NEAR(of(found, "wheel_force").value, 1.3 * Q0, 1.0);
+  EXPECT_NEAR(of(found, "wheel_force").quantities.at("static_wheel_load"), Q0, 1e-9);
+  EXPECT_NEAR(of(found, "derailment").value, 0.2 / 0.7, 1e-6);
+  EXPECT_NEAR(of(found, "derailment_2m").value, 0.2 / 0.7, 1e-3) << "2 m are 40 ms of 2 s";
+  EXPECT_NEAR(of(found, "weinstock_sum").value, 0.2 / 0.7 + 0.04, 1e-6);
+  EXPECT_NEAR(of(found, "track_shift_2m").value, 8e3, 1e-6);
+  EXPECT_NEAR(of(found, "track_shift_2m").quantities.at("axle_load"), 2.0 * Q0, 1e-9);
+  const double tangent = std::tan(70.0 * pi / 180.0);
+  EXPECT_NEAR(of(found, "derailment").quantities.at("nadal_limit"), (tangent - 0.3) / (1.0 + 0.3 * tangent), 1e-6);
+  EXPECT_NEAR(of(found, "car_body_vertical").value, 0.2, 1e-6);
+  EXPECT_NEAR(of(found, "comfort_vertical").value, 0.2 / std::numbers::sqrt2 * 0.958, 2e-3) << "W_b at 5 Hz";
+  EXPECT_NEAR(of(found, "running_rms_vertical").value, 0.2 / std::numbers::sqrt2 * 1.039, 4e-3) << "W_k at 5 Hz";
+  EXPECT_TRUE(found.missing.empty());
+}
+
+TEST(RunMeasures, WhatStandsBeforeTheBeginIsNotJudged) {
+  RunResults results = made_run();
+  results.steps[3].wheels[0].Q = 0.0;  // in the fourth millisecond
+  RunWindow window{-100.0, 30.0, 20.0, 0.3};
+  EXPECT_NEAR(of(run_measures(results, window), "wheel_unloading_unfiltered").value, 1.0, 1e-12);
+  window.begin = -90.0;
+  EXPECT_NEAR(of(run_measures(results, window), "wheel_unloading_unfiltered").value, 0.3, 1e-6);
+  window.begin = 280.0;  // 0.4 s before the end
+  const RunMeasures late = run_measures(results, window);
+  EXPECT_NEAR(of(late, "deck_acceleration").value, 1.0, 2e-3) << "the deck is judged throughout";
+  const auto missing = std::find_if(late.missing.begin(), late.missing.end(),
+                                    [](const MissingMeasure& m) { return m.measure == "comfort_vertical"; });
+  ASSERT_NE(missing, late.missing.end());
+  EXPECT_EQ(missing->reason, "no car body is judged for as long as 5 s");
+  window.begin = 1e4;
+  const RunMeasures never = run_measures(results, window);
+  EXPECT_TRUE(std::none_of(never.values.begin(), never.values.end(),
+                           [](const MeasuredValue& v) { return v.measure == "wheel_unloading"; }));
+}
+
+TEST(RunMeasures, WhatIsNotRecordedIsMissingWithItsReason) {
+  RunResults results = made_run();
+  results.header.node_names = {"rail", "rail"};
+  results.header.body_names = {"coach-1/bogie-1"};
+  results.header.static_wheel_load.clear();
+  results.header.wheel_x.clear();
+  const RunMeasures found = run_measures(results, {});
+  EXPECT_TRUE(found.values.empty());
+  std::size_t all = 0;
+  for (const MeasureKind& kind : measure_kinds()) {
+    all += static_cast<std::size_t>(std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact));
+  }
+  EXPECT_EQ(found.missing.size(), all) << "every measure of the stage, once";
+  RunResults sparse = made_run();
+  std::vector<StepRecord> some;
+  for (std::size_t k = 0; k < sparse.steps.size(); k += 20) some.push_back(sparse.steps[k]);
+  sparse.steps = some;
+  const RunMeasures coarse = run_measures(sparse, {-100.0, 30.0, 20.0, 0.3});
+  EXPECT_TRUE(std::any_of(coarse.missing.begin(), coarse.missing.end(), [](const MissingMeasure& m) {
+    return m.measure == "deck_acceleration" && m.reason.find("too far for a filter") != std::string::npos;
+  }));
+  EXPECT_NEAR(of(coarse, "deck_displacement").value, 2e-3, 1e-12);
+}
+
+TEST(RunMeasures, SeriesOfTheWorstWheelAndNode) {
+  const RunSeries series = run_series(made_run(), {-100.0, 30.0, 20.0, 0.3});
+  EXPECT_EQ(series.wheel, "wheelset 1 left");
+  EXPECT_EQ(series.node, "deck-midspan-1");
+  ASSERT_EQ(series.unloading.size(), 8001U);
+  EXPECT_NEAR(series.filtered_unloading[500], 0.3, 1e-6);
+  EXPECT_NEAR(series.position.front(), -100.0, 1e-12);
+}
+
+/// An assessment by hand: what its three forms say.
+TEST(Assessment, TextPageAndJsonSayWhatFailsAndWhere) {
+  Assessment a;
+  a.scene_name = "a <bridge>";
+  a.version = "test";
+  a.facts = {"ballasted", 200.0 / 3.6};
+  a.clauses = library_clauses();
+  MeasuredValue v;
+  v.measure = "deck_acceleration";
+  v.stage = AssessmentStage::moving_load;
+  v.value = 4.2;
+  v.where = "span 1, x = 12.50 m";
+  v.train = "hslm-a8";
+  v.speed = 50.0;
+  v.time = 3.25;
+  a.values = {v};
+  a.verdicts = judge(a.clauses, a.facts, a.values, {});
+  EXPECT_EQ(a.failures(false), 1);
+  EXPECT_EQ(a.failures(true), 1);
+  EXPECT_EQ(verdict_in_words(a).substr(0, 24), "FAILS: 1 limit not met, ");
+  const std::string text = assessment_text(a);
+  EXPECT_NE(text.find(" FAIL  Deck acceleration, ballasted track = 4.200 m/s² of at most 3.500 m/s²\n       hslm-a8, "
+                      "180.0 km/h, span 1, x = 12.50 m, t = 3.250 s; EN 1990"),
+            std::string::npos)
+      << text;
+  const std::string page = assessment_page(a);
+  EXPECT_NE(page.find("a &lt;bridge&gt;"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos) << "it loads nothing";
+  EXPECT_NE(page.find("<span class=\"mark fail\">FAIL</span>"), std::string::npos);
+  const auto json = assessment_json(a);
+  EXPECT_EQ(json["summary"]["fail"], 1);
+  const auto deck = std::find_if(json["verdicts"].begin(), json["verdicts"].end(), [](const auto& verdict) {
+    return verdict["id"] == "en1990.deck-acceleration.ballasted";
+  });
+  ASSERT_NE(deck, json["verdicts"].end());
+  EXPECT_EQ((*deck)["outcome"], "fail");
+  EXPECT_EQ((*deck)["limit"], 3.5);
+  EXPECT_NEAR((*deck)["utilisation"].get<double>(), 1.2, 1e-12);
+  EXPECT_EQ((*deck)["at"]["train"], "hslm-a8");
+  EXPECT_EQ((*deck)["verified"], true);
+}
+
+}  // namespace
+}  // namespace railtab::assess

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/assessment/dynamic_need.hpp"
+#include "railtab/runtime/assessment/verdict.hpp"
+#include "railtab/runtime/moving_load/speed_range.hpp"
+#include "run_measures.hpp"
+
+namespace railtab::assess {
+
+/// A deck and its trains of moving forces.
+struct DeckAssessment {
+  ModalDeck deck;
+  double span = 0.0;                        ///< of the simply supported span [m]; 0: an imported deck
+  std::optional<double> lateral_frequency;  ///< [Hz]
+  DynamicNeedResult need;
+  double cut_off = 30.0;          ///< of its acceleration [Hz]
+  std::vector<AxleTrain> trains;  ///< HSLM-A, then the scene's own train; none: stage not asked for
+  std::vector<TrainResponse> responses;
+};
+
+/// One run with contact.
+struct RunAssessment {
+  std::string name;
+  double speed = 0.0;       ///< [m/s]
+  std::optional<int> seed;  ///< of the random track
+  bool there = false, complete = false;
+  std::string message;  ///< why it is not there or ended early
+  std::string results;  ///< file
+  std::vector<MeasuredValue> values;
+};
+
+/// What a stage did.
+struct StageReport {
+  AssessmentStage stage = AssessmentStage::check;
+  bool done = false;
+  std::string skipped;             ///< why, where it was not done
+  std::vector<std::string> notes;  ///< what was chosen, changed or left out, sentence by sentence
+  double seconds = 0.0;
+};
+
+struct Assessment {
+  std::string scene_name, scene_file, scene_text, version;
+  AssessmentFacts facts;
+  double low_speed = 0.0, high_speed = 0.0;  ///< of moving loads [m/s]
+  std::vector<StageReport> stages;
+  std::vector<DeckAssessment> decks;
+  std::vector<RunAssessment> runs;
+  RunSeries series;        ///< of the run with the largest unloading
+  std::string series_run;  ///< its name
+  RunWindow window;        ///< of all runs
+  std::vector<MeasuredValue> values;
+  std::vector<MissingMeasure> missing;
+  std::vector<Clause> clauses;
+  std::vector<Verdict> verdicts;  ///< point into `clauses`
+
+  [[nodiscard]] int count(Outcome outcome) const;
+  [[nodiscard]] int failures(bool verified_only) const;  ///< clauses that fail and count
+};
+
+/// "fails: 2 clauses are not met", "passes …": in words, for text and page.
+[[nodiscard]] std::string verdict_in_words(const Assessment& assessment);
+/// "hslm-a8 at 200 km/h, span 1, x = 12.5 m, t = 3.2 s"
+[[nodiscard]] std::string place_in_words(const MeasuredValue& value);
+/// Where a limit that moving loads exceed is exceeded first: "exceeded from 158.2 km/h on (hslm-a9)"; empty for other
+/// verdicts.
+[[nodiscard]] std::string onset_in_words(const Assessment& assessment, const Verdict& verdict);
+/// Whether EN 1991-2 asks for a dynamic analysis of no deck.
+[[nodiscard]] bool needs_no_dynamic_analysis(const Assessment& assessment);
+/// A measure's value or limit with its unit as pages show it: "3.50 m/s²".
+[[nodiscard]] std::string amount_in_words(double value, std::string_view unit);
+/// Verdicts in the order of pages: failures, consequences, passes by how near they are, those not judged.
+[[nodiscard]] std::vector<const Verdict*> ordered(const std::vector<Verdict>& verdicts);
+
+}  // namespace railtab::assess

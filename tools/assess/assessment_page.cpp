@@ -1,0 +1,332 @@
+#include "assessment_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "railtab/runtime/report/chart.hpp"
+#include "railtab/runtime/report/html_page.hpp"
+#include "railtab/runtime/report/html_text.hpp"
+
+namespace railtab::assess {
+namespace {
+
+using report::escaped;
+
+constexpr const char* style = R"(<style>
+.verdict{border-left:6px solid;padding:12px 16px;margin:14px 0 18px;font-size:18px;font-weight:600}
+.verdict.bad{border-color:#c8442f;background:#fdf3f1}.verdict.good{border-color:#2e7d52;background:#f1f8f3}
+.verdict p{margin:4px 0 0;font-size:14px;font-weight:400}
+.limits{width:100%}.limits td,.limits th{padding:6px 12px 6px 0;border-bottom:1px solid var(--line);font-size:13px}
+.limits th{color:var(--soft)}.limits th.n{text-align:right}.limits td.n{white-space:nowrap}.limits small{color:var(--soft)}
+.mark{display:inline-block;min-width:76px;border-radius:4px;padding:1px 8px;text-align:center;color:#fff;background:#8795a6}
+.mark.fail{background:#c8442f}.mark.pass{background:#2e7d52}.mark.note{background:#b57a00}
+.bar{display:inline-block;width:64px;height:8px;background:#e9edf1;border-radius:2px;overflow:hidden;margin-left:6px}
+.bar i{display:block;height:8px;background:#2e7d52}.bar.fail i{background:#c8442f}.bar.note i{background:#b57a00}
+.standing{border:1px solid #b57a00;color:#7d5500;border-radius:3px;padding:0 4px;font-size:11px;white-space:nowrap}
+.scroll{overflow-x:auto}
+</style>)";
+
+std::string_view mark_class(const Verdict& v) {
+  if (v.failed()) return "fail";
+  if (v.outcome == Outcome::fail) return "note";
+  return v.outcome == Outcome::pass ? "pass" : "open";
+}
+
+std::string_view mark_text(const Verdict& v) {
+  if (v.failed()) return "FAIL";
+  if (v.outcome == Outcome::fail) return "not met";
+  return v.outcome == Outcome::pass ? "pass" : "not judged";
+}
+
+std::string clause_cell(const Clause& clause) {
+  std::string cell = fmt::format("{}<br><small>{}, {}</small>", escaped(clause.title), escaped(clause.edition),
+                                 escaped(clause.clause));
+  if (clause.verified) {
+    cell += fmt::format("<br><small>limit verified: {}</small>", escaped(clause.source));
+  } else {
+    cell += fmt::format("<br><span class=\"standing\">unverified</span> <small>{}</small>", escaped(clause.source));
+  }
+  return cell;
+}
+
+std::string verdict_row(const Assessment& assessment, const Verdict& v) {
+  const Clause& clause = *v.clause;
+  std::string row = fmt::format("<tr><td><span class=\"mark {}\">{}</span></td><td>{}</td>", mark_class(v),
+                                mark_text(v), clause_cell(clause));
+  if (!v.at) return row + fmt::format("<td colspan=\"4\">{}</td></tr>\n", escaped(v.reason));
+  const double share = 100.0 * v.utilisation();
+  row += fmt::format(
+      "<td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{:.0f} %<span class=\"bar {}\">"
+      "<i style=\"width:{:.0f}%\"></i></span></td><td>{}<br><small>stage {}{}</small></td></tr>\n",
+      amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤", amount_in_words(v.limit, clause.unit),
+      share, mark_class(v), std::min(100.0, share), escaped(place_in_words(*v.at)), stage_name(v.at->stage),
+      v.at->run.empty() ? "" : ", run " + escaped(v.at->run));
+  const std::string onset = onset_in_words(assessment, v);
+  if (!onset.empty()) row += fmt::format("<tr><td></td><td colspan=\"5\">→ {}</td></tr>\n", escaped(onset));
+  if (v.outcome == Outcome::fail && !clause.consequence.empty()) {
+    row += fmt::format("<tr><td></td><td colspan=\"5\">→ {}</td></tr>\n", escaped(clause.consequence));
+  }
+  if (v.outcome == Outcome::not_judged) {
+    row += fmt::format("<tr><td></td><td colspan=\"5\">not judged: {}</td></tr>\n", escaped(v.reason));
+  }
+  return row;
+}
+
+std::string verdict_table(const Assessment& assessment, bool judged) {
+  std::string rows;
+  for (const Verdict* verdict : ordered(assessment.verdicts)) {
+    if (verdict->at.has_value() == judged) rows += verdict_row(assessment, *verdict);
+  }
+  if (rows.empty()) return "";
+  return "<div class=\"scroll\"><table class=\"limits\"><tr><th>verdict</th><th>limit of</th><th class=\"n\">"
+         "value</th><th class=\"n\">limit</th><th class=\"n\">used</th><th>largest at</th></tr>" +
+         rows + "</table></div>";
+}
+
+std::string banner(const Assessment& assessment) {
+  const bool bad = assessment.failures(false) > 0;
+  std::string html =
+      fmt::format("<div class=\"verdict {}\">{}", bad ? "bad" : "good", escaped(verdict_in_words(assessment)));
+  for (const Verdict* v : ordered(assessment.verdicts)) {
+    if (!v->failed()) break;
+    html += fmt::format("<p>{}: {}, {} {} {}; {}.</p>", escaped(v->clause->title),
+                        amount_in_words(v->at->value, v->clause->unit), v->clause->limit.lower ? "at least" : "at most",
+                        amount_in_words(v->limit, v->clause->unit), v->clause->limit.lower ? "required" : "permitted",
+                        escaped(place_in_words(*v->at)));
+    const std::string onset = onset_in_words(assessment, *v);
+    if (!onset.empty()) html += fmt::format("<p>It is {}.</p>", escaped(onset));
+  }
+  if (bad && needs_no_dynamic_analysis(assessment)) {
+    html +=
+        "<p>By the flow chart of EN 1991-2, 6.4.4, no dynamic analysis is required here: what fails under moving loads "
+        "is resonance near or above the line speed.</p>";
+  }
+  return html + "</div>";
+}
+
+std::string deck_table(const Assessment& assessment) {
+  std::string html;
+  for (const DeckAssessment& deck : assessment.decks) {
+    std::string frequencies;
+    for (int n = 0; n < deck.deck.dynamic_modes; ++n) {
+      frequencies += fmt::format("{}{:.3f}", n == 0 ? "" : ", ", deck.deck.frequency(n));
+    }
+    html += fmt::format(
+        "<h3>{}</h3><table><tr><td>length</td><td>{:.6g} m</td></tr><tr><td>vertical frequencies</td><td>{} Hz</td>"
+        "</tr><tr><td>damping of the first mode</td><td>{:.2f} %</td></tr><tr><td>accelerations count up to</td><td>"
+        "{:.1f} Hz (the greatest of 30 Hz, 1.5 f₁ and f₃)</td></tr><tr><td>dynamic analysis by EN 1991-2, 6.4.4</td>"
+        "<td><b>{}</b>: {}</td></tr></table>",
+        escaped(deck.deck.name), deck.deck.length(), frequencies, 100.0 * deck.deck.damping[0], deck.cut_off,
+        need_name(deck.need.need), escaped(deck.need.reason));
+  }
+  return html;
+}
+
+using Quantity = DeckPeak PassagePeaks::*;
+
+report::Series curve(const std::string& label, const TrainResponse& response, Quantity quantity, double factor) {
+  report::Series series{label, {}, {}};
+  for (const PassagePeaks& p : response.passages) {
+    series.x.push_back(3.6 * p.speed);
+    series.y.push_back(factor * (p.*quantity).value);
+  }
+  return series;
+}
+
+double largest(const TrainResponse& response, Quantity quantity) {
+  double value = 0.0;
+  for (const PassagePeaks& p : response.passages) value = std::max(value, (p.*quantity).value);
+  return value;
+}
+
+/// The three trains with the largest values, the last of the list (the scene's own train) always among them.
+std::vector<const TrainResponse*> shown_trains(const DeckAssessment& deck, Quantity quantity) {
+  std::vector<const TrainResponse*> list;
+  for (const TrainResponse& response : deck.responses) {
+    if (!response.passages.empty()) list.push_back(&response);
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const auto* a, const auto* b) { return largest(*a, quantity) > largest(*b, quantity); });
+  constexpr std::size_t most = 4;
+  if (list.size() <= most) return list;
+  const std::size_t own = deck.trains.size() - 1;
+  const bool own_there = std::any_of(list.begin(), list.begin() + most, [&](const auto* r) { return r->train == own; });
+  const auto own_at = std::find_if(list.begin(), list.end(), [&](const auto* r) { return r->train == own; });
+  if (!own_there && own_at != list.end()) std::iter_swap(list.begin() + most - 1, own_at);
+  list.resize(most);
+  return list;
+}
+
+std::string deck_curves(const Assessment& assessment, const DeckAssessment& deck) {
+  struct Shown {
+    Quantity quantity;
+    const char *measure, *title, *label;
+    double factor;
+  };
+  std::string html;
+  for (const auto& [quantity, measure, title, label, factor] :
+       {Shown{&PassagePeaks::acceleration, "deck_acceleration", "largest acceleration", "m/s²", 1.0},
+        Shown{&PassagePeaks::displacement, "deck_displacement", "largest displacement", "mm", 1e3}}) {
+    report::Chart chart;
+    chart.title = fmt::format("{}: {} over the speed of moving loads", deck.deck.name, title);
+    chart.note = "Each train by itself; those with the largest values, and the scene's own train.";
+    chart.x_label = "speed [km/h]";
+    chart.y_label = label;
+    for (const TrainResponse* response : shown_trains(deck, quantity)) {
+      chart.series.push_back(curve(deck.trains[response->train].name, *response, quantity, factor));
+    }
+    for (const Verdict& v : assessment.verdicts) {
+      if (v.at && v.stage == AssessmentStage::moving_load && v.clause->measure == measure) {
+        chart.limits.push_back({factor * v.limit, fmt::format("{}, {}", v.clause->edition, v.clause->clause)});
+      }
+    }
+    html += chart_html(chart);
+  }
+  return html;
+}
+
+std::string resonance(const Assessment& assessment) {
+  std::string html;
+  for (const DeckAssessment& deck : assessment.decks) {
+    if (!deck.responses.empty()) html += deck_curves(assessment, deck);
+  }
+  return html;
+}
+
+std::string run_table(const Assessment& assessment) {
+  if (assessment.runs.empty()) return "";
+  constexpr const char* columns[] = {"wheel_unloading",   "derailment_2m",       "track_shift_2m",
+                                     "wheel_force",       "deck_acceleration",   "deck_displacement",
+                                     "car_body_vertical", "running_rms_vertical"};
+  constexpr const char* heads[] = {
+      "ΔQ/Q0", "Y/Q, 2 m", "ΣY, 2 m", "Q", "deck acceleration", "deck displacement", "car body", "car body, 1 s rms"};
+  std::string html = "<div class=\"scroll\"><table class=\"limits\"><tr><th>run</th><th>km/h</th><th>seed</th>";
+  for (const char* head : heads) html += fmt::format("<th class=\"n\">{}</th>", head);
+  html += "<th></th></tr>";
+  for (const RunAssessment& run : assessment.runs) {
+    html += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{}</td>", escaped(run.name), 3.6 * run.speed,
+                        run.seed ? fmt::format("{}", *run.seed) : "");
+    for (const char* column : columns) {
+      const MeasuredValue* best = nullptr;
+      for (const MeasuredValue& v : run.values) {
+        if (v.measure == column && (!best || v.value > best->value)) best = &v;
+      }
+      html +=
+          fmt::format("<td class=\"n\">{}</td>", best ? amount_in_words(best->value, find_measure(column)->unit) : "–");
+    }
+    html += fmt::format("<td>{}</td></tr>", run.complete ? "" : escaped("ended early: " + run.message));
+  }
+  return html + "</table></div>";
+}
+
+std::string run_charts(const Assessment& assessment) {
+  const RunSeries& s = assessment.series;
+  std::string html;
+  if (!s.wheel.empty()) {
+    report::Chart chart;
+    chart.title = fmt::format("Unloading ΔQ/Q0 of {}, run {}", s.wheel, assessment.series_run);
+    chart.note =
+        "Over the wheel's own position; 1 is lift-off. What stands before the place where judging begins does "
+        "not count.";
+    chart.x_label = "x [m]";
+    chart.y_label = "ΔQ/Q0";
+    chart.series = {
+        {"unfiltered", s.position, s.unloading},
+        {fmt::format("low-pass {:g} Hz", assessment.window.wheel_cut_off), s.position, s.filtered_unloading}};
+    for (const Verdict& v : assessment.verdicts) {
+      if (v.at && v.clause->measure == "wheel_unloading") chart.limits.push_back({v.limit, v.clause->edition});
+    }
+    html += chart_html(chart);
+  }
+  if (!s.node.empty()) {
+    report::Chart chart;
+    chart.title = fmt::format("Vertical acceleration of {}, run {}", s.node, assessment.series_run);
+    chart.note = "Positive down.";
+    chart.x_label = "time [s]";
+    chart.y_label = "m/s²";
+    chart.series = {
+        {"unfiltered", s.time, s.acceleration},
+        {fmt::format("low-pass {:.4g} Hz", assessment.window.deck_cut_off), s.time, s.filtered_acceleration}};
+    html += chart_html(chart);
+  }
+  return html;
+}
+
+std::string measure_table(const Assessment& assessment) {
+  std::map<std::pair<std::string, AssessmentStage>, const MeasuredValue*> best;
+  for (const MeasuredValue& value : assessment.values) {
+    const MeasuredValue*& b = best[{value.measure, value.stage}];
+    if (!b || value.value > b->value) b = &value;
+  }
+  std::string rows;
+  for (const MeasureKind& kind : measure_kinds()) {
+    for (const AssessmentStage stage : kind.stages) {
+      const auto found = best.find({std::string(kind.name), stage});
+      if (found == best.end()) continue;
+      rows += fmt::format("<tr><td>{}<br><small>{}</small></td><td class=\"n\">{}</td><td>{}</td></tr>",
+                          escaped(kind.meaning), stage_name(stage), amount_in_words(found->second->value, kind.unit),
+                          escaped(place_in_words(*found->second)));
+    }
+  }
+  if (rows.empty()) return "";
+  return "<div class=\"scroll\"><table class=\"limits\"><tr><th>measure</th><th class=\"n\">largest</th><th>at</th>"
+         "</tr>" +
+         rows + "</table></div>";
+}
+
+std::string stage_list(const Assessment& assessment) {
+  std::string html;
+  for (const StageReport& stage : assessment.stages) {
+    html +=
+        fmt::format("<h3>{}</h3><p class=\"lead\">{}</p>", stage_name(stage.stage),
+                    stage.done ? fmt::format("done in {:.2f} s", stage.seconds) : "skipped: " + escaped(stage.skipped));
+    if (stage.notes.empty()) continue;
+    html += "<ul>";
+    for (const std::string& note : stage.notes) html += "<li>" + escaped(note) + "</li>";
+    html += "</ul>";
+  }
+  return html;
+}
+
+std::string others(const Assessment& assessment) {
+  std::string rows;
+  for (const Verdict& v : assessment.verdicts) {
+    if (v.outcome != Outcome::not_applicable) continue;
+    rows += fmt::format("<tr><td>{}<br><small>{}, {}</small></td><td>{}</td></tr>", escaped(v.clause->title),
+                        escaped(v.clause->edition), escaped(v.clause->clause), escaped(v.reason));
+  }
+  std::string html;
+  if (!rows.empty()) {
+    html =
+        "<details><summary>Clauses that do not apply</summary><table class=\"limits\">" + rows + "</table></details>";
+  }
+  return html + fmt::format("<details><summary>Scene {}</summary><pre>{}</pre></details>",
+                            escaped(assessment.scene_file), escaped(assessment.scene_text));
+}
+
+}  // namespace
+
+std::string assessment_page(const Assessment& assessment) {
+  std::string body = style;
+  body += fmt::format("<h1>{}</h1><p class=\"lead\">Line speed {:.4g} km/h, {} track. {}.</p>",
+                      escaped(assessment.scene_name), 3.6 * assessment.facts.line_speed, assessment.facts.track,
+                      assessment.high_speed > 0.0
+                          ? fmt::format("Moving loads at {:.4g} to {:.4g} km/h, 1.2 times the line speed",
+                                        3.6 * assessment.low_speed, 3.6 * assessment.high_speed)
+                          : "No moving loads");
+  body += banner(assessment);
+  body += report::html_section("Limits", verdict_table(assessment, true));
+  body += report::html_section("Decks", deck_table(assessment));
+  body += report::html_section("Resonance of moving loads", resonance(assessment));
+  body += report::html_section("Runs with wheel–rail contact", run_table(assessment) + run_charts(assessment));
+  body += report::html_section("Not judged", verdict_table(assessment, false));
+  body += report::html_section("All measures", measure_table(assessment));
+  body += report::html_section("What was computed", stage_list(assessment));
+  body += report::html_section("More", others(assessment));
+  return report::html_page(assessment_page_kind, assessment.scene_name + ": assessment", body, assessment.version);
+}
+
+}  // namespace railtab::assess

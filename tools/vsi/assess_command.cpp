@@ -1,0 +1,265 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "assess_contact.hpp"
+#include "assess_stages.hpp"
+#include "assessment_json.hpp"
+#include "assessment_page.hpp"
+#include "assessment_text.hpp"
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "command/progress_bar.hpp"
+#include "commands.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/stopwatch.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/report/html_page.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
+#include "run_pool.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+namespace {
+
+using assess::Assessment;
+using assess::StageReport;
+
+constexpr int done = 0, failed = 1, clause_fails = 3, interrupted = 130;
+constexpr const char* usage =
+    "vsi assess SCENE.toml [--stage check|moving-load|contact] [--speed-kmh V|LO:HI:STEP] [--seeds N]\n"
+    "           [--clauses FILE.toml] [--fail-on any|verified] [-o DIR]";
+
+po::options_description options() {
+  po::options_description own("Options");
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge")  //
+      ("stage", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+       "check, moving-load or contact alone; may be given twice; default all")  //
+      ("speed", text_value()->value_name("LO:HI:STEP"),
+       "speeds of the runs with contact in m/s; default: the line's, and the critical one of the scene's train")  //
+      ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "the same in km/h")                                   //
+      ("seeds", text_value()->value_name("N"), "random tracks for each speed, in place of assessment.seeds")      //
+      ("clauses", po::value<std::vector<std::string>>()->composing()->value_name("FILE.toml"),
+       "further clauses, or others of the same id; may be given many times")  //
+      ("fail-on", text_value()->value_name("any|verified"),
+       "exit code 3 where a limit is not met: any, or one that is verified")  //
+      ("output,o", text_value()->value_name("DIR"),
+       "folder of assessment.html, assessment.json and runs; default: <scene>.assessment");
+  return own;
+}
+
+struct Request {
+  fs::path scene_file, folder;
+  std::vector<AssessmentStage> stages;
+  std::vector<double> speeds;  ///< [m/s]; none: chosen
+  std::optional<int> seeds;
+  std::string fail_on;
+  int threads = 1;
+  bool progress = false;
+  [[nodiscard]] bool asks(AssessmentStage stage) const {
+    return std::find(stages.begin(), stages.end(), stage) != stages.end();
+  }
+};
+
+std::vector<AssessmentStage> stages_of(const CommandLine& line) {
+  using enum AssessmentStage;
+  if (!line.given("stage")) return {check, moving_load, contact};
+  std::vector<AssessmentStage> stages;
+  for (const std::string& name : line.required_many("stage")) {
+    const auto all = {check, moving_load, contact};
+    const auto* found = std::find_if(all.begin(), all.end(), [&](AssessmentStage s) { return stage_name(s) == name; });
+    if (found == all.end()) throw input_error("--stage", name, "check, moving-load or contact");
+    stages.push_back(*found);
+  }
+  return stages;
+}
+
+std::vector<double> speeds_of(const CommandLine& line) {
+  const bool si = line.given("speed"), kmh = line.given("speed-kmh");
+  if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
+  if (!si && !kmh) return {};
+  const std::string option = si ? "speed" : "speed-kmh";
+  std::vector<double> speeds = values_of_range("--" + option, line.text(option));
+  for (double& speed : speeds) speed *= si ? 1.0 : 1.0 / 3.6;
+  return speeds;
+}
+
+Request request_of(const CommandLine& line) {
+  Request request;
+  request.scene_file = line.required("scene");
+  request.folder = line.given("output") ? fs::path(line.text("output"))
+                                        : fs::path(request.scene_file.stem().string() + ".assessment");
+  request.stages = stages_of(line);
+  request.speeds = speeds_of(line);
+  constexpr int most_seeds = 1000;
+  if (line.given("seeds")) request.seeds = static_cast<int>(line.whole_number("seeds", 1, most_seeds));
+  if (line.given("fail-on")) {
+    request.fail_on = line.text("fail-on");
+    if (request.fail_on != "any" && request.fail_on != "verified") {
+      throw input_error("--fail-on", request.fail_on, "any or verified");
+    }
+  }
+  request.threads = line.workers();
+  request.progress = !line.quiet() && !line.json();
+  return request;
+}
+
+Assessment begin(const SceneParameters& scene, const Request& request, const CommandLine& line) {
+  Assessment assessment;
+  assessment.scene_name = scene.name;
+  assessment.scene_file = request.scene_file.string();
+  assessment.scene_text = scene.text;
+  assessment.version = RAILTAB_VERSION;
+  const double line_speed = scene.assessment.line_speed_kmh / 3.6;
+  assessment.facts.line_speed = line_speed > 0.0 ? line_speed : scene.train.speed;
+  assessment.facts.track = scene.assessment.track == DeckTrack::ballasted ? "ballasted" : "direct";
+  std::vector<fs::path> files;
+  if (line.given("clauses")) {
+    for (const std::string& file : line.required_many("clauses")) files.emplace_back(file);
+  }
+  assessment.clauses = clauses_with(files);
+  return assessment;
+}
+
+/// A stage in the list, with the time of `work` where it is asked for.
+template <class Work>
+void stage(AssessmentStage which, const Request& request, Assessment& assessment, const Work& work) {
+  StageReport report;
+  report.stage = which;
+  if (!request.asks(which)) {
+    report.skipped = "not asked for (--stage)";
+  } else {
+    const Stopwatch watch(report.seconds);
+    report.done = true;
+    work(report);
+  }
+  assessment.stages.push_back(std::move(report));
+}
+
+void moving_loads(const std::optional<AxleTrain>& own, const Request& request, StageReport& report,
+                  Assessment& assessment) {
+  ProgressBar bar("moving loads", request.progress);
+  run_moving_loads(
+      own, request.threads, [&](double share) { bar.show(share); }, assessment);
+  bar.wipe();
+  report.notes.push_back(
+      fmt::format("HSLM-A{} at {:.1f} to {:.1f} km/h, every 2 km/h or nearer, and at the critical speeds.",
+                  own ? " and the scene's train" : "", 3.6 * assessment.low_speed, 3.6 * assessment.high_speed));
+  report.notes.emplace_back(
+      "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
+      "accelerations by the modes up to the cut-off frequency of each deck.");
+  if (assess::needs_no_dynamic_analysis(assessment))
+    report.notes.emplace_back("EN 1991-2 does not ask for it here (stage check).");
+}
+
+/// Speeds of the runs: those asked for, or the line's and the critical one below it.
+std::vector<double> contact_speeds(const AxleTrain& own, const Request& request, const Assessment& assessment,
+                                   StageReport& report) {
+  if (!request.speeds.empty()) return request.speeds;
+  const double line = assessment.facts.line_speed;
+  const double critical = std::round(1e3 * governing_speed(own, assessment.decks, line)) / 1e3;
+  constexpr double alike = 0.01;
+  const std::string fastest = fmt::format("at the line speed, {:.1f} km/h", 3.6 * line);
+  if (critical > (1.0 - alike) * line) {
+    report.notes.push_back(
+        fmt::format("Runs {}, at which the train as moving loads accelerates the deck most.", fastest));
+    return {line};
+  }
+  report.notes.push_back(
+      fmt::format("Runs at {:.1f} km/h, at which the train as moving loads accelerates the deck most, and {}.",
+                  3.6 * critical, fastest));
+  return {critical, line};
+}
+
+int contact_runs(const SceneParameters& scene, const AxleTrain& own, const Request& request, StageReport& report,
+                 Assessment& assessment) {
+  if (!scene.train.speed_file.empty()) {
+    report.done = false;
+    report.skipped = "the scene's speed varies (train.speed_file); limits are judged at constant speeds";
+    return done;
+  }
+  const std::vector<double> speeds = contact_speeds(own, request, assessment, report);
+  const int seeds = scene.spectrum ? request.seeds.value_or(scene.assessment.seeds) : request.seeds.value_or(1);
+  const ContactPlan plan = contact_plan(scene, own, assessment.decks, speeds, seeds);
+  report.notes.insert(report.notes.end(), plan.notes.begin(), plan.notes.end());
+  if (!scene.spectrum) {
+    report.notes.emplace_back(scene.irregularity
+                                  ? "One run for each speed: the irregularity is that of a file."
+                                  : "One run for each speed: the track is perfect (irregularity.spectrum adds random "
+                                    "tracks). Unloading and comfort are those of the bridge alone.");
+  }
+  make_output_folder(request.folder / "runs");
+  ProgressBar bar(fmt::format("{} runs", plan.runs.size()), request.progress);
+  const int code = run_contact(
+      plan, request.scene_file, request.folder / "runs", request.threads, [&](double share) { bar.show(share); },
+      assessment);
+  bar.wipe();
+  return code;
+}
+
+int write_outputs(const Request& request, const Assessment& assessment, bool json, bool quiet) {
+  const auto object = assess::assessment_json(assessment);
+  const fs::path page = request.folder / "assessment.html", data = request.folder / "assessment.json";
+  write_text_file(data, object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", "{\n \"railtab\"");
+  write_text_file(page, assess::assessment_page(assessment), report::html_first_line(assess::assessment_page_kind));
+  if (json) {
+    print_json_line(object);
+  } else if (!quiet) {
+    print_formatted("{}\n{}\n{}\n", assess::assessment_text(assessment), page.string(), data.string());
+  }
+  const bool fails = (request.fail_on == "any" && assessment.failures(false) > 0) ||
+                     (request.fail_on == "verified" && assessment.failures(true) > 0);
+  return fails ? clause_fails : done;
+}
+
+int assess_scene(const SceneParameters& scene, const Request& request, const CommandLine& line) {
+  Assessment assessment = begin(scene, request, line);
+  // The decks are those of every stage.
+  Assessment decks = assessment;
+  check_decks(scene, decks);
+  make_output_folder(request.folder);
+  assessment.decks = decks.decks;
+  stage(AssessmentStage::check, request, assessment, [&](StageReport&) {
+    assessment.values = decks.values;
+    assessment.missing = decks.missing;
+  });
+  std::optional<AxleTrain> own;
+  if (request.asks(AssessmentStage::moving_load) || request.asks(AssessmentStage::contact)) own = axle_train_of(scene);
+  stage(AssessmentStage::moving_load, request, assessment,
+        [&](StageReport& report) { moving_loads(own, request, report, assessment); });
+  int code = done;
+  stage(AssessmentStage::contact, request, assessment,
+        [&](StageReport& report) { code = contact_runs(scene, *own, request, report, assessment); });
+  if (code > failed) {
+    if (code == interrupted) {
+      print_message("vsi assess: interrupted; the same command goes on from what is finished\n");
+    }
+    return code;
+  }
+  assessment.verdicts = judge(assessment.clauses, assessment.facts, assessment.values, assessment.missing);
+  const int verdict = write_outputs(request, assessment, line.json(), line.quiet());
+  const bool run_missing =
+      std::any_of(assessment.runs.begin(), assessment.runs.end(), [](const auto& run) { return !run.there; });
+  return verdict != done ? verdict : run_missing ? failed : done;
+}
+
+}  // namespace
+
+int assess_command(const Arguments& arguments) {
+  const CommandLine line(usage, options(), {"scene"}, arguments);
+  if (line.help_printed()) return done;
+  const Request request = request_of(line);
+  const SceneParameters scene = read_scene(request.scene_file);
+  try {
+    return assess_scene(scene, request, line);
+  } catch (const InputError& wrong) {
+    throw with_scene_line(wrong, scene, request.scene_file);
+  }
+}
+
+}  // namespace railtab::vsi

@@ -1,0 +1,170 @@
+#include "assess_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
+#include "run_pool.hpp"
+
+namespace railtab::vsi {
+namespace {
+
+using assess::Assessment;
+using assess::RunAssessment;
+
+/// A random track rises from zero, and has done so where the bridge begins.
+void fade_in(ContactPlan& plan) {
+  SceneParameters& scene = plan.scene;
+  if (!scene.spectrum) return;
+  if (!(scene.spectrum->fade_in > 0.0)) {
+    scene.spectrum->fade_in = scene.spectrum->longest;
+    plan.notes.push_back(
+        fmt::format("The random track rises from zero over {:g} m, its longest wave (irregularity.fade_in).",
+                    scene.spectrum->fade_in));
+  }
+  const double shortage = scene.train.start + scene.spectrum->fade_in;
+  if (!(shortage > 0.0)) return;
+  scene.train.start -= shortage;
+  scene.track.length_before += shortage;
+  plan.notes.push_back(fmt::format(
+      "The train starts {:g} m earlier, at x = {:g} m, so that the random track has risen where the bridge begins "
+      "(train.start, track.length_before).",
+      shortage, scene.train.start));
+}
+
+/// The track goes on until the last wheelset has left the bridge.
+void lengthen_track(const AxleTrain& own, ContactPlan& plan) {
+  constexpr double margin = 5.0;  // [m]
+  SceneParameters& scene = plan.scene;
+  if (scene.track_kind != TrackKind::flexible) return;
+  const double behind = own.reach() + margin - scene.train.start, after = own.reach() + margin;
+  if (behind > scene.track.length_before) {
+    scene.track.length_before = behind;
+    plan.notes.push_back(fmt::format("track.length_before is {:.4g} m, so that the whole train stands on it.", behind));
+  }
+  if (after > scene.track.length_after) {
+    scene.track.length_after = after;
+    plan.notes.push_back(
+        fmt::format("track.length_after is {:.4g} m, so that the whole train leaves the bridge.", after));
+  }
+  if (scene.integration.duration > 0.0) {
+    scene.integration.duration = 0.0;
+    plan.notes.push_back("integration.duration does not count: a run ends when the train has left the bridge.");
+  }
+}
+
+/// What is judged, a millisecond apart at most.
+void record_what_is_judged(SceneParameters& scene) {
+  constexpr double longest = 1e-3;  // [s] between records
+  const double steps = std::floor(longest / scene.integration.time_step * (1.0 + 1e-9));
+  scene.output.every = std::max(1, static_cast<int>(std::min(1e6, steps)));
+  scene.output.wheels = true;
+  scene.output.bodies = {scene.train.vehicle == imported_vehicle ? "*" : "*car-body"};
+  scene.output.nodes = {scene.track_kind == TrackKind::flexible ? "deck*" : "*"};
+}
+
+/// Values of a run for the whole assessment.
+void take_up(const SweepRun& run, const RunPool& pool, Assessment& assessment) {
+  RunAssessment& entry = assessment.runs.emplace_back();
+  entry.name = run.name;
+  entry.speed = run.speed;
+  if (run.name.find("-s") != std::string::npos) entry.seed = run.seed;
+  entry.results = pool.file(run, ".h5").string();
+  if (!pool.finished(run)) {
+    entry.message = "the run is not finished";
+    return;
+  }
+  const RunResults results = read_results(entry.results);
+  entry.there = true;
+  entry.complete = results.summary.complete;
+  entry.message = results.summary.message;
+  assess::RunMeasures measures = assess::run_measures(results, assessment.window);
+  for (MeasuredValue& value : measures.values) {
+    value.train = "the scene's train";
+    value.seed = entry.seed;
+    value.run = run.name;
+    assessment.values.push_back(value);
+    entry.values.push_back(std::move(value));
+  }
+  for (MissingMeasure& missing : measures.missing) {
+    const bool known = std::any_of(assessment.missing.begin(), assessment.missing.end(), [&](const MissingMeasure& m) {
+      return m.measure == missing.measure && m.reason == missing.reason;
+    });
+    if (!known) assessment.missing.push_back(std::move(missing));
+  }
+}
+
+/// What runs that are not there, or ended early, mean for the measures.
+void note_early_ends(Assessment& assessment) {
+  const auto early =
+      std::count_if(assessment.runs.begin(), assessment.runs.end(), [](const RunAssessment& r) { return !r.complete; });
+  if (early == 0) return;
+  for (const MeasureKind& kind : measure_kinds()) {
+    if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) == 0) continue;
+    assessment.missing.push_back({std::string(kind.name), AssessmentStage::contact,
+                                  fmt::format("{} of {} runs did not come to their end", early, assessment.runs.size()),
+                                  true});
+  }
+}
+
+void add_series(Assessment& assessment) {
+  const MeasuredValue* worst = nullptr;
+  for (const MeasuredValue& value : assessment.values) {
+    if (value.measure == "wheel_unloading" && (!worst || value.value > worst->value)) worst = &value;
+  }
+  if (!worst) return;
+  for (const RunAssessment& run : assessment.runs) {
+    if (run.name != worst->run) continue;
+    assessment.series = assess::run_series(read_results(run.results), assessment.window);
+    assessment.series_run = run.name;
+  }
+}
+
+}  // namespace
+
+ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
+                         const std::vector<assess::DeckAssessment>& decks, const std::vector<double>& speeds,
+                         int seeds) {
+  ContactPlan plan{scene, {}, {}, {}};
+  fade_in(plan);
+  lengthen_track(own, plan);
+  record_what_is_judged(plan.scene);
+  const SceneParameters& made = plan.scene;
+  plan.window.begin = made.assessment.begin.value_or(made.train.start + (made.spectrum ? made.spectrum->fade_in : 0.0));
+  plan.window.friction = made.contact.friction;
+  for (const assess::DeckAssessment& deck : decks) {
+    plan.window.deck_cut_off = std::max(plan.window.deck_cut_off, deck.cut_off);
+  }
+  plan.notes.push_back(
+      fmt::format("Wheels and car bodies are judged from x = {:g} m on; largest values, no "
+                  "percentiles, since the section is short.",
+                  plan.window.begin));
+  plan.notes.push_back(fmt::format("Deck acceleration is that of the recorded nodes ({}), low-passed at {:.1f} Hz.",
+                                   made.structure.files.nodes.empty() ? "midspan" : "structure.report",
+                                   plan.window.deck_cut_off));
+  plan.scene.text += "\n# vsi assess:";
+  plan.scene.text += fmt::format(" train.start = {:.9g}, track.length_before = {:.9g}, track.length_after = {:.9g}",
+                                 made.train.start, made.track.length_before, made.track.length_after);
+  if (made.spectrum) plan.scene.text += fmt::format(", irregularity.fade_in = {:.9g}", made.spectrum->fade_in);
+  plan.runs = sweep_runs(plan.scene, speeds, seeds);
+  return plan;
+}
+
+int run_contact(const ContactPlan& plan, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
+                int processes, const std::function<void(double)>& progress, Assessment& assessment) {
+  RunPool pool(plan.scene, scene_file, folder, {"vsi assess", true, progress});
+  const int code = pool.run(plan.runs, static_cast<std::size_t>(processes));
+  assessment.window = plan.window;
+  constexpr int wrong_input = 2, interrupted = 130;
+  if (code == wrong_input || code == interrupted) return code;
+  for (const SweepRun& run : plan.runs) take_up(run, pool, assessment);
+  note_early_ends(assessment);
+  add_series(assessment);
+  return code;
+}
+
+}  // namespace railtab::vsi

@@ -1,0 +1,171 @@
+#include "assess_stages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "railtab/runtime/moving_load/deck_modes.hpp"
+#include "railtab/runtime/moving_load/speed_search.hpp"
+#include "railtab/runtime/moving_load/static_deflection.hpp"
+#include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "scene_decks.hpp"
+
+namespace railtab::vsi {
+namespace {
+
+using assess::Assessment;
+using assess::DeckAssessment;
+
+/// EN 1991-2 asks for moving loads from 40 m/s on: lines that are hardly faster begin at half their speed.
+double lowest_speed(double highest) {
+  constexpr double standard = 40.0, hardly = 1.25;
+  return highest > hardly * standard ? standard : 0.5 * highest;
+}
+
+const BridgeParameters* span_at(const SceneParameters& scene, double start) {
+  double at = 0.0;
+  for (const BridgeParameters& span : scene.spans) {
+    if (std::abs(at - start) < 1e-9 * (1.0 + at)) return &span;
+    at += span.length;
+  }
+  return nullptr;
+}
+
+MeasuredValue value_of_deck(const DeckAssessment& deck, std::string measure, AssessmentStage stage, double value) {
+  MeasuredValue result;
+  result.measure = std::move(measure);
+  result.stage = stage;
+  result.value = value;
+  result.where = deck.deck.name;
+  if (deck.span > 0.0) result.quantities["span"] = deck.span;
+  return result;
+}
+
+void check_span(const BridgeParameters& span, DeckAssessment& deck, Assessment& assessment) {
+  constexpr double pi = std::numbers::pi;
+  deck.span = span.length;
+  deck.lateral_frequency = 0.5 * pi / (span.length * span.length) * std::sqrt(span.E * span.Iz / span.mass);
+  const double standing = largest_static_deflection(deck.deck, find_axle_train("lm71", deck.deck.length())).value;
+  const auto add = [&](const char* measure, double value) {
+    assessment.values.push_back(value_of_deck(deck, measure, AssessmentStage::check, value));
+  };
+  add("lateral_frequency", *deck.lateral_frequency);
+  add("deflection_lm71", dynamic_factor_2(span.length) * standing);
+}
+
+std::vector<double> even_speeds(double low, double high) {
+  constexpr double step = 2.0 / 3.6;  // 2 km/h
+  const int intervals = std::clamp(static_cast<int>(std::ceil((high - low) / step)), 40, 300);
+  std::vector<double> speeds;
+  for (int i = 0; i <= intervals; ++i) speeds.push_back(low + (high - low) * i / intervals);
+  return speeds;
+}
+
+/// Passages of both lists by speed.
+std::vector<PassagePeaks> merged(std::vector<PassagePeaks> a, const std::vector<PassagePeaks>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::sort(a.begin(), a.end(), [](const auto& x, const auto& y) { return x.speed < y.speed; });
+  a.erase(std::unique(a.begin(), a.end(), [](const auto& x, const auto& y) { return x.speed == y.speed; }), a.end());
+  return a;
+}
+
+void add_largest(const DeckAssessment& deck, const char* measure, DeckPeak PassagePeaks::*quantity,
+                 Assessment& assessment) {
+  const PassagePeaks* worst = nullptr;
+  const AxleTrain* train = nullptr;
+  for (const TrainResponse& response : deck.responses) {
+    for (const PassagePeaks& p : response.passages) {
+      if (worst && !((p.*quantity).value > (worst->*quantity).value)) continue;
+      worst = &p;
+      train = &deck.trains[response.train];
+    }
+  }
+  if (!worst) return;
+  const DeckPeak& peak = worst->*quantity;
+  MeasuredValue value = value_of_deck(deck, measure, AssessmentStage::moving_load, peak.value);
+  value.where = fmt::format("{}, x = {:.2f} m", deck.deck.name, peak.x);
+  value.train = train->name;
+  value.speed = worst->speed;
+  value.time = peak.time;
+  assessment.values.push_back(std::move(value));
+}
+
+}  // namespace
+
+void check_decks(const SceneParameters& scene, Assessment& assessment) {
+  for (ModalDeck& modal : decks_of_scene(scene, {})) {
+    DeckAssessment& deck = assessment.decks.emplace_back();
+    deck.deck = std::move(modal);
+    const double first = deck.deck.frequency(0);
+    deck.cut_off = cut_off_frequency(first, deck.deck.frequency(std::min(2, deck.deck.modes() - 1)));
+    const BridgeParameters* span = scene.structure.files.nodes.empty() ? span_at(scene, deck.deck.start) : nullptr;
+    if (span) {
+      check_span(*span, deck, assessment);
+    } else {
+      for (const char* measure : {"deflection_lm71", "lateral_frequency"}) {
+        assessment.missing.push_back(
+            {measure, AssessmentStage::check, "spans and lateral modes of an imported bridge are not known", false});
+      }
+    }
+    assessment.values.push_back(value_of_deck(deck, "first_frequency", AssessmentStage::check, first));
+    deck.need = dynamic_need(assessment.facts.line_speed, deck.span, first, span != nullptr);
+  }
+}
+
+AxleTrain axle_train_of(const SceneParameters& scene) {
+  const ResultHeader header = model_header(build_model(scene));
+  AxleTrain train;
+  train.name = "the scene's train";
+  for (std::size_t w = 0; w + 1 < header.wheel_x.size(); w += 2) {
+    train.behind.push_back(-header.wheel_x[w]);
+    train.load.push_back(header.static_wheel_load[w] + header.static_wheel_load[w + 1]);
+  }
+  return train;
+}
+
+void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const std::function<void(double)>& progress,
+                      Assessment& assessment) {
+  assessment.high_speed = 1.2 * assessment.facts.line_speed;
+  assessment.low_speed = lowest_speed(assessment.high_speed);
+  const SpeedRange search{assessment.low_speed, assessment.high_speed, {}};
+  const SpeedRange grid{search.low, search.high, even_speeds(search.low, search.high)};
+  double done = 0.0;
+  const double parts = 2.0 * static_cast<double>(assessment.decks.size());
+  for (DeckAssessment& deck : assessment.decks) {
+    for (const std::string& name : expanded_names({"hslm-a"})) {
+      deck.trains.push_back(find_axle_train(name, deck.deck.length()));
+    }
+    if (own) deck.trains.push_back(*own);
+    const auto show = [&](double share) {
+      if (progress) progress((done + share) / parts);
+    };
+    deck.responses = train_responses(deck.deck, deck.trains, grid, threads, show);
+    done += 1.0;
+    const std::vector<TrainResponse> critical = train_responses(deck.deck, deck.trains, search, threads, show);
+    done += 1.0;
+    for (std::size_t t = 0; t < critical.size(); ++t) {
+      deck.responses[t].passages = merged(std::move(deck.responses[t].passages), critical[t].passages);
+    }
+    add_largest(deck, "deck_acceleration", &PassagePeaks::acceleration, assessment);
+    add_largest(deck, "deck_displacement", &PassagePeaks::displacement, assessment);
+    add_largest(deck, "deck_end_rotation", &PassagePeaks::end_rotation, assessment);
+  }
+}
+
+double governing_speed(const AxleTrain& own, const std::vector<DeckAssessment>& decks, double highest) {
+  const double lowest = lowest_speed(highest);
+  double speed = highest, largest = -1.0;
+  for (const DeckAssessment& deck : decks) {
+    for (const PassagePeaks& p : search_critical_speeds(deck.deck, own, lowest, highest)) {
+      if (!(p.acceleration.value > largest)) continue;
+      largest = p.acceleration.value;
+      speed = p.speed;
+    }
+  }
+  return speed;
+}
+
+}  // namespace railtab::vsi

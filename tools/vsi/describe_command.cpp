@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "command/command_line.hpp"
+#include "command/json_text.hpp"
+#include "command/print.hpp"
+#include "commands.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/printable_text.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/report/html_page.hpp"
+#include "railtab/runtime/results/result_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
+
+namespace railtab::vsi {
+namespace po = boost::program_options;
+namespace {
+
+/// What a file is, what is in it, and commands that take it.
+struct Description {
+  std::string kind;
+  std::vector<std::string> facts, commands;
+};
+
+Description of_results(const std::string& file) {
+  const RunResults results = read_results(file);
+  const ResultHeader& header = results.header;
+  Description d{"results of a run", {}, {}};
+  d.facts.push_back(fmt::format("{}: {}", printable(header.scene_name),
+                                results.summary.complete ? "complete" : "not complete, " + results.summary.message));
+  d.facts.push_back(fmt::format("{} records up to t = {:.6g} s, {} wheels, {} bodies, {} nodes", results.steps.size(),
+                                results.steps.empty() ? 0.0 : results.steps.back().time, header.wheel_x.size(),
+                                header.body_names.size(), header.node_names.size()));
+  d.commands = {fmt::format("vsi report {} -o report.html", file),
+                fmt::format("vsi report {} OTHER.h5 -o both.html", file)};
+  if (!results.summary.complete) d.commands.push_back(fmt::format("vsi run SCENE.toml -o {} --resume", file));
+  return d;
+}
+
+Description of_array_file(const std::string& file) {
+  const std::string type = array_file_type(file);
+  if (type == results_filetype) return of_results(file);
+  if (type == "railtab-geometry-table") {
+    return {"a contact geometry table",
+            {},
+            {fmt::format("tablegen info {}", file), fmt::format("tablegen conicity {}", file),
+             fmt::format("tablegen verify {}", file), fmt::format("vsi contact {} --query Q.csv -o R.csv", file),
+             fmt::format("a scene's contact.table = \"{}\"", file)}};
+  }
+  if (type == "railtab-creep-table") {
+    return {"a creep table",
+            {},
+            {fmt::format("tablegen info {}", file), fmt::format("tablegen verify {}", file),
+             fmt::format("a scene's contact.creep_table = \"{}\"", file)}};
+  }
+  return {fmt::format("a file of the kind {}", type), {}, {fmt::format("tablegen info {}", file)}};
+}
+
+bool has_any(const toml::table& table, std::initializer_list<std::string_view> keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return table.contains(key); });
+}
+
+Description of_toml(const std::string& file) {
+  toml::table table;
+  try {
+    table = toml::parse(read_toml_text(file, "a TOML file"));
+  } catch (const toml::parse_error& wrong) {
+    throw input_error(fmt::format("{}: line {}", file, wrong.source().begin.line), std::string(wrong.description()),
+                      "TOML");
+  }
+  if (has_any(table, {"train", "contact", "track", "bridge", "structure", "integration", "irregularity"})) {
+    Description d{"a scene", {}, {}};
+    if (const auto name = table["name"].value<std::string>()) d.facts.push_back(printable(*name));
+    d.commands = {fmt::format("vsi check {}", file), fmt::format("vsi run {} --plan", file),
+                  fmt::format("vsi run {}", file), fmt::format("vsi sweep {} --speed LO:HI:STEP -o DIR", file)};
+    if (has_any(table, {"bridge", "structure"})) {
+      d.commands.push_back(fmt::format("vsi structure {}", file));
+      d.commands.push_back(fmt::format("vsi moving-load {} --speed LO:HI", file));
+    }
+    return d;
+  }
+  if (has_any(table, {"pair", "pairs"})) {
+    return {"a list of wheel and rail pairs", {}, {fmt::format("tablegen batch {}", file)}};
+  }
+  if (has_any(table, {"body", "bodies", "car_body", "bogie", "wheelset", "template"})) {
+    return {
+        "a vehicle", {}, {fmt::format("vsi vehicle {}", file), fmt::format("a scene's train.vehicle = \"{}\"", file)}};
+  }
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : table) keys.emplace_back(key.str());
+  return {"TOML, but no scene or vehicle", keys, {}};
+}
+
+Description of_text(const std::string& file, const std::string& first, const std::string& ending) {
+  static const std::map<std::string, std::string> profiles{
+      {".prw", "wheel"}, {".whl", "wheel"}, {".prr", "rail"}, {".ban", "rail"}};
+  const auto profile = profiles.find(ending);
+  if (profile != profiles.end()) {
+    const bool wheel = profile->second == "wheel";
+    return {fmt::format("a {} profile", profile->second),
+            {},
+            {wheel ? fmt::format("tablegen geometry --wheel {} --rail 60E1 -o table.h5", file)
+                   : fmt::format("tablegen geometry --wheel S1002 --rail {} -o table.h5", file)}};
+  }
+  if (first.starts_with("%%MatrixMarket")) {
+    return {"a sparse matrix (Matrix Market)",
+            {printable(first)},
+            {fmt::format("a scene's structure.stiffness, structure.mass or structure.damping = \"{}\"", file)}};
+  }
+  for (const std::string_view kind : {"run report", "contact table"}) {
+    if ((first + "\n").starts_with(report::html_first_line(kind))) {
+      return {fmt::format("a page of railtab: {}", kind), {}, {"open it in a browser"}};
+    }
+  }
+  if (ending == ".csv") {
+    if (first.starts_with("ratio,")) {
+      return {"queries of creep forces", {printable(first)}, {fmt::format("vsi creep --query {} -o R.csv", file)}};
+    }
+    if (first.starts_with("y,")) {
+      return {"queries of the contact",
+              {printable(first)},
+              {fmt::format("vsi contact TABLE.h5 --query {} -o R.csv", file)}};
+    }
+    return {"columns of numbers (CSV)", {"columns: " + printable(first)}, {"docs/file_formats says what scenes read"}};
+  }
+  throw input_error(file,
+                    first.empty() ? "an empty file" : fmt::format("a file that begins with '{}'", printable(first, 40)),
+                    "a scene, a vehicle, a table, results, a profile, a matrix or a CSV; or a command: vsi --help");
+}
+
+Description describe(const std::string& file) {
+  if (is_array_file(file)) return of_array_file(file);
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".toml") return of_toml(file);
+  std::ifstream in(file);
+  std::string first(200, '\0');
+  in.read(first.data(), static_cast<std::streamsize>(first.size()));
+  first.resize(static_cast<std::size_t>(in.gcount()));
+  return of_text(file, first.substr(0, first.find('\n')), ending);
+}
+
+}  // namespace
+
+int describe_command(const Arguments& arguments) {
+  po::options_description own("Options");
+  own.add_options()("file", text_value()->value_name("FILE"), "any file");
+  const CommandLine line("vsi FILE", own, {"file"}, arguments);
+  if (line.help_printed()) return 0;
+  const std::string file = line.required("file");
+  const Description description = describe(file);
+  if (line.json()) {
+    print_json_line(
+        {{"file", file}, {"kind", description.kind}, {"facts", description.facts}, {"commands", description.commands}});
+    return 0;
+  }
+  print_formatted("{}: {}\n", file, description.kind);
+  for (const std::string& fact : description.facts) print_formatted("  {}\n", fact);
+  for (const std::string& command : description.commands) print_formatted("  > {}\n", command);
+  return 0;
+}
+
+}  // namespace railtab::vsi
