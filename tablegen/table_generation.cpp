@@ -45,8 +45,8 @@ bool meets_tolerance(const GeometryVerification& v, double tolerance) {
 
 std::string shortfall(const GeometryVerification& v, double tolerance) {
   return fmt::format(
-      "the penetration error is {:.3g} m (99.9 %) and patches are missed or invented at {:.3g} of the queries; asked "
-      "for were {:.3g} m and none",
+      "the penetration error is {:.3g} m (99.9 %) and patches are missed or spurious at {:.3g} of the queries; "
+      "permitted are {:.3g} m and none",
       v.penetration.p999, v.finer_mismatch_share, tolerance);
 }
 

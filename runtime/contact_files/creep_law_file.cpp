@@ -25,9 +25,10 @@ TableCreep read_table_creep(const std::filesystem::path& file, double nu) {
         name.string(),
         fmt::format("{} for Poisson's ratio {}",
                     file.empty() ? "the creep table that comes with railtab" : "a creep table", found),
-        fmt::format("one for {}, as the material has: tablegen creep --poisson {} makes it (contact.creep_table); or "
-                    "the law polach, fastsim or linear, or a material of {}",
-                    nu, nu, found));
+        fmt::format(
+            "one for {}, the ratio of the material: tablegen creep --poisson {} makes it (contact.creep_table); or "
+            "the law polach, fastsim or linear, or a material of {}",
+            nu, nu, found));
   }
   return {std::move(table)};
 }

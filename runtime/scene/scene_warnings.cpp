@@ -26,7 +26,7 @@ const Warning energy_rule_with_paper_search{
     }};
 
 const Warning structure_unlike_a_bridge{
-    "mass per metre or first natural frequency are those of no bridge", [](const SceneCase& at, Warnings& list) {
+    "mass per metre or first natural frequency is implausible for a bridge", [](const SceneCase& at, Warnings& list) {
       list.insert(list.end(), at.model.structure_warnings.begin(), at.model.structure_warnings.end());
     }};
 

@@ -107,7 +107,7 @@ std::string table_text(const CreepTableData& table, const std::string& file) {
                       static_cast<double>(std::filesystem::file_size(file)) / 1048576.0,
                       static_cast<double>(CreepTable(table).bytes()) / 1048576.0);
   for (const auto& [name, value] : table.statistics) text += fmt::format("  {:36} {:.4g}\n", name, value);
-  text += fmt::format("  made         {} by version {}: {}\n", table.provenance.created,
+  text += fmt::format("  generated    {} by version {}: {}\n", table.provenance.created,
                       table.provenance.program_version, table.provenance.command_line);
   return text;
 }

@@ -123,7 +123,7 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
                   milliradians(table.yaw_squared.low), milliradians(table.yaw_squared.high), table.yaw_squared.cells);
   text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} root cells\n", 1e3 * table.roll.low,
                       1e3 * table.roll.high, table.roll.cells);
-  text += fmt::format("  leaves       {}, with {} branches; {} valid up to a height of the wheel\n",
+  text += fmt::format("  leaves       {}, with {} branches; {} valid for a smaller lowering than the others\n",
                       table.leaf_branch.size(), branches_of(table), limited_leaves(table));
   text += fmt::format("  size         {:.2f} MiB on disk\n",
                       static_cast<double>(std::filesystem::file_size(file)) / 1048576.0);

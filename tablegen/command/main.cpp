@@ -17,14 +17,14 @@ constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
   geometry   make a contact geometry table of a wheel and a rail profile
   batch      make the geometry tables of a list of wheel and rail pairs
   creep      make a table of creep forces by exact rolling contact, or one shard of it
-  merge      put the shards of a table together
-  contact    one exact rolling-contact solution: creep force and its proof
+  merge      combine the shards of a table
+  contact    solve one contact of a wheel on its rail, or one exact rolling contact of an ellipse
   conicity   rolling radius difference and equivalent conicity (EN 15302) from a geometry table
   loaded     add the loaded contact (half-space solutions over all poses) to a geometry table
-  info       print what a table holds
+  info       print the contents of a table
   verify     compare a table with the online search: errors, share of fallback, time per query
 
-tablegen COMMAND --help tells the options; tablegen --version the version.
+tablegen COMMAND --help lists the options, tablegen --version prints the version.
 Exit code: 0 done, 1 the computation failed, 2 the input is wrong.
 )";
 

@@ -47,7 +47,7 @@ void merge_geometry(const Files& shards, const std::string& file, const TablePro
   std::vector<GeometryTableData> parts;
   for (const std::filesystem::path& shard : shards) {
     parts.push_back(read_geometry_table(shard));
-    if (parts.back().shard.whole()) throw input_error(shard.string(), "a whole table", "a shard: merged it is already");
+    if (parts.back().shard.whole()) throw input_error(shard.string(), "a whole table", "shards; it needs no merge");
   }
   GeometryTableData table = merge_geometry_tables(std::move(parts));
   try {

@@ -61,12 +61,12 @@ nlohmann::ordered_json description(const GeometryVerification& v) {
 
 std::string text(const GeometryVerification& v) {
   std::string out = fmt::format(
-      "{} random queries, {} answered by the table (fallback {:.3f} %; {:.2f} % with a short search), {} patches "
+      "{} random queries, {} served by the table (fallback {:.3f} %; {:.2f} % with a short search), {} patches "
       "compared with the online search\n"
-      "patches missed or invented at {:.4f} % of the queries answered ({:.4f} % against a finer search)\n\n",
+      "missed or spurious patches at {:.4f} % of the queries served ({:.4f} % against a finer search)\n\n",
       v.samples, v.answered_by_table, 100 * v.fallback_share, 100 * v.searched_share, v.patches_compared,
       100 * v.patch_mismatch_share, 100 * v.finer_mismatch_share);
-  out += errors_text("error", v);
+  out += errors_text("error [m, rad, -]", v);
   out += fmt::format(
       "\ntime per query: table {:.0f} ns, online {:.0f} ns, table with fallback {:.0f} ns, "
       "point-discretised search with 1000 points {:.0f} ns\n",

@@ -165,7 +165,7 @@ TEST_F(AssessCommand, ClausesOfAUser) {
 TEST_F(AssessCommand, WrongInput) {
   write("scene.toml", vertical + light_span);
   write("no_bridge.toml", vertical);
-  expect_refused("assess", "the argument scene is missing");
+  expect_refused("assess", "the argument --scene is missing");
   expect_refused("assess no_bridge.toml -o out", "no bridge");
   expect_refused("assess scene.toml --stage all -o out", "--stage: found all, expected check, moving-load or contact");
   expect_refused("assess scene.toml --fail-on all -o out", "--fail-on: found all, expected any or verified");

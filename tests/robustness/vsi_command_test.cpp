@@ -30,7 +30,7 @@ TEST_F(VsiCommand, StandardOutputThatCannotBeWrittenIsAFailure) {
 TEST_F(VsiCommand, WrongCommandLines) {
   expect_refused("", "no command");
   expect_refused("rnu", "unknown command 'rnu'");
-  expect_refused("run", "the argument scene is missing");
+  expect_refused("run", "found no SCENE.toml: the argument --scene is missing");
   expect_refused("run scene.toml --contcat table", "--contcat");
   expect_refused("run scene.toml --threads -1", "threads");
   expect_refused("run scene.toml --threads many", "threads");
@@ -408,7 +408,7 @@ TEST_F(VsiCommand, VehicleShowsWhatFollowsFromItsFile) {
   const Outcome shown = vsi("vehicle metro-gz18");
   EXPECT_EQ(shown.exit_code, 0);
   for (const char* part : {"55685 kg, 22.8 m over couplers, wheels of 0.42 m radius", "68.284         13.921",
-                           "car body bounce", "not linear: yaw damper along x", "closes: mass 55685 kg",
+                           "car body bounce", "not linear: yaw damper along x", "within range: mass 55685 kg",
                            "bogie.height = 0.5 m: assumed, source: none", "SIMPACK"}) {
     EXPECT_NE(shown.output.find(part), std::string::npos) << part << "\n" << shown.output;
   }

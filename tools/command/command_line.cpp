@@ -33,6 +33,11 @@ std::optional<Pair> parse_pair(std::string_view text, char separator) {
 
 bool is_whole(double value) { return value == std::floor(value); }
 
+InputError missing(const po::options_description& options, const std::string& name, const std::string& usage) {
+  return InputError(fmt::format("found no {}: the argument --{} is missing\nusage: {}",
+                                options.find(name, false).format_parameter(), name, usage));
+}
+
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
@@ -69,7 +74,7 @@ bool CommandLine::help_printed() const {
   if (given("help")) {
     std::ostringstream text;
     text << all_;
-    print_text(fmt::format("Usage: {}\n\n{}", usage_, text.str()));
+    print_text(fmt::format("Usage: {}\n{}", usage_, text.str()));
     return true;
   }
   if (given("version")) print_text("railtab " RAILTAB_VERSION "\n");
@@ -77,12 +82,12 @@ bool CommandLine::help_printed() const {
 }
 
 std::string CommandLine::required(const std::string& name) const {
-  if (!given(name)) throw InputError(fmt::format("the argument {} is missing\nusage: {}", name, usage_));
+  if (!given(name)) throw missing(all_, name, usage_);
   return text(name);
 }
 
 std::vector<std::string> CommandLine::required_many(const std::string& name) const {
-  if (!given(name)) throw InputError(fmt::format("the argument {} is missing\nusage: {}", name, usage_));
+  if (!given(name)) throw missing(all_, name, usage_);
   return values_[name].as<std::vector<std::string>>();
 }
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* usage =
     "usage: vsi COMMAND [OPTIONS]; vsi COMMAND --help says more; vsi FILE says what a file is\n"
-    "  new     SCENE.toml [--train NAME] [--span METRES]      write a scene to begin with\n"
-    "  check   SCENE.toml [-o LAYOUT.svg]                     validate a scene and draw what stands where\n"
+    "  new     SCENE.toml [--train NAME] [--span METRES]      write a first scene\n"
+    "  check   SCENE.toml [-o LAYOUT.svg]                     validate a scene and draw its layout\n"
     "  contact TABLE.h5 --query Q.csv -o R.csv [--online]     contact patches of a wheelset's positions\n"
     "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
@@ -24,7 +24,7 @@ constexpr const char* usage =
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
     "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
     "contact\n"
-    "  assess  SCENE.toml [-o DIR]                            does its bridge pass? limits of the standards, one page\n"
+    "  assess  SCENE.toml [-o DIR]                            check its bridge by the limits of the standards\n"
     "  critical-speed SCENE.toml [--amplitude M]              linear critical speed of its vehicle on its profiles\n"
     "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
     "library\n";

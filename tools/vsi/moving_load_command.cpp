@@ -39,8 +39,8 @@ po::options_description options() {
       ("train", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
        "a train, NAME*N wagons or AXLES.csv, may be given many times; default hslm-a, its ten trains")  //
       ("speed", text_value()->value_name("LO:HI[:STEP]"),
-       "speeds in m/s; without STEP the critical ones between LO and HI are sought")  //
-      ("speed-kmh", text_value()->value_name("LO:HI[:STEP]"), "speeds in km/h")       //
+       "speeds in m/s; without STEP: search for the critical ones between LO and HI")  //
+      ("speed-kmh", text_value()->value_name("LO:HI[:STEP]"), "speeds in km/h")        //
       ("sleeper-spacing", text_value()->value_name("M"), "spreads each axle load 25/50/25 % over three sleepers")(
           "modes", text_value("0")->value_name("N"),
           "modes that vibrate; 0: up to the greatest of 30 Hz, 1.5 f1 and f3")  //
@@ -149,7 +149,7 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optio
     const bool moving =
         std::any_of(response.trains.begin(), response.trains.end(), [](const auto& t) { return !t.only_static; });
     if (moving && !speeds) {
-      throw input_error("vsi moving-load", "no speeds",
+      throw input_error("--speed", "no speeds",
                         "--speed LO:HI[:STEP] (m/s) or --speed-kmh LO:HI[:STEP]; EN 1991-2 asks for 40 m/s to 1.2 "
                         "times the line's speed");
     }

@@ -46,7 +46,7 @@ void print_deck(const DeckResponse& deck) {
   for (int n = 0; n < d.dynamic_modes; ++n) {
     print_formatted("  {:3}. {:10.6f} Hz, damping {:.3f} %\n", n + 1, d.frequency(n), 100.0 * d.damping[n]);
   }
-  print_formatted("  {} higher modes add to displacements without inertia\n", d.modes() - d.dynamic_modes);
+  print_formatted("  {} higher modes add to displacements as a static correction\n", d.modes() - d.dynamic_modes);
   print_formatted("  {:16} {:>10} {:>10} {:>8} {:>7} {:>8} {:>10} {:>8} {:>7} {:>8} {:>7}\n", "train", "static mm",
                   "a m/s2", "km/h", "x m", "t s", "w mm", "km/h", "x m", "t s", "w/stat");
   for (const TrainResponse& response : deck.responses) {

@@ -314,12 +314,12 @@ namespace {
 
 po::options_description run_options() {
   po::options_description own("Options");
-  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "what is run")  //
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "the scene to run")  //
       ("output,o", text_value()->value_name("RESULTS.h5"),
-       "results; default: <scene>.results.h5 in this folder")  //
+       "results; default: <scene>.results.h5 in the current folder")  //
       ("resume",
        "continue from the last checkpoint in RESULTS.h5; a complete run is left as it is")             //
-      ("plan", "print what will be built and what is left out; no run")                                //
+      ("plan", "print the model, its steps and its memory, without a run")                             //
       ("contact", text_value()->value_name("MODE"), "table, online or paper, instead of the scene's")  //
       ("check-reduction", text_value()->value_name("SECONDS"),
        "error of structure.reduction over the first SECONDS, against a run without; no further run");

@@ -139,7 +139,7 @@ void RunPool::set_others_aside(const SweepRun& run, const SceneParameters& scene
       check_results(run, scene);
       return;
     } catch (const InputError& wrong) {
-      print_message(fmt::format("{}: {}: {}; the run is made again\n", options_.command, run.name, wrong.what()));
+      print_message(fmt::format("{}: {}: {}; the run is repeated\n", options_.command, run.name, wrong.what()));
     }
     why = is_readable(file(run, ".h5")) ? "other" : "damaged";
     set_aside(run, ".h5", why);
@@ -213,7 +213,7 @@ void make_output_folder(const fs::path& folder) {
   }
   std::error_code failure;
   fs::create_directory(folder, failure);
-  if (failure) throw input_error("-o", folder.string() + ": " + failure.message(), "a folder that can be made");
+  if (failure) throw input_error("-o", folder.string() + ": " + failure.message(), "a folder that can be created");
 }
 
 }  // namespace railtab::vsi

@@ -44,7 +44,7 @@ std::pair<std::string, bool> row_of(const RunPool& sweep, const SweepRun& run) {
   const std::optional<bool> complete = complete_of_row(run, row);
   if (complete) return {std::move(row), *complete};
   throw input_error(sweep.file(run, ".row").string(), "no row of this run",
-                    "the one that vsi sweep wrote; without the file the run is made again");
+                    "the one that vsi sweep wrote; without the file the run is repeated");
 }
 
 /// Finished runs; `rows` takes theirs where it is not null. @throws InputError
@@ -88,7 +88,7 @@ void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
 std::vector<double> speeds_of(const CommandLine& line) {
   const bool si = line.given("speed"), kmh = line.given("speed-kmh");
   if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
-  if (!si && !kmh) throw input_error("vsi sweep", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
+  if (!si && !kmh) throw input_error("--speed", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
   const std::string option = si ? "speed" : "speed-kmh";
   std::vector<double> speeds = values_of_range("--" + option, line.text(option));
   if (kmh) std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double v) { return v / 3.6; });
@@ -106,10 +106,10 @@ void remove_abandoned_of(const std::vector<SweepRun>& runs, const fs::path& fold
 
 po::options_description sweep_options() {
   po::options_description own("Options");
-  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "what is run")                         //
-      ("output,o", text_value()->value_name("DIR"), "folder of the results, made where it does not exist")  //
-      ("speed", text_value()->value_name("LO:HI:STEP"), "speeds in m/s")                                    //
-      ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "speeds in km/h")                               //
+  own.add_options()("scene", text_value()->value_name("SCENE.toml"), "the scene to run")         //
+      ("output,o", text_value()->value_name("DIR"), "folder of the results, created if absent")  //
+      ("speed", text_value()->value_name("LO:HI:STEP"), "speeds in m/s")                         //
+      ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "speeds in km/h")                    //
       ("seeds", text_value("1")->value_name("N"),
        "random tracks for each speed: irregularity.seed and the N - 1 that follow")  //
       ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs");

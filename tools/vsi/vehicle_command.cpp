@@ -128,12 +128,13 @@ void print(const Described& v) {
   for (const std::string& element : data.nonlinear) print_formatted("  not linear: {}\n", element);
   for (const std::string& element : data.stand_ins) print_formatted("  {}\n", element);
   for (const std::string& element : data.linearised) {
-    print_formatted("  in natural motions and with train.force_elements = \"linear\": {}\n", element);
+    print_formatted("  in natural frequencies and with train.force_elements = \"linear\": {}\n", element);
   }
   for (const ClosingCheck& check : v.checks) {
-    print_formatted("  {}: {} {} {}, stated {:.6g} to {:.6g} {}\n", check.holds() ? "closes" : "does not close",
-                    check.stated.quantity, check.found ? fmt::format("{:.6g}", *check.found) : "none",
-                    check.stated.unit, check.stated.low, check.stated.high, check.stated.unit);
+    print_formatted("  {}: {} {}, stated {:.6g} to {:.6g} {}\n", check.holds() ? "within range" : "out of range",
+                    check.stated.quantity,
+                    check.found ? fmt::format("{:.6g} {}", *check.found, check.stated.unit) : "not found",
+                    check.stated.low, check.stated.high, check.stated.unit);
   }
   print_sources(data);
 }
@@ -212,9 +213,9 @@ Json as_json(const Described& v) {
 int vehicle_command(const Arguments& arguments) {
   po::options_description own("Options");
   own.add_options()("vehicle", text_value()->value_name("NAME|FILE.toml"),
-                    "a vehicle of the library or of a file; none: lists the library")  //
+                    "a vehicle of the library or of a file; none: list the library")  //
       ("modes", text_value("8")->value_name("N"), "natural frequencies on standing wheelsets, 0 for none")(
-          "toml", "prints the vehicle's file, to start one's own from");
+          "toml", "print the vehicle's file, to copy and change");
   const CommandLine line("vsi vehicle [NAME|FILE.toml] [--modes N] [--toml]", own, {"vehicle"}, arguments);
   if (line.help_printed()) return 0;
   constexpr int most_modes = 500;
