@@ -14,12 +14,9 @@ struct FrictionLaw {
   double initial_slope = 1.0;  ///< over that of clean surfaces, above 0, at most 1
 
   [[nodiscard]] bool falls() const noexcept { return limit < 1.0 && decay > 0.0; }
-  /// μ/μ_0. @param velocity w >= 0 [m/s], a number or a dual number
-  template <class T>
-  [[nodiscard]] T share(const T& velocity) const {
-    using std::exp;
-    return (1.0 - limit) * exp(-decay * velocity) + limit;
-  }
+  /// μ/μ_0 and its derivative. @param velocity w >= 0 [m/s]
+  [[nodiscard]] double share(double velocity) const { return (1.0 - limit) * std::exp(-decay * velocity) + limit; }
+  [[nodiscard]] double slope(double velocity) const { return -decay * (1.0 - limit) * std::exp(-decay * velocity); }
 };
 
 }  // namespace railtab

@@ -297,16 +297,31 @@ class LoadedContactForce {
     const Vector<T> slip = slip_velocity(part.arm);
     const auto& rotation = wheel_.rotation;
     const double speed = model_.creepage_speed() / model_.friction_law.initial_slope;
-    const T bound = coefficient(part, slip) * part.normal, root = sqrt(part.a * part.b);
+    const T slip_across = part.cos_angle * slip[1] + part.sin_angle * slip[2];
+    const Friction friction = this->friction(slip[0], slip_across);
+    const T bound = friction.coefficient * part.normal, root = sqrt(part.a * part.b);
     const T scale = model_.normal.material.shear_modulus() / speed * (part.a * part.b) / bound;
-    const std::array<T, 3> creepage{slip[0] * scale, (part.cos_angle * slip[1] + part.sin_angle * slip[2]) * scale,
+    const std::array<T, 3> creepage{slip[0] * scale, slip_across * scale,
                                     (rotation[2] * part.cos_angle - rotation[1] * part.sin_angle) * scale * root};
     const T ratio = part.a / part.b;
     const Creepage at{number(creepage[0]), number(creepage[1]), number(creepage[2])};
     Creep creep;
     if constexpr (derivatives) {
       creep.jet = creep_force_jet(model_.creep_law, ratio.value, at);
-      add_motion_slope(part, weight.value * bound.value * scale.value, root.value, creep.jet);
+      const CreepForceJet& jet = creep.jet;
+      const std::array<double, 3> force{jet.force.x, jet.force.y, jet.force.moment}, c{at.x, at.y, at.spin};
+      const std::array<double, 3> size{1.0, 1.0, root.value};
+      Eigen::Matrix3d slope;  // of the local forces with respect to the slips
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::array<double, 4>& d = jet.derivative[i];
+        const double by_bound = force[i] - d[1] * c[0] - d[2] * c[1] - d[3] * c[2];
+        for (std::size_t k = 0; k < 3; ++k) {
+          slope(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+              weight.value * size[i] *
+              (bound.value * scale.value * size[k] * d[k + 1] + part.normal.value * friction.slope[k] * by_bound);
+        }
+      }
+      add_motion_slope(part, slope);
     } else {
       creep.jet.force = creep_force(model_.creep_law, ratio, at);
       const auto* table = std::get_if<TableCreep>(&model_.creep_law);
@@ -319,16 +334,26 @@ class LoadedContactForce {
     add(force, part.arm, moment, weight);
   }
 
-  // Of friction at the part's slip velocity. Tangents take it as constant.
-  [[nodiscard]] double coefficient(const Part<T>& part, const Vector<T>& slip) const {
-    if (!model_.friction_law.falls()) return friction_;
-    const double across = number(part.cos_angle) * number(slip[1]) + number(part.sin_angle) * number(slip[2]);
-    return friction_ * model_.friction_law.share(std::hypot(number(slip[0]), across));
+  /// Coefficient at a slip velocity, and its derivatives with respect to the slip along x, across and about the normal.
+  struct Friction {
+    T coefficient;
+    std::array<double, 3> slope{};
+  };
+  [[nodiscard]] Friction friction(const T& along, const T& across) const {
+    if (!model_.friction_law.falls()) return {T(friction_), {}};
+    using std::sqrt;
+    constexpr double least = 1e-12;  // m²/s²: a root has no slope at zero
+    const T velocity = sqrt(along * along + across * across + T(least));
+    const double w = number(velocity), slope = friction_ * model_.friction_law.slope(w);
+    const double value = friction_ * model_.friction_law.share(w);
+    Friction result{T(value), {slope * number(along) / w, slope * number(across) / w, 0.0}};
+    if constexpr (derivatives) result.coefficient = chained(velocity, value, slope);
+    return result;
   }
 
   // The slips of a part, along x, across and about its normal, are Eᵀ (velocity, rotation) of the wheel, and its creep
   // forces act on the wheel by E.
-  void add_motion_slope(const Part<T>& part, double weight, double root, const CreepForceJet& jet) {
+  void add_motion_slope(const Part<T>& part, const Eigen::Matrix3d& slope) {
     const double c = part.cos_angle.value, s = part.sin_angle.value;
     const double x = part.arm[0].value, y = part.arm[1].value, z = part.arm[2].value;
     Eigen::Matrix<double, 6, 3> E;
@@ -338,15 +363,6 @@ class LoadedContactForce {
         0.0, y * s - z * c, 0.0,  //
         z, -x * s, -s,            //
         -y, x * c, c;
-    const std::array<double, 3> scale{1.0, 1.0, root};
-    Eigen::Matrix3d slope;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      for (Eigen::Index j = 0; j < 3; ++j) {
-        const auto l = static_cast<std::size_t>(j);
-        slope(i, j) = weight * scale[k] * scale[l] * jet.derivative[k][l + 1];
-      }
-    }
     const Eigen::Matrix<double, 6, 3> answer = E * slope;
     motion_slope_.leftCols<6>() += answer * E.transpose();
     motion_slope_.col(6) += (c * wheel_.centre_z - s * wheel_.centre_y) * answer.col(1);
