@@ -26,6 +26,7 @@ set(railtab_contact_headers
   runtime/contact/contact_search.hpp
   runtime/contact/contact_search_scan.hpp
   runtime/contact/creep_law.hpp
+  runtime/contact/friction_law.hpp
   runtime/contact/hertz.hpp
   runtime/contact/paper_search.hpp
   runtime/contact/patch_loads.hpp
@@ -43,7 +44,7 @@ set(railtab_solver_headers
 
 set(railtab_contact_layers base tables profile contact)
 set(railtab_contact_files_layers table_files contact_files)
-set(railtab_solver_layers algebra fe measures vehicle assessment structure moving_load line vsi start results scene solver)
+set(railtab_solver_layers algebra fe measures vehicle assessment structure moving_load line vsi start stability results scene solver)
 foreach(component contact contact_files solver)
   list(TRANSFORM railtab_${component}_layers PREPEND railtab_ OUTPUT_VARIABLE layers)
   install(TARGETS ${layers} EXPORT railtab_${component})

@@ -31,7 +31,7 @@ struct Clause {
   std::string consequence;  ///< what follows where the limit is not met, if that is no failure; empty: a failure
   std::string source;       ///< where the limit was read
   std::string note;
-  bool verified = false;  ///< read in that source, not from memory
+  bool verified = false;  ///< read in that source; else the number is still to be checked
 
   // Applies where all of these hold that are there:
   std::string track;                                ///< "ballasted" or "direct"

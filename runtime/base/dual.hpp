@@ -58,6 +58,7 @@ struct Dual {
     const double root = std::sqrt(x.value);
     return chained(x, root, 0.5 / root);
   }
+  friend Dual exp(const Dual& x) noexcept { return chained(x, std::exp(x.value), std::exp(x.value)); }
   friend Dual sin(const Dual& x) noexcept { return chained(x, std::sin(x.value), std::cos(x.value)); }
   friend Dual cos(const Dual& x) noexcept { return chained(x, std::cos(x.value), -std::sin(x.value)); }
   friend Dual tan(const Dual& x) noexcept {

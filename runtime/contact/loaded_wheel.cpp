@@ -94,10 +94,11 @@ using MotionRow = Eigen::Matrix<double, 1, 7>;
 template <class T>
 class LoadedContactForce {
  public:
+  /// @param rail_friction RailHeadMotion::friction
   /// @param slopes of the look-up, where T has derivatives
-  LoadedContactForce(const WheelContactModel& model, const WheelKinematics& wheel, const LoadedLookup& lookup,
-                     const LoadedSlopes* slopes)
-      : model_(model), wheel_(wheel), lookup_(lookup), slopes_(slopes) {
+  LoadedContactForce(const WheelContactModel& model, double rail_friction, const WheelKinematics& wheel,
+                     const LoadedLookup& lookup, const LoadedSlopes* slopes)
+      : model_(model), friction_(model.friction * rail_friction), wheel_(wheel), lookup_(lookup), slopes_(slopes) {
     const Pose pose{wheel.y, wheel.z, wheel.roll, wheel.yaw};
     for (std::size_t k = 0; k < pose_directions; ++k) pose_[k] = coordinate<T>(pose[k], k);
     centre_y_ = coordinate<T>(wheel.centre_y, 0);
@@ -190,7 +191,7 @@ class LoadedContactForce {
       if (model_.damping != 0.0) add_damping(elastic, p, part);
       part_normal_[p] = number(part.normal);
     }
-    if (model_.friction > 0.0) add_groups(parts);
+    if (friction_ > 0.0) add_groups(parts);
     if constexpr (derivatives) {
       if (model_.damping != 0.0) add_damped_normals();
     }
@@ -295,8 +296,8 @@ class LoadedContactForce {
     if (!(number(part.normal) > 0.0)) return;
     const Vector<T> slip = slip_velocity(part.arm);
     const auto& rotation = wheel_.rotation;
-    const double speed = model_.speed / model_.creepage_share;
-    const T bound = model_.friction * part.normal, root = sqrt(part.a * part.b);
+    const double speed = model_.creepage_speed() / model_.friction_law.initial_slope;
+    const T bound = coefficient(part, slip) * part.normal, root = sqrt(part.a * part.b);
     const T scale = model_.normal.material.shear_modulus() / speed * (part.a * part.b) / bound;
     const std::array<T, 3> creepage{slip[0] * scale, (part.cos_angle * slip[1] + part.sin_angle * slip[2]) * scale,
                                     (rotation[2] * part.cos_angle - rotation[1] * part.sin_angle) * scale * root};
@@ -316,6 +317,13 @@ class LoadedContactForce {
     const Vector<T> force{f[0] * bound, across * part.cos_angle, across * part.sin_angle};
     const Vector<T> moment{T(0.0), -spin * part.sin_angle, spin * part.cos_angle};
     add(force, part.arm, moment, weight);
+  }
+
+  // Of friction at the part's slip velocity. Tangents take it as constant.
+  [[nodiscard]] double coefficient(const Part<T>& part, const Vector<T>& slip) const {
+    if (!model_.friction_law.falls()) return friction_;
+    const double across = number(part.cos_angle) * number(slip[1]) + number(part.sin_angle) * number(slip[2]);
+    return friction_ * model_.friction_law.share(std::hypot(number(slip[0]), across));
   }
 
   // The slips of a part, along x, across and about its normal, are Eᵀ (velocity, rotation) of the wheel, and its creep
@@ -353,6 +361,7 @@ class LoadedContactForce {
   }
 
   const WheelContactModel& model_;
+  double friction_;  ///< without slip
   const WheelKinematics& wheel_;
   const LoadedLookup& lookup_;
   const LoadedSlopes* slopes_;
@@ -460,9 +469,10 @@ class DisplacementSlopes {
 
 /// @param T dual numbers with a direction for every part's normal force where these are damped
 template <class T>
-Matrix9 tangent_on_right(const WheelContactModel& model, const WheelKinematics& wheel, const LoadedLookup& lookup,
-                         const LoadedSlopes& slopes, const StepRates& rates, const LoadedMemory* start) {
-  const LoadedContactForce<T> force(model, wheel, lookup, &slopes);
+Matrix9 tangent_on_right(const WheelContactModel& model, double friction, const WheelKinematics& wheel,
+                         const LoadedLookup& lookup, const LoadedSlopes& slopes, const StepRates& rates,
+                         const LoadedMemory* start) {
+  const LoadedContactForce<T> force(model, friction, wheel, lookup, &slopes);
   Generalised<T> total;
   double of_motion = 1.0;
   Vector9 turned = Vector9::Zero();
@@ -508,7 +518,7 @@ LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide si
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
   LoadedWheelForce result;
   const WheelKinematics wheel = on_right(model, side, wheelset, rail);
-  const LoadedContactForce<double> force(model, wheel, lookup, nullptr);
+  const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
   const Vector9 total = in_track(side, force.generalised(force.total()));
   result.wheelset = total.head<6>();
   result.rail = total.tail<3>();
@@ -548,7 +558,7 @@ Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const 
                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                           const LoadedLookup& lookup) noexcept {
   const WheelKinematics wheel = on_right(model, side, wheelset, rail);
-  const LoadedContactForce<double> end(model, wheel, lookup, nullptr);
+  const LoadedContactForce<double> end(model, rail.friction, wheel, lookup, nullptr);
   const MeanForce<double> mean = mean_over_step(model.geometry->pair(), start, end, lookup.table_share);
   Generalised<double> force = end.generalised(mean.end);
   for (std::size_t i = 0; i < 9; ++i) force[i] += mean.of_start * start.rest[static_cast<Eigen::Index>(i)];
@@ -562,9 +572,10 @@ Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, con
   LoadedSlopes slopes;
   const LoadedLookup lookup = model.geometry->loaded()->lookup(wheel.y, wheel.z, wheel.roll, wheel.yaw, slopes);
   if (!(lookup.energy > 0.0) && !start) return Matrix9::Zero();
-  Matrix9 tangent = model.damping != 0.0
-                        ? tangent_on_right<Dual<1 + normal_packs>>(model, wheel, lookup, slopes, rates, start)
-                        : tangent_on_right<Dual<1>>(model, wheel, lookup, slopes, rates, start);
+  Matrix9 tangent =
+      model.damping != 0.0
+          ? tangent_on_right<Dual<1 + normal_packs>>(model, rail.friction, wheel, lookup, slopes, rates, start)
+          : tangent_on_right<Dual<1>>(model, rail.friction, wheel, lookup, slopes, rates, start);
   if (side == WheelSide::left) {
     for (Eigen::Index i = 0; i < 9; ++i) {
       constexpr std::array<double, 9> reflected{1.0, -1.0, 1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0};

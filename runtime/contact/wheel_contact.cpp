@@ -23,7 +23,7 @@ WheelsetMotion on_right(WheelSide side, const WheelsetMotion& m) {
 }
 RailHeadMotion on_right(WheelSide side, const RailHeadMotion& m) {
   if (side == WheelSide::right) return m;
-  return {reflected_rail(m.displacement), reflected_rail(m.velocity), -m.yaw, m.slope};
+  return {reflected_rail(m.displacement), reflected_rail(m.velocity), -m.yaw, m.slope, m.friction};
 }
 
 // Rotation by the rail's roll: components along track axes -> along rail-head axes (y, z).
@@ -48,10 +48,16 @@ struct PatchForce {
   bool outside_creep_table = false;
 };
 
-// velocity, rotation: of the wheelset against the rail, rail-head axes; arm: from the wheelset centre to the contact
-// point.
+// How a wheelset moves against the rail, in rail-head axes, and the coefficient of friction without slip.
+struct PatchMotion {
+  Vector3 velocity, rotation;
+  double friction;
+};
+
+// arm: from the wheelset centre to the contact point.
 PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, const ContactAxes& axes,
-                       const Vector3& arm, const Vector3& velocity, const Vector3& rotation) {
+                       const Vector3& arm, const PatchMotion& motion) {
+  const auto& [velocity, rotation, friction] = motion;
   const double approach = (velocity + rotation.cross(arm)).dot(axes.normal);
   const double N = std::max(0.0, load.elastic_force * (1.0 + model.damping * approach));
   if (N <= 0.0) return {Vector3::Zero(), Vector3::Zero(), 0.0};
@@ -60,11 +66,16 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
   if (model.gravitational_stiffness == GravitationalStiffness::neglected) force[1] = 0.0;
   Vector3 moment = Vector3::Zero();
   bool outside = false;
-  const double bound = model.friction * N;
-  if (bound > 0.0) {
+  if (friction * N > 0.0) {
     const auto [a, b] =
         model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
-    const PatchCreepage slip = patch_creepage({velocity, rotation}, arm, axes, model.speed / model.creepage_share);
+    PatchCreepage slip = patch_creepage({velocity, rotation}, arm, axes, model.creepage_speed());
+    double bound = friction * N;
+    if (model.friction_law.falls()) {
+      bound *= model.friction_law.share(std::hypot(slip.x, slip.y) * model.creepage_speed());
+    }
+    const double slope = model.friction_law.initial_slope;
+    slip = {slope * slip.x, slope * slip.y, slope * slip.spin};
     const Creepage creepage = normalised_creepage(slip, a, b, model.normal.material.shear_modulus(), bound);
     const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
     force += creep.x * Vector3::UnitX() + creep.y * axes.tangent;
@@ -112,7 +123,9 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     const Vector3 surface_velocity = r.velocity[2] * Vector3(0.0, -patch.z_rail, patch.y_rail);
     // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
     const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
-    const PatchForce p = patch_force(model, loads[i], axes, arm, velocity + centre_shift - surface_velocity, rotation);
+    const PatchForce p =
+        patch_force(model, loads[i], axes, arm,
+                    {velocity + centre_shift - surface_velocity, rotation, model.friction * rail.friction});
     result.normal[i] = p.normal;
     result.outside_creep_table += p.outside_creep_table;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
@@ -236,7 +249,7 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   std::array<Neighbour, 6> neighbour;
   for (std::size_t j = 0; j < 6; ++j) {
     const auto dof = static_cast<Eigen::Index>(j);
-    const double step = difference_step(steps[j], rates.wheelset[dof], model.speed);
+    const double step = difference_step(steps[j], rates.wheelset[dof], std::max(model.speed, model.speed_floor));
     WheelsetMotion perturbed = wheelset;
     perturbed.displacement[dof] += step;
     perturbed.velocity[dof] += rates.wheelset[dof] * step;
@@ -253,7 +266,7 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   // Moving the rail is moving the wheelset the other way; rolling it is a motion of its own about the rail head.
   tangent.col(6) = -tangent.col(1);
   tangent.col(7) = -tangent.col(2);
-  const double roll_step = difference_step(1e-7, rates.rail, model.speed);
+  const double roll_step = difference_step(1e-7, rates.rail, std::max(model.speed, model.speed_floor));
   RailHeadMotion rolled = rail;
   rolled.displacement[2] += roll_step;
   rolled.velocity[2] += rates.rail * roll_step;

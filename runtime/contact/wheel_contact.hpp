@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
+#include "railtab/runtime/contact/friction_law.hpp"
 #include "railtab/runtime/contact/patch_loads.hpp"
 
 namespace railtab {
@@ -27,6 +29,7 @@ struct RailHeadMotion {
   Vector3 velocity = Vector3::Zero();      ///< of the rail's material: y, z [m/s], roll [rad/s]
   double yaw = 0.0;                        ///< slope dy/dx of the rail head [-]
   double slope = 0.0;                      ///< slope dz/dx of the rail head [-]
+  double friction = 1.0;                   ///< coefficient of friction there over WheelContactModel::friction [-]
 };
 
 /// Semi-axes of a contact patch along (a) and across (b) the rolling direction [m].
@@ -45,12 +48,19 @@ struct WheelContactModel {
   CreepLaw creep_law = PolachCreep{};
   double friction = 0.3;  ///< [-]
   double damping = 0.0;   ///< F_n = K_h d^{3/2} (1 + damping·d') [s/m]
-  double speed = 0.0;     ///< running speed V [m/s], > 0
+  FrictionLaw friction_law;
+  double speed = 0.0;  ///< running speed V [m/s], >= 0
+  /// Below this speed creepages are relative to it in place of V, so that a train can stand: creep forces at small
+  /// creepage are then too small by V over it. > 0 where V can be 0 [m/s].
+  double speed_floor = 0.0;
   /// Creepages count by this share, 1 but on the way to a solution (solve_contact_by_continuation).
   double creepage_share = 1.0;
   /// Ellipse of every patch, whatever its load and place (linear stability theory); else Hertz's.
   std::optional<PatchEllipse> constant_ellipse;
   GravitationalStiffness gravitational_stiffness = GravitationalStiffness::included;
+
+  /// What creepages are relative to [m/s].
+  [[nodiscard]] double creepage_speed() const noexcept { return std::max(speed, speed_floor) / creepage_share; }
 };
 
 /// Forces between one wheel and its rail, in the track frame.

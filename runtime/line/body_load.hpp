@@ -55,11 +55,11 @@ class LoadHistory {
 /// @throws InputError with file and line
 [[nodiscard]] LoadHistory read_load_history(const std::filesystem::path& file, double start = 0.0);
 
-/// A load at the centre of gravity of a body. Displacements being small, it keeps its direction and point.
+/// A load at the centre of gravity of each of some bodies. Displacements being small, it keeps its direction and point.
 struct BodyLoad {
   static constexpr int every_vehicle = -1;
   int vehicle = every_vehicle;  ///< of the train, front first
-  int body = 0;                 ///< of the vehicle
+  std::vector<int> bodies;      ///< of the vehicle, front first; more than one in a train that is one vehicle
   LoadHistory history;
 };
 

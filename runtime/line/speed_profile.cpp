@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -11,7 +12,7 @@
 namespace railtab {
 namespace {
 
-constexpr double slowest = 0.1, fastest = 200.0;  // m/s: creepages are relative to the running speed
+constexpr double slowest = 0.0, fastest = 200.0;  // m/s
 constexpr double hardest = 100.0;                 // m/s²: more than any brake, less than a slip of the pen
 
 /// First point of the line that holds `value`, for columns that increase.
@@ -56,6 +57,8 @@ SpeedProfile::SpeedProfile(std::vector<double> time, std::vector<double> speed)
   origin_ = travel(0.0);
 }
 
+double SpeedProfile::lowest() const noexcept { return *std::min_element(speed_.begin(), speed_.end()); }
+
 double SpeedProfile::acceleration(double time) const noexcept {
   if (time < time_.front() || time >= time_.back()) return 0.0;
   const std::size_t i = line_at(time_, time);
@@ -79,11 +82,16 @@ double SpeedProfile::distance(double time) const noexcept { return travel(time) 
 
 double SpeedProfile::time_at(double distance) const noexcept {
   const double s = distance + origin_;
-  if (s <= 0.0) return time_.front() + s / speed_.front();
-  if (s >= travel_.back()) return time_.back() + (s - travel_.back()) / speed_.back();
+  constexpr double never = std::numeric_limits<double>::infinity();
+  if (s < 0.0) return speed_.front() > 0.0 ? time_.front() + s / speed_.front() : -never;
+  if (s >= travel_.back()) {
+    if (speed_.back() > 0.0) return time_.back() + (s - travel_.back()) / speed_.back();
+    return s > travel_.back() ? never : time_.back();
+  }
   const std::size_t i = line_at(travel_, s);
   // V τ + a τ²/2 = Δs, in the form that a = 0 does not divide by
   const double V = speed_[i], a = acceleration(time_[i]), ds = s - travel_[i];
+  if (ds == 0.0) return time_[i];
   return time_[i] + 2.0 * ds / (V + std::sqrt(std::max(0.0, V * V + 2.0 * a * ds)));
 }
 

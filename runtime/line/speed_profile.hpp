@@ -10,16 +10,18 @@ namespace railtab {
 /// constant between two points and jumps at them.
 class SpeedProfile {
  public:
-  /// @param time strictly increasing [s]; @param speed [m/s], 0.1 to 200, as many, at least 2
+  /// @param time strictly increasing [s]; @param speed [m/s], 0 to 200, as many, at least 2
   /// @throws InputError naming the point
   SpeedProfile(std::vector<double> time, std::vector<double> speed);
 
+  [[nodiscard]] double lowest() const noexcept;                          ///< speed of all points [m/s]
   [[nodiscard]] double begin() const noexcept { return time_.front(); }  ///< first and last point [s]
   [[nodiscard]] double end() const noexcept { return time_.back(); }
   [[nodiscard]] double speed(double time) const noexcept;         ///< V [m/s]
   [[nodiscard]] double acceleration(double time) const noexcept;  ///< dV/dt, at a jump that after it [m/s²]
   [[nodiscard]] double distance(double time) const noexcept;      ///< run since t = 0, negative before [m]
-  /// When the train has run `distance`: the inverse of distance() [s].
+  /// When the train has run `distance`, the last time at which it stands there: the inverse of distance() [s]; infinite
+  /// where it never gets there.
   [[nodiscard]] double time_at(double distance) const noexcept;
 
  private:

@@ -16,8 +16,9 @@ std::string page(std::string_view kind, std::string_view title, const std::strin
          fmt::format(
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" "
              "content=\"light dark\"><meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-             "style-src 'unsafe-inline'; script-src 'unsafe-inline'\"><title>{} – railtab</title><style>{}</style></head>\n"
-             "<body><main>{}</main>{}</body></html>\n",
+             "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
+             "<title>{} – railtab</title><style>{}</style></head>\n"
+             "<body>{}{}</body></html>\n",
              escaped(title), styles, main, scripts);
 }
 
@@ -32,7 +33,7 @@ std::string html_first_line(std::string_view kind) {
 
 std::string html_page(std::string_view kind, std::string_view title, std::string_view body, std::string_view version) {
   return page(kind, title, std::string(page_style()),
-              fmt::format("{}<footer>railtab {}</footer>", body, escaped(version)),
+              fmt::format("<main>{}<footer>railtab {}</footer></main>", body, escaped(version)),
               fmt::format("<script>{}</script>", readout_script()));
 }
 
@@ -43,7 +44,8 @@ std::string live_html_page(std::string_view kind, std::string_view title, std::s
       "<footer>railtab {}<details><summary>Licence of dygraphs, which draws the charts</summary><pre>{}</pre></details>"
       "</footer>",
       escaped(version), escaped(dygraphs_licence()));
-  return page(kind, title, fmt::format("{}\n{}", dygraphs_style(), page_style()), std::string(body) + foot,
+  return page(kind, title, fmt::format("{}\n{}", dygraphs_style(), page_style()),
+              fmt::format("<main class=\"wide\">{}{}</main>", body, foot),
               fmt::format("<script type=\"application/json\" id=\"histories\">{}</script>\n<script>{}</script>\n"
                           "<script>{}</script>\n<script>{}</script>",
                           histories.json(), dygraphs_script(), chart_script(), script));

@@ -55,7 +55,7 @@ ResultHeader OutputSelection::of(ResultHeader header) const {
     header.static_wheel_load.clear();
   }
   keep(bodies_, header.body_names);
-  keep(bodies_, header.body_x);
+  if (!header.body_x.empty()) keep(bodies_, header.body_x);
   keep(nodes_, header.node_names);
   keep(nodes_, header.node_x);
   return header;

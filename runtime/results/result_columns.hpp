@@ -78,7 +78,7 @@ struct HeaderTexts {
   const char* dimension;  ///< name of the extent: datasets that share it have equal lengths
   const char* description;
   std::vector<std::string> ResultHeader::*values;
-  bool in_all_files = true;  ///< else empty where an older file lacks it
+  bool in_all_files = true;  ///< else absent where it is empty, and in older files
 };
 inline constexpr std::array header_text_lists{
     HeaderTexts{"header/input_files", "files", "files that the scene names", &ResultHeader::input_files},
@@ -94,7 +94,7 @@ struct HeaderColumn {
   const char* unit;
   const char* description;
   std::vector<double> ResultHeader::*values;
-  bool in_all_files = true;  ///< else empty where an older file lacks it
+  bool in_all_files = true;  ///< else absent where it is empty, and in older files
 };
 inline constexpr std::array header{
     HeaderColumn{"header/wheel_x", "wheels", "m",

@@ -142,9 +142,13 @@ void write_header(ArrayFileWriter& out, const ResultHeader& header) {
   for (const columns::HeaderText& text : columns::header_texts) out.attribute("header", text.name, header.*text.value);
   FieldWriter fields(out);
   fields.write(scene_field, std::vector<std::string>{header.scene_text});
-  for (const columns::HeaderTexts& list : columns::header_text_lists) fields.write(field_of(list), header.*list.values);
+  for (const columns::HeaderTexts& list : columns::header_text_lists) {
+    if (list.in_all_files || !(header.*list.values).empty()) fields.write(field_of(list), header.*list.values);
+  }
   fields.write(speed_field, std::array{header.speed});
-  for (const columns::HeaderColumn& column : columns::header) fields.write(field_of(column), header.*column.values);
+  for (const columns::HeaderColumn& column : columns::header) {
+    if (column.in_all_files || !(header.*column.values).empty()) fields.write(field_of(column), header.*column.values);
+  }
   for (const columns::MotionGroup& group : columns::motion_groups) fields.write(field_of(group), header.*group.names);
 }
 

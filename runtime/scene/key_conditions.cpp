@@ -42,10 +42,24 @@ const Condition with_contact_table{"contact.table",
                                    [](At at) { return unless(!at.scene.contact.table.empty(), "no contact.table"); }};
 const Condition without_irregularity_file{
     "no irregularity.file", [](At at) { return unless(!at.scene.irregularity, "irregularity.file too"); }};
+const Condition without_friction_file{
+    "no contact.friction_file",
+    [](At at) { return unless(at.scene.contact.friction_file.empty(), "contact.friction_file too"); }};
+const Condition with_speed_file{
+    "train.speed_file", [](At at) { return unless(!at.scene.train.speed_file.empty(), "no train.speed_file"); }};
+const Condition with_polach_law{"contact.creep_law = \"polach\"", [](At at) {
+                                  return unless(at.scene.contact.creep_law == "polach",
+                                                fmt::format("contact.creep_law = \"{}\"", at.scene.contact.creep_law));
+                                }};
 const Condition without_damping_type{"no bridge.damping_type", [](At at) {
                                        return unless(!at.names("bridge.damping_type"), "bridge.damping_type too");
                                      }};
 
+const Condition without_consist{"no train.consist",
+                                [](At at) { return unless(at.scene.train.consist.empty(), "train.consist too"); }};
+const Condition without_imported_vehicle{
+    "no imported vehicle",
+    [](At at) { return unless(at.scene.train.vehicle != imported_vehicle, "train.vehicle = \"imported\""); }};
 const Condition with_imported_vehicle{"train.vehicle = \"imported\"", [](At at) {
                                         const std::string& vehicle = at.scene.train.vehicle;
                                         return unless(vehicle == imported_vehicle,

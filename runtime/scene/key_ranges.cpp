@@ -77,6 +77,10 @@ void require_ranges(const SceneParameters& scene) {
     draft.load = load;
     require_section("load.", draft);
   }
+  for (const WheelParameters& wheel : scene.wheels) {
+    draft.wheel = wheel;
+    require_section("wheel.", draft);
+  }
   for (const GroundMotionParameters& ground : scene.ground_motion) {
     draft.ground = ground;
     require_section("ground_motion.", draft);

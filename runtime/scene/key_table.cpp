@@ -52,6 +52,9 @@ SceneKey describe(const KeyRow& key, SceneDraft& draft) {
                  [&](const VehicleKey& k) {
                    set("vehicle", "a name of `vsi vehicle`, a vehicle's TOML file, or imported", k.member(draft));
                  },
+                 [&](const ConsistKey&) {
+                   set("list of texts", "`NAME`, `NAME*N`, `-NAME`: names as for `train.vehicle`", "");
+                 },
                  [&](const ChoiceKey& k) { set("choice", joined(k.names), k.names[k.get(draft)]); },
                  [&](const ReductionKey&) { set("choice", "none, window", "none"); },
                  [&](const TextListKey& k) {
@@ -86,7 +89,7 @@ const std::vector<KeyRow>& all_keys() {
   // the guide goes from the train down to the bridge, then to the numerics
   static const std::vector<KeyRow> keys = all_of(
       {train_keys(), vehicle_keys(), contact_keys(), track_keys(), bridge_keys(), import_keys(), reduction_keys(),
-       held_node_keys(), irregularity_keys(), load_keys(), integration_keys(), assessment_keys()});
+       held_node_keys(), irregularity_keys(), wheel_keys(), load_keys(), integration_keys(), assessment_keys()});
   return keys;
 }
 

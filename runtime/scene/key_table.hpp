@@ -31,6 +31,7 @@ struct SceneDraft {
   SpanDeviationParameters deviation;
   FeSupport support;              ///< the [[support]] being read
   LoadParameters load;            ///< the [[load]] being read
+  WheelParameters wheel;          ///< the [[wheel]] being read
   GroundMotionParameters ground;  ///< the [[ground_motion]] being read
 };
 
@@ -86,6 +87,10 @@ struct ProfileKey {
 struct VehicleKey {
   Member<std::string> member;
 };
+/// Vehicles of a train, front first: "-name*2", each as for VehicleKey.
+struct ConsistKey {
+  Member<std::vector<ConsistEntry>> member;
+};
 /// One of the names, each of which stands for a value of a type of its own.
 struct ChoiceKey {
   std::vector<std::string> names;
@@ -125,7 +130,7 @@ struct KeyRow {
   std::string_view unit;
   std::string_view meaning;
   std::variant<NumberKey, OptionalNumberKey, RatioKey, IntegerKey, TextKey, FileKey, ProfileKey, VehicleKey, ChoiceKey,
-               ReductionKey, SwitchKey, TextListKey, PointKey, NumberListKey>
+               ReductionKey, SwitchKey, TextListKey, PointKey, NumberListKey, ConsistKey>
       value;
   std::vector<const Condition*> applies{};  ///< all of them hold where the key has an effect
   std::vector<const Warning*> warns{};
@@ -148,6 +153,7 @@ struct KeyRow {
 [[nodiscard]] std::vector<KeyRow> reduction_keys();     // of [structure]
 [[nodiscard]] std::vector<KeyRow> held_node_keys();     // [[support]]
 [[nodiscard]] std::vector<KeyRow> irregularity_keys();  // and [span_deviation]
+[[nodiscard]] std::vector<KeyRow> wheel_keys();         // [[wheel]]
 [[nodiscard]] std::vector<KeyRow> load_keys();          // [[load]] and [[ground_motion]]
 [[nodiscard]] std::vector<KeyRow> integration_keys();   // and [output]
 [[nodiscard]] std::vector<KeyRow> assessment_keys();

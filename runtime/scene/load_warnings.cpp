@@ -16,17 +16,17 @@ std::string place(const SceneCase& at, std::size_t index) {
 
 bool is_zero(const SceneCase& at, std::size_t index) { return !at.model.loads[index].history.acting().any(); }
 
-/// Where a vehicle's body that a load acts on is at t = 0 [m].
-double start_of_body(const VsiModel& model, const BodyLoad& load, std::size_t vehicle) {
-  return model.vehicle_x[vehicle] + model.vehicle.bodies[static_cast<std::size_t>(load.body)].position[0];
+/// Where a vehicle's body is at t = 0 [m].
+double start_of_body(const VsiModel& model, std::size_t vehicle, int body) {
+  return model.vehicle_x[vehicle] + model.vehicle.bodies[static_cast<std::size_t>(body)].position[0];
 }
 
 /// Where the bodies run that a load acts on.
 Interval body_way(const VsiModel& model, const BodyLoad& load, double duration) {
   const bool all = load.vehicle == BodyLoad::every_vehicle;
   const std::size_t first = all ? 0 : static_cast<std::size_t>(load.vehicle);
-  return {start_of_body(model, load, all ? model.vehicle_x.size() - 1 : first),
-          start_of_body(model, load, first) + model.distance(duration)};
+  return {start_of_body(model, all ? model.vehicle_x.size() - 1 : first, load.bodies.back()),
+          start_of_body(model, first, load.bodies.front()) + model.distance(duration)};
 }
 
 std::optional<std::string> outside_run(const SceneCase& at, std::size_t index) {
@@ -47,9 +47,9 @@ std::optional<std::string> outside_run(const SceneCase& at, std::size_t index) {
 }
 
 /// When a load is at a point of its history: a time, or the place of a vehicle's loaded body.
-double time_at(const VsiModel& model, const BodyLoad& load, std::size_t vehicle, double point) {
+double time_at(const VsiModel& model, const BodyLoad& load, std::size_t vehicle, int body, double point) {
   if (load.history.argument() == LoadArgument::time) return point;
-  const double run = point - start_of_body(model, load, vehicle);
+  const double run = point - start_of_body(model, vehicle, body);
   return model.speed_profile ? model.speed_profile->time_at(run) : run / model.contact.speed;
 }
 
@@ -67,10 +67,13 @@ std::optional<std::string> short_pulse(const SceneCase& at, std::size_t index) {
   int component = 0;
   for (const LoadHistory::Pulse& pulse : load.history.pulses()) {
     for (std::size_t vehicle = first; vehicle < end; ++vehicle) {
-      const Interval acting{time_at(model, load, vehicle, pulse.begin), time_at(model, load, vehicle, pulse.end)};
-      if (!acting.meets({0.0, at.duration}) || acting.high - acting.low >= shortest.high - shortest.low) continue;
-      shortest = acting;
-      component = pulse.component;
+      for (const int body : load.bodies) {
+        const Interval acting{time_at(model, load, vehicle, body, pulse.begin),
+                              time_at(model, load, vehicle, body, pulse.end)};
+        if (!acting.meets({0.0, at.duration}) || acting.high - acting.low >= shortest.high - shortest.low) continue;
+        shortest = acting;
+        component = pulse.component;
+      }
     }
   }
   const double length = shortest.high - shortest.low;

@@ -18,8 +18,9 @@ ResultHeader model_header(const VsiModel& model) {
     }
   }
   for (std::size_t v = 0; v < model.vehicle_x.size(); ++v) {
+    const int first_coach = static_cast<int>(v) * model.vehicle.coaches + 1;
     for (const VehicleBody& body : model.vehicle.bodies) {
-      header.body_names.push_back(fmt::format("coach-{}/{}", v + 1, body.name));
+      header.body_names.push_back(fmt::format("coach-{}/{}", first_coach + body.coach, body.name));
       header.body_x.push_back(model.vehicle_x[v] + body.position.x() - model.wheelset_x(0, 0.0));
     }
   }

@@ -13,6 +13,7 @@
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/scene/scene_warnings.hpp"
 #include "railtab/runtime/scene/step_count.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
@@ -25,10 +26,29 @@ std::string reduction_text(const ReductionParameters& reduction) {
       reduction_name(reduction.kind), reduction.ahead, reduction.behind);
 }
 
+// A line for each coach of a train that is one system: where its wheelsets stand and what they carry.
+void describe_coaches(const VehicleModel& vehicle, ModelParts& plan) {
+  if (vehicle.coaches == 1) return;
+  const double front = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position.x();
+  for (int coach = 0; coach < vehicle.coaches; ++coach) {
+    std::vector<std::string> wheelsets;
+    for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+      const VehicleBody& body = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets[w])];
+      if (body.coach != coach) continue;
+      wheelsets.push_back(fmt::format("{:.4g} kN at {:.2f} m", 1e-3 * static_wheel_load(vehicle, static_cast<int>(w)),
+                                      front - body.position.x()));
+    }
+    plan.built.push_back(fmt::format("coach {}: wheels carry {}", coach + 1,
+                                     wheelsets.empty() ? "nothing, it stands on its neighbours' bogies"
+                                                       : fmt::format("{}", fmt::join(wheelsets, ", "))));
+  }
+}
+
 void describe_vehicle(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
-  plan.built.push_back(fmt::format("{} x {}, {} degrees of freedom each", scene.train.count,
+  plan.built.push_back(fmt::format("{} x {}, {} degrees of freedom each", model.vehicle_x.size(),
                                    scene.train.vehicle == imported_vehicle ? scene.train.vehicle : model.vehicle.name,
                                    model.vehicle.dofs()));
+  describe_coaches(model.vehicle, plan);
   for (const std::string& element : model.vehicle.nonlinear) {
     plan.built.push_back(fmt::format("not linear of {}: {}", model.vehicle.name, element));
   }

@@ -13,12 +13,17 @@ namespace railtab {
 
 namespace {
 
-int body_index(const VsiModel& model, const std::string& name, const std::string& place) {
+// Bodies of that name in one coach of a vehicle, or, below 0, in each that has one.
+std::vector<int> bodies_of(const VsiModel& model, const std::string& name, int coach, const std::string& place) {
   std::vector<std::string> names;
+  std::vector<int> found;
   for (std::size_t b = 0; b < model.vehicle.bodies.size(); ++b) {
-    if (model.vehicle.bodies[b].name == name) return static_cast<int>(b);
-    names.push_back(model.vehicle.bodies[b].name);
+    const VehicleBody& body = model.vehicle.bodies[b];
+    if (coach >= 0 && body.coach != coach) continue;
+    if (body.name == name) found.push_back(static_cast<int>(b));
+    if (std::find(names.begin(), names.end(), body.name) == names.end()) names.push_back(body.name);
   }
+  if (!found.empty()) return found;
   throw input_error(place, fmt::format("load.body = \"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
@@ -35,9 +40,11 @@ LoadHistory load_history(const LoadParameters& load) {
 void check_components(const VsiModel& model, const BodyLoad& load, const std::string& place) {
   constexpr const char* names[] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
   const auto acting = load.history.acting();
-  const DofIndices& dof = model.vehicle.dof[static_cast<std::size_t>(load.body)];
   for (int k = 0; k < 6; ++k) {
-    if (!acting[k] || dof[static_cast<std::size_t>(k)] != held) continue;
+    const bool moves = std::all_of(load.bodies.begin(), load.bodies.end(), [&](int body) {
+      return model.vehicle.dof[static_cast<std::size_t>(body)][static_cast<std::size_t>(k)] != held;
+    });
+    if (!acting[k] || moves) continue;
     throw input_error(
         place, fmt::format("{} on a body without that motion", names[k]),
         "loads on motions that the vehicle has (the car body's x is held; a scene whose wheels follow the "
@@ -49,8 +56,10 @@ void add_body_loads(const SceneParameters& scene, VsiModel& model) {
   int number = 0;
   for (const LoadParameters& load : scene.loads) {
     const std::string place = fmt::format("scene: [[load]] {} of {}", ++number, scene.loads.size());
-    BodyLoad acting{load.coach == 0 ? BodyLoad::every_vehicle : load.coach - 1, body_index(model, load.body, place),
-                    load_history(load)};
+    const bool all = load.coach == 0;
+    const int coaches = model.vehicle.coaches;
+    BodyLoad acting{all ? BodyLoad::every_vehicle : (load.coach - 1) / coaches,
+                    bodies_of(model, load.body, all ? -1 : (load.coach - 1) % coaches, place), load_history(load)};
     check_components(model, acting, place);
     model.loads.push_back(std::move(acting));
   }

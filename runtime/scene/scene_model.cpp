@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -9,7 +10,9 @@
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
+#include "railtab/runtime/scene/scene_wheels.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
+#include "railtab/runtime/vehicle/consist.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
@@ -78,6 +81,21 @@ double normal_gravity(const TrainParameters& train) {
   return standard_gravity * std::sqrt(1.0 - sine * sine) + train.lateral_acceleration * sine;
 }
 
+// The vehicles as one system where they differ, are turned or have joints; else none.
+std::optional<VehicleModel> scene_consist(const TrainParameters& train, MotionPlane plane,
+                                          const VehicleWeight& weight) {
+  const bool alike = std::all_of(train.consist.begin(), train.consist.end(), [&](const ConsistEntry& entry) {
+    return entry.vehicle == train.consist.front().vehicle && !entry.reversed;
+  });
+  const std::string& first = train.consist.empty() ? train.vehicle : train.consist.front().vehicle;
+  const VehicleData data = find_vehicle(first);
+  const bool joined = !train.joint.empty() || !data.joint_front.empty() || !data.joint_rear.empty();
+  if (alike && (!joined || train.vehicles() == 1)) return {};
+  std::vector<ConsistEntry> entries = train.consist;
+  if (entries.empty()) entries.push_back({train.vehicle, train.count, false});
+  return build_consist(read_consist(entries, train.joint), plane, weight, train.force_elements);
+}
+
 VehicleModel scene_vehicle(const SceneParameters& scene) {
   const MotionPlane plane = vehicle_plane(scene);
   const VehicleWeight weight{normal_gravity(scene.train), scene.train.geometric_stiffness};
@@ -86,7 +104,9 @@ VehicleModel scene_vehicle(const SceneParameters& scene) {
     throw input_error("scene: train.geometric_stiffness", "\"in-matrices\" with a vehicle that is not imported",
                       "\"included\" or \"omitted\"");
   }
-  const VehicleData data = find_vehicle(scene.train.vehicle);
+  if (std::optional<VehicleModel> consist = scene_consist(scene.train, plane, weight)) return *std::move(consist);
+  const std::vector<ConsistEntry>& entries = scene.train.consist;
+  const VehicleData data = find_vehicle(entries.empty() ? scene.train.vehicle : entries.front().vehicle);
   if (data.motion == MotionPlane::vertical && plane != MotionPlane::vertical) {
     throw input_error(
         "scene: train.vehicle", fmt::format("{}, whose data are vertical only", data.name),
@@ -101,7 +121,8 @@ VehicleModel scene_vehicle(const SceneParameters& scene) {
 std::vector<double> vehicle_positions(const TrainParameters& train, const VehicleModel& vehicle) {
   const double first_wheelset = vehicle.bodies[static_cast<std::size_t>(vehicle.wheelsets.front())].position[0];
   std::vector<double> x;
-  for (int i = 0; i < train.count; ++i) x.push_back(train.start - first_wheelset - i * vehicle.length);
+  const int systems = train.vehicle == imported_vehicle ? train.count : train.vehicles() / vehicle.coaches;
+  for (int i = 0; i < systems; ++i) x.push_back(train.start - first_wheelset - i * vehicle.length);
   return x;
 }
 
@@ -131,7 +152,12 @@ void add_contact(const ContactParameters& contact, VsiModel& model) {
   model.contact.normal.curvature_floor =
       contact.mode == ContactMode::paper ? paper_curvature_floor : contact.curvature_floor;
   model.contact.creep_law = creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
+  if (auto* polach = std::get_if<PolachCreep>(&model.contact.creep_law)) {
+    polach->k_adhesion = contact.k_adhesion;
+    polach->k_slip = contact.k_slip;
+  }
   model.contact.friction = contact.friction;
+  model.contact.friction_law = contact.friction_law;
   model.contact.damping = contact.damping;
   const double radius = model.geometry->pair().nominal_radius();
   if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
@@ -171,6 +197,27 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 
 }  // namespace
 
+VsiModel stability_model(const SceneParameters& scene, const VsiModel& model) {
+  SceneParameters linear = scene;
+  linear.train.force_elements = ForceElementChoice::linear;
+  VsiModel result;
+  result.vehicle = scene_vehicle(linear);
+  result.vehicle_x = {0.0};
+  result.geometry = model.geometry;
+  result.contact = model.contact;
+  return result;
+}
+
+VsiModel stability_model(const SceneParameters& scene) {
+  if (scene.contact.normal != NormalContact::hertz) {
+    throw input_error("scene: contact.normal", "\"rigid\"", "\"hertz\": wheels that follow the rails cannot hunt");
+  }
+  VsiModel contacts;
+  contacts.vehicle = scene_vehicle(scene);
+  add_contact(scene.contact, contacts);
+  return stability_model(scene, contacts);
+}
+
 VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;
@@ -186,6 +233,8 @@ VsiModel build_model(const SceneParameters& scene) {
   }
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);
   add_loads(scene, model);
+  add_wheel_deviations(scene, model);
+  add_friction(scene, model);
   if (scene.spectrum) model.irregularity = random_track(scene, model);
   check_on_track(scene, model);
   reduce(scene.reduction, model);

@@ -7,6 +7,11 @@ namespace railtab {
 
 /// The model of a scene: reads the table, builds vehicle, structure and irregularity. @throws InputError
 [[nodiscard]] VsiModel build_model(const SceneParameters& scene);
+/// The first vehicle of a scene, or its train where that is one system, by itself on rigid rails, its force elements by
+/// linear stand-ins: what linear_stability.hpp takes. @throws InputError
+[[nodiscard]] VsiModel stability_model(const SceneParameters& scene);
+/// The same with the contacts of a model of the scene.
+[[nodiscard]] VsiModel stability_model(const SceneParameters& scene, const VsiModel& model);
 /// Time until the scene's run is over: its duration, or until the last wheelset has left the last span [s].
 /// @throws InputError where a scene without a span names no duration.
 [[nodiscard]] double run_duration(const SceneParameters& scene, const VsiModel& model);

@@ -12,6 +12,13 @@ std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
   return contact.mode == ContactMode::table ? "table" : contact.mode == ContactMode::online ? "online" : "paper";
 }
 
+int TrainParameters::vehicles() const noexcept {
+  if (consist.empty()) return count;
+  int vehicles = 0;
+  for (const ConsistEntry& entry : consist) vehicles += entry.count;
+  return vehicles;
+}
+
 void SceneParameters::validate() const {
   scene::require_ranges(*this);
   for (const scene::SceneRule& rule : scene::scene_rules()) {

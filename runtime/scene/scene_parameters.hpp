@@ -7,14 +7,17 @@
 #include <string_view>
 #include <vector>
 
+#include "railtab/runtime/contact/friction_law.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/line/irregularity_spectrum.hpp"
 #include "railtab/runtime/line/span_deviation.hpp"
+#include "railtab/runtime/line/wheel_deviation.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 #include "railtab/runtime/results/output_selection.hpp"
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/reduction.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/vehicle/consist.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vsi/integration_parameters.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
@@ -29,6 +32,8 @@ enum class TrackKind { rigid, flexible, imported };
 struct TrainParameters {
   std::string vehicle = "manchester-coach";  ///< of the library, a file, or imported_vehicle
   int count = 1;                             ///< coaches, 1..100
+  std::vector<ConsistEntry> consist;         ///< front first, in place of `vehicle` and `count`; empty: these
+  std::filesystem::path joint;               ///< between vehicles whose files name none; empty: nothing
   double speed = 200.0 / 3.6;                ///< [m/s], > 0
   std::filesystem::path speed_file;          ///< speed over time in place of `speed`; empty: constant
   double start = 0.0;                        ///< position of the first wheelset at t = 0 [m]
@@ -41,6 +46,8 @@ struct TrainParameters {
   double cant = 0.0;                  ///< height of the right rail above the left one, over cant_base [m]
   static constexpr double cant_base = 1.5;  ///< [m]
 
+  /// Vehicles of the train.
+  [[nodiscard]] int vehicles() const noexcept;
   /// Sine of the angle by which the track is rolled to the left.
   [[nodiscard]] double cant_sine() const noexcept { return cant / cant_base; }
 };
@@ -53,10 +60,14 @@ struct ContactParameters {
   std::string wheel = "S1002";  ///< where no table is named (online, paper)
   std::string rail = "60E1";
   double rail_inclination = 1.0 / 40.0;
-  PairDimensions dimensions;          ///< where no table is named
-  std::string creep_law = "table";    ///< the shipped table is for nu = 0.28
-  std::filesystem::path creep_table;  ///< of the law "table"; empty: the shipped one
-  double friction = 0.30;             ///< Coulomb coefficient [-], 0..2
+  PairDimensions dimensions;            ///< where no table is named
+  std::string creep_law = "table";      ///< the shipped table is for nu = 0.28
+  std::filesystem::path creep_table;    ///< of the law "table"; empty: the shipped one
+  double friction = 0.30;               ///< Coulomb coefficient [-], 0..2
+  std::filesystem::path friction_file;  ///< coefficients of both rails along the track; empty: `friction`
+  FrictionLaw friction_law;
+  double k_adhesion = 1.0, k_slip = 1.0;  ///< of the law "polach"
+  double creep_speed_floor = 0.1;         ///< WheelContactModel::speed_floor of a run with a speed file [m/s]
   ElasticMaterial material;
   double damping = 0.0;           ///< contact damping: F_n·(1 + damping·d'), [s/m], >= 0
   double curvature_floor = 0.05;  ///< smallest B of the Hertz ellipse [1/m]
@@ -74,6 +85,19 @@ struct LoadParameters {
   std::array<std::optional<double>, 6> load{};
   double start = 0.0;          ///< added to the file's times or positions [s] or [m]; of the gust [s]
   double gust_duration = 0.0;  ///< of a one-minus-cosine gust [s]; 0: the load is constant
+};
+
+enum class WheelSides { both, left, right };
+
+/// What is not round about some wheels.
+struct WheelParameters {
+  int coach = 0;     ///< counted from the front; 0: every one
+  int wheelset = 0;  ///< of the coach, counted from the front; 0: every one
+  WheelSides side = WheelSides::both;
+  WheelFlat flat;                      ///< length 0: none
+  WheelHarmonic polygon{2, 0.0, 0.0};  ///< amplitude 0: none
+  WheelHarmonic run_out;               ///< order 1; amplitude 0: none
+  std::filesystem::path file;          ///< contour; empty: none
 };
 
 enum class DeckTrack { ballasted, direct };
@@ -112,6 +136,7 @@ struct SceneParameters {
   std::optional<SpectrumParameters> spectrum;  ///< in place of a file: a random track
   std::optional<SpanDeviationParameters> span_deviation;
   std::vector<LoadParameters> loads;
+  std::vector<WheelParameters> wheels;  ///< that are not round
   std::vector<GroundMotionParameters> ground_motion;
   IntegrationParameters integration;
   OutputParameters output;

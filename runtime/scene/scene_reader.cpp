@@ -50,6 +50,19 @@ struct Assign {
   }
   void operator()(const ProfileKey& key) const { key.member(draft) = profile(key.kind); }
   void operator()(const VehicleKey& key) const { key.member(draft) = vehicle(); }
+  void operator()(const ConsistKey& key) const {
+    const std::string expected =
+        "a list of vehicles from the front, such as [\"power-car\", \"coach*8\", \"-power-car\"]";
+    std::vector<ConsistEntry>& member = key.member(draft);
+    member.clear();
+    for (const std::string& text : texts(expected)) {
+      std::optional<ConsistEntry> entry = parse_consist_entry(text);
+      if (!entry) throw leaf_error(file, leaf, fmt::format("\"{}\" in the list", text), expected);
+      entry->vehicle = vehicle_named(entry->vehicle, vehicle_names());
+      member.push_back(*std::move(entry));
+    }
+    if (member.empty()) throw error(expected);
+  }
   void operator()(const ChoiceKey& key) const {
     const std::string name = one_of(key.names);
     key.set(draft, static_cast<std::size_t>(std::find(key.names.begin(), key.names.end(), name) - key.names.begin()));
@@ -64,21 +77,7 @@ struct Assign {
     }
     draft.parameters.reduction.kind = one_of({"none", "window"}) == "window" ? Reduction::window : Reduction::none;
   }
-  void operator()(const TextListKey& key) const {
-    const std::string expected = "a list of texts, such as [\"deck-*\"]";
-    const toml::array* list = leaf.node->as_array();
-    if (!list) throw error(expected);
-    std::vector<std::string>& member = key.member(draft);
-    member.clear();
-    for (const toml::node& entry : *list) {
-      const toml::value<std::string>* text = entry.as_string();
-      if (!text || text->get().empty()) {
-        const std::string found = text ? "an empty text" : found_text(entry);
-        throw leaf_error(file, leaf, found + " in the list", expected);
-      }
-      member.push_back(text->get());
-    }
-  }
+  void operator()(const TextListKey& key) const { key.member(draft) = texts("a list of texts, such as [\"deck-*\"]"); }
   void operator()(const SwitchKey& key) const {
     const toml::value<bool>* value = leaf.node->as_boolean();
     if (!value) throw error("true or false");
@@ -121,6 +120,21 @@ struct Assign {
     return values;
   }
 
+  [[nodiscard]] std::vector<std::string> texts(std::string_view expected) const {
+    const toml::array* list = leaf.node->as_array();
+    if (!list) throw error(expected);
+    std::vector<std::string> result;
+    for (const toml::node& entry : *list) {
+      const toml::value<std::string>* text = entry.as_string();
+      if (!text || text->get().empty()) {
+        const std::string found = text ? "an empty text" : found_text(entry);
+        throw leaf_error(file, leaf, found + " in the list", expected);
+      }
+      result.push_back(text->get());
+    }
+    return result;
+  }
+
   [[nodiscard]] std::string text(std::string_view expected) const {
     const toml::value<std::string>* value = leaf.node->as_string();
     if (!value || value->get().empty()) throw error(expected);
@@ -150,14 +164,22 @@ struct Assign {
   [[nodiscard]] std::string vehicle() const {
     std::vector<std::string> names = vehicle_names();
     names.emplace_back(imported_vehicle);
-    const std::string expected =
-        fmt::format("a vehicle's TOML file, relative to the scene, or one of {}", joined(names));
-    const std::string name = text(expected);
+    return vehicle_named(text(expected_vehicle(names)), names);
+  }
+
+  static std::string expected_vehicle(const std::vector<std::string>& names) {
+    return fmt::format("a vehicle's TOML file, relative to the scene, or one of {}", joined(names));
+  }
+
+  // A known name, or a file's path.
+  [[nodiscard]] std::string vehicle_named(const std::string& name, const std::vector<std::string>& names) const {
+    const std::string expected = expected_vehicle(names);
     if (std::find(names.begin(), names.end(), name) != names.end()) return name;
     const std::filesystem::path named = file.parent_path() / name;
-    if (!name.ends_with(".toml")) throw error(expected);
+    if (!name.ends_with(".toml")) throw leaf_error(file, leaf, fmt::format("the text \"{}\"", name), expected);
     if (!is_file(named)) throw leaf_error(file, leaf, fmt::format("no file {}", named.string()), expected);
-    draft.parameters.files.push_back(named);
+    std::vector<std::filesystem::path>& files = draft.parameters.files;
+    if (std::find(files.begin(), files.end(), named) == files.end()) files.push_back(named);
     return named.string();
   }
 
@@ -185,7 +207,8 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   if (nearest.empty()) {
     return InputError(
         fmt::format("{}: unknown key '{}'; the sections are train, vehicle, contact, track, bridge, structure, "
-                    "support, irregularity, span_deviation, load, ground_motion, integration, output and assessment",
+                    "support, irregularity, span_deviation, wheel, load, ground_motion, integration, output and "
+                    "assessment",
                     place, leaf.path));
   }
   return InputError(fmt::format("{}: unknown key '{}'; did you mean '{}'?", place, leaf.path, nearest));
@@ -197,8 +220,8 @@ bool is_section(std::string_view path) {
                      [&](const KeyRow& key) { return key.path.starts_with(prefix); });
 }
 
-/// What was just read of a [[bridge]], [[support]], [[load]] or [[ground_motion]] goes into the scene; its end is the
-/// next such heading or the end of the file.
+/// What was just read of a [[bridge]], [[support]], [[wheel]], [[load]] or [[ground_motion]] goes into the scene; its
+/// end is the next such heading or the end of the file.
 void finish_entry(SceneDraft& draft, std::string_view section) {
   if (section == "bridge") {
     if (!draft.span_damping_type.empty()) {
@@ -212,6 +235,8 @@ void finish_entry(SceneDraft& draft, std::string_view section) {
     draft.parameters.structure.supports.push_back(std::exchange(draft.support, {}));
   } else if (section == "load") {
     draft.parameters.loads.push_back(std::exchange(draft.load, {}));
+  } else if (section == "wheel") {
+    draft.parameters.wheels.push_back(std::exchange(draft.wheel, {}));
   } else if (section == "ground_motion") {
     draft.parameters.ground_motion.push_back(std::exchange(draft.ground, {}));
   }
@@ -260,6 +285,9 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
     return std::any_of(leaves.begin(), leaves.end(), [&](const Leaf& leaf) { return leaf.path.starts_with(key); });
   };
   if (named("vehicle.") && !named("train.vehicle")) draft.parameters.train.vehicle = imported_vehicle;
+  if (!draft.parameters.vehicle.car_bodies.empty()) {
+    draft.parameters.vehicle.car_body = draft.parameters.vehicle.car_bodies.front();
+  }
   if (draft.speed_kmh) draft.parameters.train.speed = *draft.speed_kmh / 3.6;
   if (draft.deviation_shape) {
     draft.parameters.span_deviation = draft.deviation;

@@ -26,6 +26,13 @@ Broken table_of_contact_mode(Scene scene) {
                    "a geometry table (tablegen geometry generates one), or contact.mode = \"online\""};
 }
 
+Broken length_of_a_consist(Scene scene) {
+  constexpr int most = 100;
+  const int vehicles = scene.train.vehicles();
+  if (vehicles <= most) return {};
+  return Violation{"train.consist", fmt::format("{} vehicles", vehicles), fmt::format("at most {}", most)};
+}
+
 Broken bridge_under_flexible_track(Scene scene) {
   if (scene.track_kind == TrackKind::flexible || scene.spans.empty()) return {};
   return Violation{"track.kind",
@@ -112,10 +119,11 @@ Broken start_of_a_history(Scene scene) {
 }
 
 Broken coach_of_a_load(Scene scene) {
-  return of_loads(scene, fmt::format("0 to {}, the coaches of the train", scene.train.count),
-                  [&](const LoadParameters& load) {
-                    return load.coach > scene.train.count ? fmt::format("load.coach = {}", load.coach) : "";
-                  });
+  const int per_vehicle = std::max<int>(1, static_cast<int>(scene.vehicle.car_bodies.size()));
+  const int coaches = scene.train.vehicles() * per_vehicle;
+  return of_loads(scene, fmt::format("0 to {}, the coaches of the train", coaches), [&](const LoadParameters& load) {
+    return load.coach > coaches ? fmt::format("load.coach = {}", load.coach) : "";
+  });
 }
 
 Broken vertical_loads(Scene scene) {
@@ -126,6 +134,34 @@ Broken vertical_loads(Scene scene) {
                     if (!acts(1) && !acts(3) && !acts(5)) return {};
                     return "a load along y or about x or z with contact.normal = \"rigid\"";
                   });
+}
+
+/// The first [[wheel]] for which `found` says something.
+template <class Found>
+Broken of_wheels(Scene scene, std::string_view expected, const Found& found) {
+  for (std::size_t i = 0; i < scene.wheels.size(); ++i) {
+    const std::string what = found(scene.wheels[i]);
+    if (!what.empty()) return Violation{entry("wheel", i, scene.wheels.size()), what, std::string(expected)};
+  }
+  return {};
+}
+
+Broken deviation_of_a_wheel(Scene scene) {
+  return of_wheels(scene, "wheel.flat_length, wheel.polygon_amplitude, wheel.run_out or wheel.file",
+                   [](const WheelParameters& wheel) -> std::string {
+                     const bool round = wheel.flat.length == 0.0 && wheel.polygon.amplitude == 0.0 &&
+                                        wheel.run_out.amplitude == 0.0 && wheel.file.empty();
+                     return round ? "no deviation" : "";
+                   });
+}
+
+Broken edges_of_a_flat(Scene scene) {
+  if (!vertical(scene)) return {};
+  return of_wheels(scene, "wheel.flat_edges = \"rounded\", or contact.normal = \"hertz\": no wheel can follow a kink",
+                   [](const WheelParameters& wheel) -> std::string {
+                     const bool sharp = wheel.flat.length > 0.0 && wheel.flat.edges == WheelFlat::Edges::sharp;
+                     return sharp ? "a flat with sharp edges and contact.normal = \"rigid\"" : "";
+                   });
 }
 
 Broken vertical_deviation_of_spans(Scene scene) {
@@ -194,6 +230,7 @@ Broken supports_under_moving_ground(Scene scene) {
 const std::vector<SceneRule>& scene_rules() {
   static const std::vector<SceneRule> rules{
       {"contact.mode = \"table\" has a table", table_of_contact_mode},
+      {"a train has a hundred vehicles at most", length_of_a_consist},
       {"a [[bridge]] carries flexible track", bridge_under_flexible_track},
       {"imported rails by rows have all files", files_of_imported_rails},
       {"imported rails by nodes are two", nodes_of_imported_rails},
@@ -207,6 +244,8 @@ const std::vector<SceneRule>& scene_rules() {
       {"a load acts on a coach of the train", coach_of_a_load},
       {"a vertical scene has vertical loads", vertical_loads},
       {"a vertical scene has vertical deviations", vertical_deviation_of_spans},
+      {"a [[wheel]] is not round", deviation_of_a_wheel},
+      {"wheels that follow the rails have no kinks", edges_of_a_flat},
       {"ground motion has a record", file_of_a_record},
       {"stations are in order", order_of_stations},
       {"a wave has one record", wave_of_one_record},

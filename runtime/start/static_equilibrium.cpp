@@ -363,7 +363,7 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
   const RestOperators rest(model);
   Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
   EquilibriumReport report = equilibrium(model, rest, inertia, state);
-  if (!model.structure || !report.converged) return report;
+  if (!model.structure || !report.converged || !(model.contact.speed > 0.0)) return report;
 
   // The load that the moving deflection's inertia and damping exert, from the deflection at rest: the first term of a
   // series in (V / critical speed)², and in what dampers bear over what springs do. A second pass settles the contacts.

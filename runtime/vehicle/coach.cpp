@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 
@@ -38,6 +41,18 @@ Suspension make_unit(std::string name, int body_a, int body_b, const Eigen::Vect
   result.name = std::move(name);
   result.nonlinear = unit.nonlinear;
   return result;
+}
+
+// Of each body the first of those that springs along x join it to.
+std::vector<int> joined_along_x(const VehicleDescription& parts) {
+  std::vector<int> first(parts.bodies.size());
+  std::iota(first.begin(), first.end(), 0);
+  for (const Suspension& unit : parts.suspension) {
+    if (unit.stiffness.x() == 0.0) continue;
+    const int a = first[static_cast<std::size_t>(unit.body_a)], b = first[static_cast<std::size_t>(unit.body_b)];
+    std::replace(first.begin(), first.end(), std::max(a, b), std::min(a, b));
+  }
+  return first;
 }
 
 }  // namespace
@@ -108,8 +123,12 @@ VehicleDescription describe_coach(const CoachParameters& p) {
 
 std::vector<DofIndices> held_motions(const VehicleDescription& parts, MotionPlane plane) {
   std::vector<DofIndices> dofs(parts.bodies.size(), DofIndices{0, 0, 0, 0, 0, 0});
+  const std::vector<int> joined = joined_along_x(parts);
+  std::vector<bool> is_held(dofs.size(), false);
   for (std::size_t b = 0; b < dofs.size(); ++b) {
-    if (parts.bodies[b].name == "car-body") dofs[b][0] = held;
+    if (parts.bodies[b].name != "car-body" || is_held[static_cast<std::size_t>(joined[b])]) continue;
+    dofs[b][0] = held;
+    is_held[static_cast<std::size_t>(joined[b])] = true;
   }
   if (plane == MotionPlane::vertical) {
     for (DofIndices& dof : dofs) dof[1] = dof[3] = dof[5] = held;

@@ -47,7 +47,8 @@ struct CoachParameters {
 /// Bodies in the order car-body, bogie-1, bogie-2 (front first), wheelset-1 …; nothing held. @throws InputError
 [[nodiscard]] VehicleDescription describe_coach(const CoachParameters& parameters);
 
-/// Which motions are degrees of freedom of a run. The car body's x is held. The vertical plane has x, z and pitch, the
+/// Which motions are degrees of freedom of a run. The car body's x is held; of car bodies that springs along x join,
+/// that of the first. The vertical plane has x, z and pitch, the
 /// wheelsets' rotation left out, which no spring and no rail turns there; its motion is that of all while nothing acts
 /// out of the plane.
 [[nodiscard]] std::vector<DofIndices> held_motions(const VehicleDescription& parts, MotionPlane plane);

@@ -27,6 +27,7 @@ class ElementBuilder {
     if (elongation.isZero(0.0)) return;  // held
     const auto element = [&](ForceElementKind kind, const Eigen::VectorXd& row) -> ForceElement& {
       vehicle_.elements.element.push_back({name_of(unit, axis), kind, number_of(row), {}, {}, 0.0});
+      vehicle_.elements.element.back().coach = vehicle_.bodies[static_cast<std::size_t>(unit.body_a)].coach;
       return vehicle_.elements.element.back();
     };
     if (!parts.stop.empty()) element(ForceElementKind::stop, elongation).curve = parts.stop;

@@ -44,6 +44,7 @@ struct ForceElement {
   /// The load of a friction element with a ratio: load + load_stiffness · (row load_row) [N], none below zero.
   int load_row = -1;
   double load = 0.0, load_stiffness = 0.0;
+  int coach = 0;  ///< of its first body (RigidBody::coach)
 
   /// Limit of a friction element at the elongations x of all rows, and its derivative by that of load_row.
   struct Limit {

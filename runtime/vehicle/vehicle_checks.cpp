@@ -106,29 +106,73 @@ Index moving_row(const FreeVehicle& vehicle, const CholeskyFactor& mass, const V
   return largest(vehicle.mass.diagonal().cwiseSqrt().cwiseProduct(motion));
 }
 
-// The lowest squared frequency besides the motions that are free in a vehicle, which are lifted above all others.
-void check_springs(const FreeVehicle& vehicle, const CholeskyFactor& mass) {
-  const Index n = vehicle.mass.rows(), wheelsets = static_cast<Index>(vehicle.wheelsets.size());
-  Matrix free = Matrix::Zero(n, 6 + wheelsets);
-  free.leftCols(6) = vehicle.rigid;
-  for (Index w = 0; w < wheelsets; ++w) free(vehicle.wheelset(static_cast<std::size_t>(w)).row[pitch], 6 + w) = 1.0;
-  const Matrix Q = orthonormal_basis(mass.multiply_LT(free));
-  Matrix K = per_mass(mass, vehicle.stiffness);
+// Rigid motions and rotations of the wheelsets that a stiffness does not resist.
+Matrix unresisted_motions(const FreeVehicle& vehicle, const Matrix& stiffness) {
+  const Index wheelsets = static_cast<Index>(vehicle.wheelsets.size());
+  const Matrix M = vehicle.rigid.transpose() * vehicle.mass * vehicle.rigid;
+  const CholeskyFactor factor(M);
+  const SymmetricSpectrum eigen =
+      symmetric_spectrum(per_mass(factor, vehicle.rigid.transpose() * stiffness * vehicle.rigid));
+  Matrix motions = Matrix::Zero(vehicle.mass.rows(), 6 + wheelsets);
+  Index count = 0;
+  for (Index k = 0; k < 6; ++k) {
+    if (eigen.values[k] < softest_omega2) motions.col(count++) = vehicle.rigid * factor.solve_LT(eigen.vectors.col(k));
+  }
+  for (Index w = 0; w < wheelsets; ++w) {
+    motions(vehicle.wheelset(static_cast<std::size_t>(w)).row[pitch], count++) = 1.0;
+  }
+  return motions.leftCols(count);
+}
+
+// Stiffness of the vehicle on rails that hold its wheelsets in y, z and roll: what is a hinge there is no mechanism.
+Matrix stiffness_on_rails(const FreeVehicle& vehicle) {
+  constexpr double half_gauge = 0.75, support_omega2 = square(2.0 * std::numbers::pi * 10.0);
+  const double support = support_omega2 * vehicle.rigid.col(2).dot(vehicle.mass * vehicle.rigid.col(2));
+  Matrix K = vehicle.stiffness;
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+    const DofIndices& row = vehicle.wheelset(w).row;
+    K(row[1], row[1]) += support;
+    K(row[2], row[2]) += support;
+    K(row[roll], row[roll]) += square(half_gauge) * support;
+  }
+  return K;
+}
+
+struct SoftestMotion {
+  double omega2;  // [rad²/s²]
+  Index row;      // that moves most
+};
+
+// The lowest squared frequency besides motions that are lifted above all others.
+SoftestMotion softest_motion(const FreeVehicle& vehicle, const CholeskyFactor& mass, const Matrix& stiffness,
+                             const Matrix& lifted_motions) {
+  const Matrix Q = orthonormal_basis(mass.multiply_LT(lifted_motions));
+  Matrix K = per_mass(mass, stiffness);
   const double lifted = K.norm() + 1.0;
   K -= Q * (Q.transpose() * K);
   K -= (K * Q) * Q.transpose();
   K += lifted * (Q * Q.transpose());
   const SymmetricSpectrum eigen = symmetric_spectrum(0.5 * (K + K.transpose()));
-  const double omega2 = eigen.values[0];
-  if (omega2 >= softest_omega2) return;
-  const std::string place = fmt::format("{}: {}", vehicle.import.stiffness.string(),
-                                        row_text(vehicle, moving_row(vehicle, mass, eigen.vectors.col(0))));
-  if (omega2 < -softest_omega2) {
-    throw input_error(place, fmt::format("springs that push, ω² = {:.3g} rad²/s²", omega2),
+  return {eigen.values[0], moving_row(vehicle, mass, eigen.vectors.col(0))};
+}
+
+void check_springs(const FreeVehicle& vehicle, const CholeskyFactor& mass) {
+  const auto place = [&](const SoftestMotion& motion) {
+    return fmt::format("{}: {}", vehicle.import.stiffness.string(), row_text(vehicle, motion.row));
+  };
+  const Matrix nothing = Matrix::Zero(vehicle.mass.rows(), vehicle.mass.rows());
+  const SoftestMotion free = softest_motion(vehicle, mass, vehicle.stiffness, unresisted_motions(vehicle, nothing));
+  if (free.omega2 < -softest_omega2) {
+    throw input_error(place(free), fmt::format("springs that push, ω² = {:.3g} rad²/s²", free.omega2),
                       "a positive semidefinite stiffness");
   }
-  throw input_error(place, "a motion that no spring resists",
-                    "six rigid motions of the whole vehicle and the wheelsets' rotations alone without resistance");
+  const Matrix on_rails = stiffness_on_rails(vehicle);
+  const SoftestMotion standing = softest_motion(vehicle, mass, on_rails, unresisted_motions(vehicle, on_rails));
+  if (standing.omega2 >= softest_omega2) return;
+  throw input_error(
+      place(standing), "a motion that no spring resists",
+      "six rigid motions of the whole vehicle, the wheelsets' rotations, and hinges that do not move while the "
+      "rails hold the wheelsets in y, z and roll, alone without resistance");
 }
 
 void check_dampers(const FreeVehicle& vehicle, const CholeskyFactor& mass) {

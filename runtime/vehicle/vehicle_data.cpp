@@ -10,12 +10,31 @@
 
 namespace railtab {
 
+namespace {
+
+// Of a vehicle that stands on its joints nothing can be said but its mass.
+std::vector<ClosingCheck> checks_of_mass(const VehicleData& data) {
+  double mass = 0.0;
+  for (const RigidBody& body : data.parts.bodies) mass += body.mass;
+  std::vector<ClosingCheck> checks;
+  for (const StatedCheck& stated : data.checks) {
+    checks.push_back({stated, stated.quantity == "mass" ? std::optional(mass) : std::nullopt});
+  }
+  return checks;
+}
+
+}  // namespace
+
 VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const VehicleWeight& weight,
                            ForceElementChoice choice) {
   const bool vertical_data = data.motion == MotionPlane::vertical;
   if (vertical_data && plane != MotionPlane::vertical) {
     throw input_error(fmt::format("{}: motion", data.place), "\"vertical\", and a model with lateral motion",
                       "a vertical model, or a file with the lateral values too");
+  }
+  if (data.stands_on_joints) {
+    throw input_error(data.place, fmt::format("{} by itself, which stands on bogies of its joints", data.name),
+                      "a train with its neighbours (train.consist)");
   }
   VehicleDescription parts = data.parts;
   parts.weight = weight;
@@ -38,6 +57,7 @@ VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const Veh
 
 std::vector<ClosingCheck> closing_checks(const VehicleData& data) {
   if (data.checks.empty()) return {};
+  if (data.stands_on_joints) return checks_of_mass(data);
   const VehicleModel vehicle = build_vehicle(data, data.motion);
   const VehicleSummary summary = summarise(vehicle, 0);
   const std::vector<VehicleMode> modes = natural_modes(vehicle, vehicle.dofs());

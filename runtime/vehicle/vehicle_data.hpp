@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +26,12 @@ struct VehicleData {
   Provenance provenance;                      ///< of all values without one of their own
   MotionPlane motion = MotionPlane::spatial;  ///< vertical: the data say nothing of lateral motion
   double top_speed = 0.0;                     ///< [m/s]; 0: not stated
-  std::optional<CoachParameters> coach;       ///< of the template "two-bogie"
-  VehicleDescription parts;                   ///< all bodies and force elements, nothing held
+  /// Files of the joints to neighbours in a train, by which the vehicle's ends stand or are coupled; empty: none.
+  std::filesystem::path joint_front, joint_rear;
+  bool stands_on_joints = false;         ///< the vehicle does not stand alone: bogies of its joints carry it
+  bool is_joint = false;                 ///< these are the data of a joint (joint_file.hpp)
+  std::optional<CoachParameters> coach;  ///< of the template "two-bogie"
+  VehicleDescription parts;              ///< all bodies and force elements, nothing held
   /// Sentences on what is not linear: the force elements, linear elements that stand in for others in any run, and what
   /// ForceElementChoice::linear makes of the former, which it runs by stand-ins or leaves out.
   std::vector<std::string> nonlinear, stand_ins, linearised, left_out;

@@ -47,6 +47,7 @@ void read_checks(TomlSection& root, VehicleData& data) {
 
 void check_length(const TomlSection& root, const VehicleData& data) {
   const VehicleDescription& parts = data.parts;
+  if (parts.wheelsets.empty()) return;
   const auto x = [&](int body) { return parts.bodies[static_cast<std::size_t>(body)].position.x(); };
   const double reach = x(parts.wheelsets.front()) - x(parts.wheelsets.back());
   if (parts.length > reach) return;
@@ -62,18 +63,29 @@ void check_size(const TomlSection& root, const VehicleData& data) {
                    fmt::format("at most {}", most_vehicle_rows));
 }
 
+// Files relative to the vehicle's.
+void read_joints(TomlSection& root, const std::filesystem::path& place, VehicleData& data) {
+  const auto read = [&](std::string_view key, std::filesystem::path& joint) {
+    if (!root.has(key)) return;
+    joint = place.parent_path() / root.text(key);
+    std::error_code unreadable;
+    if (std::filesystem::is_regular_file(joint, unreadable)) return;
+    throw root.error(key, fmt::format("no file {}", joint.string()), "a joint's TOML file, relative to the vehicle's");
+  };
+  read("joint_front", data.joint_front);
+  read("joint_rear", data.joint_rear);
+  data.stands_on_joints = root.flag("stands_on_joints");
+  if (data.stands_on_joints && data.joint_front.empty() && data.joint_rear.empty()) {
+    throw root.error("stands_on_joints", "true without joints", "joint_front, joint_rear or both");
+  }
+}
+
 VehicleData read_root(TomlSection& root, const std::string& text, const std::filesystem::path& place) {
   VehicleData data;
   data.place = place.string();
   data.text = text;
-  data.name = root.text("name");
-  data.description = root.text("description");
-  data.provenance = root.provenance();
-  if (root.has("motion") && root.text_of("motion", {"spatial", "vertical"}) == "vertical") {
-    data.motion = MotionPlane::vertical;
-  }
-  data.parts.name = data.name;
-  data.parts.nominal_radius = root.number("nominal_radius", radius_kind);
+  read_heading(root, data);
+  read_joints(root, place, data);
   data.parts.length = root.number("length", distance_kind);
   data.top_speed = root.number("top_speed_kmh", speed_kind, 0.0) / 3.6;
   if (root.has("template")) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -81,10 +82,27 @@ FreeVehicle read_free_vehicle(const VehicleImport& import, GeometricStiffness ge
   return vehicle;
 }
 
+// Indices of the car bodies, front first.
+std::vector<int> car_bodies(const FreeVehicle& vehicle) {
+  if (vehicle.import.car_bodies.empty()) return {vehicle.car_body};
+  std::vector<int> cars;
+  for (const std::string& name : vehicle.import.car_bodies) {
+    cars.push_back(body_index(vehicle.bodies, name, "vehicle.car_bodies"));
+    const std::size_t n = cars.size();
+    const auto x = [&](std::size_t k) { return vehicle.bodies[static_cast<std::size_t>(cars[k])].position.x(); };
+    if (n < 2 || x(n - 1) < x(n - 2)) continue;
+    throw input_error("scene: vehicle.car_bodies",
+                      fmt::format("{} at x = {:.6g} m after one at {:.6g} m", name, x(n - 1), x(n - 2)),
+                      "each car body once, in order from the front");
+  }
+  return cars;
+}
+
 // Names of results and loads, by which reports find car bodies.
 std::vector<VehicleBody> named_bodies(const FreeVehicle& vehicle) {
   std::vector<std::string> given(vehicle.bodies.size());
-  given[static_cast<std::size_t>(vehicle.car_body)] = "car-body";
+  const std::vector<int> cars = car_bodies(vehicle);
+  for (const int car : cars) given[static_cast<std::size_t>(car)] = "car-body";
   for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
     given[static_cast<std::size_t>(vehicle.wheelsets[w])] = fmt::format("wheelset-{}", w + 1);
   }
@@ -95,7 +113,13 @@ std::vector<VehicleBody> named_bodies(const FreeVehicle& vehicle) {
       throw input_error(body.place, fmt::format("a body named {}", body.name),
                         "another name: so results call what the scene names as car body or wheelset");
     }
-    bodies.push_back({given[b].empty() ? body.name : given[b], body.position});
+    const auto distance = [&](int car) {
+      return std::abs(vehicle.bodies[static_cast<std::size_t>(car)].position.x() - body.position.x());
+    };
+    const auto nearest =
+        std::min_element(cars.begin(), cars.end(), [&](int a, int c) { return distance(a) < distance(c); });
+    bodies.push_back(
+        {given[b].empty() ? body.name : given[b], body.position, static_cast<int>(nearest - cars.begin())});
   }
   return bodies;
 }
@@ -184,6 +208,7 @@ VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, cons
   VehicleModel vehicle;
   vehicle.name = fmt::format("the vehicle of {}", import.stiffness.string());
   vehicle.bodies = named_bodies(free);
+  vehicle.coaches = static_cast<int>(car_bodies(free).size());
   vehicle.wheelsets = free.wheelsets;
   vehicle.nominal_radius = -free.wheelset(0).position.z();
   vehicle.length = length_over_couplers(free);

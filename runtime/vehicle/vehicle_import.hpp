@@ -19,7 +19,9 @@ struct VehicleImport {
   FeFrame frame;                       ///< its origin: under the vehicle's centre, at the height of the rail-head tops
   std::vector<std::string> wheelsets;  ///< names in the table, in order from the front
   std::string car_body;                ///< name in the table; its x is held by the train
-  std::optional<double> length;        ///< over couplers [m], > 0; a train of one vehicle needs none
+  /// Names of all car bodies of a train of several coaches, front first, the first of which is `car_body`; none: one.
+  std::vector<std::string> car_bodies{};
+  std::optional<double> length;  ///< over couplers [m], > 0; a train of one vehicle needs none
 
   /// What no file tells. @param vehicles of the train @throws InputError naming the key
   void validate(int vehicles) const;

@@ -176,10 +176,11 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
 
   VehicleModel vehicle;
   vehicle.name = name;
-  for (const RigidBody& body : parts.bodies) vehicle.bodies.push_back({body.name, body.position});
+  for (const RigidBody& body : parts.bodies) vehicle.bodies.push_back({body.name, body.position, body.coach});
   vehicle.wheelsets = parts.wheelsets;
   vehicle.nominal_radius = parts.nominal_radius;
   vehicle.length = parts.length;
+  vehicle.coaches = parts.coaches;
   const int of_bodies = number_dofs(vehicle, parts.held_dofs);
   const int n = of_bodies + count_series_dampers(parts.suspension);
   for (Eigen::MatrixXd* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness, &vehicle.gyroscopic}) {

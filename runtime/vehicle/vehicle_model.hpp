@@ -17,6 +17,7 @@ struct RigidBody {
   double mass;               ///< [kg]
   Eigen::Vector3d inertia;   ///< about x, y, z through the centre of gravity [kg m²]
   Eigen::Vector3d position;  ///< [m]
+  int coach = 0;             ///< of a train that is described as one vehicle, front first
 };
 
 /// What the weight of a vehicle that leans adds to its stiffness: the couples of preloaded springs whose ends have
@@ -53,11 +54,12 @@ struct Suspension {
 struct VehicleBody {
   std::string name;
   Eigen::Vector3d position;  ///< [m]
+  int coach = 0;             ///< 0 … VehicleModel::coaches − 1
 };
 
-/// A vehicle that runs at constant speed (the car body's x is held). Small displacements from its own static
-/// equilibrium: gravity acts as the static axle loads and as geometric stiffness. The matrices have all that is linear.
-/// Rows that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
+/// A vehicle, or a train that is one system, at constant speed (the car body's x is held). Small displacements from its
+/// own static equilibrium: gravity acts as the static axle loads and as geometric stiffness. The matrices have all that
+/// is linear. Rows that no body has are inner degrees of freedom (flexible bodies, springs in series with dampers).
 struct VehicleModel {
   std::string name;
   std::vector<VehicleBody> bodies;
@@ -77,6 +79,7 @@ struct VehicleModel {
   Eigen::VectorXd lateral_load;         ///< per lateral acceleration of the track to the left, +m to the right [kg]
   Eigen::VectorXd lateral_shift;        ///< what the dofs are when the whole vehicle has gone 1 m to the right
   double top_speed = 0.0;               ///< that its data state [m/s]; 0: none
+  int coaches = 1;                      ///< of a train that is one system: with joints, or of unlike vehicles
   ForceElements elements{};             ///< that are not linear, besides the matrices
   std::vector<std::string> nonlinear;   ///< those elements, a sentence for each kind of unit
   std::vector<std::string> linearised;  ///< force elements that run by a linear stand-in, a sentence for each
@@ -95,6 +98,7 @@ struct VehicleDescription {
   std::vector<DofIndices> held_dofs;
   double nominal_radius = 0.46;  ///< [m]
   double length = 26.4;          ///< over couplers [m]
+  int coaches = 1;               ///< whose bodies these are (RigidBody::coach)
   VehicleWeight weight{};
   ForceElementChoice force_elements = ForceElementChoice::nonlinear;
 };

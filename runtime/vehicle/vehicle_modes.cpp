@@ -26,6 +26,12 @@ struct Rows {
   std::vector<int> massive, massless;
 };
 
+Rows by_mass(const VehicleModel& vehicle, const std::vector<int>& all) {
+  Rows rows;
+  for (const int row : all) (vehicle.mass(row, row) > 0.0 ? rows.massive : rows.massless).push_back(row);
+  return rows;
+}
+
 Rows moving_rows(const VehicleModel& vehicle) {
   std::vector<bool> stands(static_cast<std::size_t>(vehicle.dofs()), false);
   for (const int w : vehicle.wheelsets) {
@@ -33,13 +39,11 @@ Rows moving_rows(const VehicleModel& vehicle) {
       if (row != held) stands[static_cast<std::size_t>(row)] = true;
     }
   }
-  Rows rows;
+  std::vector<int> moving;
   for (int row = 0; row < vehicle.dofs(); ++row) {
-    if (!stands[static_cast<std::size_t>(row)]) {
-      (vehicle.mass(row, row) > 0.0 ? rows.massive : rows.massless).push_back(row);
-    }
+    if (!stands[static_cast<std::size_t>(row)]) moving.push_back(row);
   }
-  return rows;
+  return by_mass(vehicle, moving);
 }
 
 /// ẋ = A x with x = [u, u̇, s], u of the rows with mass and s of those without:
@@ -113,6 +117,12 @@ std::string name_of(const VehicleModel& vehicle, const Eigen::VectorXcd& shape) 
 }
 
 }  // namespace
+
+MotionSpectrum motion_spectrum(const VehicleModel& vehicle, const std::vector<int>& rows) {
+  const Rows parts = by_mass(vehicle, rows);
+  const GeneralSpectrum spectrum = general_spectrum(state_matrix(vehicle, parts));
+  return {spectrum.values, spectrum.vectors.topRows(static_cast<Eigen::Index>(parts.massive.size()))};
+}
 
 std::vector<VehicleMode> natural_modes(const VehicleModel& vehicle, int count) {
   const Rows rows = moving_rows(vehicle);

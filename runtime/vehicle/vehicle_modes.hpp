@@ -20,4 +20,12 @@ struct VehicleMode {
 /// @param count at most, >= 0
 [[nodiscard]] std::vector<VehicleMode> natural_modes(const VehicleModel& vehicle, int count);
 
+/// Eigenvalues λ and shapes of M ü + C u̇ + K u = 0 of some rows, the others held; matrices need not be symmetric. Rows
+/// without mass need damping.
+struct MotionSpectrum {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd shapes;  ///< displacements of the rows with mass, one column per value
+};
+[[nodiscard]] MotionSpectrum motion_spectrum(const VehicleModel& vehicle, const std::vector<int>& rows);
+
 }  // namespace railtab

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "railtab/runtime/vehicle/joint_file.hpp"
+
 namespace railtab {
 
 namespace {
@@ -116,12 +118,18 @@ void add_body(TomlSection& section, VehicleData& data, RigidBody body) {
   data.parts.bodies.push_back(std::move(body));
 }
 
-int body_index(const TomlSection& section, const VehicleData& data, const std::string& name) {
-  const std::vector<RigidBody>& bodies = data.parts.bodies;
+// A joint names bodies of its neighbours, which stand for themselves at the middle between them.
+int body_index(const TomlSection& section, VehicleData& data, const std::string& name) {
+  std::vector<RigidBody>& bodies = data.parts.bodies;
   const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const RigidBody& b) { return b.name == name; });
   if (found != bodies.end()) return static_cast<int>(found - bodies.begin());
+  if (data.is_joint && (name.starts_with(of_vehicle_ahead) || name.starts_with(of_vehicle_behind))) {
+    bodies.push_back({name, 0.0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+    return static_cast<int>(bodies.size()) - 1;
+  }
   std::vector<std::string> names;
   for (const RigidBody& body : bodies) names.push_back(body.name);
+  if (data.is_joint) names.insert(names.end(), {"ahead/car-body", "behind/car-body"});
   throw section.error("joins", fmt::format("body '{}'", name), fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
@@ -259,6 +267,31 @@ void read_further_bodies(TomlSection& root, VehicleData& data) {
   }
 }
 
+void read_heading(TomlSection& root, VehicleData& data) {
+  data.name = root.text("name");
+  data.description = root.text("description");
+  data.provenance = root.provenance();
+  if (root.has("motion") && root.text_of("motion", {"spatial", "vertical"}) == "vertical") {
+    data.motion = MotionPlane::vertical;
+  }
+  data.parts.name = data.name;
+  data.parts.nominal_radius = root.number("nominal_radius", radius_kind);
+}
+
+void read_wheelsets(TomlSection& section, VehicleData& data) {
+  const BodyInertia inertia = read_wheelset(section, data);
+  const std::vector<double> x = section.numbers("x", position_kind);
+  section.reject_others();
+  for (std::size_t w = 0; w < x.size(); ++w) {
+    if (w > 0 && !(x[w] < x[w - 1])) {
+      throw section.error("x", fmt::format("{} m after {} m", x[w], x[w - 1]), "positions in order from the front");
+    }
+    data.parts.wheelsets.push_back(static_cast<int>(data.parts.bodies.size()));
+    add_body(section, data,
+             make_body(fmt::format("wheelset-{}", w + 1), inertia, {x[w], 0.0, -data.parts.nominal_radius}));
+  }
+}
+
 void read_bodies(TomlSection& root, VehicleData& data) {
   const double radius = data.parts.nominal_radius;
   TomlSection car = root.section("car_body");
@@ -268,17 +301,9 @@ void read_bodies(TomlSection& root, VehicleData& data) {
   car.reject_others();
   read_further_bodies(root, data);
 
+  if (data.stands_on_joints && !root.has("wheelset")) return;
   TomlSection wheelset = root.section("wheelset");
-  const BodyInertia inertia = read_wheelset(wheelset, data);
-  const std::vector<double> x = wheelset.numbers("x", position_kind);
-  wheelset.reject_others();
-  for (std::size_t w = 0; w < x.size(); ++w) {
-    if (w > 0 && !(x[w] < x[w - 1])) {
-      throw wheelset.error("x", fmt::format("{} m after {} m", x[w], x[w - 1]), "positions in order from the front");
-    }
-    data.parts.wheelsets.push_back(static_cast<int>(data.parts.bodies.size()));
-    add_body(wheelset, data, make_body(fmt::format("wheelset-{}", w + 1), inertia, {x[w], 0.0, -radius}));
-  }
+  read_wheelsets(wheelset, data);
 }
 
 void read_two_bogie(TomlSection& root, VehicleData& data) {

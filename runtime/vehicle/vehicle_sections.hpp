@@ -29,7 +29,14 @@ inline constexpr NumberKind mass_kind{"kg", 1.0, 1e6}, inertia_kind{"kg m²", 0.
 /// [bogie], [layout], [primary], [secondary] and [roll_bar] of the template "two-bogie".
 void read_two_bogie(TomlSection& root, VehicleData& data);
 
-/// [car_body], [wheelset] with its positions and the bodies of [[body]].
+/// Name, description, provenance, motion and nominal radius.
+void read_heading(TomlSection& root, VehicleData& data);
+
+/// Wheelsets at their positions x.
+void read_wheelsets(TomlSection& section, VehicleData& data);
+
+/// [car_body], [wheelset] with its positions and the bodies of [[body]]. A vehicle that stands on its joints may have
+/// no wheelset.
 void read_bodies(TomlSection& root, VehicleData& data);
 
 /// [[connection]], which joins bodies that are there.

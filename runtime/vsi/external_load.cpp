@@ -7,11 +7,12 @@ namespace railtab {
 
 namespace {
 
-void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, double time, Eigen::VectorXd& load) {
-  const double x = model.vehicle_x[index(vehicle)] + model.vehicle.bodies[index(acting.body)].position[0];
+void add_body_load(const VsiModel& model, const BodyLoad& acting, int vehicle, int body, double time,
+                   Eigen::VectorXd& load) {
+  const double x = model.vehicle_x[index(vehicle)] + model.vehicle.bodies[index(body)].position[0];
   const bool over_time = acting.history.argument() == LoadArgument::time;
   const ForceAndMoment value = acting.history.at(over_time ? time : x + model.distance(time));
-  const DofIndices& dof = model.vehicle.dof[index(acting.body)];
+  const DofIndices& dof = model.vehicle.dof[index(body)];
   for (int k = 0; k < 6; ++k) {
     if (dof[index(k)] != held) load[dof[index(k)]] += value[k];
   }
@@ -23,11 +24,11 @@ void vehicle_load(const VsiModel& model, int vehicle, double time, Eigen::Vector
   load.setZero(model.vehicle.dofs());
   for (const BodyLoad& acting : model.loads) {
     if (acting.vehicle == vehicle || acting.vehicle == BodyLoad::every_vehicle) {
-      add_body_load(model, acting, vehicle, time, load);
+      for (const int body : acting.bodies) add_body_load(model, acting, vehicle, body, time, load);
     }
   }
   if (model.lateral_acceleration != 0.0) load += model.lateral_acceleration * model.vehicle.lateral_load;
-  // the car body, whose x is held, is what pulls the rest
+  // the car bodies whose x is held are what pulls the rest
   if (model.speed_profile) load += model.acceleration(time) * model.vehicle.acceleration_load;
 }
 

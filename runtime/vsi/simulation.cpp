@@ -37,7 +37,9 @@ std::optional<StopSummary> stop_summary(const VsiModel& model, const StopExtreme
   const std::vector<ForceElement>& elements = model.vehicle.elements.element;
   const auto name = [&](const StopEvent& event) {
     const auto i = static_cast<std::size_t>(event.element);
-    return fmt::format("coach-{}: {}", i / elements.size() + 1, elements[i % elements.size()].name);
+    const ForceElement& element = elements[i % elements.size()];
+    const auto vehicle = static_cast<int>(i / elements.size());
+    return fmt::format("coach-{}: {}", vehicle * model.vehicle.coaches + element.coach + 1, element.name);
   };
   return StopSummary{name(stops.first), name(stops.largest), stops.first.time, stops.largest.force, stops.largest.time};
 }

@@ -26,6 +26,13 @@ double VsiModel::wheelset_x(int wheelset, double time) const noexcept {
   return vehicle_x[index(wheelset / per_vehicle)] + vehicle.bodies[index(body)].position[0] + distance(time);
 }
 
+WheelRise VsiModel::wheel_rise(int wheel, double time) const noexcept {
+  if (wheel_deviation.empty()) return {};
+  const double R = vehicle.nominal_radius;
+  const WheelRise rise = wheel_deviation[index(wheel)].at(distance(time) / R);
+  return {rise.rise, rise.slope / R, rise.curvature / (R * R)};
+}
+
 RailDeviation VsiModel::rail_line(RailSide side, double x) const noexcept {
   RailDeviation d = irregularity.at(side, x);
   if (!span_deviation) return d;
@@ -170,7 +177,14 @@ void rail_deviation(const VsiModel& model, const std::vector<RailContact>& conta
         d = {.z = given.z, .dz_dx = given.rate / model.speed(time)};
       }
       RailHeadMotion& head = deviation[index(w)][index(side)];
+      // A wheel that is not round meets a round one's rail raised by its deviation.
+      const WheelRise rise = model.wheel_rise(2 * w + side, time);
+      d.z -= rise.rise;
+      d.dz_dx -= rise.slope;
       head = RailHeadMotion{{d.y, d.z, 0.0}, Vector3::Zero(), d.dy_dx, d.dz_dx};
+      if (model.rail_friction) {
+        head.friction = model.rail_friction->at(static_cast<RailSide>(side), x) / model.contact.friction;
+      }
       if (contacts.empty() || !contacts[index(2 * w + side)].on_rail) {
         add_ground(model, x, time, head);
         continue;
@@ -197,7 +211,11 @@ VerticalDeviation vertical_deviation(const VsiModel& model, int wheelset, double
   const double x = model.wheelset_x(wheelset, time);
   VerticalDeviation mean;
   for (const RailSide side : {RailSide::left, RailSide::right}) {
-    const RailDeviation d = model.rail_line(side, x);
+    RailDeviation d = model.rail_line(side, x);
+    const WheelRise rise = model.wheel_rise(2 * wheelset + static_cast<int>(side), time);
+    d.z -= rise.rise;
+    d.dz_dx -= rise.slope;
+    d.ddz_dx2 -= rise.curvature;
     mean.z += 0.5 * d.z;
     mean.rate += 0.5 * V * d.dz_dx;
     mean.acceleration += 0.5 * (V * V * d.ddz_dx2 + model.acceleration(time) * d.dz_dx);

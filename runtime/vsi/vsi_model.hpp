@@ -10,8 +10,10 @@
 #include "railtab/runtime/line/body_load.hpp"
 #include "railtab/runtime/line/ground_motion.hpp"
 #include "railtab/runtime/line/irregularity.hpp"
+#include "railtab/runtime/line/rail_friction.hpp"
 #include "railtab/runtime/line/span_deviation.hpp"
 #include "railtab/runtime/line/speed_profile.hpp"
+#include "railtab/runtime/line/wheel_deviation.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
@@ -48,6 +50,8 @@ struct VsiModel {
   Irregularity irregularity;
   std::optional<SpanDeviation> span_deviation;        ///< besides `irregularity`
   std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`
+  std::vector<WheelDeviation> wheel_deviation;        ///< 2 per wheelset, left first; none: all wheels are round
+  std::optional<RailFriction> rail_friction;          ///< in place of contact.friction, which scales it
   NormalContact normal_contact = NormalContact::hertz;
   std::shared_ptr<const ContactGeometry> geometry;
   WheelContactModel contact;                  ///< its geometry points to `geometry`, its speed is that at t = 0
@@ -71,6 +75,8 @@ struct VsiModel {
   [[nodiscard]] double distance(double time) const noexcept {
     return speed_profile ? speed_profile->distance(time) : contact.speed * time;
   }
+  /// How much higher a wheel runs than a round one at time t, over the way x: rise [m], dz/dx [-], d²z/dx² [1/m].
+  [[nodiscard]] WheelRise wheel_rise(int wheel, double time) const noexcept;
   /// Irregularity of a rail and its deviation by turning spans together.
   [[nodiscard]] RailDeviation rail_line(RailSide side, double x) const noexcept;
   /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.

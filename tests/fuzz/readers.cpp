@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "railtab/runtime/assessment/verdict.hpp"
 #include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
@@ -16,6 +17,21 @@ namespace {
 
 void read_wheel(const Path& file) { static_cast<void>(ProfileCurve(read_profile_file(file, ProfileKind::wheel))); }
 void read_rail(const Path& file) { static_cast<void>(ProfileCurve(read_profile_file(file, ProfileKind::rail))); }
+
+void read_clause_file(const Path& file) {
+  const std::vector<Clause> clauses = clauses_with({file});
+  std::vector<MeasuredValue> values;
+  for (const MeasureKind& kind : measure_kinds()) {
+    MeasuredValue& value = values.emplace_back();
+    value.measure = kind.name;
+    value.stage = kind.stages.empty() ? AssessmentStage::check : kind.stages.front();
+    value.value = 1.0;
+    value.quantities = {
+        {"span", 25.0}, {"axle_load", 2e5}, {"static_wheel_load", 1e5}, {"nadal_limit", 1.3}, {"weinstock_limit", 1.6}};
+  }
+  const AssessmentFacts facts{"ballasted", 55.0};
+  for (const Verdict& verdict : judge(clauses, facts, values, {})) require_finite({verdict.limit}, "a clause's limit");
+}
 
 /// Folder of this process, gone with it.
 class OwnFolder {
@@ -58,6 +74,7 @@ const std::vector<Reader>& readers() {
       {"vehicle_dofs", ".csv", read_vehicle_file},
       {"vehicle_stiffness", ".mtx", read_vehicle_stiffness},
       {"vehicle_file", ".toml", read_vehicle_toml},
+      {"clauses", ".toml", read_clause_file},
       {"irregularity", ".csv", read_irregularity_file},
       {"load_history", ".csv", read_load_file},
       {"ground_record", ".csv", read_ground_file},

@@ -90,6 +90,10 @@ TEST_F(AssessCommand, ABridgeThatPassesAllStages) {
   ASSERT_GE(found["runs"].size(), 1U);
   EXPECT_EQ(found["runs"][0]["complete"], true);
   EXPECT_TRUE(std::filesystem::exists(folder_ / found["runs"][0]["results"].get<std::string>()));
+  const std::string rows = text_of("out/runs.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + static_cast<long>(found["runs"].size()));
+  EXPECT_EQ(rows.find("run,speed[m/s],speed[km/h],seed,complete,deck_acceleration[m/s2],"), 0U);
+  EXPECT_EQ(text_of("out/moving_load.csv").find("deck,train,speed[m/s]"), 0U);
 }
 
 TEST_F(AssessCommand, FinishedRunsAreKeptAndOthersMadeAgain) {
@@ -110,6 +114,22 @@ TEST_F(AssessCommand, FinishedRunsAreKeptAndOthersMadeAgain) {
   write("scene.toml", vertical + light_span);
   const json changed = object(vsi(command));
   EXPECT_NE(changed["measures"], first["measures"]) << "results of another scene are not taken for this one's";
+}
+
+TEST_F(AssessCommand, GoesOnAfterAKill) {
+  write("scene.toml", vertical + stiff_span);
+  const std::string command = "assess scene.toml --stage contact --speed-kmh 100:160:15 --threads 1 ";
+  json whole = object(vsi(command + "-o whole --json"));
+  for (const char* seconds : {"0.3", "0.6", "0.9"}) {
+    static_cast<void>(
+        run(std::string("timeout -s KILL ") + seconds + " '" VSI_COMMAND "' " + command + "-o killed -q"));
+  }
+  const Outcome last = vsi(command + "-o killed --json");
+  ASSERT_EQ(last.exit_code, 0) << last.output;
+  json resumed = object(last);
+  EXPECT_EQ(resumed["runs"].size(), 5U);
+  EXPECT_EQ(resumed["measures"], whole["measures"]) << "to the last bit";
+  EXPECT_EQ(resumed["verdicts"], whole["verdicts"]);
 }
 
 TEST_F(AssessCommand, RandomTracksOfSeveralSeedsRiseFromZero) {

@@ -14,6 +14,7 @@
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
@@ -147,6 +148,60 @@ TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
   pushing = free_coach();
   add_spring(pushing, "bogie-1", "CAR", {0.0, -1e6, 0.0}, {0.0, 0.0, 0.0}, pushing.damping);
   expect_refused(pushing, {"c.mtx: row", "drives a motion", "semidefinite"});
+}
+
+// Two coaches and a ball between their ends: relative yaw, pitch and roll of the free train are hinges, which rails
+// hold.
+FreeCoach two_coaches(double kx) {
+  constexpr double length = 26.4, ball = 1e8;  // m, N/m
+  const FreeCoach one = free_coach();
+  const Eigen::Index n = one.mass.rows();
+  FreeCoach two;
+  for (auto member : {&FreeCoach::mass, &FreeCoach::damping, &FreeCoach::stiffness}) {
+    two.*member = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    (two.*member).topLeftCorner(n, n) = (two.*member).bottomRightCorner(n, n) = one.*member;
+  }
+  two.rows = one.rows;
+  for (BodyRow row : one.rows) {
+    row.body += "-b";
+    row.position.x() -= length;
+    two.rows.push_back(row);
+  }
+  const auto join = [&](double k, int motion, int turn, double arm) {
+    Eigen::VectorXd e = Eigen::VectorXd::Zero(2 * n);
+    e[two.row("CAR", motion)] = 1.0;
+    e[two.row("CAR-b", motion)] = -1.0;
+    e[two.row("CAR", turn)] = e[two.row("CAR-b", turn)] = arm;
+    two.stiffness += k * e * e.transpose();
+  };
+  join(kx, 0, pitch, 0.0);
+  join(ball, y, yaw, -0.5 * length);
+  join(ball, z, pitch, 0.5 * length);
+  return two;
+}
+
+TEST_F(VehicleImportFiles, MayHaveHingesThatRailsHold) {
+  VehicleImport import = files();
+  import.wheelsets = {"WS1", "WS2", "WS3", "WS4", "WS1-b", "WS2-b", "WS3-b", "WS4-b"};
+  import.car_bodies = {"CAR", "CAR-b"};
+  write(two_coaches(1e7));
+  const VehicleModel train = import_vehicle(import);
+  EXPECT_EQ(train.coaches, 2);
+  EXPECT_EQ(train.dofs(), 2 * 42 - 1);
+  for (int w = 0; w < 8; ++w) EXPECT_NEAR(static_wheel_load(train, w) / (44482.0 * 9.81 / 8.0), 1.0, 1e-6);
+  int cars = 0;
+  for (const VehicleBody& body : train.bodies) {
+    if (body.name == "car-body") {
+      EXPECT_EQ(body.coach, cars++);
+    } else if (body.name == "wheelset-6") {
+      EXPECT_EQ(body.coach, 1);
+    }
+  }
+  EXPECT_EQ(cars, 2);
+  // nothing holds the second coach along the track
+  write(two_coaches(0.0));
+  const std::string found = message([&] { static_cast<void>(import_vehicle(import)); });
+  EXPECT_NE(found.find("a motion that no spring resists"), std::string::npos) << found;
 }
 
 TEST_F(VehicleImportFiles, MustHaveMass) {

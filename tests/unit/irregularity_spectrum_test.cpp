@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -69,6 +70,26 @@ TEST(RandomTrack, DependsOnSeedAndPositionAlone) {
     const double z = one.at(RailSide::left, x).z;
     EXPECT_NEAR(z, two.at(RailSide::left, x).z, 1e-12) << x;
     largest = std::max(largest, std::abs(z - three.at(RailSide::left, x).z));
+  }
+  EXPECT_GT(largest, 1e-3);
+}
+
+TEST(RandomTrack, RisesFromZeroWhereItFadesIn) {
+  const SpectrumParameters p;
+  SpectrumParameters fading = p;
+  fading.fade_in = 70.0;
+  const Irregularity full = random_irregularity(p, -50.0, 300.0),
+                     faded = random_irregularity(fading, -50.0, 300.0, 20.0);
+  double largest = 0.0;
+  for (double x = -40.0; x < 290.0; x += 0.37) {
+    const RailDeviation a = full.at(RailSide::right, x), b = faded.at(RailSide::right, x);
+    const double s = std::clamp((x - 20.0) / 70.0, 0.0, 1.0), share = s * s * (3.0 - 2.0 * s);
+    // a spline through twelve points of the shortest wave follows the product to 1e-3 of it
+    EXPECT_NEAR(b.z, share * a.z, 2e-3 * 5e-3 * (share > 0.0 && share < 1.0 ? 1.0 : 0.1)) << x;
+    if (x < 19.0 || x > 91.0) {
+      EXPECT_NEAR(b.y, x < 19.0 ? 0.0 : a.y, 1e-9) << x;
+    }
+    largest = std::max(largest, std::abs(b.z));
   }
   EXPECT_GT(largest, 1e-3);
 }

@@ -63,6 +63,12 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   EXPECT_EQ(read.header.wheel_x, header_.wheel_x);
   EXPECT_EQ(read.header.static_wheel_load, header_.static_wheel_load);
   EXPECT_EQ(read.header.body_names, header_.body_names);
+  EXPECT_EQ(read.header.body_x, header_.body_x);
+  EXPECT_EQ(read.header.span_from, header_.span_from);
+  EXPECT_EQ(read.header.span_to, header_.span_to);
+  EXPECT_EQ(read.header.built, header_.built);
+  EXPECT_TRUE(read.header.left_out.empty());
+  EXPECT_EQ(read.header.warnings, header_.warnings);
   EXPECT_EQ(read.header.node_names, header_.node_names);
   EXPECT_EQ(read.header.node_x, header_.node_x);
   EXPECT_EQ(read.header.wheel_profile, header_.wheel_profile);

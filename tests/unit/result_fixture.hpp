@@ -21,6 +21,11 @@ inline ResultHeader made_up_header(bool with_nodes = true) {
   header.wheel_x = {0.0, 0.0, -2.5, -2.5};
   header.static_wheel_load = {5e4, 5.1e4, 5.2e4, 5.3e4};
   header.body_names = {"coach-1/car-body", "coach-1/bogie-1", "coach-1/wheelset-1"};
+  header.body_x = {-9.5, -1.25, 0.0};
+  header.span_from = {0.0, 20.0};
+  header.span_to = {20.0, 45.0};
+  header.built = {"2 x coach", "flexible track"};
+  header.warnings = {"a load that acts nowhere"};
   if (with_nodes) {
     header.node_names = {"midspan", "quarter span"};
     header.node_x = {15.0, 7.5};
@@ -44,6 +49,7 @@ inline StepRecord made_up_record(long index, const ResultHeader& header) {
   for (std::size_t i = 0; i < header.wheel_x.size(); ++i) {
     WheelRecord w;
     w.patches = static_cast<int>((index + static_cast<long>(i)) % 3);
+    w.from_table = static_cast<int>((index + static_cast<long>(i)) % 2);
     for (double* value : {&w.Q, &w.Y, &w.X, &w.y_rail, &w.y_wheel, &w.angle, &w.rolling_radius, &w.normal_force,
                           &w.penetration, &w.second_y_rail, &w.second_normal_force}) {
       *value = next();
@@ -67,8 +73,9 @@ inline StepRecord made_up_record(long index, const ResultHeader& header) {
 inline std::vector<double> numbers_of(const StepRecord& r) {
   std::vector<double> n{r.time, r.position, static_cast<double>(r.newton_iterations)};
   for (const WheelRecord& w : r.wheels) {
-    n.insert(n.end(), {w.Q, w.Y, w.X, static_cast<double>(w.patches), w.y_rail, w.y_wheel, w.angle, w.rolling_radius,
-                       w.normal_force, w.penetration, w.second_y_rail, w.second_normal_force});
+    n.insert(n.end(),
+             {w.Q, w.Y, w.X, static_cast<double>(w.patches), static_cast<double>(w.from_table), w.y_rail, w.y_wheel,
+              w.angle, w.rolling_radius, w.normal_force, w.penetration, w.second_y_rail, w.second_normal_force});
   }
   for (const auto* motions : {&r.bodies, &r.nodes}) {
     for (const MotionRecord& m : *motions) {

@@ -46,7 +46,8 @@ std::string section_of(const SceneKey& key) {
 /// The guide's heading of a section.
 std::string heading_of(const std::string& section) {
   if (section.empty()) return "### Top of the file";
-  const bool list = section == "bridge" || section == "support" || section == "load" || section == "ground_motion";
+  const bool list = section == "bridge" || section == "support" || section == "load" || section == "wheel" ||
+                    section == "ground_motion";
   return list ? "### `[[" + section + "]]`" : "### `[" + section + "]`";
 }
 

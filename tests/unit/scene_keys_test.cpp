@@ -54,8 +54,13 @@ std::string scene_with(const std::string& key, double value, bool integer) {
   std::string contact = "mode = \"online\"\n", bridge = "[[bridge]]\n", rest;
   const std::string number = integer ? fmt::format("{}", static_cast<long>(value)) : fmt::format("{:.17e}", value);
   const auto line = [&](std::size_t prefix) { return key.substr(prefix) + " = " + number + "\n"; };
-  if (key.starts_with("contact."))
+  if (key.starts_with("contact.")) {
+    if (key.starts_with("contact.k_")) contact += "creep_law = \"polach\"\n";
+    if (key == "contact.creep_speed_floor") rest = "train.speed_file = \"pair.h5\"\n";
     contact += line(8);
+  } else if (key.starts_with("wheel."))
+    bridge +=
+        std::string("[[wheel]]\n") + (key == "wheel.run_out" ? "flat_length = 0.05\n" : "run_out = 1e-4\n") + line(6);
   else if (key.starts_with("bridge."))
     bridge += line(7);
   else if (key.starts_with("load.")) {

@@ -45,7 +45,7 @@ std::string clause_cell(const Clause& clause) {
   std::string cell = fmt::format("{}<br><small>{}, {}</small>", escaped(clause.title), escaped(clause.edition),
                                  escaped(clause.clause));
   if (clause.verified) {
-    cell += fmt::format("<br><small>limit verified: {}</small>", escaped(clause.source));
+    cell += fmt::format("<br><small>read in: {}</small>", escaped(clause.source));
   } else {
     cell += fmt::format("<br><span class=\"standing\">unverified</span> <small>{}</small>", escaped(clause.source));
   }

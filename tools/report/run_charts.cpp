@@ -8,7 +8,9 @@
 #include <map>
 #include <optional>
 
+#include "channel_values.hpp"
 #include "headline.hpp"
+#include "railtab/runtime/measures/low_pass.hpp"
 #include "wheel_band.hpp"
 
 namespace railtab::report {
@@ -19,37 +21,6 @@ constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 constexpr double kN = 1e-3, mm = 1e3;
 constexpr const char* over_position = "position of the wheel along the track [m]";
 constexpr const char* over_time = "time [s]";
-
-/// Records too far apart for means over 2 m.
-bool sparse(const RunResults& run) {
-  constexpr double widest = 0.5;  // m
-  for (std::size_t i = 1; i < run.steps.size(); ++i) {
-    if (run.steps[i].position - run.steps[i - 1].position > widest) return true;
-  }
-  return run.steps.size() < 2;
-}
-
-/// Sliding means over 2 m of way, NaN where there are none; `value` may be NaN where it does not count.
-std::vector<double> sliding_means(const RunResults& run, const std::function<double(const StepRecord&)>& value) {
-  constexpr double averaged = 2.0;  // m
-  SlidingMean mean(averaged);
-  std::vector<double> means;
-  means.reserve(run.steps.size());
-  for (const StepRecord& step : run.steps) {
-    const double now = value(step);
-    const std::optional<double> result = std::isfinite(now) ? mean.add(step.position, now) : std::nullopt;
-    means.push_back(result ? std::abs(*result) : gap);
-  }
-  return means;
-}
-
-double largest_amount(const std::vector<double>& values) {
-  double most = 0.0;
-  for (const double value : values) {
-    if (std::isfinite(value)) most = std::max(most, std::abs(value));
-  }
-  return most;
-}
 
 std::vector<std::size_t> indices(const std::vector<std::string>& names,
                                  const std::function<bool(const std::string&)>& wanted) {
@@ -221,12 +192,35 @@ std::string RunCharts::track_shift() {
   return chart_html(chart);
 }
 
+/// Low-passed as the limit is meant; not of records too far apart for it.
+std::string RunCharts::filtered_unloading() {
+  constexpr double cut_off = 20.0;  // Hz
+  Chart chart = chart_over(Over::position, "Wheel unloading ΔQ/Q0, low-passed at 20 Hz",
+                           "Share of the static wheel load that is missing in the force below 20 Hz, filtered without "
+                           "phase; 1 is lift-off.",
+                           "ΔQ/Q0 [–]");
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const ResultHeader& header = runs_[r].header;
+    const std::optional<double> spacing = even_spacing(runs_[r]);
+    if (!spacing || !samples_fast_enough(cut_off, *spacing)) continue;
+    for (std::size_t w = 0; w < header.wheel_x.size(); ++w) {
+      const double load = header.static_wheel_load[w];
+      if (!(load > 0.0)) continue;
+      const std::vector<double> filtered = low_passed(
+          values(r, [&](const StepRecord& step) { return 1.0 - step.wheels[w].Q / load; }), cut_off, *spacing);
+      LiveSeries line{.label = label(r, wheel_name(w)), .offset = header.wheel_x[w], .shown = at_first(r, w)};
+      line.history = store_.add(filtered, detail(line.shown));
+      add_line(chart, r, std::move(line), filtered);
+    }
+  }
+  chart.limits = {{0.6, "0.6 – EN 14363"}};
+  chart.marks = bridge();
+  return chart_html(chart);
+}
+
 std::string RunCharts::unloading() {
-  Chart chart =
-      chart_over(Over::position, "Wheel unloading ΔQ/Q0",
-                 "Share of the static wheel load that is missing, unfiltered; 1 is lift-off. The limit 0.6 of "
-                 "EN 14363 is meant for the low-passed force and is not drawn here.",
-                 "ΔQ/Q0 [–]");
+  Chart chart = chart_over(Over::position, "Wheel unloading ΔQ/Q0, unfiltered",
+                           "Share of the static wheel load that is missing; 1 is lift-off.", "ΔQ/Q0 [–]");
   add_of_Q(chart, [](double load) { return load > 0.0 ? Linear{-1.0 / load, 1.0} : Linear{gap, gap}; });
   if (runs_.size() == 1) {
     add_band(
@@ -245,7 +239,7 @@ std::string RunCharts::running_safety() {
     add_band(
         runs_[0], [&](const WheelRecord& wheel, double) { return quotient(wheel); }, raw);
   raw.marks = bridge();
-  return quotient_mean() + track_shift() + unloading() + chart_html(raw);
+  return quotient_mean() + track_shift() + filtered_unloading() + unloading() + chart_html(raw);
 }
 
 /// Of many bodies or nodes the first, the last and those that move most are shown at first.

@@ -43,6 +43,7 @@ class RunCharts {
                    const std::function<std::string(std::size_t)>& name);
   [[nodiscard]] std::string quotient_mean();
   [[nodiscard]] std::string track_shift();
+  [[nodiscard]] std::string filtered_unloading();
   [[nodiscard]] std::string unloading();
   [[nodiscard]] std::string deck_envelope() const;
   [[nodiscard]] std::vector<Mark> bridge() const;

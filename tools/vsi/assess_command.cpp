@@ -6,6 +6,7 @@
 
 #include "assess_contact.hpp"
 #include "assess_stages.hpp"
+#include "assessment_csv.hpp"
 #include "assessment_json.hpp"
 #include "assessment_page.hpp"
 #include "assessment_text.hpp"
@@ -14,6 +15,7 @@
 #include "command/print.hpp"
 #include "command/progress_bar.hpp"
 #include "commands.hpp"
+#include "moving_load_output.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
@@ -202,9 +204,24 @@ int contact_runs(const SceneParameters& scene, const AxleTrain& own, const Reque
   return code;
 }
 
+/// What stages have computed, as tables for other programs.
+void write_tables(const Request& request, const Assessment& assessment) {
+  std::vector<DeckResponse> responses;
+  for (const assess::DeckAssessment& deck : assessment.decks) {
+    if (!deck.responses.empty()) responses.push_back({deck.deck, deck.trains, deck.responses});
+  }
+  if (!responses.empty()) {
+    write_text_file(request.folder / "moving_load.csv", response_rows(responses), response_columns());
+  }
+  if (!assessment.runs.empty()) {
+    write_text_file(request.folder / "runs.csv", assess::run_rows(assessment), assess::run_columns());
+  }
+}
+
 int write_outputs(const Request& request, const Assessment& assessment, bool json, bool quiet) {
   const auto object = assess::assessment_json(assessment);
   const fs::path page = request.folder / "assessment.html", data = request.folder / "assessment.json";
+  write_tables(request, assessment);
   write_text_file(data, object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", "{\n \"railtab\"");
   write_text_file(page, assess::assessment_page(assessment), report::html_first_line(assess::assessment_page_kind));
   if (json) {

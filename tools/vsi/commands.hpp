@@ -10,6 +10,7 @@ namespace railtab::vsi {
 /// ComputationError for exit code 1.
 using Arguments = std::vector<std::string>;
 int contact_command(const Arguments& arguments);
+int critical_speed_command(const Arguments& arguments);
 int creep_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);

@@ -25,6 +25,7 @@ constexpr const char* usage =
     "  moving-load SCENE.toml --speed LO:HI[:STEP]            its deck under HSLM-A or other axle loads, without "
     "contact\n"
     "  assess  SCENE.toml [-o DIR]                            check its bridge by the limits of the standards\n"
+    "  critical-speed SCENE.toml [--amplitude M]              linear critical speed of its vehicle on its profiles\n"
     "  vehicle [NAME|FILE.toml]                               masses, axle loads and modes of a vehicle; none: the "
     "library\n";
 
@@ -40,6 +41,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "structure") return structure_command(rest);
   if (name == "assess") return assess_command(rest);
   if (name == "moving-load") return moving_load_command(rest);
+  if (name == "critical-speed") return critical_speed_command(rest);
   if (name == "vehicle") return vehicle_command(rest);
   if (name == "check") return check_command(rest);
   if (name == "new") return new_command(rest);

@@ -10,8 +10,8 @@
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/vehicle/vehicle_data.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
-#include "railtab/runtime/vehicle/vehicle_model.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -57,7 +57,27 @@ std::string bridge_text(const NewScene& scene) {
          "J = 22.65                   # torsion [m4]\n";
 }
 
-std::string scene_text(const NewScene& scene, double length) {
+/// Vertical data of a vehicle say nothing of what a contact patch needs.
+std::string contact_text(const VehicleModel& vehicle, MotionPlane motion) {
+  if (motion == MotionPlane::vertical) {
+    return "[contact]\nnormal = \"rigid\"            # wheels that follow the rails: the vehicle's data are vertical "
+           "only\n";
+  }
+  constexpr double usual = 0.46;  // PairDimensions' default [m]
+  return fmt::format(
+      "[contact]\n"
+      "mode = \"online\"             # needs no table; with one, a run is many times faster:\n"
+      "wheel = \"S1002\"             #   tablegen geometry --wheel S1002 --rail 60E1 --rail-inclination 1:40 \\\n"
+      "rail = \"60E1\"               #       --roll=-0.005:0.005{1} -o table.h5\n"
+      "rail_inclination = 0.025    #   then, in place of these lines: table = \"table.h5\"\n"
+      "{0}"
+      "friction = 0.3\n",
+      vehicle.nominal_radius == usual ? std::string()
+                                      : fmt::format("dimensions.nominal_radius = {:.6g}\n", vehicle.nominal_radius),
+      vehicle.nominal_radius == usual ? std::string() : fmt::format(" --wheel-radius {:.6g}", vehicle.nominal_radius));
+}
+
+std::string scene_text(const NewScene& scene, double length, const std::string& contact) {
   // the rear wheelset starts on the track, the last one leaves the bridge
   constexpr double run_in = 20.0, straight_duration = 5.0;
   const double train = length * scene.coaches;
@@ -74,20 +94,14 @@ std::string scene_text(const NewScene& scene, double length) {
              "count = {}\n"
              "speed_kmh = {:.6g}\n"
              "start = {:.6g}                 # of the first wheelset; the bridge begins at x = 0 [m]\n\n"
-             "[contact]\n"
-             "mode = \"online\"             # needs no table; with one, a run is many times faster:\n"
-             "wheel = \"S1002\"             #   tablegen geometry --wheel S1002 --rail 60E1 --rail-inclination 1:40 "
-             "\\\n"
-             "rail = \"60E1\"               #       --roll=-0.005:0.005 -o table.h5\n"
-             "rail_inclination = 0.025    #   then, in place of these four lines: table = \"table.h5\"\n"
-             "friction = 0.3\n\n"
+             "{}\n"
              "[track]\n"
              "length_before = {:.6g}        # the train's length and its run-in [m]\n"
              "length_after = {:.6g}         # so that the train can leave the bridge [m]\n",
              mark,
              quoted(fmt::format("{} x {} {} at {:.6g} km/h", scene.coaches, scene.vehicle, what, scene.speed_kmh)),
-             quoted(scene.vehicle), scene.coaches, scene.speed_kmh, -run_in / 2.0, std::ceil(train + 2.0 * run_in),
-             std::ceil(after)) +
+             quoted(scene.vehicle), scene.coaches, scene.speed_kmh, -run_in / 2.0, contact,
+             std::ceil(train + 2.0 * run_in), std::ceil(after)) +
          bridge_text(scene) +
          fmt::format(
              "\n[irregularity]\nspectrum = \"german-low\"     # a random track; remove the section for an even one\n"
@@ -125,12 +139,13 @@ int new_command(const Arguments& arguments) {
   if (std::filesystem::exists(output)) {
     throw input_error(output, "a file", "a new name: scenes are not replaced");
   }
-  const double length = build_vehicle(find_vehicle(scene.vehicle), MotionPlane::spatial).length;
+  const VehicleData data = find_vehicle(scene.vehicle);
+  const VehicleModel vehicle = build_vehicle(data, data.motion);
   if (scene.vehicle.ends_with(".toml")) {  // a scene's files are relative to it
     const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
     scene.vehicle = std::filesystem::absolute(scene.vehicle).lexically_relative(folder).string();
   }
-  write_text_file(output, scene_text(scene, length), mark);
+  write_text_file(output, scene_text(scene, vehicle.length, contact_text(vehicle, data.motion)), mark);
   if (line.json()) {
     print_json_line({{"scene", output}});
   } else if (!line.quiet()) {

@@ -218,7 +218,7 @@ const railtab = (function () {
     };
   };
   Chart.prototype.underlay = function (context, area, graph) {
-    const kind = this.kind(), own = kind === this.over;
+    const kind = this.kind(), own = kind === this.over, limits = this.data.limits.length;
     context.save();
     context.beginPath(); context.rect(area.x, area.y, area.w, area.h); context.clip();
     context.font = '12px system-ui, sans-serif';
@@ -232,7 +232,7 @@ const railtab = (function () {
         context.fillRect(a, area.y, 1, area.h); context.fillRect(b - 1, area.y, 1, area.h);
         context.fillStyle = colour('--soft');
         if (mark.label !== before && b > area.x && a < area.x + area.w) {
-          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + 12);
+          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + (limits ? 30 : 12));
         }
         before = mark.label;
       });
@@ -309,9 +309,9 @@ const railtab = (function () {
     this.write_x();
     this.show_now();
   };
-  function label(v, granularity, options, graph) {
-    const range = typeof graph !== 'undefined' ? Math.abs(v) : 0;
-    return (Math.abs(v) < 1e-12 ? '0' : Number(v.toPrecision(range >= 1e4 ? 7 : 5)).toString()).replace('-', '\u2212');
+  function label(v) {
+    const digits = Math.abs(v) >= 1e4 ? 7 : 5;
+    return (Math.abs(v) < 1e-12 ? '0' : Number(v.toPrecision(digits)).toString()).replace(/-/g, '\u2212');
   }
   Chart.prototype.write_x = function () {
     this.x_label.textContent = this.kind() === 'time' ? 'time [s]' : 'position of the wheel along the track [m]';
@@ -349,7 +349,7 @@ const railtab = (function () {
     if (factor === 0) { set_window(kind, all[0], all[1]); return; }
     const now = window_of(kind), at = cursors[kind];
     const centre = at !== undefined && at !== null && at > now[0] && at < now[1] ? at : 0.5 * (now[0] + now[1]);
-    let from = centre - factor * (centre - now[0]), to = centre + factor * (now[1] - centre);
+    const from = centre - factor * (centre - now[0]), to = centre + factor * (now[1] - centre);
     set_window(kind, from, to);
   };
   Chart.prototype.key = function (e) {

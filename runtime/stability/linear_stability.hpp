@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+namespace railtab {
+
+/// The least stable lateral motion of a train on straight rigid rails: more than half of its kinetic energy is in y,
+/// roll and yaw.
+struct LeastStableMotion {
+  double speed = 0.0;      ///< V [m/s]
+  double growth = 0.0;     ///< Re λ [1/s], positive where the motion grows
+  double frequency = 0.0;  ///< |Im λ|/2π [Hz]; 0: no oscillation
+  /// −Re λ/|λ|: damping ratio, negative where the motion grows.
+  double damping = 0.0;
+};
+
+/// Eigenvalues λ of small motions about rest in the middle of rigid rails while the train runs at constant speed,
+///     M ü + (C + V/R0 G − ∂f/∂u̇) u̇ + (K − ∂f/∂u) u = 0,
+/// with the contact forces f of the wheels by central differences of the force that runs have: normal contact, creep
+/// with spin, contact angles. What the rotations of wheelsets are, which nothing resists, is left out.
+/// @param model of one vehicle or one train with joints, its force elements by linear stand-ins; structure, deviations
+///        and loads play no part
+/// @param conicity in place of what the contact says of the yaw moment by lateral shift, −2 f₁₁ b γ_e y/R0: the
+///        equivalent conicity of a finite amplitude
+/// @pre model.normal_contact is hertz
+/// @throws ComputationError where the train does not come to rest
+[[nodiscard]] LeastStableMotion least_stable_motion(const VsiModel& model, double speed,
+                                                    std::optional<double> conicity = {});
+
+struct SpeedSearch {
+  double low = 5.0, high = 150.0, step = 2.5;  ///< [m/s]
+  double tolerance = 1e-4;                     ///< of the critical speed [m/s]
+};
+
+struct LinearCriticalSpeed {
+  std::optional<LeastStableMotion> critical;  ///< at the lowest critical speed; none up to SpeedSearch::high
+  std::vector<LeastStableMotion> searched;    ///< at the speeds of the search
+};
+
+/// The lowest speed from which on a small motion grows, by bisection between two steps of the search.
+[[nodiscard]] LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSearch& search = {},
+                                                        std::optional<double> conicity = {});
+
+/// Equivalent conicity of the model's pair at an amplitude by the wave's length [EN15302]. @returns none where there is
+/// no wave
+[[nodiscard]] std::optional<double> equivalent_conicity(const WheelRailPair& pair, double amplitude);
+
+}  // namespace railtab
