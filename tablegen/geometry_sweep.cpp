@@ -158,7 +158,9 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
   }
   append_trees(make_trees(search, options, table, progress), table);
   if (options.shard.whole() && table.coefficient.empty()) {
-    throw ComputationError("geometry sweep: the wheel does not meet the rail anywhere in the range");
+    throw ComputationError(
+        "geometry sweep: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
+        "side, units), --gauge, --flange-back and --lateral");
   }
   return table;
 }

@@ -108,7 +108,9 @@ GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySwee
   }
   GeometryTableData table = merge_geometry_tables(std::move(parts));
   if (table.coefficient.empty()) {
-    throw ComputationError("geometry sweep: the wheel does not meet the rail anywhere in the range");
+    throw ComputationError(
+        "geometry sweep: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
+        "side, units), --gauge, --flange-back and --lateral");
   }
   return table;
 }

@@ -111,6 +111,15 @@ bool has_column(const std::filesystem::path& file, std::string_view name) {
   return std::find(rows.header().begin(), rows.header().end(), name) != rows.header().end();
 }
 
+std::string names_of(const std::vector<FileColumn>& columns) {
+  std::string names;
+  for (const FileColumn& column : columns) {
+    names += names.empty() ? "columns " : ", ";
+    names += column.name;
+  }
+  return names;
+}
+
 double factor_to_si(const FileColumn& column, const std::vector<UnitFactor>& units) {
   std::string known;
   for (const UnitFactor& u : units) {

@@ -23,6 +23,9 @@ struct FileColumn {
 /// @throws InputError with file and line
 [[nodiscard]] std::vector<FileColumn> read_columns(const std::filesystem::path& file);
 
+/// "columns t, v", for messages.
+[[nodiscard]] std::string names_of(const std::vector<FileColumn>& columns);
+
 /// Numbers under a header row of names, the columns in the order in which they were asked for.
 struct NumberRows {
   std::vector<std::vector<double>> rows;

@@ -53,9 +53,7 @@ double RailFriction::at(RailSide side, double x) const noexcept {
 RailFriction read_rail_friction(const std::filesystem::path& file) {
   std::vector<FileColumn> columns = read_columns(file);
   if (columns.size() != 3 || columns[0].name != "x" || columns[1].name != "left" || columns[2].name != "right") {
-    throw input_error(columns[0].place(0),
-                      fmt::format("{} columns, the first named {}", columns.size(), columns[0].name),
-                      "three: x[m], left[1], right[1]");
+    throw input_error(columns[0].place(0), names_of(columns), "x[m], left[1], right[1]");
   }
   static_cast<void>(factor_to_si(columns[0], {{"m", 1.0}}));
   require_argument(columns[0]);

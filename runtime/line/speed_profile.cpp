@@ -98,9 +98,7 @@ double SpeedProfile::time_at(double distance) const noexcept {
 SpeedProfile read_speed_profile(const std::filesystem::path& file) {
   std::vector<FileColumn> columns = read_columns(file);
   if (columns.size() != 2 || columns[0].name != "t" || columns[1].name != "V") {
-    throw input_error(columns[0].place(0),
-                      fmt::format("{} columns, the first named {}", columns.size(), columns[0].name),
-                      "two: t[s], V[m/s] or V[km/h]");
+    throw input_error(columns[0].place(0), names_of(columns), "t[s], V[m/s] or V[km/h]");
   }
   static_cast<void>(factor_to_si(columns[0], {{"s", 1.0}}));
   require_argument(columns[0]);

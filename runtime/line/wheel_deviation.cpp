@@ -113,9 +113,7 @@ WheelRise WheelDeviation::at(double angle) const noexcept {
 WheelContour read_wheel_contour(const std::filesystem::path& file) {
   std::vector<FileColumn> columns = read_columns(file);
   if (columns.size() != 2 || columns[0].name != "angle" || columns[1].name != "rise") {
-    throw input_error(columns[0].place(0),
-                      fmt::format("{} columns, the first named {}", columns.size(), columns[0].name),
-                      "two: angle[rad] or angle[deg], rise[m] or rise[mm]");
+    throw input_error(columns[0].place(0), names_of(columns), "angle[rad] or angle[deg], rise[m] or rise[mm]");
   }
   const double to_rad = factor_to_si(columns[0], {{"rad", 1.0}, {"deg", std::numbers::pi / 180.0}});
   const double to_m = factor_to_si(columns[1], {{"m", 1.0}, {"mm", 1e-3}});

@@ -82,6 +82,16 @@ std::string no_equilibrium_message(const VsiModel& model, const EquilibriumRepor
         "later",
         what, time);
   }
+  if (model.lateral_acceleration != 0.0) {
+    VsiModel straight = without_loads(model, time, false);
+    straight.lateral_acceleration = 0.0;
+    if (has_equilibrium(straight, time)) {
+      return fmt::format(
+          "{}; there is one without the lateral acceleration of {:.3g} m/s² in the track's plane: reduce "
+          "train.lateral_acceleration, or balance it by train.cant",
+          what, model.lateral_acceleration);
+    }
+  }
   if (!model.geometry) return what;
   if (has_equilibrium(with_steel(model), time)) {
     return fmt::format("{}; there is one with wheels and rails of steel, but not with contact.material.E = {:.3g} Pa",

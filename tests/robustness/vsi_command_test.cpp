@@ -305,6 +305,15 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
   refused("run scene.toml -o circle.h5", "links in a circle");
 }
 
+// 5 m/s² turn a coach over, whose centre of gravity is 1.8 m above rails 1.5 m apart: that is named, not the profiles.
+TEST_F(VsiCommand, ALateralAccelerationThatOverturnsTheTrainIsNamed) {
+  write("curve.toml", rigid_scene + "duration = 0.01\n[train]\nlateral_acceleration = 5.0\n");
+  const Outcome outcome = vsi("run curve.toml -o r.h5 -q");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.output.find("without the lateral acceleration of 5 m/s²"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("wheels fit the rails"), std::string::npos) << outcome.output;
+}
+
 // A scene without a static equilibrium: its run cannot begin, and what another run has computed stays.
 TEST_F(VsiCommand, ARunThatCannotBeginReplacesNothing) {
   write("jump.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-40,300,0,300,0\n40,300,0,300,0\n");
