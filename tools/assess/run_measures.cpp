@@ -222,7 +222,7 @@ class RunJudge {
                                        "comfort_lateral",   "running_rms_vertical", "vibration_dose_vertical",
                                        "sperling_vertical", "sperling_lateral"};
     if (cars.empty()) return miss(all, "no car body is recorded");
-    for (std::size_t c = 0; c < cars.size(); ++c) car_body(cars[c], first_wheel_of(c, cars.size()));
+    for (const std::size_t car : cars) car_body(car);
     for (const std::string& measure : all) {
       const bool any = std::any_of(best_.begin(), best_.end(), [&](const auto& b) { return b.first.first == measure; });
       const bool second = measure.starts_with("running");
@@ -233,14 +233,12 @@ class RunJudge {
     keep();
   }
 
-  /// Of the car-th vehicle; the last wheel where vehicles have different numbers of wheels.
-  [[nodiscard]] std::size_t first_wheel_of(std::size_t car, std::size_t cars) const {
-    const std::size_t wheels = header_.wheel_x.size();
-    if (wheels == 0 || wheels % cars != 0) return wheels == 0 ? 0 : wheels - 1;
-    return car * (wheels / cars);
+  /// Along the track; where the results do not say it, that of the first wheelset [m].
+  [[nodiscard]] double body_position(std::size_t body, std::size_t k) const {
+    return at(k).position + (body < header_.body_x.size() ? header_.body_x[body] : 0.0);
   }
 
-  void car_body(std::size_t body, std::size_t wheel) {
+  void car_body(std::size_t body) {
     const std::string name = report::vehicle_of(header_.body_names[body]);
     WeightedSeries b(weighting_b, step_), d(weighting_d, step_), k_weighted(weighting_k, step_);
     WindowedRms rms_b(5.0, step_), rms_d(5.0, step_);
@@ -250,7 +248,7 @@ class RunJudge {
     for (std::size_t k = 0; k < records_; ++k) {
       const double z = at(k).bodies[body].acceleration[vertical], y = at(k).bodies[body].acceleration[lateral];
       const double weighted_b = b.add(z), weighted_d = d.add(y), weighted_k = k_weighted.add(z);
-      if (!header_.wheel_x.empty() && wheel_position(wheel, k) < window_.begin) continue;
+      if (body_position(body, k) < window_.begin) continue;
       end = at(k).time;
       raise("car_body_vertical", z, end, name);
       raise("car_body_lateral", y, end, name);

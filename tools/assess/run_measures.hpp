@@ -10,7 +10,7 @@ namespace railtab::assess {
 
 /// What of a run is judged, and how its series are filtered.
 struct RunWindow {
-  /// Where wheels begin to be judged, and car bodies with the first wheelset of their vehicle [m].
+  /// Where wheels and car bodies begin to be judged [m].
   double begin = 0.0;
   double deck_cut_off = 30.0;   ///< [Hz]
   double wheel_cut_off = 20.0;  ///< [Hz]

@@ -143,6 +143,9 @@ ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
       fmt::format("Wheels and car bodies are judged from x = {:g} m on; largest values, no "
                   "percentiles, since the section is short.",
                   plan.window.begin));
+  if (!made.contact.friction_file.empty()) {
+    plan.notes.emplace_back("Nadal's limit takes contact.friction, not the coefficients of contact.friction_file.");
+  }
   plan.notes.push_back(fmt::format("Deck acceleration is that of the recorded nodes ({}), low-passed at {:.1f} Hz.",
                                    made.structure.files.nodes.empty() ? "midspan" : "structure.report",
                                    plan.window.deck_cut_off));

@@ -117,11 +117,16 @@ void check_decks(const SceneParameters& scene, Assessment& assessment) {
 
 AxleTrain axle_train_of(const SceneParameters& scene) {
   const ResultHeader header = model_header(build_model(scene));
+  std::vector<std::pair<double, double>> axles;  // behind, load
+  for (std::size_t w = 0; w + 1 < header.wheel_x.size(); w += 2) {
+    axles.emplace_back(-header.wheel_x[w], header.static_wheel_load[w] + header.static_wheel_load[w + 1]);
+  }
+  std::sort(axles.begin(), axles.end());
   AxleTrain train;
   train.name = "the scene's train";
-  for (std::size_t w = 0; w + 1 < header.wheel_x.size(); w += 2) {
-    train.behind.push_back(-header.wheel_x[w]);
-    train.load.push_back(header.static_wheel_load[w] + header.static_wheel_load[w + 1]);
+  for (const auto& [behind, load] : axles) {
+    train.behind.push_back(behind);
+    train.load.push_back(load);
   }
   return train;
 }

@@ -16,8 +16,8 @@ void check_decks(const SceneParameters& scene, assess::Assessment& assessment);
 /// @throws InputError as build_model()
 [[nodiscard]] AxleTrain axle_train_of(const SceneParameters& scene);
 
-/// HSLM-A and `own` on every deck from 40 m/s (or half the highest speed, if that is below 50 m/s) to 1.2 times the line speed:
-/// even steps for the curves, and the critical speeds. @param progress share done; may be empty
+/// HSLM-A and `own` on every deck from 40 m/s (or half the highest speed, if that is below 50 m/s) to 1.2 times the
+/// line speed: even steps for the curves, and the critical speeds. @param progress share done; may be empty
 /// @pre check_decks()
 void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const std::function<void(double)>& progress,
                       assess::Assessment& assessment);
