@@ -17,16 +17,22 @@ struct Failure {
   /// What was to be written since, oldest first: HDF5 reads it again until it has closed the file.
   std::vector<std::pair<haddr_t, std::vector<char>>> kept;
 };
-std::map<const H5FD_t*, Failure> failures;  // of the open files; a Section guards it
+std::map<const void*, Failure> failures;  // by the handle of the open file; a Section guards it
 
-herr_t stop(const H5FD_t* file) {
-  failures[file].reason = last_error();
+/// What H5Fget_vfd_handle() gives: HDF5 reads the descriptor from it where the name of a file is a symbolic link.
+const void* handle_of(H5FD_t* file) {
+  void* handle = nullptr;
+  return posix.get_handle(file, H5P_DEFAULT, &handle) < 0 ? nullptr : handle;
+}
+
+herr_t stop(H5FD_t* file) {
+  failures[handle_of(file)].reason = last_error();
   return -1;
 }
 
 herr_t read(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t address, std::size_t size, void* bytes) {
   if (posix.read(file, kind, transfer, address, size, bytes) < 0) return -1;
-  const auto failure = failures.find(file);
+  const auto failure = failures.find(handle_of(file));
   if (failure == failures.end()) return 0;
   for (const auto& [begin, values] : failure->second.kept) {
     const haddr_t first = std::max(begin, address), end = std::min(begin + values.size(), address + size);
@@ -36,7 +42,7 @@ herr_t read(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t address, std:
 }
 
 herr_t write(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t address, std::size_t size, const void* bytes) {
-  if (const auto failure = failures.find(file); failure != failures.end()) {
+  if (const auto failure = failures.find(handle_of(file)); failure != failures.end()) {
     const char* const begin = static_cast<const char*>(bytes);
     failure->second.kept.emplace_back(address, std::vector<char>(begin, begin + size));
     return 0;
@@ -45,18 +51,13 @@ herr_t write(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t address, std
 }
 
 herr_t truncate(H5FD_t* file, hid_t transfer, hbool_t closing) {
-  if (failures.contains(file)) return 0;
+  if (failures.contains(handle_of(file))) return 0;
   return posix.truncate(file, transfer, closing) >= 0 ? 0 : stop(file);
 }
 
 herr_t close(H5FD_t* file) {
-  failures.erase(file);
+  failures.erase(handle_of(file));
   return posix.close(file);
-}
-
-herr_t get_handle(H5FD_t* file, hid_t, void** handle) {
-  *handle = file;
-  return 0;
 }
 
 hid_t register_driver() {
@@ -76,7 +77,6 @@ hid_t register_driver() {
   rules.write = write;
   rules.truncate = truncate;
   rules.close = close;
-  rules.get_handle = get_handle;
   return H5FDregister(&rules);
 }
 
@@ -90,7 +90,7 @@ hid_t file_driver() {
 std::string write_failure(hid_t file) {
   void* handle = nullptr;
   if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) return {};
-  const auto failure = failures.find(static_cast<const H5FD_t*>(handle));
+  const auto failure = failures.find(handle);
   return failure == failures.end() ? std::string() : failure->second.reason;
 }
 
