@@ -95,7 +95,7 @@ VehicleModel frame(const Vector3d& frame_position, const std::vector<DofIndices>
       suspension.push_back({wheelset, 2, {wheelset == 0 ? 1.0 : -1.0, y, -0.5}, {2e7, 5e6, 1e6}, {1e3, 2e3, 3e3}});
     }
   }
-  return assemble_vehicle({"frame", bodies, suspension, {0, 1}, held_dofs, 0.5, 10.0, {10.0, geometric}});
+  return assemble_vehicle({"frame", bodies, suspension, {0, 1}, held_dofs, 0.5, 10.0, 1, {10.0, geometric}});
 }
 
 // Wheelsets stand still, a force pushes the frame aside: the moment about the rails is that of the force at its height
