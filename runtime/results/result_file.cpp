@@ -75,10 +75,13 @@ ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
   }
   header.speed = fields.numbers(speed_field).front();
   for (const columns::HeaderColumn& column : columns::header) {
-    if (column.in_all_files || in.contains(column.path)) header.*column.values = fields.numbers(field_of(column));
+    if (column.in_all_files) header.*column.values = fields.numbers(field_of(column));
   }
   for (const columns::MotionGroup& group : columns::motion_groups) {
     header.*group.names = fields.texts(field_of(group));
+  }
+  for (const columns::HeaderColumn& column : columns::header) {  // which agree with the names in number
+    if (!column.in_all_files && in.contains(column.path)) header.*column.values = fields.numbers(field_of(column));
   }
   if (header.wheel_x.size() % 2 != 0) {
     throw input_error(fmt::format("{}: header/wheel_x", in.file().string()),
