@@ -20,6 +20,7 @@
 namespace railtab {
 namespace {
 
+using testing::BodyRow;
 using testing::free_coach;
 using testing::FreeCoach;
 using testing::Written;

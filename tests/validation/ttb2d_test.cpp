@@ -119,6 +119,7 @@ VehicleModel planar_car(const ptree& car, const std::vector<double>& axles) {
                            {z_and_pitch, z_and_pitch, z_and_pitch, z_only, z_only, z_only, z_only},
                            R0,
                            25.0,
+                           1,
                            {standard_gravity, GeometricStiffness::omitted}});  // as TTB-2D
 }
 
