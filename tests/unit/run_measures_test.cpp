@@ -164,7 +164,7 @@ TEST(Assessment, TextPageAndJsonSayWhatFailsAndWhere) {
       << text;
   const std::string page = assessment_page(a);
   EXPECT_NE(page.find("a &lt;bridge&gt;"), std::string::npos);
-  EXPECT_EQ(page.find("http"), std::string::npos) << "it loads nothing";
+  EXPECT_EQ(page.find("://"), std::string::npos) << "it loads nothing";
   EXPECT_NE(page.find("<span class=\"mark fail\">FAIL</span>"), std::string::npos);
   const auto json = assessment_json(a);
   EXPECT_EQ(json["summary"]["fail"], 1);

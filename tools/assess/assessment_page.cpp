@@ -17,15 +17,15 @@ using report::escaped;
 
 constexpr const char* style = R"(<style>
 .verdict{border-left:6px solid;padding:12px 16px;margin:14px 0 18px;font-size:18px;font-weight:600}
-.verdict.bad{border-color:#c8442f;background:#fdf3f1}.verdict.good{border-color:#2e7d52;background:#f1f8f3}
+.verdict{background:#8795a61f}.verdict.bad{border-color:#c8442f;background:#c8442f1a}.verdict.good{border-color:#2e7d52;background:#2e7d521f}
 .verdict p{margin:4px 0 0;font-size:14px;font-weight:400}
 .limits{width:100%}.limits td,.limits th{padding:6px 12px 6px 0;border-bottom:1px solid var(--line);font-size:13px}
 .limits th{color:var(--soft)}.limits th.n{text-align:right}.limits td.n{white-space:nowrap}.limits small{color:var(--soft)}
 .mark{display:inline-block;min-width:76px;border-radius:4px;padding:1px 8px;text-align:center;color:#fff;background:#8795a6}
 .mark.fail{background:#c8442f}.mark.pass{background:#2e7d52}.mark.note{background:#b57a00}
-.bar{display:inline-block;width:64px;height:8px;background:#e9edf1;border-radius:2px;overflow:hidden;margin-left:6px}
+.bar{display:inline-block;width:64px;height:8px;background:var(--line);border-radius:2px;overflow:hidden;margin-left:6px}
 .bar i{display:block;height:8px;background:#2e7d52}.bar.fail i{background:#c8442f}.bar.note i{background:#b57a00}
-.standing{border:1px solid #b57a00;color:#7d5500;border-radius:3px;padding:0 4px;font-size:11px;white-space:nowrap}
+.standing{border:1px solid #b57a00;border-radius:3px;padding:0 4px;font-size:11px;white-space:nowrap}
 .scroll{overflow-x:auto}
 </style>)";
 
