@@ -17,6 +17,8 @@ namespace railtab::vsi {
 namespace po = boost::program_options;
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr double to_kmh = 3.6;
 
 struct Stability {
