@@ -163,7 +163,7 @@ FreeCoach two_coaches(double kx) {
     (two.*member).topLeftCorner(n, n) = (two.*member).bottomRightCorner(n, n) = one.*member;
   }
   two.rows = one.rows;
-  for (BodyRow row : one.rows) {
+  for (testing::BodyRow row : one.rows) {
     row.body += "-b";
     row.position.x() -= length;
     two.rows.push_back(row);
