@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <string_view>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -81,7 +83,7 @@ void read_speed_file(const Path& file) {
   const SpeedProfile profile = read_speed_profile(file);
   for (const double time : {-1.0, 0.0, 0.3, 1.0, 7.5, 1e4}) {
     require_finite({profile.speed(time), profile.acceleration(time), profile.distance(time)}, "a speed");
-    require_finite({profile.time_at(time)}, "the time of a place");
+    if (std::isnan(profile.time_at(time))) throw std::runtime_error("the time of a place is not a number");
   }
 }
 

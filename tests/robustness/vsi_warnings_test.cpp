@@ -129,8 +129,9 @@ TEST_F(SceneWarnings, OfIrregularitiesThatEndInAStep) {
   expect(record("2,0.09,0,0,0.1\n6,0,0,-0.2,0\n"), "abrupt.csv ends at x = 6 m with y_right = -0.2 mm, not with zero");
   expect(record("2,0,-9,0,-10\n6,0,0,0,0\n", "normal = \"rigid\""),
          "with z_right = -10 mm, not with zero: wheels that follow the rails jump there, without the force");
-  EXPECT_EQ(record("2,0.09,0,0,-0.1\n6,0,0,0,0\n").find("warning"), std::string::npos);
-  EXPECT_EQ(record("-90,0,-9,0,-10\n90,0,-9,0,-10\n").find("warning"), std::string::npos);  // reaches beyond the run
+  const std::string step = "warning: irregularity.file";
+  EXPECT_EQ(record("2,0.09,0,0,-0.1\n6,0,0,0,0\n").find(step), std::string::npos);
+  EXPECT_EQ(record("-90,0,-9,0,-10\n90,0,-9,0,-10\n").find(step), std::string::npos);  // reaches beyond the run
 }
 
 // Wheelset 1 is lifted for some milliseconds: a wheel that follows its rail is held down.

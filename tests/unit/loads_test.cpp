@@ -91,7 +91,7 @@ TEST(SpeedProfile, DistanceIsTheIntegralOfTheSpeed) {
 TEST_F(HistoryFile, SpeedIsReadInItsUnit) {
   EXPECT_DOUBLE_EQ(read_speed_profile(file("# braking\nt[s],V[km/h]\n0,180\n10,90\n")).speed(5.0), 37.5);
   const auto read = [](const auto& f) { return read_speed_profile(f); };
-  EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1,0\n", read), "h.csv:3: column V: found 0 m/s, expected 0.1 to 200 m/s");
+  EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1,-1\n", read), "h.csv:3: column V: found -1 m/s, expected 0 to 200 m/s");
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n0,20\n", read),
             "h.csv:3: column t: found 0, expected more than 0 of the row before");
   EXPECT_EQ(message("t[s],V[m/s]\n0,10\n1e-300,20\n", read),

@@ -93,8 +93,8 @@ TEST_F(Scene, UnknownKeyNamesItsLineAndTheNearestKey) {
             "scene.toml:2: unknown key 'track.pad.stiffness_in_the_vertical_directi");
   EXPECT_EQ(message("[weather]\n"),
             "scene.toml:1: unknown key 'weather'; the sections are train, vehicle, contact, track, "
-            "bridge, structure, support, irregularity, span_deviation, load, ground_motion, integration, output and "
-            "assessment");
+            "bridge, structure, support, irregularity, span_deviation, wheel, load, ground_motion, integration, output "
+            "and assessment");
 }
 
 TEST_F(Scene, RigidWheelsNeedNoTableAndAnImportedStructureAllItsFiles) {

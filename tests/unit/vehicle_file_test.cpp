@@ -308,7 +308,7 @@ class VehicleInScene : public testing::InFolder {
 
 TEST_F(VehicleInScene, IsAFileBesideIt) {
   write("wagon.toml", wagon);
-  const SceneParameters parameters = scene("vehicle = \"wagon.toml\"", online);
+  const SceneParameters parameters = scene("vehicle = \"wagon.toml\"\nspeed_kmh = 20", online);
   ASSERT_EQ(parameters.files.size(), 1U);  // whose checksum the results keep
   const VsiModel model = build_model(parameters);
   EXPECT_EQ(model.vehicle.name, "wagon");
@@ -370,9 +370,12 @@ TEST_P(VehicleRun, CrossesTheDemoBridge) {
                           "damping_ratio = 0.01\n[integration]\ntime_step = 2e-3\nduration = 1.0\n");
   const SceneParameters scene = read_scene(folder_ / "scene.toml");
   const RunPlan plan = plan_run(scene);
-  EXPECT_EQ(plan.warnings.size(), data.stand_ins.empty() ? 0U : 1U);
+  // Of wagons on dry friction, too: by linear stand-ins of it they hunt at that speed.
+  const bool freight = GetParam().starts_with("freight");
+  EXPECT_EQ(plan.warnings.size(), (data.stand_ins.empty() ? 0U : 1U) + (freight ? 1U : 0U));
   for (const std::string& warning : plan.warnings) {
-    EXPECT_TRUE(warning.starts_with(GetParam() + " has force elements that are not linear: ")) << warning;
+    const bool hunts = freight && warning.find("above a linear critical speed of " + GetParam()) != std::string::npos;
+    EXPECT_TRUE(hunts || warning.starts_with(GetParam() + " has force elements that are not linear: ")) << warning;
   }
   const double static_load = summarise(build_vehicle(data, data.motion), 0).wheel_load.front();
   double highest = 0.0;
