@@ -99,9 +99,19 @@ TEST(StandingTrain, ACoachStartsWithoutShock) {
     EXPECT_NEAR(Q[i] / Q[0], 1.0, 0.1) << t[i];
   }
   EXPECT_NEAR(model.distance(2.4), 0.5 * 1.9 * 1.9, 1e-12);
-  // wheelsets that roll faster and faster: their rails push them by J_y a/R0² each
+  // Wheelsets that roll faster and faster: their rails push them by J_y a/R0² each, in the mean of two periods in which
+  // bogies sway along the track on their springs.
   const double Jy = 112.0, a = 1.0;
-  EXPECT_NEAR(std::abs(X.back()) / (4.0 * Jy * a / (0.46 * 0.46)), 1.0, 0.05);
+  double mean = 0.0;
+  long samples = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (t[i] <= 0.5) continue;
+    mean += std::abs(X[i]);
+    ++samples;
+  }
+  mean /= static_cast<double>(samples);
+  std::printf("rails push by %.0f N, closed form %.0f N\n", mean, 4.0 * Jy * a / (0.46 * 0.46));
+  EXPECT_NEAR(mean / (4.0 * Jy * a / (0.46 * 0.46)), 1.0, 0.05);
 }
 
 TEST(RailFriction, IsEachRailsAndChangesAlongTheTrack) {
