@@ -8,6 +8,7 @@
 #include "railtab/runtime/base/dual.hpp"
 #include "railtab/runtime/contact/contact_pair.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
+#include "railtab/runtime/contact/reflection.hpp"
 #include "railtab/runtime/contact/wheel_kinematics.hpp"
 
 namespace railtab {
@@ -391,17 +392,14 @@ class LoadedContactForce {
   int outside_ = 0;
 };
 
-WheelKinematics on_right(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                         const RailHeadMotion& rail) {
-  WheelMotions motions{wheelset, rail};
-  if (side == WheelSide::left) motions.reflect();
-  return {model.geometry->pair(), motions, model.speed};
+WheelKinematics right_wheel(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                            const RailHeadMotion& rail) {
+  return {model.geometry->pair(), on_right(side, wheelset), on_right(side, rail), model.speed};
 }
 
-Vector9 in_track(WheelSide side, const Generalised<double>& on_right) {
-  Vector9 force = Eigen::Map<const Vector9>(on_right.data());
-  if (side == WheelSide::left) reflect_force(force);
-  return force;
+Vector9 in_track(WheelSide side, const Generalised<double>& of_right) {
+  const Vector9 force = Eigen::Map<const Vector9>(of_right.data());
+  return side == WheelSide::left ? reflected(force) : force;
 }
 
 /// Mean force over a step, of the right wheel: what depends on the end of the step, and the share of the creep forces
@@ -533,7 +531,7 @@ Matrix9 tangent_on_right(const WheelContactModel& model, double friction, const 
 LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
   LoadedWheelForce result;
-  const WheelKinematics wheel = on_right(model, side, wheelset, rail);
+  const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
   const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
   const Vector9 total = in_track(side, force.generalised(force.total()));
   result.wheelset = total.head<6>();
@@ -573,7 +571,7 @@ ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pos
 Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                           const LoadedLookup& lookup) noexcept {
-  const WheelKinematics wheel = on_right(model, side, wheelset, rail);
+  const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
   const LoadedContactForce<double> end(model, rail.friction, wheel, lookup, nullptr);
   const MeanForce<double> mean = mean_over_step(model.geometry->pair(), start, end, lookup.table_share);
   Generalised<double> force = end.generalised(mean.end);
@@ -584,7 +582,7 @@ Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const 
 Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                              const RailHeadMotion& rail, const StepRates& rates, const LoadedMemory* start) noexcept {
   constexpr std::size_t normal_packs = (LoadedLookup::capacity + 3) / 4;
-  const WheelKinematics wheel = on_right(model, side, wheelset, rail);
+  const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
   LoadedSlopes slopes;
   const LoadedLookup lookup = model.geometry->loaded()->lookup(wheel.y, wheel.z, wheel.roll, wheel.yaw, slopes);
   if (!(lookup.energy > 0.0) && !start) return Matrix9::Zero();
@@ -593,12 +591,8 @@ Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, con
           ? tangent_on_right<Dual<1 + normal_packs>>(model, rail.friction, wheel, lookup, slopes, rates, start)
           : tangent_on_right<Dual<1>>(model, rail.friction, wheel, lookup, slopes, rates, start);
   if (side == WheelSide::left) {
-    for (Eigen::Index i = 0; i < 9; ++i) {
-      constexpr std::array<double, 9> reflected{1.0, -1.0, 1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0};
-      for (Eigen::Index j = 0; j < 9; ++j) {
-        tangent(i, j) *= reflected[static_cast<std::size_t>(i)] * reflected[static_cast<std::size_t>(j)];
-      }
-    }
+    const Vector9 sign = reflected(Vector9(Vector9::Ones()));
+    tangent = sign.asDiagonal() * tangent * sign.asDiagonal();
   }
   return tangent;
 }

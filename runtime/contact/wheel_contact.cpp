@@ -8,23 +8,11 @@
 
 #include "railtab/runtime/contact/creepage.hpp"
 #include "railtab/runtime/contact/mean_force.hpp"
+#include "railtab/runtime/contact/reflection.hpp"
 
 namespace railtab {
 
 namespace {
-
-// Reflection in the track's plane of symmetry: polar vectors lose the sign of y, axial ones of x and z. The left wheel
-// is computed as the right wheel of the reflected world.
-Vector6 reflected(const Vector6& v) { return {v[0], -v[1], v[2], -v[3], v[4], -v[5]}; }
-Vector3 reflected_rail(const Vector3& v) { return {-v[0], v[1], -v[2]}; }
-
-WheelsetMotion on_right(WheelSide side, const WheelsetMotion& m) {
-  return side == WheelSide::right ? m : WheelsetMotion{reflected(m.displacement), reflected(m.velocity)};
-}
-RailHeadMotion on_right(WheelSide side, const RailHeadMotion& m) {
-  if (side == WheelSide::right) return m;
-  return {reflected_rail(m.displacement), reflected_rail(m.velocity), -m.yaw, m.slope, m.friction};
-}
 
 // Rotation by the rail's roll: components along track axes -> along rail-head axes (y, z).
 struct RailAxes {
@@ -134,7 +122,7 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     const Vector3 moment = rail_axes.to_track(p.moment);
     Vector9& share = result.patch[i];
     share << force, moment[0], p.moment.dot(axle), moment[2], -force[1], -force[2], -rail_moment;
-    if (side == WheelSide::left) share << reflected(share.head<6>()), reflected_rail(share.tail<3>());
+    if (side == WheelSide::left) share = reflected(share);
     result.wheelset += share.head<6>();
     result.rail += share.tail<3>();
   }

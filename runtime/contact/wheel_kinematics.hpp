@@ -8,31 +8,6 @@
 
 namespace railtab {
 
-/// Motions of a wheelset and of the rail head under one wheel.
-struct WheelMotions {
-  WheelsetMotion wheelset;
-  RailHeadMotion rail;
-
-  /// Reflection in the track's plane of symmetry: polar vectors lose the sign of y, axial ones of x and z. The left
-  /// wheel is computed as the right wheel of the reflected world.
-  void reflect() {
-    for (const Eigen::Index i : {1, 3, 5}) {
-      wheelset.displacement[i] = -wheelset.displacement[i];
-      wheelset.velocity[i] = -wheelset.velocity[i];
-    }
-    for (const Eigen::Index i : {0, 2}) {
-      rail.displacement[i] = -rail.displacement[i];
-      rail.velocity[i] = -rail.velocity[i];
-    }
-    rail.yaw = -rail.yaw;
-  }
-};
-
-/// Back from the reflected world.
-inline void reflect_force(Vector9& force) {
-  for (const Eigen::Index i : {1, 3, 5, 6, 8}) force[i] = -force[i];
-}
-
 /// Where a right wheel is and how it moves against its rail, in rail-head axes.
 struct WheelKinematics {
   using Vector = std::array<double, 3>;
@@ -48,9 +23,9 @@ struct WheelKinematics {
   Vector axle;      ///< unit vector
   Vector rotation;  ///< of the wheelset against the rail, that about its axle included [rad/s]
 
-  WheelKinematics(const WheelRailPair& pair, const WheelMotions& m, double V) {
-    const Vector6 &q = m.wheelset.displacement, &v = m.wheelset.velocity;
-    const Vector3 &r = m.rail.displacement, &rv = m.rail.velocity;
+  WheelKinematics(const WheelRailPair& pair, const WheelsetMotion& wheelset, const RailHeadMotion& rail, double V) {
+    const Vector6 &q = wheelset.displacement, &v = wheelset.velocity;
+    const Vector3 &r = rail.displacement, &rv = rail.velocity;
     rail_cos = std::cos(r[2]);
     rail_sin = std::sin(r[2]);
     rail_rate = rv[2];
@@ -60,9 +35,9 @@ struct WheelKinematics {
     y = centre_y + pair.rail_offset();
     z = centre_z + pair.nominal_radius();
     roll = q[3] - r[2];
-    yaw = q[5] - m.rail.yaw;
+    yaw = q[5] - rail.yaw;
     // Velocity of the wheelset centre against the rail's material, along the rail's tangent (1, yaw, slope).
-    velocity = from_track(v[0] + V, v[1] - rv[0] - V * m.rail.yaw, v[2] - rv[1] - V * m.rail.slope);
+    velocity = from_track(v[0] + V, v[1] - rv[0] - V * rail.yaw, v[2] - rv[1] - V * rail.slope);
     cos_roll = std::cos(roll);
     sin_roll = std::sin(roll);
     cos_yaw = std::cos(yaw);

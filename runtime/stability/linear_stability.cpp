@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -24,8 +23,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr Eigen::Index y_dof = 1, pitch_dof = 4, yaw_dof = 5;
 
-// Steps well below penetration and creepage of sliding, well above the rounding of the contact search.
-constexpr std::array<double, 6> moves{1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6};  // m, rad
+// Well below penetration and creepage of sliding, well above the rounding of the contact search.
+constexpr double move = 1e-6;  // m, rad
 constexpr double creepage_step = 1e-6;
 
 // Forces of both wheels on a wheelset.
@@ -53,8 +52,7 @@ ForceSlopes force_slopes(const WheelContactModel& model, const WheelsetMotion& a
   };
   const double radius = model.geometry->pair().nominal_radius();
   for (Eigen::Index dof = 0; dof < 6; ++dof) {
-    slopes.by_displacement.col(dof) =
-        difference(&WheelsetMotion::displacement, dof, moves[index(static_cast<int>(dof))]);
+    slopes.by_displacement.col(dof) = difference(&WheelsetMotion::displacement, dof, move);
     const double arm = dof < 3 ? 1.0 : radius;
     slopes.by_velocity.col(dof) = difference(&WheelsetMotion::velocity, dof, creepage_step * model.speed / arm);
   }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "railtab/runtime/base/edit_distance.hpp"
+#include "railtab/runtime/base/toml_text.hpp"
 
 namespace railtab {
 
@@ -32,6 +33,15 @@ std::string nearest(std::string_view key, const std::vector<std::string>& known)
 }
 
 }  // namespace
+
+toml::table parse_toml(const std::string& text, const std::filesystem::path& place) {
+  check_toml_bounds(text, place);
+  try {
+    return toml::parse(text, place.string());
+  } catch (const toml::parse_error& wrong) {
+    throw InputError(fmt::format("{}:{}: {}", place.string(), wrong.source().begin.line, wrong.description()));
+  }
+}
 
 std::string found_text(const toml::node& node) {
   if (const toml::value<std::string>* text = node.as_string()) return fmt::format("the text \"{}\"", text->get());

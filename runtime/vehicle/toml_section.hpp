@@ -15,6 +15,9 @@
 
 namespace railtab {
 
+/// @throws InputError with the file and line of what is no TOML, or exceeds TomlBounds
+[[nodiscard]] toml::table parse_toml(const std::string& text, const std::filesystem::path& place);
+
 /// What a message shows of a value.
 [[nodiscard]] std::string found_text(const toml::node& node);
 

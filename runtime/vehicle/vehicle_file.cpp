@@ -105,17 +105,12 @@ VehicleData read_root(TomlSection& root, const std::string& text, const std::fil
 }  // namespace
 
 VehicleData parse_vehicle(const std::string& text, const std::filesystem::path& place) {
-  check_toml_bounds(text, place);
-  try {
-    const toml::table table = toml::parse(text, place.string());
-    SourcedValues sourced;
-    TomlSection root(place, "", table, {}, sourced);
-    VehicleData data = read_root(root, text, place);
-    data.sourced = std::move(sourced);
-    return data;
-  } catch (const toml::parse_error& wrong) {
-    throw InputError(fmt::format("{}:{}: {}", place.string(), wrong.source().begin.line, wrong.description()));
-  }
+  const toml::table table = parse_toml(text, place);
+  SourcedValues sourced;
+  TomlSection root(place, "", table, {}, sourced);
+  VehicleData data = read_root(root, text, place);
+  data.sourced = std::move(sourced);
+  return data;
 }
 
 VehicleData read_vehicle_file(const std::filesystem::path& file) {
