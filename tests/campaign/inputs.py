@@ -1,6 +1,7 @@
 """Part 1: mutated inputs over all readers, commands and keys of scenes, run and not only read."""
 
 import math
+import re
 import random as random_module
 import tomllib
 from pathlib import Path
@@ -21,6 +22,7 @@ class Base:
         self.folder, self.vsi, self.tablegen = folder, binaries / "vsi", binaries / "tablegen"
         self.bytes = {file.name: file.read_bytes() for file in folder.iterdir() if file.is_file()}
         self.keys = scenes.scene_keys()
+        self.listed = set(re.findall(r"### `\[\[(\w+)\]\]`", (scenes.root / "docs/guide/scene.md").read_text()))
         self.unsealed = {}
 
     def names(self):
@@ -69,33 +71,59 @@ def run_of(base, name, text, reader, what, files):
     return Case(reader, what, [base.vsi, "run", name, "--json", "-o", "out.h5"], files, ["out.h5"], [name, *files])
 
 
+def put(base, random, lines, key, value):
+    """Sets a key of a scene, in a section of that name, made where there is none."""
+    first, _, inner = key.partition(".")
+    if not inner:
+        lines.insert(0, f"{key} = {value}")
+        return
+    heads = [i for i, line in enumerate(lines) if line.startswith("[") and line.strip("[]") == first]
+    if not heads:
+        lines.append(f"[[{first}]]" if first in base.listed else f"[{first}]")
+        heads = [len(lines) - 1]
+    at = random.choice(heads)
+    end = next((i for i in range(at + 1, len(lines)) if lines[i].startswith("[")), len(lines))
+    lines[at + 1:end] = [line for line in lines[at + 1:end] if line.split(" = ")[0] != inner]
+    lines.insert(at + 1, f"{inner} = {value}")
+
+
+def home_of(random, key):
+    """A scene that has the key's section, where there is one."""
+    section = key.partition(".")[0]
+    homes = [name for name, text in scenes.scenes.items() if f"[{section}]" in text]
+    return random.choice(homes if homes and random.random() < 0.9 else list(scenes.scenes))
+
+
 def scene_key(base, random, count):
-    """Every key of scenes in turn, with every extreme or permitted value, in a scene that has its section."""
+    """Every key of scenes in turn, with every extreme or permitted value."""
     key, values = base.keys[count % len(base.keys)]
-    section, _, short = key.rpartition(".")
-    first = section.split(".")[0]
-    homes = [name for name in scenes.scenes if f"[{first}]" in scenes.scenes[name]] if section else []
-    home = random.choice(homes or list(scenes.scenes))
     value = scenes.permitted(random, values) if random.random() < 0.75 else None
     if value is None:
-        value = toml_values[count // len(base.keys) % len(toml_values)] if random.random() < 0.7 else \
-            random.choice(toml_values)
+        value = random.choice(toml_values)
+    home = home_of(random, key)
     lines = scenes.tiny(home, "p.prw", "p.prr").splitlines()
-    heads = [i for i, line in enumerate(lines) if line.strip("[]") == first and line.startswith("[")]
-    if not section:
-        lines.insert(0, f"{key} = {value}")
-    else:
-        if not heads:
-            listed = f"[[{first}]]" in (scenes.root / "docs/guide/scene.md").read_text()
-            lines.append(f"[[{first}]]" if listed else f"[{first}]")
-            heads = [len(lines) - 1]
-        at = random.choice(heads)
-        inner = key[len(first) + 1:]
-        end = next((i for i in range(at + 1, len(lines)) if lines[i].startswith("[")), len(lines))
-        lines[at + 1:end] = [line for line in lines[at + 1:end] if line.split(" = ")[0] != inner]
-        lines.insert(at + 1, f"{inner} = {value}")
+    put(base, random, lines, key, value)
     text = ("\n".join(lines) + "\n").encode("utf-8", "surrogatepass")
     return run_of(base, "scene.toml", text, "scene_key", f"{home}: {key} = {value[:60]}", {"scene.toml": text})
+
+
+def scene_mix(base, random, count):
+    """One to three numbers of a scene scaled, and a key or two added, all in their ranges or next to them."""
+    home = list(scenes.scenes)[count % len(scenes.scenes)]
+    lines = scenes.tiny(home, "p.prw", "p.prr").splitlines()
+    sections = {line.strip("[]") for line in lines if line.startswith("[")}
+    own = [(key, values) for key, values in base.keys if key.partition(".")[0] in sections and "…" in values]
+    present = [(key, values) for key, values in own
+               if any(line.startswith(key.partition(".")[2] + " = ") for line in lines)]
+    done = []
+    for _ in range(random.choice((1, 1, 2, 3))):
+        key, values = random.choice(present if present and random.random() < 0.6 else own or base.keys)
+        value = scenes.permitted(random, values, inside=True)
+        if value is not None and key not in ("integration.duration", "integration.time_step"):
+            put(base, random, lines, key, value)
+            done.append(f"{key} = {value}")
+    text = ("\n".join(lines) + "\n").encode()
+    return run_of(base, "scene.toml", text, "scene_mix", f"{home}: {', '.join(done)}", {"scene.toml": text})
 
 
 def scene_text(base, random, count):
@@ -250,7 +278,7 @@ def command_line(base, random, count):
 
 
 # Readers with their share of the inputs, in twentieths.
-readers = [(scene_key, 5), (scene_text, 4), (profile, 1), (file_of("structure", structure_choices), 2),
+readers = [(scene_key, 4), (scene_mix, 3), (scene_text, 2), (profile, 1), (file_of("structure", structure_choices), 2),
            (file_of("vehicle_matrices", vehicle_matrices), 1),
            (file_of("vehicle_file", vehicle_choices, lambda random, content: (
                mutate_toml if random.random() < 0.7 else mutate_text)(random, content)), 1),

@@ -155,7 +155,7 @@ scenes = {
     "table": wagon + '[contact]\nmode = "table"\ntable = "pair.h5"\ncreep_law = "table"\n' + rigid,
     "creep": wagon + '[contact]\nmode = "online"\ncreep_law = "table"\ncreep_table = "creep.h5"\n' + rigid,
     "bridge": wagon + vertical + flexible + span + '[[ground_motion]]\nfile = "ground.csv"\n[output]\nnodes = ["*"]\n',
-    "spans": wagon + online + flexible + span.replace("4.0", "4.0\ncount = 2\nmass = 9e3\nIy = 0.2\nIz = 0.9")
+    "spans": wagon + vertical + flexible + span.replace("4.0", "4.0\ncount = 2\nmass = 9e3\nIy = 0.2\nIz = 0.9")
              + '[span_deviation]\nshape = "bending"\nspan = 10\namplitude = 2e-3\n'
                '[irregularity]\nspectrum = "german-low"\nseed = 3\n',
     "window": wagon + vertical + flexible.replace("12.0", "24.0") + span
@@ -166,7 +166,7 @@ scenes = {
              '[[wheel]]\nflat_length = 0.03\npolygon_amplitude = 1e-5\nrun_out = 1e-4\n',
     "speed": '[train]\nvehicle = "stops.toml"\nspeed_file = "speed.csv"\nstart = 0.0\n'
              + online.replace("polach", "fastsim") + 'friction_file = "friction.csv"\n' + rigid,
-    "consist": '[train]\nconsist = ["wagon.toml", "-stops.toml*2"]\njoint = "coupler.toml"\nspeed = 20.0\n'
+    "consist": '[train]\nconsist = ["wagon.toml", "-stops.toml"]\njoint = "coupler.toml"\nspeed = 20.0\n'
                + online + rigid,
     "coaches": '[train]\nvehicle = "coach.toml"\ncount = 2\nspeed_kmh = 200\n' + vertical + rigid,
     "imported_vehicle": '[vehicle]\nmass = "vehicle_mass.mtx"\ndamping = "vehicle_damping.mtx"\n'
@@ -180,8 +180,6 @@ scenes = {
     "imported_rails": '[train]\nvehicle = "wagon.toml"\nspeed = 5.0\n[contact]\nnormal = "rigid"\n[track]\n'
                       'kind = "imported"\n[structure]\nmass = "rails_mass.mtx"\ndamping = "rails_damping.mtx"\n'
                       'stiffness = "rails_stiffness.mtx"\ndofs = "rails_dofs.csv"\n',
-    "defaults": "[contact]\nmode = \"online\"\n[train]\nstart = -8.0\n[track]\nlength_before = 40.0\nlength_after = 10.0\n"
-                "[[bridge]]\nlength = 6.0\n",
 }
 
 texts = {
@@ -313,7 +311,7 @@ def scene_keys():
     return keys
 
 
-def permitted(random, values):
+def permitted(random, values, inside=False):
     """A value of this key, at or near the ends of its range, or within; None where the guide names no range."""
     number = r"[-\d.e+]+"
     found = re.search(rf"({number})…({number})", values)
@@ -323,12 +321,13 @@ def permitted(random, values):
                                                                                   float(span.group(1)))
         if values.startswith("integer"):
             low, high = int(low), int(high)
-            return str(random.choice((low, high, low - 1, high + 1, min(high, low + 1),
-                                      random.randint(low, min(high, low + 40)))))
-        inside = low + (high - low) * random.random() ** random.choice((1, 3, 9))
+            near = [low, high, min(high, low + 1), random.randint(low, min(high, low + 10))]
+            return str(random.choice(near if inside else [*near, low - 1, high + 1]))
+        within = low + (high - low) * random.random() ** random.choice((1, 3, 9))
         if low > 0 or (low == 0 and random.random() < 0.5):
-            inside = max(low, 1e-12) * (high / max(low, 1e-12)) ** random.random()
-        new = random.choice((low, high, low - 1e-9 * abs(low), 1.000001 * high, inside, inside, inside, -inside))
+            within = max(low, 1e-12) * (high / max(low, 1e-12)) ** random.random()
+        near = [low, high, within, within, within, within]
+        new = random.choice(near if inside else [*near, low - 1e-9 * abs(low), 1.000001 * high, -within])
         return f"[{new!r}, {new!r}, 0.5]" if values.startswith("point") else repr(new)
     names = [word for word in re.split(r"[, ]+", values) if re.fullmatch(r"[a-zA-Z][\w-]*", word)]
     if values in ("file", "text", "list of texts") or not names:

@@ -10,7 +10,7 @@ toml_values = [*numbers[:19], '""', '"x"', "[]", "{}", "[1, 2, 3]", "[[1]]", "tr
                '"' + "a" * 3000 + '"', "[" + "0, " * 1000 + "0]", '[' + '"x", ' * 1000 + '"x"]', "[nan]",
                '"/dev/null"', '"/dev/zero"', '"fifo"', '"."', '"scene.toml"', '"\\u0000"', '"\\u001b[31m"', "'''",
                "{ value = 1 }", '"1:40"', '"1:0"', "[" * 60 + "]" * 60, "{ a = 1, a = 2 }", "'*'"]
-scales = [-1.0, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 0.9, 1.001, 1.1, 2.0, 10.0, 1e3, 1e6, 1e12]
+scales = [-1.0, 1e-12, 1e-6, 1e-3, 0.1, 10.0, 1e3, 1e6, 1e12, *[0.3, 0.5, 0.7, 0.9, 1.001, 1.1, 1.4, 2.0, 3.0] * 2]
 number_pattern = re.compile(rb"(?<![\w.])[-+]?\d[\d_]*\.?\d*(?:[eE][-+]?\d+)?")
 
 
@@ -87,13 +87,32 @@ def change_cell(random, content):
     return content[:cell.start()] + new + content[cell.end():]
 
 
+entry = re.compile(rb"^(\s*(\d+)\s+\2\s+)(\S+)$", re.M)
+
+
+def change_diagonal(random, content):
+    """One to three entries on the diagonal of a matrix scaled: it stays symmetric."""
+    for _ in range(random.choice((1, 1, 2, 3))):
+        entries = list(entry.finditer(content))
+        if not entries:
+            return change_number(random, content)
+        place = random.choice(entries)
+        try:
+            new = repr(float(place.group(3)) * random.choice(scales))
+        except ValueError:
+            new = "0"
+        content = content[:place.start(3)] + new.encode() + content[place.end(3):]
+    return content
+
+
 plain = [flip_bytes, random_bytes, truncate, insert_word, change_number, change_number, change_number, change_lines,
          change_lines, change_cell, change_cell]
 
 
 def mutate_text(random, content):
     """Content with one or two changes, and their names."""
-    acts = [random.choice(plain) for _ in range(random.choice((1, 1, 1, 2)))]
+    matrix = content.startswith(b"%%MatrixMarket") or content.startswith(b"1 1 ")
+    acts = [change_diagonal if matrix and random.random() < 0.4 else random.choice(plain) for _ in range(random.choice((1, 1, 1, 2)))]
     for act in acts:
         content = act(random, content)
     return content, "+".join(act.__name__ for act in acts)
@@ -108,7 +127,7 @@ def change_value(random, lines, at):
     new = random.choice(toml_values)
     found = number_pattern.search(old.encode())
     if found and random.random() < 0.7:
-        if random.random() < 0.3:
+        if random.random() < 0.2:
             scaled = random.choice(numbers[:16])
         else:
             scaled = repr(float(found.group()) * random.choice(scales))
@@ -126,7 +145,7 @@ def mutate_toml(random, content):
         keys = [i for i, line in enumerate(lines) if assignment.match(line)]
         if not keys:
             break
-        at, act = random.choice(keys), random.choice(("value",) * 6 + ("delete", "repeat", "unknown", "move", "section"))
+        at, act = random.choice(keys), random.choice(("value",) * 12 + ("delete", "repeat", "unknown", "move", "section"))
         if act == "value":
             change_value(random, lines, at)
         elif act == "delete":
