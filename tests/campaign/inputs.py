@@ -12,7 +12,7 @@ from text_mutation import mutate_text, mutate_toml, numbers, random_bytes, toml_
 
 # Work of an accepted scene: its steps times its elements and coaches. What is above the first is planned, not run;
 # what is above the second would be long even to plan, and is not made.
-most_run, most_planned = 3000.0, 3e5
+most_run, most_planned = 600.0, 3000.0
 
 
 class Base:
