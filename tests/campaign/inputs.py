@@ -51,13 +51,13 @@ def work_of(text):
         elements = 10.0
     coaches = number(train, "count", 1)
     if isinstance(train, dict) and isinstance(train.get("consist"), list):
-        coaches = sum(int(str(name).rpartition("*")[2]) if str(name).rpartition("*")[2].isdigit() else 1
-                      for name in train["consist"])
+        repeats = [str(name).rpartition("*")[2] for name in train["consist"]]
+        coaches = sum(min(1e6, float(times)) if times.isdecimal() else 1.0 for times in repeats)
     duration = number(run, "duration", 0.0)
     if duration <= 0.0:
         duration = length / max(1e-3, number(train, "speed", 30.0))
     steps = duration / max(1e-12, number(run, "time_step", 5e-4))
-    halved = 2.0 ** max(0.0, number(run, "max_halvings", 6) - 6)
+    halved = 2.0 ** min(20.0, max(0.0, number(run, "max_halvings", 6) - 6))
     return max(1.0, steps / 20.0) * (0.2 * elements + 10.0 * coaches) * min(halved, 1e3)
 
 

@@ -178,6 +178,8 @@ def campaign(base, launcher, options, findings):
     names = list(commands)
     shares = [options.kills // len(names) + (i < options.kills % len(names)) for i in range(len(names))]
     for name, share in zip(names, shares):
+        if share == 0:
+            continue
         killed = Killed(base, launcher, name, before)
         counts = Counter(tried=0)
         for _ in range(4 * share):
