@@ -30,9 +30,10 @@ WheelRailPair scene_pair(const ContactParameters& contact) {
     return in_file(contact.table.string(),
                    [&] { return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair(); });
   }
-  return WheelRailPair(ProfileCurve(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination)),
-                       ProfileCurve(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination)),
-                       contact.dimensions);
+  ProfileCurve wheel(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination));
+  ProfileCurve rail(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination));
+  return in_file("scene: contact",
+                 [&] { return WheelRailPair(std::move(wheel), std::move(rail), contact.dimensions); });
 }
 
 /// The loaded contact of a table, where the scene's forces are to come from it; it leaves the table.

@@ -41,7 +41,8 @@ void conicity_command(const std::vector<std::string>& arguments) {
   const WheelsetRoll roll = roll_option(line);
   const double difference = line.number("diameter-difference");
   const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(read_geometry_table(file))); });
-  const std::optional<WheelsetFunctions> found = wheelset_functions(table, roll, difference);
+  const std::optional<WheelsetFunctions> found =
+      in_file(file, [&] { return wheelset_functions(table, roll, difference); });
   if (!found) throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");
   const WheelsetFunctions& functions = *found;
   const EquivalentConicity wave = conicity_of_wave(functions.radius_difference, amplitude);

@@ -163,7 +163,8 @@ void geometry_info(const TableCommandLine& line, const std::string& file) {
     return line.json() ? print_json(description) : print_text(text);
   }
   const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(data)); });
-  const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
+  const std::optional<WheelsetFunctions> functions =
+      in_file(file, [&] { return wheelset_functions(table, WheelsetRoll::off, 0.0); });
   if (line.given("html")) {
     if (!functions)
       throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");

@@ -49,6 +49,8 @@ def work_of(text):
     elements += sum(abs(number(span, "count", 1) * number(span, "elements", 32)) for span in spans)
     if isinstance(track, dict) and track.get("kind") in ("rigid", "imported"):
         elements = 10.0
+    if isinstance(scene.get("structure"), dict) and "stiffness" in scene["structure"]:
+        elements *= 60.0  # a bridge of another program is coupled widely
     coaches = number(train, "count", 1)
     if isinstance(train, dict) and isinstance(train.get("consist"), list):
         repeats = [str(name).rpartition("*")[2] for name in train["consist"]]

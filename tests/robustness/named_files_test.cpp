@@ -50,5 +50,12 @@ TEST_F(VsiCommand, AVehicleThatCannotStandIsNamedWithItsFile) {
   expect_refused("vehicle falling.toml", "falling.toml: wagon: found a vehicle that falls over under its weight");
 }
 
+TEST_F(VsiCommand, AGaugeHeightThatTheRailDoesNotReachNamesTheScene) {
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\ndimensions.gauge_height = 0.05\n[track]\nkind = \"rigid\"\n"
+        "[integration]\nduration = 0.1\n");
+  expect_refused("run scene.toml -o out", "scene.toml");
+}
+
 }  // namespace
 }  // namespace railtab
