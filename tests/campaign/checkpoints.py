@@ -16,10 +16,12 @@ scene = (wagon + vertical + rigid + '[irregularity]\nfile = "rough.csv"\n[integr
 classes = ("same_bits", "rejected", "other_bits", "crash", "hang", "other_code", "silent", "file_not_named")
 
 
-def histories(file):
-    """What results hold, but for the run times and the parts that a resumed run lays out otherwise."""
+def histories(file, live=False):
+    """What results hold, but for the run times and the parts that a resumed run lays out otherwise. Those of a killed
+    run are open for HDF5 (`live`), which waits without end for damaged ones.
+    """
     held = {}
-    with h5py.File(file, libver="latest", swmr=True) as results:
+    with h5py.File(file, **({"libver": "latest", "swmr": True} if live else {})) as results:
         records = int(results["records"][0])
 
         def visit(name, item):
@@ -69,7 +71,8 @@ def one(base, launcher, order, file, damaged, whole):
     if outcome.code == 0:
         try:
             return ("same_bits" if histories(file) == whole else "other_bits"), outcome
-        except (OSError, KeyError, ValueError):
+        except (OSError, KeyError, ValueError, RuntimeError) as error:
+            outcome.out += f"\nh5py: {error}"
             return "other_bits", outcome
     if outcome.code not in (1, 2):
         return "other_code", outcome
