@@ -24,12 +24,16 @@ def histories(file, live=False):
     with h5py.File(file, **({"libver": "latest", "swmr": True} if live else {})) as results:
         records = int(results["records"][0])
 
-        def visit(name, item):
-            if isinstance(item, h5py.Dataset) and name != "block_checksums" and not name.startswith("checkpoint"):
-                values = item[()]
-                held[name] = (values[:records] if "rows" in item.attrs else values).tobytes()
+        def take(group, place):  # by path, as readers do; h5py's visititems also asks for indices that none needs
+            for name in group:
+                item = group[name]
+                if isinstance(item, h5py.Group):
+                    take(item, f"{place}{name}/")
+                elif name != "block_checksums" and place != "checkpoint/":
+                    values = item[()]
+                    held[place + name] = (values[:records] if "rows" in item.attrs else values).tobytes()
 
-        results.visititems(visit)
+        take(results, "")
         held["complete"] = int(results["summary"].attrs["complete"])
     return held
 
