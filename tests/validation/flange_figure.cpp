@@ -129,18 +129,27 @@ void write_profiles(const std::string& folder, const FlangeRun& realistic) {
 
 void write_starts(const std::string& folder) {
   std::string csv =
-      "# Model C at 250 km/h: first flange contact by the yaw of the start, and how far the wheelset swings at first;\n"
-      "# made by tests/validation/flange_figure\n"
-      "start_yaw_mrad,first_swing_mm,first_touch_s,first_touch_simplified_s\n";
+      "# Model C at 250 km/h by the yaw of the start: how far the wheelset swings at first; first flange contact, the\n"
+      "# lateral shift then and the largest lateral force of that impact, of the realistic and the simplified wheel; "
+      "made\n"
+      "# by tests/validation/flange_figure\n"
+      "start_yaw_mrad,first_swing_mm,touch_s,touch_simplified_s,shift_mm,shift_simplified_mm,Y_kN,Y_simplified_kN\n";
   for (const double yaw : {0.2e-3, 0.4e-3, 0.6e-3, 0.8e-3, 1.0e-3, 1.2e-3}) {
-    constexpr double first_swing = 0.25, longest = 12.0;  // s
-    const FlangeRun runs[] = {
-        run_flanged(flanged_wheelset(FlangeRoot::realistic), ContactForceRule::energy, time_step, yaw, longest),
-        run_flanged(flanged_wheelset(FlangeRoot::simplified), ContactForceRule::energy, time_step, yaw, longest)};
+    constexpr double first_swing = 0.25, longest = 9.0;  // s
+    const auto run = [&](FlangeRoot wheel) {
+      return run_flanged(flanged_wheelset(wheel), ContactForceRule::energy, time_step, yaw, longest);
+    };
+    const FlangeRun runs[] = {run(FlangeRoot::realistic), run(FlangeRoot::simplified)};
+    const auto shift_at_touch = [](const FlangeRun& r) {
+      const auto i = std::lower_bound(r.t.begin(), r.t.end(), r.impacts.at(0).begin - 1e-9) - r.t.begin();
+      return 1e3 * std::abs(r.y[static_cast<std::size_t>(i)]);
+    };
     double swing = 0.0;
     for (std::size_t i = 0; runs[0].t[i] < first_swing; ++i) swing = std::max(swing, std::abs(runs[0].y[i]));
-    csv += fmt::format("{:.1f},{:.3f},{:.3f},{:.3f}\n", 1e3 * yaw, 1e3 * swing, runs[0].impacts.at(0).begin,
-                       runs[1].impacts.at(0).begin);
+    csv +=
+        fmt::format("{:.1f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.1f},{:.1f}\n", 1e3 * yaw, 1e3 * swing,
+                    runs[0].impacts.at(0).begin, runs[1].impacts.at(0).begin, shift_at_touch(runs[0]),
+                    shift_at_touch(runs[1]), 1e-3 * runs[0].impacts[0].largest_Y, 1e-3 * runs[1].impacts[0].largest_Y);
   }
   write_text_file(folder + "/paper/hunting_start.csv", csv);
 }

@@ -137,9 +137,10 @@ class Angles {
       const double radius =
           (wheelset.wheel(y, straight, 0.0, 1.0).radius - wheelset.wheel(y, straight, 0.0, -1.0).radius) / mm;
       const auto radius_of = [&](double side) { return reference.at("r_cyl")[row_of(reference, 1.1, side, y_mm)]; };
-      csv += fmt::format("{:.1f},{:.4f},{:.4f}", y_mm, radius, radius_of(1.0) - radius_of(-1.0));
+      const double theirs = radius_of(1.0) - radius_of(-1.0);
+      csv += fmt::format("{:.1f},{:.4f},{:.4f},{:.4f}", y_mm, radius, theirs, std::abs(radius - theirs));
       add(radius_lines, 0, y_mm, radius);
-      add(radius_dots, 0, y_mm, radius_of(1.0) - radius_of(-1.0));
+      add(radius_dots, 0, y_mm, theirs);
       for (std::size_t i = 0; i < sides.size(); ++i) {
         const double angle = wheelset.wheel(y, turned, yaw, sides[i]).angle;
         const double no_roll = wheelset.wheel(y, 0.0, yaw, sides[i]).angle;
@@ -160,7 +161,8 @@ class Angles {
       "# of case A1.2 in the track's axes, without the wheelset's roll, in the wheelset's axes, and CONTACT's; made "
       "by\n"
       "# tests/validation/manchester_rolling_figure\n"
-      "y_mm,radius_difference_mm,radius_difference_CONTACT_mm,left,left_no_roll,left_wheelset_axes,left_CONTACT,"
+      "y_mm,radius_difference_mm,radius_difference_CONTACT_mm,d_radius_mm,left,left_no_roll,left_wheelset_axes,left_"
+      "CONTACT,"
       "right,right_no_roll,right_wheelset_axes,right_CONTACT\n";
   std::vector<report::Series> radius_lines{{"railtab", {}, {}}}, radius_dots{{"CONTACT", {}, {}}};
   std::array<std::vector<report::Series>, 2> lines{angle_lines(), angle_lines()};
@@ -207,10 +209,11 @@ class Rolling {
       "# Manchester benchmark, rolling: railtab at the place to which its own run of 1 s has brought the wheelset,\n"
       "# beside CONTACT. Right-wheel axes (left wheel mirrored), wheel against rail, creep forces on the wheel of\n"
       "# mu F_n; shift: from that of the case; height, roll: from CONTACT's; drift of the height in the last 0.1 s;\n"
-      "# d_: differences; made by tests/validation/manchester_rolling_figure\n"
+      "# d_: differences, d_total: of the right less the left longitudinal creepage; no_yaw: without yaw in the\n"
+      "# creepage; made by tests/validation/manchester_rolling_figure\n"
       "case,side,elliptic,y_mm,shift_um,height_um,roll_urad,drift_nm,normal_kN,creepage_x,creepage_y,spin,fx,fy,"
       "normal_CONTACT_kN,creepage_x_CONTACT,creepage_y_CONTACT,spin_CONTACT,fx_CONTACT,fy_CONTACT,d_creepage,d_spin,"
-      "d_force\n";
+      "d_force,d_total,creepage_y_no_yaw,spin_no_yaw\n";
   std::array<std::array<Wheel, 2>, 2> wheel;  // of case and side
 
  private:
@@ -220,6 +223,7 @@ class Rolling {
     const VsiModel& model = run.model;
     const double* const u = run.rest.motion.displacement;
     const double pitch_rate = -manchester_speed / model.vehicle.nominal_radius + run.rest.motion.velocity[4];
+    double left_difference = 0.0;  // of the longitudinal creepages
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const double side = sides[i];
       const WheelsetPose pose{side * u[1], u[2], side * u[3], side * u[5]};
@@ -240,13 +244,15 @@ class Rolling {
       const double ellipse = M_PI * value("half_x") * value("half_s");
       csv += fmt::format(
           "{},{},{},{:.1f},{:.2f},{:.2f},{:.2f},{:.3f},{:.4f},{:.4e},{:.4e},{:.4f},{:.4f},{:.4f},{:.4f},"
-          "{:.4e},{:.4e},{:.4f},{:.4f},{:.4f},{:.2e},{:.2e},{:.4f}\n",
+          "{:.4e},{:.4e},{:.4f},{:.4f},{:.4f},{:.2e},{:.2e},{:.4f},{},{:.4e},{:.4f}\n",
           c == 0 ? "A2.1" : "A2.2", side_names[i], std::abs(value("area") / ellipse - 1.0) < 0.1 ? 1 : 0, y_mm,
           1e6 * u[1] - 1e3 * y_mm, 1e6 * u[2] - 1e3 * value("z_ws"), 1e6 * (u[3] - value("roll_ws")),
           1e9 * run.rest.drift, 1e-3 * own.normal_force, ours[0], ours[1], ours[2], ours[3], ours[4],
           1e-3 * value("normal_force"), theirs[0], theirs[1], theirs[2], theirs[3], theirs[4],
           std::max(std::abs(ours[0] - theirs[0]), std::abs(ours[1] - theirs[1])), std::abs(ours[2] - theirs[2]),
-          std::hypot(ours[3] - theirs[3], ours[4] - theirs[4]));
+          std::hypot(ours[3] - theirs[3], ours[4] - theirs[4]),
+          i == 0 ? "" : fmt::format("{:.2e}", std::abs(ours[0] - theirs[0] - left_difference)), without[1], without[2]);
+      left_difference = ours[0] - theirs[0];
     }
   }
 
