@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "flange_model.hpp"
+#include "profile_drawing.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "svg_figure.hpp"
 
@@ -26,43 +27,8 @@ using namespace railtab::hunting;
 constexpr double time_step = 1e-3, duration = 3.6, forces_from = 2.4;  // s
 constexpr std::size_t every = 2;                                       // steps between rows
 
-/// An outline's points between the profile's ends, in its own axes (z down) [m].
-struct Outline {
-  std::vector<double> y, z;
-};
-
-Outline outline_of(const ProfileCurve& curve) {
-  constexpr int points = 1500;
-  Outline outline;
-  for (int i = 0; i <= points; ++i) {
-    const CurvePoint p = curve.at(curve.s_begin() + (curve.s_end() - curve.s_begin()) * i / points);
-    outline.y.push_back(p.y);
-    outline.z.push_back(p.z);
-  }
-  return outline;
-}
-
-/// What is drawn of the right side, in mm from the crown and above the rail.
-struct Window {
-  double left, right, low, high;
-};
-constexpr Window head{-62.0, 42.0, -32.0, 18.0}, root{-50.0, -28.0, -12.0, 0.0};
-
-/// The part of an outline in a window. The left side is the mirror image of the right one, in which profiles are given.
-report::Series drawing(const std::string& label, const Outline& outline, double mirror, const Window& window = head) {
-  report::Series line{label, {}, {}};
-  for (std::size_t i = 0; i < outline.y.size(); ++i) {
-    const double y = 1e3 * outline.y[i], z = -1e3 * outline.z[i];
-    if (y < window.left || y > window.right || z < window.low || z > window.high) continue;
-    line.x.push_back(mirror * y);
-    line.y.push_back(z);
-  }
-  if (mirror < 0.0) {
-    std::reverse(line.x.begin(), line.x.end());
-    std::reverse(line.y.begin(), line.y.end());
-  }
-  return line;
-}
+/// In mm from the rail's crown, and above it.
+constexpr DrawingWindow head{-62.0, 42.0, -32.0, 18.0}, root{-50.0, -28.0, -12.0, 0.0};
 
 /// The left wheel where the run has it at a record, seen from behind.
 report::SvgPanel left_wheel(const std::string& title, const FlangeRun& run, std::size_t i) {
@@ -78,7 +44,7 @@ report::SvgPanel left_wheel(const std::string& title, const FlangeRun& run, std:
   return {fmt::format("{}, t = {:.3f} s", title, run.t[i]),
           "from the crown, to the right [mm]",
           "above the rail [mm]",
-          {drawing("left wheel", wheel, -1.0), drawing("rail", outline_of(pair.rail()), -1.0)},
+          {drawing("left wheel", wheel, -1.0, head), drawing("rail", outline_of(pair.rail()), -1.0, head)},
           {},
           report::SvgScale::equal};
 }
@@ -108,7 +74,7 @@ void write_profiles(const std::string& folder, const FlangeRun& realistic) {
     for (double& height : wheel.z) height += z;
     return wheel;
   };
-  const auto both = [&](const std::string& title, const Window& window) {
+  const auto both = [&](const std::string& title, const DrawingWindow& window) {
     return report::SvgPanel{title,
                             "from the crown, to the right [mm]",
                             "above the rail [mm]",
