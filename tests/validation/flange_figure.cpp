@@ -19,10 +19,8 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "svg_figure.hpp"
 
+namespace railtab::hunting {
 namespace {
-
-using namespace railtab;
-using namespace railtab::hunting;
 
 constexpr double time_step = 1e-3, duration = 3.6, forces_from = 2.4;  // s
 constexpr std::size_t every = 2;                                       // steps between rows
@@ -166,6 +164,7 @@ void write(const std::string& folder) {
 }
 
 }  // namespace
+}  // namespace railtab::hunting
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -173,7 +172,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    write(argv[1]);
+    railtab::hunting::write(argv[1]);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "flange_figure: %s\n", e.what());
     return 1;

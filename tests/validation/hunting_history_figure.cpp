@@ -18,10 +18,8 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "svg_figure.hpp"
 
+namespace railtab::hunting {
 namespace {
-
-using namespace railtab;
-using namespace railtab::hunting;
 
 constexpr double G = 82e9, ab = 5.667e-3 * 4.284e-3;                  // Pa, m²
 constexpr double fx = G * 4.523 * ab, fy = G * 4.121 * ab;            // N
@@ -35,8 +33,7 @@ constexpr int shown_every = 5;                                        // steps b
 /// Eq. 18. State: y, y', yaw, yaw'.
 class Equations {
  public:
-  Equations(hunting::Suspension suspension, double speed)
-      : V_(speed), sprung_(suspension == hunting::Suspension::primary ? 1.0 : 0.0) {}
+  Equations(Suspension suspension, double speed) : V_(speed), sprung_(suspension == Suspension::primary ? 1.0 : 0.0) {}
   using State = std::array<double, 4>;
   void step(double dt, State& s) const {
     const auto plus = [](State a, double h, const State& b) {
@@ -59,14 +56,14 @@ class Equations {
 };
 
 /// Eq. 20; with stiffnesses of zero Klingel's wavelength, Eq. 17 [m].
-double eq_20(hunting::Suspension suspension) {
-  const double k = suspension == hunting::Suspension::primary ? 1.0 : 0.0;
+double eq_20(Suspension suspension) {
+  const double k = suspension == Suspension::primary ? 1.0 : 0.0;
   const double half = k * kx / (2.0 * fx) - k * ky / (2.0 * fy);
   return 2.0 * std::numbers::pi / std::sqrt(gamma0 / (Lcp * R0) - half * half);
 }
 
 /// Wavelength of Eq. 18 at a speed: zeros of the lateral shift after the first wave [m].
-double wavelength_of_equations(hunting::Suspension suspension, double speed) {
+double wavelength_of_equations(Suspension suspension, double speed) {
   const Equations equations(suspension, speed);
   Equations::State s{0.0, impulse / m, 0.0, 0.0};
   constexpr double dt = 1e-4;  // s
@@ -82,16 +79,16 @@ double wavelength_of_equations(hunting::Suspension suspension, double speed) {
 
 struct Case {
   const char* figure;
-  hunting::Suspension suspension;
+  Suspension suspension;
   double kmh, duration;
   double paper_m, paper_theory_m;  ///< wavelength, Eq. 20 as the paper gives them; 0: none
 };
 
-const std::vector<Case> cases{{"15a", hunting::Suspension::none, 20.0, 12.0, 22.639, 22.745},
-                              {"15b", hunting::Suspension::none, 100.0, 5.0, 22.639, 22.745},
-                              {"16", hunting::Suspension::primary, 100.0, 5.0, 22.583, 22.754},
-                              {"17", hunting::Suspension::primary, 250.0, 5.0, 22.708, 22.754},
-                              {"18a", hunting::Suspension::primary, critical_kmh, 5.0, 0.0, 22.754}};
+const std::vector<Case> cases{{"15a", Suspension::none, 20.0, 12.0, 22.639, 22.745},
+                              {"15b", Suspension::none, 100.0, 5.0, 22.639, 22.745},
+                              {"16", Suspension::primary, 100.0, 5.0, 22.583, 22.754},
+                              {"17", Suspension::primary, 250.0, 5.0, 22.708, 22.754},
+                              {"18a", Suspension::primary, critical_kmh, 5.0, 0.0, 22.754}};
 
 struct History {
   report::Series y{"railtab", {}, {}}, yaw{"railtab", {}, {}};  // mm, mrad
@@ -196,7 +193,7 @@ void write(const std::string& folder) {
   report::SvgPanel three{"Fig. 18a: lateral shift at three speeds, model B", "time [s]", "y [mm]", {}, {}};
   for (const Case& c : cases) {
     const History h = history(c);
-    const bool sprung = c.suspension == hunting::Suspension::primary;
+    const bool sprung = c.suspension == Suspension::primary;
     const auto wave = [&](Roll roll) {
       return oscillation(wheelset({.suspension = c.suspension, .roll = roll}, c.kmh / 3.6), 3).wavelength;
     };
@@ -237,6 +234,7 @@ void write(const std::string& folder) {
 }
 
 }  // namespace
+}  // namespace railtab::hunting
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -244,7 +242,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    write(argv[1]);
+    railtab::hunting::write(argv[1]);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "hunting_history_figure: %s\n", e.what());
     return 1;

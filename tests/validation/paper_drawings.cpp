@@ -16,9 +16,8 @@
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "svg_figure.hpp"
 
+namespace railtab {
 namespace {
-
-using namespace railtab;
 
 void profiles(const std::string& folder) {
   const auto outline = [](ProfileKind kind, const char* name) {
@@ -80,6 +79,7 @@ void deviations(const std::string& folder) {
 }
 
 }  // namespace
+}  // namespace railtab
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -87,8 +87,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    profiles(argv[1]);
-    deviations(argv[1]);
+    railtab::profiles(argv[1]);
+    railtab::deviations(argv[1]);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "paper_drawings: %s\n", e.what());
     return 1;

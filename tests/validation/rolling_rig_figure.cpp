@@ -23,9 +23,8 @@
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "svg_figure.hpp"
 
+namespace railtab {
 namespace {
-
-using namespace railtab;
 
 constexpr double amplitude = 0.008;     // m
 constexpr double approach = 15.0;       // m before the first span that turns
@@ -328,6 +327,7 @@ void forces(const std::string& folder, const std::vector<std::filesystem::path>&
 }
 
 }  // namespace
+}  // namespace railtab
 
 int main(int argc, char** argv) {
   if (argc != 4) {
@@ -336,9 +336,9 @@ int main(int argc, char** argv) {
   }
   try {
     const std::vector<std::filesystem::path> tables{argv[2], argv[3]};
-    forces(argv[1], tables);
-    histories(argv[1], tables);
-    all_cases(argv[1], tables);
+    railtab::forces(argv[1], tables);
+    railtab::histories(argv[1], tables);
+    railtab::all_cases(argv[1], tables);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rolling_rig_figure: %s\n", e.what());
     return 1;

@@ -156,7 +156,8 @@ std::string svg_figure(const std::string& heading, const std::vector<SvgPanel>& 
   if (one_legend && !panels.empty()) svg += legend(panels.front(), left, 44);
   for (int i = 0; i < count; ++i) {
     const SvgPanel& panel = panels[static_cast<std::size_t>(i)];
-    const Frame frame = frame_of(panel, left + cell_width * (i % columns), head + top + cell_height * (i / columns));
+    const int row = i / columns, column = i % columns;
+    const Frame frame = frame_of(panel, left + cell_width * column, head + top + cell_height * row);
     svg += axes(panel, frame, frame.y0 - (one_legend ? 10 : 10 + legend_height)) + curves(panel, frame);
     if (!one_legend) svg += legend(panel, frame.x0, frame.y0 - 10);
     svg += "\n";
