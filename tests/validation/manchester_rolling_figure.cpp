@@ -194,6 +194,8 @@ void write(const std::string& folder) {
       wheel(0, 1, 0).panel("Fig. 11b: longitudinal creepage, A2.1, right", "creepage [-]", false),
       wheel(1, 0, 2).panel("Fig. 13a: spin creepage, A2.2, left", "spin [1/m]", true),
       wheel(1, 1, 2).panel("Fig. 13b: spin creepage, A2.2, right", "spin [1/m]", true),
+      wheel(0, 0, 3).panel("Longitudinal creep force, A2.1, left", "of friction [-]", false),
+      wheel(0, 1, 3).panel("Longitudinal creep force, A2.1, right", "of friction [-]", false),
       wheel(1, 0, 3).panel("Longitudinal creep force, A2.2, left", "of friction [-]", false),
       wheel(1, 1, 3).panel("Longitudinal creep force, A2.2, right", "of friction [-]", false),
       wheel(1, 0, 4).panel("Lateral creep force, A2.2, left", "of friction [-]", false),
