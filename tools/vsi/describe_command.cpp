@@ -39,7 +39,8 @@ Description of_results(const std::string& file) {
                                 results.steps.empty() ? 0.0 : results.steps.back().time, header.wheel_x.size(),
                                 header.body_names.size(), header.node_names.size()));
   d.commands = {fmt::format("vsi report {} -o report.html", file),
-                fmt::format("vsi report {} OTHER.h5 -o both.html", file)};
+                fmt::format("vsi report {} OTHER.h5 -o both.html", file),
+                fmt::format("vsi export {} -o run.pvd", file)};
   if (!results.summary.complete) d.commands.push_back(fmt::format("vsi run SCENE.toml -o {} --resume", file));
   return d;
 }
