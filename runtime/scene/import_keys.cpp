@@ -156,7 +156,7 @@ std::vector<KeyRow> import_keys() {
   const auto right =
       selection_keys<&ImportParameters::rail_right>({"structure.rail_right.set", "structure.rail_right.from",
                                                      "structure.rail_right.to", "structure.rail_right.tolerance"},
-                                                    "set of the nodes of the right rail");
+                                                    "set of nodes");
   const auto damping = [] {
     return all_of({applying(with_imported_matrices, rayleigh_keys()), applying(with_imported_structure, ratio_keys()),
                    applying(with_imported_matrices, damping_frequency_keys())});

@@ -1,15 +1,16 @@
 #include "railtab/runtime/structure/modal_bridge.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/fe/mode_files.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
@@ -93,52 +94,84 @@ StaticFlexibility flexibility_at(const ModalStructure& structure, int node) {
   return result;
 }
 
-/// Motions of the reported nodes that become degrees of freedom: all vertical ones, and of the others those that the
-/// modes can tell from them. Sets the nodes' dofs. @return rows of the basis, motions × modes
-Eigen::MatrixXd reported_motions(const ModalStructure& structure, const std::vector<ReportedDeckNode>& reported,
-                                 std::vector<StructureNode>& nodes) {
-  constexpr double distinct = 1e-3;  // of a row that the rows before it do not span
-  const Eigen::Index modes = structure.omega.size();
-  Eigen::MatrixXd rows(modes, modes), spanned(modes, modes);  // spanned: orthonormal columns
-  Eigen::Index count = 0;
-  const auto add = [&](int shape_row) -> int {
-    const Eigen::VectorXd row = structure.shape.row(shape_row);
-    Eigen::VectorXd rest = row;
+/// Rows of a basis of the modal coordinates that are motions of nodes, one by one.
+class MotionBasis {
+ public:
+  explicit MotionBasis(Eigen::Index modes) : rows_(modes, modes), spanned_(modes, modes) {}
+  /// @param motion by the modal coordinates @return its number; held where the rows before span it
+  int add(const Eigen::VectorXd& motion) {
+    constexpr double distinct = 1e-3;  // of a motion that the rows before it do not span
+    Eigen::VectorXd rest = motion;
     for (int twice = 0; twice < 2; ++twice) {
-      rest -= spanned.leftCols(count) * (spanned.leftCols(count).transpose() * rest);
+      rest -= spanned_.leftCols(count_) * (spanned_.leftCols(count_).transpose() * rest);
     }
-    if (count == modes || !(rest.norm() > distinct * row.norm())) return held;
-    rows.row(count) = row;
-    spanned.col(count) = rest.normalized();
-    return static_cast<int>(count++);
-  };
+    if (count_ == rows_.cols() || !(rest.norm() > distinct * motion.norm())) return held;
+    rows_.row(count_) = motion;
+    spanned_.col(count_) = rest.normalized();
+    return static_cast<int>(count_++);
+  }
+  [[nodiscard]] Eigen::MatrixXd rows() const { return rows_.topRows(count_); }
+
+ private:
+  Eigen::MatrixXd rows_, spanned_;  // spanned: orthonormal columns
+  Eigen::Index count_ = 0;
+};
+
+/// Index of the first that is this node: two positions may have the same one.
+std::size_t first_of(const std::vector<ReportedDeckNode>& reported, int node) {
+  const auto same = std::find_if(reported.begin(), reported.end(),
+                                 [node](const ReportedDeckNode& other) { return other.number == node; });
+  return static_cast<std::size_t>(same - reported.begin());
+}
+
+/// Vertical motions of the reported nodes, which must be degrees of freedom.
+void add_vertical_motions(const ModalStructure& structure, const std::vector<ReportedDeckNode>& reported,
+                          MotionBasis& basis, std::vector<StructureNode>& nodes) {
   for (const ReportedDeckNode& node : reported) {
     const FeNode& place = structure.at.nodes.at(node.number);
-    nodes.push_back(
-        {node.name, place.position[0], {held, held, held, held, held, held}, place.position[1], place.position[2]});
-    const auto same = std::find_if(reported.begin(), reported.end(),
-                                   [&](const ReportedDeckNode& other) { return other.number == node.number; });
-    const auto first = static_cast<std::size_t>(same - reported.begin());
-    const bool at_rest = structure.shape.row(place.rows[vertical].front()).isZero();
-    int& dof = nodes.back().dof[vertical];
-    if (first + 1 < nodes.size()) {
-      dof = nodes[first].dof[vertical];
-    } else if (!at_rest) {
-      dof = add(place.rows[vertical].front());
+    StructureNode own{
+        node.name, place.position[0], {held, held, held, held, held, held}, place.position[1], place.position[2]};
+    const std::size_t first = first_of(reported, node.number);
+    const Eigen::VectorXd motion = structure.shape.row(place.rows[vertical].front());
+    const bool rests = motion.isZero(0.0);
+    if (first < nodes.size()) {
+      own.dof[vertical] = nodes[first].dof[vertical];
+    } else if (!rests) {
+      own.dof[vertical] = basis.add(motion);
     }
-    if (dof != held || at_rest) continue;
-    throw input_error("structure.report", fmt::format("{} positions with {} modes", reported.size(), modes),
-                      fmt::format("fewer positions: {} modes cannot tell the motion at x = {:.6g} m from that at the "
-                                  "positions before it",
-                                  modes, place.position[0]));
+    if (own.dof[vertical] == held && !rests) {
+      throw input_error("structure.report", fmt::format("{} positions with {} modes", reported.size(), motion.size()),
+                        fmt::format("fewer positions: {} modes cannot tell the motion at x = {:.6g} m from that at the "
+                                    "positions before it",
+                                    motion.size(), place.position[0]));
+    }
+    nodes.push_back(std::move(own));
   }
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
+}
+
+/// The other motions of the reported nodes, as far as the modes tell them from those before.
+void add_other_motions(const ModalStructure& structure, const std::vector<ReportedDeckNode>& reported,
+                       MotionBasis& basis, Bridge& bridge) {
+  for (std::size_t n = 0; n < bridge.nodes.size(); ++n) {
     const FeNode& place = structure.at.nodes.at(reported[n].number);
-    for (std::size_t k = 0; k < 6; ++k) {
-      if (k != vertical && place.rows[k].size() == 1) nodes[n].dof[k] = add(place.rows[k].front());
+    const std::size_t first = first_of(reported, reported[n].number);
+    if (first < n) {
+      bridge.nodes[n].dof = bridge.nodes[first].dof;
+      continue;
     }
+    std::vector<std::string_view> lost;
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (k == vertical || place.rows[k].empty()) continue;
+      const Eigen::VectorXd motion = structure.shape.row(place.rows[k].front());
+      if (motion.isZero(0.0)) continue;
+      bridge.nodes[n].dof[k] = basis.add(motion);
+      if (bridge.nodes[n].dof[k] == held) lost.push_back(motion_names[k]);
+    }
+    if (lost.empty()) continue;
+    bridge.left_out.push_back(
+        fmt::format("{} of {} in the records, which have 0: the modes are too few to tell it from other motions",
+                    fmt::join(lost, ", "), bridge.nodes[n].name));
   }
-  return rows.topRows(count);
 }
 
 /// S of q = S p, whose first coordinates p are `motions`·q and whose others are orthogonal to them.
@@ -251,8 +284,12 @@ Bridge modal_bridge(const ImportParameters& parameters) {
   bridge.end = extent.end;
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
   bridge.spans.push_back({extent.begin - rounding, extent.end + rounding});
-  const Eigen::MatrixXd S = change_of_basis(
-      reported_motions(structure, reported_deck_nodes(structure.at, deck, parameters.report), bridge.nodes));
+  bridge.left_out = lost_by_modes(structure, parameters);
+  const std::vector<ReportedDeckNode> reported = reported_deck_nodes(structure.at, deck, parameters.report);
+  MotionBasis basis(structure.omega.size());
+  add_vertical_motions(structure, reported, basis, bridge.nodes);
+  add_other_motions(structure, reported, basis, bridge);
+  const Eigen::MatrixXd S = change_of_basis(basis.rows());
   const Eigen::ArrayXd omega = structure.omega;
   const Eigen::VectorXd c = 2.0 * structure.damping.array() * omega, k = omega.square();
   append(S.transpose() * S, bridge.matrices.mass);
@@ -267,7 +304,6 @@ Bridge modal_bridge(const ImportParameters& parameters) {
     return by_modes(*found, shape);
   };
   bridge.warnings = plausibility_warnings(0.0, omega[0] / (2.0 * std::numbers::pi));
-  bridge.left_out = lost_by_modes(structure, parameters);
   return bridge;
 }
 

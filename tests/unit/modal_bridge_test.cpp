@@ -121,7 +121,7 @@ class ModesOfABridge : public testing::InFolder {
   [[nodiscard]] SceneParameters scene(const std::string& bridge) const {
     write("s.toml",
           "[train]\nvehicle = \"manchester-coach\"\nspeed_kmh = 200\nstart = -2.0\n"
-          "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 30\nlength_after = 12\n"
+          "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 30\nlength_after = 24\n"
           "[integration]\ntime_step = 1e-3\nduration = 0.9\n" +
               bridge);
     return read_scene(folder_ / "s.toml");
@@ -164,14 +164,15 @@ TEST_F(ModesOfABridge, CarryATrainAsTheBridgeWithinTheStatedLoss) {
     double error = 0.0;
     for (std::size_t i = 0; i < whole.size(); ++i) error = std::max(error, std::abs(reduced[i] - whole[i]));
     constexpr double newton = 1e-5;  // of the contact forces' tolerance
-    EXPECT_LE(error / peak, lost + newton) << modes << " modes";
     EXPECT_LT(error, error_before) << modes << " modes";
-    if (modes == 2) {
-      EXPECT_GT(error / peak, 1e-3) << "one vertical mode lacks some flexibility: the loss is no idle number";
+    if (modes == 2) {  // one bending mode: the second one's own vibration is missing too
+      EXPECT_GT(error / peak, 0.5 * lost);
+      EXPECT_LT(error / peak, 1.5 * lost);
+    } else {
+      EXPECT_LE(error / peak, lost + newton) << modes << " modes";
     }
     error_before = error;
     RecordProperty(fmt::format("modes_{}", modes), fmt::format("lost {:.3e} error {:.3e}", lost, error / peak));
-    fmt::print("{} modes: stated loss {:.3e}, largest difference {:.3e} of the peak\n", modes, lost, error / peak);
   }
 }
 
