@@ -75,7 +75,7 @@ std::vector<int> deck_of(const ModalStructure& structure, const ImportParameters
       throw input_error(fmt::format("structure.deck: node {}", number), "no vertical shape of the modes there",
                         fmt::format("a node of {} with its vertical motion", parameters.files.shapes.string()));
     }
-    moves = moves || structure.shape.row(rows.front()).cwiseAbs().maxCoeff() > 0.0;
+    moves = moves || structure.shape.row(rows.front()).norm() > 0.0;
   }
   if (!moves) {
     throw input_error("structure.deck", "no mode that moves the deck vertically",
@@ -117,6 +117,12 @@ class MotionBasis {
   Eigen::Index count_ = 0;
 };
 
+/// What supports have in programs' lists, zero or rounding.
+bool at_rest(const ModalStructure& structure, const Eigen::VectorXd& motion) {
+  constexpr double rounding = 1e-9;
+  return motion.norm() <= rounding * structure.shape.rowwise().norm().maxCoeff();
+}
+
 /// Index of the first that is this node: two positions may have the same one.
 std::size_t first_of(const std::vector<ReportedDeckNode>& reported, int node) {
   const auto same = std::find_if(reported.begin(), reported.end(),
@@ -133,7 +139,7 @@ void add_vertical_motions(const ModalStructure& structure, const std::vector<Rep
         node.name, place.position[0], {held, held, held, held, held, held}, place.position[1], place.position[2]};
     const std::size_t first = first_of(reported, node.number);
     const Eigen::VectorXd motion = structure.shape.row(place.rows[vertical].front());
-    const bool rests = motion.isZero(0.0);
+    const bool rests = at_rest(structure, motion);
     if (first < nodes.size()) {
       own.dof[vertical] = nodes[first].dof[vertical];
     } else if (!rests) {
@@ -163,7 +169,7 @@ void add_other_motions(const ModalStructure& structure, const std::vector<Report
     for (std::size_t k = 0; k < 6; ++k) {
       if (k == vertical || place.rows[k].empty()) continue;
       const Eigen::VectorXd motion = structure.shape.row(place.rows[k].front());
-      if (motion.isZero(0.0)) continue;
+      if (at_rest(structure, motion)) continue;
       bridge.nodes[n].dof[k] = basis.add(motion);
       if (bridge.nodes[n].dof[k] == held) lost.push_back(motion_names[k]);
     }

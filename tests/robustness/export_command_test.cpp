@@ -224,6 +224,17 @@ TEST_F(ExportCommand, ItReplacesItsOwnFilesOnly) {
   }
 }
 
+TEST_F(ExportCommand, WhatAKilledExportLeftBehindGoes) {
+  std::filesystem::create_directory(folder_ / "run.part-0badcafe");
+  write("run.part-0badcafe/lock", "");
+  write("run.part-0badcafe/nodes-00000.vtu", "half a file");
+  std::filesystem::create_directory(folder_ / "run.part-mine");
+  ASSERT_EQ(vsi("export r.h5 -o run.pvd --times 0 -q").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run.part-0badcafe"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run.part-mine")) << "a folder without a lock is none of its own";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run/lock"));
+}
+
 TEST_F(ExportCommand, WrongInstantsAreNamed) {
   expect_refused("export r.h5 -o out --times 0.01,7",
                  "--times: found '7', expected times within the records, 0 to 0.02");

@@ -8,6 +8,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/writer_lock.hpp"
 #include "run_parts.hpp"
 #include "vtu_file.hpp"
 
@@ -47,17 +48,36 @@ void write_whole(const fs::path& file, std::string_view text) {
   if (!out) throw ComputationError(fmt::format("{}: could not be written, the disk may be full", file.string()));
 }
 
+constexpr std::string_view part_mark = ".part-", lock_name = "lock";
+
+/// Folders that a process left behind which was ended from outside: nobody holds their lock any more.
+void remove_abandoned_folders(const fs::path& final_name) {
+  const fs::path parent = final_name.has_parent_path() ? final_name.parent_path() : fs::path(".");
+  const std::string begin = final_name.filename().string() + std::string(part_mark);
+  std::vector<fs::path> left;
+  std::error_code failed;
+  for (fs::directory_iterator entry(parent, failed), end; !failed && entry != end; entry.increment(failed)) {
+    if (entry->path().filename().string().starts_with(begin)) left.push_back(entry->path());
+  }
+  for (const fs::path& folder : left) {
+    if (WriterLock::if_free(folder / lock_name).held()) fs::remove_all(folder, failed);
+  }
+}
+
 /// A folder that is gone with this object, unless it got its name.
 class NewFolder {
  public:
   explicit NewFolder(const fs::path& final_name) : final_(final_name) {
+    remove_abandoned_folders(final_);
     std::random_device random;
-    name_ = fmt::format("{}.part-{:08x}", final_.string(), random());
+    name_ = fmt::format("{}{}{:08x}", final_.string(), part_mark, random());
     std::error_code failed;
     if (!fs::create_directory(name_, failed)) {
       throw input_error(final_.string(), fmt::format("a place that cannot be written ({})", failed.message()),
                         "a name in an existing folder that can be written");
     }
+    write_whole(name_ / lock_name, {});
+    lock_ = WriterLock(name_ / lock_name);
   }
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
@@ -70,6 +90,7 @@ class NewFolder {
   /// Takes the place of an earlier export.
   void publish() {
     require_own_folder(final_);
+    fs::remove(name_ / lock_name);
     const fs::path old = name_.string() + "-old";
     std::error_code failed;
     const bool replaces = fs::exists(final_);
@@ -81,6 +102,7 @@ class NewFolder {
 
  private:
   fs::path final_, name_;
+  WriterLock lock_;
 };
 
 /// Points to where they are drawn, and everything into the axes that were asked for.
