@@ -53,7 +53,7 @@ constexpr std::string_view part_mark = ".part-", lock_name = "lock";
 /// Folders that a process left behind which was ended from outside: nobody holds their lock any more.
 void remove_abandoned_folders(const fs::path& final_name) {
   const fs::path parent = final_name.has_parent_path() ? final_name.parent_path() : fs::path(".");
-  const std::string begin = final_name.filename().string() + std::string(part_mark);
+  const std::string begin = fmt::format("{}{}", final_name.filename().string(), part_mark);
   std::vector<fs::path> left;
   std::error_code failed;
   for (fs::directory_iterator entry(parent, failed), end; !failed && entry != end; entry.increment(failed)) {
@@ -125,7 +125,8 @@ void place_points(Grid& grid, const ExportOptions& options) {
 void state_origin(Grid& grid, const RunResults& results, const StepRecord& step, const ExportOptions& options) {
   grid.numbers = {{"TimeValue", step.time}, {"displacement_scale", options.scale}};
   grid.texts.emplace_back("scene", std::vector<std::string>{results.header.scene_name});
-  grid.texts.emplace_back("program", std::vector<std::string>{"railtab " + results.header.program_version});
+  grid.texts.emplace_back("program",
+                          std::vector<std::string>{fmt::format("railtab {}", results.header.program_version)});
   grid.texts.emplace_back(
       "axes", std::vector<std::string>{options.z_up ? "x forward, y left, z up; m, s, N, rad; forces on the rails"
                                                     : "x forward, y right, z down; m, s, N, rad; forces on the rails"});
@@ -161,7 +162,7 @@ ExportSummary write_export(const RunResults& results, const ExportOptions& optio
   ExportSummary summary;
   summary.not_recorded = not_recorded(results.header);
   const bool inside = place.collection.parent_path() == place.folder;
-  const std::string prefix = inside ? "" : place.folder.filename().string() + "/";
+  const std::string prefix = inside ? "" : fmt::format("{}/", place.folder.filename().string());
   std::vector<CollectionEntry> all;
   std::vector<std::vector<CollectionEntry>> of_part(parts.size());
   NewFolder folder(place.folder);
@@ -179,7 +180,7 @@ ExportSummary write_export(const RunResults& results, const ExportOptions& optio
     }
   }
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    write_whole(folder.name() / (parts[p].name + std::string(collection_ending)), pvd_text(of_part[p]));
+    write_whole(folder.name() / (fmt::format("{}{}", parts[p].name, collection_ending)), pvd_text(of_part[p]));
     summary.parts.push_back(parts[p].name);
   }
   if (inside) write_whole(folder.name() / place.collection.filename(), pvd_text(all));

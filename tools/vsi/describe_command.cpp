@@ -129,6 +129,12 @@ Description of_text(const std::string& file, const std::string& first, const std
               {printable(first)},
               {fmt::format("vsi contact TABLE.h5 --query {} -o R.csv", file)}};
     }
+    if (first.starts_with("mode,")) {
+      const bool table = first.find("frequency") != std::string::npos;
+      return {table ? "natural modes of a structure" : "shapes of natural modes",
+              {"columns: " + printable(first)},
+              {fmt::format("a scene's structure.{} = \"{}\"", table ? "mode_table" : "mode_shapes", file)}};
+    }
     return {"columns of numbers (CSV)", {"columns: " + printable(first)}, {"docs/file_formats says what scenes read"}};
   }
   throw input_error(file,
