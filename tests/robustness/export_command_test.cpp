@@ -46,6 +46,7 @@ class ExportCommand : public VsiCommand {
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / folder)) {
       names.push_back(entry.path().filename().string());
     }
+    std::sort(names.begin(), names.end());
     return names;
   }
 
@@ -222,6 +223,23 @@ TEST_F(ExportCommand, ItReplacesItsOwnFilesOnly) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << entry.path();
   }
+}
+
+TEST_F(ExportCommand, AFullDiskLeavesWhatWasThere) {
+  const std::string limited = "trap '' XFSZ; ulimit -f 8; '" VSI_COMMAND "' export r.h5 -o run.pvd";
+  const auto expect_failed = [&] {
+    const Outcome outcome = run(limited);
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find("could not be written, the disk may be full"), std::string::npos) << outcome.output;
+  };
+  expect_failed();
+  EXPECT_EQ(entries("."), (std::vector<std::string>{"r.h5", "s.toml"})) << "neither a part nor a collection";
+  ASSERT_EQ(vsi("export r.h5 -o run.pvd --times 0 -q").exit_code, 0);
+  const std::string before = text_of("run.pvd");
+  expect_failed();
+  EXPECT_EQ(text_of("run.pvd"), before);
+  EXPECT_EQ(entries("run").size(), 12u) << "the earlier export is whole";
+  EXPECT_EQ(entries(".").size(), 4u);
 }
 
 TEST_F(ExportCommand, WhatAKilledExportLeftBehindGoes) {
