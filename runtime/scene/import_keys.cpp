@@ -10,9 +10,11 @@ ImportParameters& import_of(SceneDraft& draft) { return draft.parameters.structu
 constexpr Range model_position{-1e9, 1e9}, model_length{0.0, 1e6}, track_position{-1e6, 1e6};
 
 ChoiceKey formats() {
-  return choice<FeFormat>(
-      [](SceneDraft& d) -> FeFormat& { return import_of(d).files.format; },
-      {{"matrix-market", FeFormat::matrix_market}, {"calculix", FeFormat::calculix}, {"ansys", FeFormat::ansys}});
+  return choice<FeFormat>([](SceneDraft& d) -> FeFormat& { return import_of(d).files.format; },
+                          {{"matrix-market", FeFormat::matrix_market},
+                           {"calculix", FeFormat::calculix},
+                           {"ansys", FeFormat::ansys},
+                           {"modes", FeFormat::modes}});
 }
 
 std::vector<KeyRow> matrix_keys() {
@@ -25,8 +27,25 @@ std::vector<KeyRow> matrix_keys() {
        {&structure_unlike_a_bridge}},
       {"structure.stiffness", "", "matrix",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.stiffness; }}},
+  };
+}
+
+std::vector<KeyRow> node_keys() {
+  return {
       {"structure.nodes", "", "positions of the nodes",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.nodes; }}},
+  };
+}
+
+std::vector<KeyRow> mode_keys() {
+  return {
+      {"structure.mode_table", "", "frequency, modal mass, damping of each mode",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.modes; }}},
+      {"structure.mode_shapes", "", "shapes of the modes at nodes",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.shapes; }}},
+      {"structure.static_flexibility", "",
+       "deflection of nodes under a unit vertical force: what the modes lack is stated",
+       FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.flexibility; }}},
   };
 }
 
@@ -49,9 +68,14 @@ std::vector<KeyRow> model_keys() {
       {"structure.origin", "",
        "point of the model at x = 0, on the track centre, at the rail-head tops, in its axes and unit",
        PointKey{[](SceneDraft& d) -> std::optional<Point>& { return import_of(d).frame.origin; }, model_position}},
+  };
+}
+
+std::vector<KeyRow> report_keys() {
+  return {
       {"structure.report",
        "m",
-       "reported positions on the deck; absent: its middle",
+       "reported positions on the deck; absent: the middle of each span",
        NumberListKey{[](SceneDraft& d) -> std::vector<double>& { return import_of(d).report; }, track_position},
        {&with_deck_nodes}},
   };
@@ -71,7 +95,7 @@ std::vector<KeyRow> selection_keys(const std::array<std::string_view, 4>& paths,
   };
 }
 
-std::vector<KeyRow> damping_keys() {
+std::vector<KeyRow> rayleigh_keys() {
   return {
       {"structure.mass_damping", "1/s", "Rayleigh damping, of the mass",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.mass_factor; },
@@ -79,13 +103,23 @@ std::vector<KeyRow> damping_keys() {
       {"structure.stiffness_damping", "s", "Rayleigh damping, of the stiffness",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.stiffness_factor; },
                          {0.0, 10.0}}},
-      {"structure.damping_ratio", "1", "damping ratio at two frequencies",
+  };
+}
+
+std::vector<KeyRow> ratio_keys() {
+  return {
+      {"structure.damping_ratio", "1", "damping ratio at two frequencies, or of all modes",
        OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).damping.ratio; },
                          {0.0, 0.5}}},
       {"structure.damping_type", "", "lower bound of the damping ratio, EN 1991-2, Table 6.6",
        TextKey{[](SceneDraft& d) -> std::string& { return import_of(d).damping.type; }, bridge_damping_types}},
       {"structure.damping_span", "m", "span of the bridge, for damping_type",
        NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.span; }, {0.5, 1e4}}},
+  };
+}
+
+std::vector<KeyRow> damping_frequency_keys() {
+  return {
       {"structure.damping_frequency_low", "Hz", "where the ratio holds; 0: first, third natural frequency",
        NumberKey{[](SceneDraft& d) -> double& { return import_of(d).damping.frequencies[0]; }, {1e-3, 1e4, true}}},
       {"structure.damping_frequency_high", "Hz", "where the ratio holds; 0: first, third natural frequency",
@@ -123,12 +157,17 @@ std::vector<KeyRow> import_keys() {
       selection_keys<&ImportParameters::rail_right>({"structure.rail_right.set", "structure.rail_right.from",
                                                      "structure.rail_right.to", "structure.rail_right.tolerance"},
                                                     "set of nodes");
-  return applying(
-      with_any_structure,
-      all_of({matrix_keys(), applying(with_imported_structure, row_keys()),
-              applying(with_imported_structure, applying(with_structure_nodes, all_of({model_keys(), damping_keys()}))),
-              applying(with_structure_nodes, applying(with_use_of_deck, deck)),
-              applying(with_structure_nodes, applying(with_imported_rails, all_of({left, right})))}));
+  const auto damping = [] {
+    return all_of({applying(with_imported_matrices, rayleigh_keys()), applying(with_imported_structure, ratio_keys()),
+                   applying(with_imported_matrices, damping_frequency_keys())});
+  };
+  return applying(with_any_structure,
+                  all_of({applying(with_matrices, matrix_keys()), applying(with_modes, mode_keys()), node_keys(),
+                          applying(with_imported_matrices, row_keys()),
+                          applying(with_imported_structure, applying(with_structure_nodes, model_keys())),
+                          report_keys(), applying(with_structure_nodes, damping()),
+                          applying(with_structure_nodes, applying(with_use_of_deck, deck)),
+                          applying(with_structure_nodes, applying(with_imported_rails, all_of({left, right})))}));
 }
 
 std::vector<KeyRow> held_node_keys() {
