@@ -8,7 +8,6 @@
 #include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
-#include "railtab/tables/files/shipped_creep_table.hpp"
 
 namespace railtab {
 

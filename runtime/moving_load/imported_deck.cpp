@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
+#include "railtab/runtime/structure/modal_bridge.hpp"
 
 namespace railtab {
 namespace {
@@ -72,8 +74,10 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
   if (!parameters.deck.given()) {
     throw input_error("structure.deck", "nothing", "the nodes of the deck on which the train's forces act");
   }
-  const FeStructure structure = read_on_supports(parameters);
-  require_held(structure);
+  const bool by_modes = parameters.files.by_modes();
+  ModalStructure modal = by_modes ? read_modal_structure(parameters) : ModalStructure{};
+  const FeStructure structure = by_modes ? std::move(modal.at) : read_on_supports(parameters);
+  if (!by_modes) require_held(structure);
   const std::vector<int> nodes = selected_nodes(structure, parameters.deck, "structure.deck");
   double begin = INFINITY, end = -INFINITY;
   for (const int number : nodes) {
@@ -84,14 +88,18 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
     throw input_error("structure.deck", fmt::format("a deck of {:.4g} m along the track", end - begin),
                       "a longer one: see structure.units and structure.axes");
   }
-  const ModalBasis basis = enough_modes(structure, modes);
+  const ModalBasis basis = by_modes ? ModalBasis{modal.shape, modal.omega.cwiseAbs2()} : enough_modes(structure, modes);
   ModalDeck deck;
   deck.name = "structure";
   deck.start = begin;
   deck.omega = basis.omega2.array().sqrt();
-  const Eigen::SparseMatrix<double> damping = damping_matrix(structure, parameters.damping).of_unknowns;
-  deck.damping =
-      (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
+  if (by_modes) {
+    deck.damping = modal.damping;
+  } else {
+    const Eigen::SparseMatrix<double> damping = damping_matrix(structure, parameters.damping).of_unknowns;
+    deck.damping =
+        (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
+  }
   deck.dynamic_modes = count_dynamic_modes(deck.omega, modes);
   const double most_damped = deck.damping.head(deck.dynamic_modes).maxCoeff();
   if (most_damped >= 1.0) {

@@ -55,9 +55,13 @@ ResultHeader OutputSelection::of(ResultHeader header) const {
     header.static_wheel_load.clear();
   }
   keep(bodies_, header.body_names);
-  if (!header.body_x.empty()) keep(bodies_, header.body_x);
+  for (auto* values : {&header.body_x, &header.body_y, &header.body_z}) {
+    if (!values->empty()) keep(bodies_, *values);
+  }
   keep(nodes_, header.node_names);
-  keep(nodes_, header.node_x);
+  for (auto* values : {&header.node_x, &header.node_y, &header.node_z}) {
+    if (!values->empty()) keep(nodes_, *values);
+  }
   return header;
 }
 

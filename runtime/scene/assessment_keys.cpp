@@ -23,7 +23,7 @@ std::vector<KeyRow> assessment_keys() {
        IntegerKey{of_assessment<&AssessmentParameters::seeds>, 1, 1000},
        {&with_spectrum}},
       {"assessment.begin", "m",
-       "where wheels and car bodies begin to be judged; absent: train.start, or behind it the end of the fade-in",
+       "where wheels and car bodies begin to be judged; absent: train.start, or the end of the fade-in",
        OptionalNumberKey{of_assessment<&AssessmentParameters::begin>, {-1e5, 1e5}}},
   };
 }

@@ -25,7 +25,7 @@ std::string reduction_among(At at, std::initializer_list<Reduction> kinds) {
   return fmt::format("structure.reduction = \"{}\"", reduction_name(kind));
 }
 
-bool matrices(At at) { return !at.scene.structure.files.stiffness.empty(); }
+bool imported(At at) { return at.scene.structure.files.given(); }
 bool rails_by_rows(At at) {
   return at.scene.track_kind == TrackKind::imported && at.scene.structure.files.nodes.empty();
 }
@@ -95,18 +95,29 @@ const Condition with_flexible_track{"track.kind = \"flexible\"", [](At at) {
                                       return unless(at.scene.track_kind == TrackKind::flexible, track_kind(at.scene));
                                     }};
 const Condition with_ballast_on_deck{"a [[bridge]] or an imported bridge", [](At at) {
-                                       return unless(matrices(at) || !at.scene.spans.empty(), "no bridge");
+                                       return unless(imported(at) || !at.scene.spans.empty(), "no bridge");
                                      }};
-const Condition with_imported_structure{"structure.stiffness",
-                                        [](At at) { return unless(matrices(at), "no structure.stiffness"); }};
+const Condition with_imported_structure{"structure.stiffness, or structure.format = \"modes\"",
+                                        [](At at) { return unless(imported(at), "no structure.stiffness"); }};
+const Condition with_imported_matrices{
+    "structure.stiffness",
+    [](At at) { return unless(!at.scene.structure.files.stiffness.empty(), "no structure.stiffness"); }};
+const Condition with_matrices{"another structure.format than \"modes\"", [](At at) {
+                                return unless(!at.scene.structure.files.by_modes(), "structure.format = \"modes\"");
+                              }};
+const Condition with_modes{"structure.format = \"modes\"", [](At at) {
+                             return unless(at.scene.structure.files.by_modes(), "no structure.format = \"modes\"");
+                           }};
 const Condition with_structure_nodes{"structure.nodes",
                                      [](At at) { return unless(!rails_by_rows(at), "no structure.nodes"); }};
 const Condition with_imported_rails{"track.kind = \"imported\"", [](At at) {
                                       return unless(at.scene.track_kind == TrackKind::imported, track_kind(at.scene));
                                     }};
 const Condition with_deck_nodes{
-    "structure.deck", [](At at) {
-      return unless(at.scene.structure.deck.given() || at.scene.track_kind != TrackKind::imported, "no structure.deck");
+    "a [[bridge]] or structure.deck", [](At at) {
+      const bool bridge = !at.scene.spans.empty() || imported(at);
+      return unless(at.scene.structure.deck.given() || (bridge && at.scene.track_kind != TrackKind::imported),
+                    "no [[bridge]] and no structure.deck");
     }};
 const Condition with_use_of_deck{"track.kind = \"flexible\", or structure.report", [](At at) {
                                    return unless(
@@ -114,7 +125,9 @@ const Condition with_use_of_deck{"track.kind = \"flexible\", or structure.report
                                        "track.kind = \"imported\" and no structure.report");
                                  }};
 const Condition with_model_nodes{"structure.stiffness and structure.nodes", [](At at) {
-                                   if (!matrices(at) && !at.scene.structure.files.nodes.empty())
+                                   if (at.scene.structure.files.by_modes())
+                                     return std::string("structure.format = \"modes\"");
+                                   if (!imported(at) && !at.scene.structure.files.nodes.empty())
                                      return std::string("no structure.stiffness");
                                    return unless(!at.scene.structure.files.nodes.empty(), "no structure.nodes");
                                  }};

@@ -25,27 +25,27 @@ ChoiceKey deviation_shapes() {
 }
 
 std::vector<KeyRow> track_quality_keys() {
-  return all_of({{{"irregularity.file",
-                   "",
-                   "measured deviations of both rails along x",
-                   FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.irregularity; }},
-                   {},
-                   {&irregularity_zero, &irregularity_outside_run, &irregularity_with_step},
-                   irregularity_left_out},
-                  {"irregularity.spectrum",
-                   "",
-                   "spectrum of a random track",
-                   TextKey{[](SceneDraft& d) -> std::string& { return d.spectrum_name; }, spectrum_names},
-                   {&without_irregularity_file}}},
-                 applying(with_spectrum, {{"irregularity.seed", "1", "seed of the random track",
-                                           IntegerKey{of_spectrum<&SpectrumParameters::seed>, 0, 1000000000}},
-                                          {"irregularity.shortest_wave", "m", "shortest wavelength of the random track",
-                                           NumberKey{of_spectrum<&SpectrumParameters::shortest>, {0.1, 500.0}}},
-                                          {"irregularity.longest_wave", "m", "longest wavelength of the random track",
-                                           NumberKey{of_spectrum<&SpectrumParameters::longest>, {0.1, 500.0}}},
-                                          {"irregularity.fade_in", "m",
-                                           "length from train.start over which the random track rises from zero",
-                                           NumberKey{of_spectrum<&SpectrumParameters::fade_in>, {0.0, 1e4}}}})});
+  return all_of(
+      {{{"irregularity.file",
+         "",
+         "measured deviations of both rails along x",
+         FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.irregularity; }},
+         {},
+         {&irregularity_zero, &irregularity_outside_run, &irregularity_with_step},
+         irregularity_left_out},
+        {"irregularity.spectrum",
+         "",
+         "spectrum of a random track",
+         TextKey{[](SceneDraft& d) -> std::string& { return d.spectrum_name; }, spectrum_names},
+         {&without_irregularity_file}}},
+       applying(with_spectrum,
+                {{"irregularity.seed", "1", "seed", IntegerKey{of_spectrum<&SpectrumParameters::seed>, 0, 1000000000}},
+                 {"irregularity.shortest_wave", "m", "shortest, longest wavelength",
+                  NumberKey{of_spectrum<&SpectrumParameters::shortest>, {0.1, 500.0}}},
+                 {"irregularity.longest_wave", "m", "shortest, longest wavelength",
+                  NumberKey{of_spectrum<&SpectrumParameters::longest>, {0.1, 500.0}}},
+                 {"irregularity.fade_in", "m", "length from train.start over which it rises from zero",
+                  NumberKey{of_spectrum<&SpectrumParameters::fade_in>, {0.0, 1e4}}}})});
 }
 
 std::vector<KeyRow> deviation_keys() {
@@ -76,10 +76,9 @@ std::vector<KeyRow> deviation_keys() {
 }  // namespace
 
 std::vector<KeyRow> irregularity_keys() {
-  return all_of(
-      {track_quality_keys(),
-       {{"span_deviation.shape", "", "shape of the rails over spans that turn as rigid bodies", deviation_shapes()}},
-       applying(with_turning_spans, deviation_keys())});
+  return all_of({track_quality_keys(),
+                 {{"span_deviation.shape", "", "shape of the rails", deviation_shapes()}},
+                 applying(with_turning_spans, deviation_keys())});
 }
 
 }  // namespace railtab::scene

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
@@ -22,12 +25,23 @@ ResultHeader model_header(const VsiModel& model) {
     for (const VehicleBody& body : model.vehicle.bodies) {
       header.body_names.push_back(fmt::format("coach-{}/{}", first_coach + body.coach, body.name));
       header.body_x.push_back(model.vehicle_x[v] + body.position.x() - model.wheelset_x(0, 0.0));
+      header.body_y.push_back(body.position.y());
+      header.body_z.push_back(body.position.z());
     }
   }
   if (model.structure) {
     for (const StructureNode& node : model.structure->nodes) {
       header.node_names.push_back(node.name);
       header.node_x.push_back(node.x);
+      header.node_y.push_back(node.y);
+      header.node_z.push_back(node.z);
+    }
+    const auto known = [](const std::vector<double>& values) {
+      return std::none_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
+    };
+    if (!known(header.node_y) || !known(header.node_z)) {
+      header.node_y.clear();
+      header.node_z.clear();
     }
     for (const std::array<double, 2>& span : model.structure->spans) {
       header.span_from.push_back(span[0]);

@@ -142,7 +142,7 @@ MotionPlane vehicle_plane(const SceneParameters& scene) noexcept {
 MotionPlane structure_plane(const SceneParameters& scene) noexcept {
   const bool aside = std::any_of(scene.spans.begin(), scene.spans.end(),
                                  [](const BridgeParameters& span) { return span.track_offset != 0.0; });
-  const bool imported = !scene.structure.files.stiffness.empty();  // has all its motions
+  const bool imported = scene.structure.files.given();  // has all its motions
   return aside || imported ? MotionPlane::spatial : vehicle_plane(scene);
 }
 

@@ -61,22 +61,40 @@ Broken nodes_of_imported_rails(Scene scene) {
 Broken matrices_of_imported_bridge(Scene scene) {
   const FeFiles& files = scene.structure.files;
   const bool described = scene.structure.deck.given() || !files.mass.empty() || !files.nodes.empty();
-  if (scene.track_kind != TrackKind::flexible || !files.stiffness.empty() || !described) return {};
+  if (scene.track_kind != TrackKind::flexible || files.given() || !described) return {};
   return Violation{"structure", "no structure.stiffness", "its matrices, or a [[bridge]] alone"};
 }
 
 bool track_on_imported_bridge(Scene scene) {
-  return scene.track_kind == TrackKind::flexible && !scene.structure.files.stiffness.empty();
+  return scene.track_kind == TrackKind::flexible && scene.structure.files.given();
+}
+
+/// The key that says that a bridge is imported.
+std::string key_of_import(Scene scene) {
+  return scene.structure.files.by_modes() ? "structure.format" : "structure.stiffness";
+}
+
+Broken track_on_modes(Scene scene) {
+  if (!scene.structure.files.by_modes() || scene.track_kind != TrackKind::imported) return {};
+  return Violation{"track.kind", "\"imported\" with structure.format = \"modes\"",
+                   "\"flexible\": modes describe the deck, and railtab lays its own track on it"};
+}
+
+Broken ground_under_modes(Scene scene) {
+  if (!scene.structure.files.by_modes() || scene.ground_motion.empty()) return {};
+  return Violation{entry("ground_motion", 0, scene.ground_motion.size()),
+                   "ground motion under a structure by modes, whose supports are not known",
+                   "the structure's matrices (structure.format = \"calculix\", \"ansys\" or \"matrix-market\")"};
 }
 
 Broken one_bridge_under_track(Scene scene) {
   if (!track_on_imported_bridge(scene) || scene.spans.empty()) return {};
-  return Violation{"structure.stiffness", "a [[bridge]] too", "one of them under the track"};
+  return Violation{key_of_import(scene), "a [[bridge]] too", "one of them under the track"};
 }
 
 Broken deck_of_imported_bridge(Scene scene) {
   if (!track_on_imported_bridge(scene) || scene.structure.deck.given()) return {};
-  return Violation{"structure.stiffness", "no structure.deck",
+  return Violation{key_of_import(scene), "no structure.deck",
                    "the deck's nodes, which carry the track, or track.kind = \"imported\""};
 }
 
@@ -237,6 +255,8 @@ const std::vector<SceneRule>& scene_rules() {
       {"an imported bridge has matrices", matrices_of_imported_bridge},
       {"track lies on an imported bridge or on a [[bridge]]", one_bridge_under_track},
       {"an imported bridge has a deck", deck_of_imported_bridge},
+      {"modes carry railtab's track", track_on_modes},
+      {"modes have no supports", ground_under_modes},
       {"energy is that of contact springs", energy_of_contact_springs},
       {"a load has a file or components", one_source_of_a_load},
       {"a gust has components", gust_without_file},

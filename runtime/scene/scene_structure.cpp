@@ -11,7 +11,7 @@
 namespace railtab {
 
 bool track_on_import(const SceneParameters& scene) noexcept {
-  return scene.track_kind == TrackKind::flexible && !scene.structure.files.stiffness.empty();
+  return scene.track_kind == TrackKind::flexible && scene.structure.files.given();
 }
 
 StructureModel build_structure(const SceneParameters& scene) {
@@ -26,7 +26,7 @@ StructureModel build_structure(const SceneParameters& scene) {
     return import_structure({files.mass, files.damping, files.stiffness, files.dofs});
   }
   if (track_on_import(scene)) return build_track_on_import(scene.track, scene.structure);
-  return build_track_bridge(scene.track, scene.spans, structure_plane(scene));
+  return build_track_bridge(scene.track, scene.spans, structure_plane(scene), scene.structure.report);
 }
 
 }  // namespace railtab

@@ -31,8 +31,7 @@ std::string bridge_left_out(const SceneParameters& scene) {
 KeyRow track_kind_key() {
   return {"track.kind",
           "",
-          "rigid: rails that do not move; flexible: rails, sleepers and ballast; imported: rails of an imported "
-          "structure",
+          "flexible: rails, sleepers, ballast; imported: rails of an imported structure",
           choice<TrackKind>(
               [](SceneDraft& d) -> TrackKind& { return d.parameters.track_kind; },
               {{"rigid", TrackKind::rigid}, {"flexible", TrackKind::flexible}, {"imported", TrackKind::imported}}),
@@ -51,14 +50,13 @@ std::vector<KeyRow> layout_keys() {
        IntegerKey{of_track<&TrackParameters::elements_per_bay>, 1, 20}},
       {"track.length_before", "m", "track before x = 0, rounded up to whole bays",
        NumberKey{of_track<&TrackParameters::length_before>, {0.1, 1e4}}},
-      {"track.length_after", "m", "track after the last span, or after x = 0 without a bridge",
+      {"track.length_after", "m", "track after the last span, or x = 0",
        NumberKey{of_track<&TrackParameters::length_after>, {0.1, 1e4}}},
-      {"track.pad_roll_stiffness", "N m/rad", "rotational stiffness of one pad about x",
+      {"track.pad_roll_stiffness", "N m/rad", "of one pad about x",
        NumberKey{of_track<&TrackParameters::pad_roll_stiffness>, {1.0, 1e12}}},
-      {"track.pad_roll_damping", "N m s/rad", "rotational damping of one pad about x",
+      {"track.pad_roll_damping", "N m s/rad", "of one pad about x",
        NumberKey{of_track<&TrackParameters::pad_roll_damping>, {0.0, 1e9}}},
-      {"track.half_ballast_distance", "m",
-       "distance of the ballast springs under the sleeper halves from the track centre",
+      {"track.half_ballast_distance", "m", "distance of the ballast springs from the track centre",
        NumberKey{of_track<&TrackParameters::half_ballast_distance>, {0.1, 3.0}}},
   };
 }
@@ -69,9 +67,9 @@ std::vector<KeyRow> rail_keys() {
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::E>, {1e10, 1e13}}},
       {"track.rail.A", "m²", "cross-sectional area",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::A>, {1e-4, 1.0}}},
-      {"track.rail.Iy", "m⁴", "second moment of area, vertical bending",
+      {"track.rail.Iy", "m⁴", "second moments of area, vertical and lateral bending",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iy>, {1e-8, 0.1}}},
-      {"track.rail.Iz", "m⁴", "second moment of area, lateral bending",
+      {"track.rail.Iz", "m⁴", "second moments of area, vertical and lateral bending",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::Iz>, {1e-8, 0.1}}},
       {"track.rail.GJ", "N m²", "torsional stiffness",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::GJ>, {100.0, 1e12}}},
@@ -79,28 +77,28 @@ std::vector<KeyRow> rail_keys() {
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass>, {1.0, 1e4}}},
       {"track.rail.rotary_inertia", "kg m²/m", "rotary inertia about x, per length",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::rotary_inertia>, {1e-4, 1e3}}},
-      {"track.rail.height", "m", "height from rail foot to rail-head top",
+      {"track.rail.height", "m", "height from foot to top",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::height>, {0.01, 1.0}}},
-      {"track.rail.head_height", "m", "height of the rail-head top above the centroid, at most track.rail.height",
+      {"track.rail.head_height", "m", "height of the top above the centroid, at most track.rail.height",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::head_height>, {0.001, 1.0}}},
-      {"track.rail.mass_damping", "1/s", "coefficient of the mass in Rayleigh damping",
+      {"track.rail.mass_damping", "1/s", "Rayleigh damping, of the mass",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass_damping>, {0.0, 1e4}}},
-      {"track.rail.stiffness_damping", "s", "coefficient of the stiffness in Rayleigh damping",
+      {"track.rail.stiffness_damping", "s", "Rayleigh damping, of the stiffness",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::stiffness_damping>, {0.0, 1.0}}},
   };
 }
 
 std::vector<KeyRow> sleeper_keys() {
   return {
-      {"track.sleeper.mass", "kg", "mass of a sleeper",
+      {"track.sleeper.mass", "kg", "mass",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::mass>, {1.0, 1e5}}},
-      {"track.sleeper.Jx", "kg m²", "moment of inertia about x",
+      {"track.sleeper.Jx", "kg m²", "moments of inertia",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jx>, {0.01, 1e5}}},
-      {"track.sleeper.Jy", "kg m²", "moment of inertia about y",
+      {"track.sleeper.Jy", "kg m²", "moments of inertia",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jy>, {0.01, 1e5}}},
-      {"track.sleeper.Jz", "kg m²", "moment of inertia about z",
+      {"track.sleeper.Jz", "kg m²", "moments of inertia",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::Jz>, {0.01, 1e5}}},
-      {"track.sleeper.height", "m", "height of a sleeper",
+      {"track.sleeper.height", "m", "height",
        NumberKey{of_track<&TrackParameters::sleeper, &SleeperParameters::height>, {0.01, 2.0}}},
   };
 }
@@ -112,22 +110,21 @@ constexpr Range spring{1e5, 1e13}, damper{0.0, 1e9};
 template <SupportParameters TrackParameters::*layer>
 std::vector<KeyRow> support_keys(const std::array<std::string_view, 6>& paths) {
   return {
-      {paths[0], "N/m", "longitudinal stiffness", NumberKey{of_track<layer, &SupportParameters::kx>, spring}},
-      {paths[1], "N/m", "lateral stiffness", NumberKey{of_track<layer, &SupportParameters::ky>, spring}},
-      {paths[2], "N/m", "vertical stiffness", NumberKey{of_track<layer, &SupportParameters::kz>, spring}},
-      {paths[3], "N s/m", "longitudinal damping", NumberKey{of_track<layer, &SupportParameters::cx>, damper}},
-      {paths[4], "N s/m", "lateral damping", NumberKey{of_track<layer, &SupportParameters::cy>, damper}},
-      {paths[5], "N s/m", "vertical damping", NumberKey{of_track<layer, &SupportParameters::cz>, damper}},
+      {paths[0], "N/m", "stiffness", NumberKey{of_track<layer, &SupportParameters::kx>, spring}},
+      {paths[1], "N/m", "stiffness", NumberKey{of_track<layer, &SupportParameters::ky>, spring}},
+      {paths[2], "N/m", "stiffness", NumberKey{of_track<layer, &SupportParameters::kz>, spring}},
+      {paths[3], "N s/m", "damping", NumberKey{of_track<layer, &SupportParameters::cx>, damper}},
+      {paths[4], "N s/m", "damping", NumberKey{of_track<layer, &SupportParameters::cy>, damper}},
+      {paths[5], "N s/m", "damping", NumberKey{of_track<layer, &SupportParameters::cz>, damper}},
   };
 }
 
 std::vector<KeyRow> span_keys() {
   return {
-      {"bridge.count", "1", "number of equal spans that this [[bridge]] stands for",
-       IntegerKey{[](SceneDraft& d) -> int& { return d.span_count; }, 1, 1000}},
+      {"bridge.count", "1", "equal spans", IntegerKey{[](SceneDraft& d) -> int& { return d.span_count; }, 1, 1000}},
       {"bridge.length",
        "m",
-       "length of the span",
+       "length",
        NumberKey{of_span<&BridgeParameters::length>, {0.5, 1e3}},
        {},
        {},
@@ -135,9 +132,9 @@ std::vector<KeyRow> span_keys() {
       {"bridge.E", "Pa", "Young's modulus", NumberKey{of_span<&BridgeParameters::E>, {1e9, 1e13}}},
       {"bridge.G", "Pa", "shear modulus", NumberKey{of_span<&BridgeParameters::G>, {1e8, 1e13}}},
       {"bridge.A", "m²", "cross-sectional area", NumberKey{of_span<&BridgeParameters::A>, {1e-3, 1e4}}},
-      {"bridge.Iy", "m⁴", "second moment of area, vertical bending",
+      {"bridge.Iy", "m⁴", "second moments of area, vertical and lateral bending",
        NumberKey{of_span<&BridgeParameters::Iy>, {1e-6, 1e5}}},
-      {"bridge.Iz", "m⁴", "second moment of area, lateral bending",
+      {"bridge.Iz", "m⁴", "second moments of area, vertical and lateral bending",
        NumberKey{of_span<&BridgeParameters::Iz>, {1e-6, 1e5}}},
       {"bridge.J", "m⁴", "torsion constant", NumberKey{of_span<&BridgeParameters::J>, {1e-8, 1e5}}},
       {"bridge.mass", "kg/m", "mass per length with ballast and superimposed load, without rails and sleepers",
@@ -146,14 +143,14 @@ std::vector<KeyRow> span_keys() {
        NumberKey{of_span<&BridgeParameters::rotary_inertia>, {0.1, 1e9}}},
       {"bridge.damping_ratio",
        "1",
-       "fraction of critical damping at the first two vertical bending frequencies",
+       "damping ratio at the first two vertical bending frequencies",
        NumberKey{of_span<&BridgeParameters::damping_ratio>, {0.0, 0.5}},
        {&without_damping_type}},
-      {"bridge.damping_type", "", "type of bridge, for the lower bound of the damping ratio of EN 1991-2, Table 6.6",
+      {"bridge.damping_type", "", "lower bound of the damping ratio, EN 1991-2, Table 6.6",
        TextKey{[](SceneDraft& d) -> std::string& { return d.span_damping_type; }, bridge_damping_types}},
       {"bridge.elements", "1", "beam elements of the span, an even number",
        IntegerKey{of_span<&BridgeParameters::elements>, 2, 1000}},
-      {"bridge.axis_depth", "m", "depth of the beam axis below the rail-head tops, negative where it is above",
+      {"bridge.axis_depth", "m", "depth of the beam axis below the rail-head tops",
        NumberKey{of_span<&BridgeParameters::axis_depth>, {-100.0, 100.0}}},
       {"bridge.track_offset", "m", "distance of the track centre from the beam axis, to the right",
        NumberKey{of_span<&BridgeParameters::track_offset>, {-100.0, 100.0}}},
@@ -163,9 +160,9 @@ std::vector<KeyRow> span_keys() {
 std::vector<KeyRow> reduction_rows() {
   return {
       {"structure.reduction", "", "active degrees of freedom: all, or those around the train", ReductionKey{}},
-      {"structure.window_ahead", "m", "active track ahead of the first wheelset",
+      {"structure.window_ahead", "m", "active track ahead of the first, behind the last wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.ahead; }, {5.0, 1e5}}},
-      {"structure.window_behind", "m", "active track behind the last wheelset",
+      {"structure.window_behind", "m", "active track ahead of the first, behind the last wheelset",
        NumberKey{[](SceneDraft& d) -> double& { return d.parameters.reduction.behind; }, {5.0, 1e5}}},
   };
 }

@@ -1,5 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/bridge.hpp"
@@ -77,6 +82,24 @@ DeckAttachment attachment(const DeckLine& deck, const BridgeParameters& span, do
           {0, span.track_offset + y, z - span.axis_depth}};
 }
 
+StructureNode deck_node(std::string name, const BridgeParameters& span, const DeckLine& deck, std::size_t i) {
+  return {std::move(name), deck.x[i], deck.dof[i], -span.track_offset, span.axis_depth};
+}
+
+/// The node nearest to x that is no support: those move with the ground.
+StructureNode reported(double x, const std::vector<BridgeParameters>& spans, const std::vector<DeckLine>& decks) {
+  for (std::size_t s = 0; s < decks.size(); ++s) {
+    const std::vector<double>& nodes = decks[s].x;
+    if (x < nodes.front() || x > nodes.back()) continue;
+    const double element = spans[s].length / spans[s].elements;
+    const double nearest = std::clamp(std::round((x - nodes.front()) / element), 1.0, spans[s].elements - 1.0);
+    return deck_node(fmt::format("deck-{}", x), spans[s], decks[s], static_cast<std::size_t>(nearest));
+  }
+  throw input_error(
+      "structure.report", fmt::format("{} m", x),
+      decks.empty() ? "a [[bridge]] that has decks" : fmt::format("0 to {:.6g} m, the bridge", decks.back().x.back()));
+}
+
 }  // namespace
 
 DofIndices supported_node(double x, std::vector<double>& support_x) {
@@ -85,7 +108,7 @@ DofIndices supported_node(double x, std::vector<double>& support_x) {
   return {held, support_dof(column), support_dof(column + 1), held, held, held};
 }
 
-Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane) {
+Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane, const std::vector<double>& report) {
   Bridge bridge;
   std::vector<DeckLine> decks;
   for (std::size_t s = 0; s < spans.size(); ++s) {
@@ -98,12 +121,14 @@ Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane
     const RayleighDamping damping = rayleigh_damping(span.damping_ratio, omega_1, omega_2);
     add_beam(bridge.matrices, deck.x, deck.dof, section, damping);
     damp_against_supports(bridge.matrices, deck, section, damping.mass_factor);
-    const size_t middle = deck.x.size() / 2;
-    bridge.nodes.push_back({fmt::format("deck-midspan-{}", s + 1), deck.x[middle], deck.dof[middle]});
+    if (report.empty()) {
+      bridge.nodes.push_back(deck_node(fmt::format("deck-midspan-{}", s + 1), span, deck, deck.x.size() / 2));
+    }
     bridge.spans.push_back({deck.x.front(), deck.x.back()});
     bridge.end = deck.x.back();
     decks.push_back(deck);
   }
+  for (const double x : report) bridge.nodes.push_back(reported(x, spans, decks));
   bridge.attach = [decks, spans](double x, double y, double z) -> std::optional<DeckAttachment> {
     for (std::size_t s = 0; s < decks.size(); ++s) {
       if (decks[s].x.front() <= x && x < decks[s].x.back()) return attachment(decks[s], spans[s], x, y, z);

@@ -26,6 +26,7 @@ struct Bridge {
   std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
   std::string beyond_supports;               // StructureSupports::beyond
   std::vector<std::string> warnings;         // on what was imported
+  std::vector<std::string> left_out{};       // StructureModel::left_out
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
   /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;
@@ -33,8 +34,11 @@ struct Bridge {
   std::function<std::optional<DeckAttachment>(double x, double y, double z)> attach;
 };
 
-/// Simply supported beam spans from x = 0. @throws InputError naming the key
-[[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane);
+/// Simply supported beam spans from x = 0.
+/// @param report positions along the track whose nearest beam node between supports is reported; empty: midspans [m]
+/// @throws InputError naming the key
+[[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane,
+                                 const std::vector<double>& report = {});
 
 /// Rails on pads, sleepers and ballast, laid over a bridge and on to the ground before and after it. The one place
 /// where track and bridge are put together. @throws InputError naming the key

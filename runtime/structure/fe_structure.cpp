@@ -26,6 +26,7 @@ Sparse read_matrix(const FeFiles& files, const std::filesystem::path& file, int 
     case FeFormat::ansys:
       return symmetric_mean(file, read_harwell_boeing(file), rows);
     case FeFormat::matrix_market:
+    case FeFormat::modes:  // has no matrices
       break;
   }
   return symmetric_mean(file, read_matrix_market(file), rows);
@@ -38,6 +39,7 @@ std::vector<FeRow> read_rows(const FeFiles& files) {
     case FeFormat::ansys:
       return read_ansys_rows(files.dofs);
     case FeFormat::matrix_market:
+    case FeFormat::modes:  // has no matrices
       break;
   }
   return read_row_table(files.dofs);

@@ -16,14 +16,19 @@
 namespace railtab {
 
 /// Which program's files these are.
-enum class FeFormat { matrix_market, calculix, ansys };
+enum class FeFormat { matrix_market, calculix, ansys, modes };
 
-/// Files of a finite-element model. `dofs` says what the rows are, `nodes` where the nodes stand.
+/// Files of a finite-element model. `dofs` says what the rows are, `nodes` where the nodes stand. With
+/// FeFormat::modes natural modes take the place of matrices and rows.
 struct FeFiles {
   FeFormat format = FeFormat::matrix_market;
   std::filesystem::path mass, stiffness;
   std::filesystem::path damping;  ///< empty: none
   std::filesystem::path dofs, nodes;
+  std::filesystem::path modes{}, shapes{};  ///< table of the modes, and their shapes at nodes
+  std::filesystem::path flexibility{};      ///< of the whole structure at nodes; empty: not known
+  [[nodiscard]] bool given() const noexcept { return !stiffness.empty() || by_modes(); }
+  [[nodiscard]] bool by_modes() const noexcept { return format == FeFormat::modes; }
 };
 
 /// Some of a mesh's nodes: a named set, or those in a box.

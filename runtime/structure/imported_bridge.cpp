@@ -11,9 +11,11 @@
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/fe_supports.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
+#include "railtab/runtime/structure/modal_bridge.hpp"
 
 namespace railtab {
 
@@ -51,24 +53,9 @@ StructureSupports settled_supports(const FeStructure& structure, const FeDamping
 }
 
 StructureNode reported(std::string name, const FeNode& node) {
-  StructureNode result{std::move(name), node.position[0], {}};
+  StructureNode result{std::move(name), node.position[0], {}, node.position[1], node.position[2]};
   for (std::size_t k = 0; k < 6; ++k) result.dof[k] = node.rows[k].empty() ? held : node.rows[k].front();
   return result;
-}
-
-/// The node nearest to the track's centre at x.
-const FeNode& nearest(const FeStructure& structure, const std::vector<int>& nodes, double x) {
-  const FeNode* best = nullptr;
-  double least = INFINITY;
-  for (int number : nodes) {
-    const FeNode& node = structure.nodes.at(number);
-    const double distance = std::hypot(node.position[0] - x, node.position[1]);
-    if (distance < least) {
-      least = distance;
-      best = &node;
-    }
-  }
-  return *best;
 }
 
 /// Of every row along the track; an element's inner mode stands where the last of its nodes does.
@@ -90,23 +77,6 @@ std::vector<double> positions(const FeStructure& structure) {
 /// A place whose distance from zero is what turning axes and units leaves [m].
 double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
 
-/// Wrong units, axes or origins show where the deck stands.
-void check_place(const FeStructure& structure, const std::vector<int>& deck, const Bridge& bridge, double begin) {
-  constexpr double shortest = 0.5, longest = 1e5, highest = -0.5, lowest = 60.0;  // [m]
-  if (!(bridge.end - begin >= shortest && bridge.end - begin <= longest)) {
-    throw input_error(
-        "structure.deck", fmt::format("a deck from x = {:.4g} m to {:.4g} m", without_rounding(begin), bridge.end),
-        fmt::format("{} m to {:.0f} km of it: see structure.units and structure.axes", shortest, 1e-3 * longest));
-  }
-  for (int number : deck) {
-    const double z = structure.nodes.at(number).position[2];
-    if (z >= highest && z <= lowest) continue;
-    throw input_error(fmt::format("structure.deck: node {}", number),
-                      fmt::format("{:.4g} m {} the rail-head tops", std::abs(z), z < 0.0 ? "above" : "below"),
-                      "a deck below the track: see structure.origin, structure.axes and structure.units");
-  }
-}
-
 Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
   Bridge bridge;
@@ -124,25 +94,13 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   bridge.support_x = supports.x;
   bridge.beyond_supports = supports.beyond;
   bridge.dof_x = positions(structure);
-  double begin = INFINITY;
-  bridge.end = -INFINITY;
-  for (int number : deck) {
-    begin = std::min(begin, structure.nodes.at(number).position[0]);
-    bridge.end = std::max(bridge.end, structure.nodes.at(number).position[0]);
-  }
-  check_place(structure, deck, bridge, begin);
+  const DeckExtent extent = deck_extent(structure, deck);
+  bridge.end = extent.end;
   const auto [low, high] = std::minmax_element(bridge.dof_x.begin(), bridge.dof_x.end());
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
-  bridge.spans.push_back({std::min(begin, *low) - rounding, std::max(bridge.end, *high) + rounding});
-  for (double x : parameters.report) {
-    if (x < begin || x > bridge.end) {
-      throw input_error("structure.report", fmt::format("{} m", x),
-                        fmt::format("{:.6g} to {:.6g} m, the deck", without_rounding(begin), bridge.end));
-    }
-    bridge.nodes.push_back(reported(fmt::format("deck-{}", x), nearest(structure, deck, x)));
-  }
-  if (parameters.report.empty()) {
-    bridge.nodes.push_back(reported("deck-midspan-1", nearest(structure, deck, 0.5 * (begin + bridge.end))));
+  bridge.spans.push_back({std::min(extent.begin, *low) - rounding, std::max(bridge.end, *high) + rounding});
+  for (const ReportedDeckNode& node : reported_deck_nodes(structure, deck, parameters.report)) {
+    bridge.nodes.push_back(reported(node.name, structure.nodes.at(node.number)));
   }
   return bridge;
 }
@@ -192,6 +150,14 @@ RayleighDamping rayleigh(const FeStructure& structure, const FeDamping& damping,
 }  // namespace
 
 void ImportParameters::validate() const {
+  if (files.by_modes()) {
+    for (const auto& [file, key] : {std::pair{&files.modes, "structure.mode_table"},
+                                    {&files.shapes, "structure.mode_shapes"},
+                                    {&files.nodes, "structure.nodes"}}) {
+      if (file->empty()) throw input_error(key, "no file", "a file of the modes of the finite-element model");
+    }
+    return;  // read_modal_structure() knows whether their table has damping
+  }
   for (const auto& [file, key] : {std::pair{&files.mass, "structure.mass"},
                                   {&files.stiffness, "structure.stiffness"},
                                   {&files.dofs, "structure.dofs"},
@@ -270,6 +236,7 @@ std::vector<std::string> plausibility_warnings(double mass_per_length, double fi
 
 StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
   parameters.validate();
+  if (parameters.files.by_modes()) return lay_track(track, modal_bridge(parameters), MotionPlane::spatial);
   FeStructure structure = read_on_supports(parameters);
   require_held(structure);
   return lay_track(track, bridge_of(std::move(structure), parameters), MotionPlane::spatial);
@@ -291,7 +258,8 @@ StructureModel import_with_rails(const ImportParameters& parameters) {
   if (parameters.deck.given()) {
     const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
     for (double x : parameters.report) {
-      model.nodes.push_back(reported(fmt::format("deck-{}", x), nearest(structure, deck, x)));
+      model.nodes.push_back(
+          reported(fmt::format("deck-{}", x), structure.nodes.at(nearest_deck_node(structure, deck, x))));
     }
   }
   return model;

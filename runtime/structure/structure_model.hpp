@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct StructureNode {
   std::string name;
   double x = 0.0;  ///< position along the track [m]
   DofIndices dof;
+  /// Right of the track's centre and below the rail-head tops [m]; NaN: not known.
+  double y = std::numeric_limits<double>::quiet_NaN(), z = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Where the ground holds a structure. With the dofs u and the supports' translations s, y and z of each in turn,
@@ -68,6 +71,7 @@ struct StructureModel {
   std::vector<std::array<double, 2>> spans;
   StructureSupports supports;
   std::vector<std::string> warnings{};  ///< of an imported structure that is unlike any bridge
+  std::vector<std::string> left_out{};  ///< for the plan: what modes lack of the structure that they come from
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
 

@@ -1,5 +1,6 @@
 #include "railtab/runtime/structure/structure_summary.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -34,6 +35,15 @@ void add_modes(const Eigen::SparseMatrix<double>& mass, const Eigen::SparseMatri
   }
 }
 
+void set_corners(const FeStructure& structure, StructureSummary& summary) {
+  summary.low.setConstant(INFINITY);
+  summary.high.setConstant(-INFINITY);
+  for (const auto& [number, node] : structure.nodes) {
+    summary.low = summary.low.cwiseMin(node.position);
+    summary.high = summary.high.cwiseMax(node.position);
+  }
+}
+
 }  // namespace
 
 StructureSummary summarise(const FeStructure& structure, const FeDamping& damping, int modes) {
@@ -41,12 +51,7 @@ StructureSummary summarise(const FeStructure& structure, const FeDamping& dampin
   StructureSummary summary;
   summary.dofs = structure.dofs();
   summary.nodes = static_cast<long>(structure.nodes.size());
-  summary.low.setConstant(INFINITY);
-  summary.high.setConstant(-INFINITY);
-  for (const auto& [number, node] : structure.nodes) {
-    summary.low = summary.low.cwiseMin(node.position);
-    summary.high = summary.high.cwiseMax(node.position);
-  }
+  set_corners(structure, summary);
   for (int k = 0; k < 3; ++k) {
     const Eigen::VectorXd v = translation(structure, k);
     summary.mass[k] = v.dot(structure.mass * v);
@@ -54,6 +59,20 @@ StructureSummary summarise(const FeStructure& structure, const FeDamping& dampin
   for (const FreeMotion& motion : free_motions(structure)) summary.free.push_back(motion.text);
   if (!summary.free.empty() || modes == 0) return summary;
   add_modes(structure.mass, damping_matrix(structure, damping).of_unknowns, structure.stiffness, modes, summary);
+  return summary;
+}
+
+StructureSummary summarise(const ModalStructure& structure, int modes) {
+  assert(modes >= 0);
+  StructureSummary summary;
+  summary.dofs = structure.omega.size();
+  summary.nodes = static_cast<long>(structure.at.nodes.size());
+  set_corners(structure.at, summary);
+  summary.mass.setConstant(NAN);
+  for (Eigen::Index m = 0; m < std::min<Eigen::Index>(modes, structure.omega.size()); ++m) {
+    summary.frequencies.push_back(structure.omega[m] / (2.0 * std::numbers::pi));
+    summary.damping_ratios.push_back(structure.damping[m]);
+  }
   return summary;
 }
 

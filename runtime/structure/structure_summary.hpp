@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "railtab/runtime/structure/imported_bridge.hpp"
+#include "railtab/runtime/structure/modal_bridge.hpp"
 
 namespace railtab {
 
@@ -21,6 +22,9 @@ struct StructureSummary {
 /// An imported structure without railtab's track. Where a node is expanded, whose rows stand around it, it is not known
 /// where, a free rotation has no name but the node that moves most. @pre modes >= 0
 [[nodiscard]] StructureSummary summarise(const FeStructure& structure, const FeDamping& damping, int modes);
+
+/// A structure by modes: its moving mass is not known (NaN), and `modes` of its frequencies, lowest first, are given.
+[[nodiscard]] StructureSummary summarise(const ModalStructure& structure, int modes);
 
 /// Built-in spans without their track; the mass is that of their whole length. @pre modes >= 0
 [[nodiscard]] StructureSummary summarise(const std::vector<BridgeParameters>& spans, int modes);

@@ -17,6 +17,7 @@ namespace {
 struct NodeLine {
   std::vector<double> x;
   std::vector<DofIndices> dof;
+  double y = 0.0, z = 0.0;  // right of the track's centre, below the rail-head tops [m]
 };
 
 struct TrackNodes {
@@ -44,7 +45,10 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPl
     rail.dof.push_back(free);
   }
   rail.dof.front() = rail.dof.back() = {held, free[1], free[2], free[3], held, held};
+  rail.z = track.rail.head_height;
   nodes.rail = {rail, rail};
+  nodes.rail[0].y = -track.half_rail_distance;
+  nodes.rail[1].y = track.half_rail_distance;
   return nodes;
 }
 
@@ -142,7 +146,7 @@ StructureNode nearest_node(std::string name, const NodeLine& line, double x) {
   for (size_t i = 1; i < line.x.size(); ++i) {
     if (std::abs(line.x[i] - x) < std::abs(line.x[nearest] - x)) nearest = i;
   }
-  return {std::move(name), line.x[nearest], line.dof[nearest]};
+  return {std::move(name), line.x[nearest], line.dof[nearest], line.y, line.z};
 }
 
 /// The bridge's nodes of interest, each with the rails above it; without a bridge the rails at the origin.
@@ -221,6 +225,7 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
   model.dof_x = std::move(bridge.dof_x);
   model.spans = std::move(bridge.spans);
   model.warnings = std::move(bridge.warnings);
+  model.left_out = std::move(bridge.left_out);
   for (size_t side = 0; side < 2; ++side) {
     model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, rail.head_height};
   }
@@ -228,8 +233,8 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
 }
 
 StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans,
-                                  MotionPlane plane) {
-  return lay_track(track, beam_bridge(spans, plane), plane);
+                                  MotionPlane plane, const std::vector<double>& report) {
+  return lay_track(track, beam_bridge(spans, plane, report), plane);
 }
 
 }  // namespace railtab

@@ -90,13 +90,16 @@ struct BridgeParameters {
 /// ends of the model the rails' x, pitch and yaw are held (symmetry: the track goes on beyond), all else is free.
 ///
 /// Named nodes, spans counted from 1: "deck-midspan-<i>" (beam axis), "rail-left-midspan-<i>" and
-/// "rail-right-midspan-<i>" (nearest rail node); without a span "rail-left-origin" and "rail-right-origin" at x = 0.
+/// "rail-right-midspan-<i>" (nearest rail node); with `report`, positions along the track [m], "deck-<x>",
+/// "rail-left-<x>" and "rail-right-<x>" in their place; without a span "rail-left-origin" and "rail-right-origin" at
+/// x = 0.
 /// Displacements are measured from the state of rest under the structure's own weight. Supports: the ground under every
 /// sleeper that stands on it, and both ends of every span, which the ground moves along y and z.
 /// @pre no span with a track offset where only the vertical plane is built
 /// @throws InputError naming the key
 [[nodiscard]] StructureModel build_track_bridge(const TrackParameters& track,
                                                 const std::vector<BridgeParameters>& spans,
-                                                MotionPlane plane = MotionPlane::spatial);
+                                                MotionPlane plane = MotionPlane::spatial,
+                                                const std::vector<double>& report = {});
 
 }  // namespace railtab

@@ -52,8 +52,10 @@ struct ResultHeader {
   std::vector<double> static_wheel_load;  ///< [N] per wheel
   std::vector<std::string> body_names;    ///< "coach-1/car-body", ...
   std::vector<double> body_x;             ///< offset of each body behind the first wheelset; empty in older files [m]
+  std::vector<double> body_y, body_z;     ///< right of the track's centre, below the rail-head tops; likewise [m]
   std::vector<std::string> node_names;
   std::vector<double> node_x;                            ///< [m]
+  std::vector<double> node_y, node_z;                    ///< as of bodies; empty where one is not known [m]
   std::vector<double> span_from, span_to;                ///< of the bridge's spans along the track [m]
   std::string wheel_profile, rail_profile;               ///< names
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]

@@ -46,6 +46,20 @@ void take_bridge(const ImportParameters& parameters) {
   }
 }
 
+void take_modes(const Path& file, const Path& modes, const Path& shapes) {
+  ImportParameters p = bridge_files(file);
+  p.files = {};
+  p.files.format = FeFormat::modes;
+  p.files.nodes = beside(file, "bridge_nodes.inp");
+  p.files.modes = modes;
+  p.files.shapes = shapes;
+  p.damping = {};
+  TrackParameters track;
+  track.length_before = track.length_after = 3.0;
+  const StructureModel model = build_track_on_import(track, p);
+  require_finite({model.mass.sum(), model.damping.sum(), model.stiffness.sum()}, "a matrix of a bridge by modes");
+}
+
 void take_vehicle(const Path& stiffness, const Path& dofs) {
   VehicleImport p;
   p.mass = beside(dofs, "vehicle_mass.mtx");
@@ -81,6 +95,9 @@ void read_node_file(const Path& file) {
   static_cast<void>(read_fe_mesh(file));
   take_bridge(bridge);
 }
+
+void read_mode_file(const Path& file) { take_modes(file, file, beside(file, "bridge_shapes.csv")); }
+void read_shape_file(const Path& file) { take_modes(file, beside(file, "bridge_modes.csv"), file); }
 
 void read_vehicle_file(const Path& file) { take_vehicle(beside(file, "vehicle_stiffness.mtx"), file); }
 void read_vehicle_stiffness(const Path& file) { take_vehicle(file, beside(file, "vehicle_dofs.csv")); }

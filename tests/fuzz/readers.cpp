@@ -70,6 +70,8 @@ const std::vector<Reader>& readers() {
       {"ansys_rows", ".mapping", [](const Path& file) { static_cast<void>(read_ansys_rows(file)); }},
       {"row_table", ".csv", read_row_file},
       {"fe_mesh", ".inp", read_node_file},
+      {"mode_table", ".csv", read_mode_file},
+      {"mode_shapes", ".csv", read_shape_file},
       {"structure_dofs", ".csv", read_structure_table},
       {"vehicle_dofs", ".csv", read_vehicle_file},
       {"vehicle_stiffness", ".mtx", read_vehicle_stiffness},

@@ -38,6 +38,9 @@ void read_structure_table(const Path& file);
 /// A bridge by the table of its rows, by its nodes; what else it needs stays.
 void read_row_file(const Path& file);
 void read_node_file(const Path& file);
+/// The same bridge by two modes: by their table, by their shapes.
+void read_mode_file(const Path& file);
+void read_shape_file(const Path& file);
 /// A vehicle by the table of its rows, or by its stiffness.
 void read_vehicle_file(const Path& file);
 void read_vehicle_stiffness(const Path& file);

@@ -39,6 +39,8 @@ TEST_F(FirstMinute, EveryKindOfFileIsNamedWithItsCommands) {
   expect_said("wheel.prw", {"a wheel profile", "> tablegen geometry --wheel wheel.prw"});
   write("q.csv", "ratio,ux,uy,phi\n1,0,0,0\n");
   expect_said("q.csv", {"queries of creep forces", "> vsi creep --query q.csv"});
+  write("modes.csv", "mode,frequency,mass\n1,5,1\n");
+  expect_said("modes.csv", {"natural modes of a structure", "> a scene's structure.mode_table = \"modes.csv\""});
   const nlohmann::json json = nlohmann::json::parse(vsi("r.h5 --json").output);
   EXPECT_EQ(json["kind"], "results of a run");
   EXPECT_EQ(json["commands"][0], "vsi report r.h5 -o report.html");

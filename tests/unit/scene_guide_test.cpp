@@ -68,14 +68,14 @@ std::string values_of(const SceneKey& key) {
   return key.type == "choice" || key.type == "profile" || key.type == "vehicle" ? key.range : key.type;
 }
 
-/// Conditions of more than two thirds of the keys: the heading of the table names them once.
+/// Conditions of more than half of the keys: the heading of the table names them once.
 Cells shared_conditions(const std::vector<SceneKey>& keys) {
   Cells shared;
   for (const SceneKey& key : keys) {
     for (const std::string& condition : key.applies) {
       const auto holds = [&](const SceneKey& k) { return std::ranges::count(k.applies, condition) > 0; };
       const bool known = std::ranges::count(shared, condition) > 0;
-      if (!known && 3 * std::ranges::count_if(keys, holds) > 2 * std::ssize(keys)) shared.push_back(condition);
+      if (!known && 2 * std::ranges::count_if(keys, holds) > std::ssize(keys)) shared.push_back(condition);
     }
   }
   return shared;
@@ -91,22 +91,47 @@ std::string conditions_of(const SceneKey& key, const Cells& shared) {
   return further.empty() ? "" : " (with " + joined(further) + ")";
 }
 
+/// Keys of one row: alike but for their names and, within one group such as track.pad, their defaults.
+struct KeyGroup {
+  std::string names, stem, values, meaning;
+  Cells defaults;
+  [[nodiscard]] bool one_default() const {
+    return std::ranges::count(defaults, defaults.front()) == std::ssize(defaults);
+  }
+  [[nodiscard]] Cells cells() const {
+    std::string texts;
+    for (const std::string& text : defaults) texts += (texts.empty() ? "" : ", ") + text;
+    return {names, values, one_default() ? defaults.front() : texts, meaning};
+  }
+};
+
+/// Adds a key to the row that it belongs to, or a row.
+void add_key(std::vector<KeyGroup>& rows, const SceneKey& key, const std::string& conditions) {
+  const std::size_t dot = key.path.rfind('.') == std::string::npos ? 0 : key.path.rfind('.');
+  const KeyGroup own{
+      "`" + key.path + "`", key.path.substr(0, dot), values_of(key), key.meaning + conditions, {key.default_value}};
+  const auto found = std::ranges::find_if(rows, [&](const KeyGroup& row) {
+    const bool same_default = row.one_default() && row.defaults.front() == key.default_value;
+    const bool near = row.stem == own.stem && row.defaults.front().empty() == key.default_value.empty();
+    return row.values == own.values && row.meaning == own.meaning && (same_default || near);
+  });
+  if (found == rows.end()) {
+    rows.push_back(own);
+    return;
+  }
+  found->names += ", `" + (found->stem == own.stem ? key.path.substr(dot) : key.path) + "`";
+  found->stem = own.stem;
+  found->defaults.push_back(key.default_value);
+}
+
 std::string keys_of(const std::string& section) {
   std::vector<SceneKey> keys = scene_keys();
   std::erase_if(keys, [&](const SceneKey& key) { return section_of(key) != section; });
   const Cells shared = shared_conditions(keys);
+  std::vector<KeyGroup> groups;
+  for (const SceneKey& key : keys) add_key(groups, key, conditions_of(key, shared));
   std::vector<Cells> rows;
-  for (const SceneKey& key : keys) {
-    const Cells cells{values_of(key), key.default_value, key.meaning + conditions_of(key, shared)};
-    const auto alike = [&](const Cells& row) { return std::equal(cells.begin(), cells.end(), row.begin() + 1); };
-    const auto found = std::ranges::find_if(rows, alike);  // keys that differ by their names alone share a row
-    const std::string name = "`" + key.path + "`";
-    if (found != rows.end()) {
-      found->front() += ", " + name;
-    } else {
-      rows.push_back({name, cells[0], cells[1], cells[2]});
-    }
-  }
+  for (const KeyGroup& group : groups) rows.push_back(group.cells());
   const std::string condition = shared.empty() ? "" : " (with " + joined(shared) + ")";
   return table({"key", "values", "default", "meaning" + condition}, rows);
 }

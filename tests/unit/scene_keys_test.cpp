@@ -219,8 +219,8 @@ TEST_F(Scene, KeysThatNothingWouldUseAreRejected) {
       "\"window\", or no structure.window_ahead");
   EXPECT_EQ(rejected("[structure]\nreduction = \"none\"\nwindow_ahead = 30\n"), "no error");
   EXPECT_EQ(rejected("[structure]\ndamping_ratio = 0.01\n[[bridge]]\n"),
-            "scene.toml:4: structure.damping_ratio: found no structure.stiffness, expected structure.stiffness, or no "
-            "structure.damping_ratio");
+            "scene.toml:4: structure.damping_ratio: found no structure.stiffness, expected structure.stiffness, or "
+            "structure.format = \"modes\", or no structure.damping_ratio");
   EXPECT_NE(rejected("[[load]]\nFy = 1.0\n[[load]]\nFy = 1.0\nstart = 2.0\n").find("[[load]] 2 of 2"),
             std::string::npos);
   EXPECT_NE(rejected("[[ground_motion]]\nfile = \"pair.h5\"\nx = 3.0\n").find("ground_motion.x = 3 m of a single"),

@@ -39,7 +39,8 @@ Description of_results(const std::string& file) {
                                 results.steps.empty() ? 0.0 : results.steps.back().time, header.wheel_x.size(),
                                 header.body_names.size(), header.node_names.size()));
   d.commands = {fmt::format("vsi report {} -o report.html", file),
-                fmt::format("vsi report {} OTHER.h5 -o both.html", file)};
+                fmt::format("vsi report {} OTHER.h5 -o both.html", file),
+                fmt::format("vsi export {} -o run.pvd", file)};
   if (!results.summary.complete) d.commands.push_back(fmt::format("vsi run SCENE.toml -o {} --resume", file));
   return d;
 }
@@ -127,6 +128,12 @@ Description of_text(const std::string& file, const std::string& first, const std
       return {"queries of the contact",
               {printable(first)},
               {fmt::format("vsi contact TABLE.h5 --query {} -o R.csv", file)}};
+    }
+    if (first.starts_with("mode,")) {
+      const bool table = first.find("frequency") != std::string::npos;
+      return {table ? "natural modes of a structure" : "shapes of natural modes",
+              {"columns: " + printable(first)},
+              {fmt::format("a scene's structure.{} = \"{}\"", table ? "mode_table" : "mode_shapes", file)}};
     }
     return {"columns of numbers (CSV)", {"columns: " + printable(first)}, {"docs/file_formats says what scenes read"}};
   }

@@ -17,40 +17,58 @@ namespace railtab::vsi {
 namespace po = boost::program_options;
 namespace {
 
-StructureSummary summary_of(const SceneParameters& scene, int modes) {
+/// Summary of a bridge, and what its modes leave out of it.
+struct Found {
+  StructureSummary summary;
+  std::vector<std::string> left_out;
+};
+
+Found summary_of(const SceneParameters& scene, int modes) {
+  if (scene.structure.files.by_modes()) {
+    scene.structure.validate();
+    const ModalStructure structure = read_modal_structure(scene.structure);
+    return {summarise(structure, modes), lost_by_modes(structure, scene.structure)};
+  }
   if (!scene.structure.files.nodes.empty()) {
     const FeStructure structure = read_on_supports(scene.structure);
-    return summarise(structure, scene.structure.damping, modes);
+    return {summarise(structure, scene.structure.damping, modes), {}};
   }
-  if (!scene.spans.empty()) return summarise(scene.spans, modes);
+  if (!scene.spans.empty()) return {summarise(scene.spans, modes), {}};
   throw input_error("scene", "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
 }
 
 std::vector<std::string> warnings(const SceneParameters& scene, const StructureSummary& s) {
   const double length = s.high[0] - s.low[0];
-  if (scene.structure.files.nodes.empty() || !(length > 0.0)) return {};
+  if (scene.structure.files.nodes.empty() || !std::isfinite(s.mass[2]) || !(length > 0.0)) return {};
   return plausibility_warnings(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
 }
 
 /// No "-0.000" for what turning axes leaves of zero [m].
 double shown(double x) { return std::abs(x) < 5e-4 ? 0.0 : x; }
 
-void print(const SceneParameters& scene, const StructureSummary& s) {
+void print(const SceneParameters& scene, const Found& found) {
+  const StructureSummary& s = found.summary;
   print_formatted("{}: {} degrees of freedom, {} nodes\n", scene.name, s.dofs, s.nodes);
   print_formatted("  from x = {:.3f}, y = {:.3f}, z = {:.3f} m to {:.3f}, {:.3f}, {:.3f} m below the rail-head tops\n",
                   shown(s.low[0]), shown(s.low[1]), shown(s.low[2]), shown(s.high[0]), shown(s.high[1]),
                   shown(s.high[2]));
-  print_formatted("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
-                  1e-3 * s.mass[2]);
+  if (std::isfinite(s.mass[2])) {
+    print_formatted("  moving mass along x, y, z: {:.6g}, {:.6g}, {:.6g} t\n", 1e-3 * s.mass[0], 1e-3 * s.mass[1],
+                    1e-3 * s.mass[2]);
+  } else {
+    print_formatted("  moving mass: not known of a structure by modes\n");
+  }
   if (!s.free.empty()) {
     print_formatted("  without resistance it {}: supports are missing\n", fmt::join(s.free, "; "));
   }
   for (std::size_t k = 0; k < s.frequencies.size(); ++k) {
     print_formatted("  {:3}. {:10.4f} Hz, damping {:.3f} %\n", k + 1, s.frequencies[k], 100.0 * s.damping_ratios[k]);
   }
+  for (const std::string& part : found.left_out) print_formatted("  left out: {}\n", part);
 }
 
-void print_as_json(const SceneParameters& scene, const StructureSummary& s) {
+void print_as_json(const SceneParameters& scene, const Found& found) {
+  const StructureSummary& s = found.summary;
   print_json_line({{"scene", scene.name},
                    {"dofs", s.dofs},
                    {"nodes", s.nodes},
@@ -59,7 +77,8 @@ void print_as_json(const SceneParameters& scene, const StructureSummary& s) {
                    {"mass_z", s.mass[2]},
                    {"free", s.free},
                    {"frequencies", s.frequencies},
-                   {"damping_ratios", s.damping_ratios}});
+                   {"damping_ratios", s.damping_ratios},
+                   {"left_out", found.left_out}});
 }
 
 }  // namespace
@@ -74,19 +93,19 @@ int structure_command(const Arguments& arguments) {
   const int modes = static_cast<int>(line.whole_number("modes", 0, most_modes));
   const std::filesystem::path file = line.required("scene");
   const SceneParameters scene = read_scene(file);
-  const StructureSummary summary = [&] {
+  const Found found = [&] {
     try {
       return summary_of(scene, modes);
     } catch (const InputError& wrong) {
       throw with_scene_line(wrong, scene, file);
     }
   }();
-  for (const std::string& warning : warnings(scene, summary))
+  for (const std::string& warning : warnings(scene, found.summary))
     print_message(fmt::format("vsi structure: warning: {}\n", warning));
   if (line.json()) {
-    print_as_json(scene, summary);
+    print_as_json(scene, found);
   } else {
-    print(scene, summary);
+    print(scene, found);
   }
   return 0;
 }

@@ -1,0 +1,78 @@
+#include "railtab/runtime/structure/deck_nodes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "railtab/runtime/base/input_error.hpp"
+
+namespace railtab {
+
+namespace {
+
+/// A place whose distance from zero is what turning axes and units leaves [m].
+double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
+
+DeckExtent unchecked_extent(const FeStructure& structure, const std::vector<int>& deck) {
+  DeckExtent extent{INFINITY, -INFINITY};
+  for (const int number : deck) {
+    extent.begin = std::min(extent.begin, structure.nodes.at(number).position[0]);
+    extent.end = std::max(extent.end, structure.nodes.at(number).position[0]);
+  }
+  return extent;
+}
+
+}  // namespace
+
+DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
+  constexpr double shortest = 0.5, longest = 1e5, highest = -0.5, lowest = 60.0;  // [m]
+  const DeckExtent extent = unchecked_extent(structure, deck);
+  if (!(extent.end - extent.begin >= shortest && extent.end - extent.begin <= longest)) {
+    throw input_error(
+        "structure.deck",
+        fmt::format("a deck from x = {:.4g} m to {:.4g} m", without_rounding(extent.begin), extent.end),
+        fmt::format("{} m to {:.0f} km of it: see structure.units and structure.axes", shortest, 1e-3 * longest));
+  }
+  for (const int number : deck) {
+    const double z = structure.nodes.at(number).position[2];
+    if (z >= highest && z <= lowest) continue;
+    throw input_error(fmt::format("structure.deck: node {}", number),
+                      fmt::format("{:.4g} m {} the rail-head tops", std::abs(z), z < 0.0 ? "above" : "below"),
+                      "a deck below the track: see structure.origin, structure.axes and structure.units");
+  }
+  return extent;
+}
+
+int nearest_deck_node(const FeStructure& structure, const std::vector<int>& deck, double x) {
+  int best = no_node;
+  double least = INFINITY;
+  for (const int number : deck) {
+    const FeNode& node = structure.nodes.at(number);
+    const double distance = std::hypot(node.position[0] - x, node.position[1]);
+    if (distance < least) {
+      least = distance;
+      best = number;
+    }
+  }
+  return best;
+}
+
+std::vector<ReportedDeckNode> reported_deck_nodes(const FeStructure& structure, const std::vector<int>& deck,
+                                                  const std::vector<double>& positions) {
+  const DeckExtent extent = unchecked_extent(structure, deck);
+  std::vector<ReportedDeckNode> nodes;
+  for (const double x : positions) {
+    if (x < extent.begin || x > extent.end) {
+      throw input_error("structure.report", fmt::format("{} m", x),
+                        fmt::format("{:.6g} to {:.6g} m, the deck", without_rounding(extent.begin), extent.end));
+    }
+    nodes.push_back({fmt::format("deck-{}", x), nearest_deck_node(structure, deck, x)});
+  }
+  if (positions.empty()) {
+    nodes.push_back({"deck-midspan-1", nearest_deck_node(structure, deck, 0.5 * (extent.begin + extent.end))});
+  }
+  return nodes;
+}
+
+}  // namespace railtab

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "railtab/runtime/structure/fe_structure.hpp"
+
+namespace railtab {
+
+/// Begin and end of a deck along the track [m].
+struct DeckExtent {
+  double begin = 0.0, end = 0.0;
+};
+/// @param deck numbers of its nodes, at least one
+/// @throws InputError where no bridge is so long or so short, or the deck lies above the track or far below it: wrong
+/// units, axes or origins
+[[nodiscard]] DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck);
+
+/// A deck's node that is reported, by name.
+struct ReportedDeckNode {
+  std::string name;
+  int number = 0;
+};
+/// "deck-<x>": at each position the node nearest to the track's centre there; without a position "deck-midspan-1", in
+/// the middle. @throws InputError where a position [m] lies beside the deck
+[[nodiscard]] std::vector<ReportedDeckNode> reported_deck_nodes(const FeStructure& structure,
+                                                                const std::vector<int>& deck,
+                                                                const std::vector<double>& positions);
+/// The deck node nearest to the track's centre at x [m].
+[[nodiscard]] int nearest_deck_node(const FeStructure& structure, const std::vector<int>& deck, double x);
+
+}  // namespace railtab
