@@ -307,7 +307,9 @@ def scene_keys():
     for line in (root / "docs/guide/scene.md").read_text().splitlines():
         found = row.match(line)
         if found:
-            keys += [(name, found.group(2).strip()) for name in re.findall(r"`([\w.]+)`", found.group(1))]
+            names = re.findall(r"`([\w.]+)`", found.group(1))  # `track.rail.Iy`, `.Iz`
+            start = names[0].rpartition(".")[0] if names else ""
+            keys += [(start + name if name.startswith(".") else name, found.group(2).strip()) for name in names]
     return keys
 
 
