@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 
 import h5py
-from outcomes import Case, save
+from outcomes import Case, asked_to_end, save
 from scenes import rigid, vertical, wagon
 
 resume_budget = 5.0  # s
@@ -111,9 +111,11 @@ def campaign(base, launcher, options, findings):
         slowest = max(slowest, outcome.seconds)
         if name not in ("same_bits", "rejected"):
             save(findings, at, name, Case("checkpoint", f"byte {at}", order, {"killed.h5": bytes(damaged)}), outcome)
+        if asked_to_end():
+            break
         if done % 500 == 0:
             print(f"checkpoints {done}/{len(places)} {dict(counts)}", file=sys.stderr, flush=True)
-    rows = [("checkpoints", "damaged byte", "tried", len(places))]
+    rows = [("checkpoints", "damaged byte", "tried", sum(counts.values()))]
     rows += [("checkpoints", "damaged byte", name, counts[name]) for name in classes]
     return rows + [("checkpoints", "damaged byte", "slowest_s", f"{slowest:.2f}"),
                    ("checkpoints", "damaged byte", "file_bytes", len(content))]

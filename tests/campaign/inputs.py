@@ -248,7 +248,8 @@ flags = [
     ("vsi", "structure", "bridge.toml", "--modes", 3), ("vsi", "vehicle", "wagon.toml", "--modes", 3),
     ("vsi", "critical-speed", "online.toml", "--to-kmh", 100, "--amplitude", 1e-4),
     ("vsi", "creep", "--law", "polach", "--poisson", 0.28, "--query", "creepages.csv", "-o", "out.csv"),
-    ("vsi", "new", "out.toml", "--train", "manchester-coach", "--coaches", 2, "--span", 20, "--spans", 2, "--speed", 100),
+    ("vsi", "new", "out.toml", "--train", "manchester-coach", "--coaches", 2, "--span", 20, "--spans", 2,
+     "--speed", 100),
     ("vsi", "run", "vertical.toml", "--check-reduction", 0.01, "-o", "out.h5"),
     ("vsi", "sweep", "vertical.toml", "--speed", "10:20:10", "--seeds", 1, "--threads", 1, "-o", "out_sweep"),
     ("vsi", "assess", "bridge.toml", "--stage", "check", "-o", "out_assess"),
@@ -285,7 +286,8 @@ readers = [(scene_key, 4), (scene_mix, 3), (scene_text, 2), (profile, 1), (file_
            (file_of("vehicle_file", vehicle_choices, lambda random, content: (
                mutate_toml if random.random() < 0.7 else mutate_text)(random, content)), 1),
            (file_of("history", history_choices), 1), (file_of("query", query_choices), 1), (hdf5, 2), (what_is, 1)]
-last_slot = [(file_of("clauses", clause_choices, mutate_toml), 4), (file_of("batch_list", batch_choices, mutate_toml), 4),
+last_slot = [(file_of("clauses", clause_choices, mutate_toml), 4),
+             (file_of("batch_list", batch_choices, mutate_toml), 4),
              (command_line, 12)]
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import h5py
 from checkpoints import histories
-from outcomes import Case, save
+from outcomes import Case, asked_to_end, save
 
 pair = ["--wheel", "cone-1:20", "--rail", "60E1", "--yaw", "0:0", "--tolerance", "1e-6", "--threads", "1", "-q"]
 rigid_run = ('[train]\nvehicle = "wagon.toml"\nspeed = 30.0\n[contact]\nnormal = "rigid"\n[track]\nkind = "rigid"\n'
@@ -59,8 +59,8 @@ def write_inputs(base):
     (folder / "contact.toml").write_text(
         rigid_run.replace("DURATION", "4.0").replace('normal = "rigid"', 'mode = "online"\ncreep_law = "linear"'))
     (folder / "assessed.toml").write_text(
-        '[train]\nvehicle = "manchester-coach"\nspeed_kmh = 100\n[contact]\nmode = "online"\n[[bridge]]\nlength = 25.0\n'
-        "mass = 15e3\nE = 30e9\nIy = 1.0\ndamping_ratio = 0.01\n")
+        '[train]\nvehicle = "manchester-coach"\nspeed_kmh = 100\n[contact]\nmode = "online"\n[[bridge]]\n'
+        "length = 25.0\nmass = 15e3\nE = 30e9\nIy = 1.0\ndamping_ratio = 0.01\n")
     (folder / "killed_pairs.toml").write_text(
         '[defaults]\nrail = "60E1"\nwheel = "cone-1:20"\nyaw = [0, 0]\ntolerance = 1e-6\n[[pair]]\n'
         'lateral = [-0.001, 0.001]\noutput = "out1.h5"\n[[pair]]\nlateral = [-0.002, 0.0]\noutput = "out2.h5"\n')
@@ -183,12 +183,12 @@ def campaign(base, launcher, options, findings):
     names = list(commands)
     shares = [options.kills // len(names) + (i < options.kills % len(names)) for i in range(len(names))]
     for name, share in zip(names, shares):
-        if share == 0:
+        if share == 0 or asked_to_end():
             continue
         killed = Killed(base, launcher, name, before)
         counts = Counter(tried=0)
         for _ in range(4 * share):
-            if counts["tried"] - counts["ended_before"] >= share:
+            if asked_to_end() or counts["tried"] - counts["ended_before"] >= share:
                 break
             killed.clean()
             after = random.uniform(0.0, 1.02) * killed.seconds

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from dataclasses import dataclass, field
@@ -16,6 +17,19 @@ longest_text = 1 << 20
 answers = ("done", "failed", "rejected")
 findings = ("crash", "hang", "other_code", "silent", "file_not_named", "not_finite", "raw_bytes", "above_plan",
             "leftover")
+
+
+_asked_to_end = []
+
+
+def end_on_signals():
+    """Ctrl-C and SIGTERM end a part after what it does at the time; what was done is recorded."""
+    for name in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(name, lambda number, frame: _asked_to_end.append(number))
+
+
+def asked_to_end():
+    return bool(_asked_to_end)
 
 
 @dataclass
@@ -36,7 +50,8 @@ class Launcher:
         self._texts = [folder / "launcher.out", folder / "launcher.err"]
         self._process = subprocess.Popen(
             [sys.executable, "-S", "-E", str(Path(__file__).with_name("launcher.py")), *map(str, self._texts),
-             str(address_space)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+             str(address_space)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+            start_new_session=True)
 
     def __call__(self, command, folder, seconds=time_budget, kill_after=None) -> Outcome:
         order = {"command": [str(word) for word in command], "folder": str(folder), "seconds": seconds,

@@ -7,8 +7,8 @@ import subprocess
 from pathlib import Path
 
 columns = ["part", "of", "class", "value", "seed", "date", "commit", "processor", "cores"]
-head = ("# Made by tests/campaign/run. Classes that did not occur are listed under \"all\" only; file_only: rejected by a\n"
-        "# message that names the file and no place in it.\n")
+head = ("# Made by tests/campaign/run. Classes that did not occur are listed under \"all\" only; file_only: rejected\n"
+        "# by a message that names the file and no place in it.\n")
 
 
 def processor():

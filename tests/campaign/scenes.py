@@ -159,10 +159,12 @@ scenes = {
              + '[span_deviation]\nshape = "bending"\nspan = 10\namplitude = 2e-3\n'
                '[irregularity]\nspectrum = "german-low"\nseed = 3\n',
     "window": wagon + vertical + flexible.replace("12.0", "24.0") + span
-              + '[structure]\nreduction = "window"\nwindow_ahead = 6.0\nwindow_behind = 6.0\n[output]\nenergy = false\n',
+              + '[structure]\nreduction = "window"\nwindow_ahead = 6.0\nwindow_behind = 6.0\n'
+                '[output]\nenergy = false\n',
     "loads": wagon + online + rigid + '[[load]]\nbody = "car-body"\nfile = "gust.csv"\nstart = 0.001\n[[load]]\n'
              'body = "wheelset-1"\ncoach = 1\nFy = 1e3\ngust_duration = 2.0\n[[ground_motion]]\nfile = "ground.csv"\n'
-             'factor = 0.5\nwave_speed = 300.0\n[[wheel]]\ncoach = 1\nwheelset = 1\nside = "right"\nfile = "wheel.csv"\n'
+             'factor = 0.5\nwave_speed = 300.0\n[[wheel]]\ncoach = 1\nwheelset = 1\nside = "right"\n'
+             'file = "wheel.csv"\n'
              '[[wheel]]\nflat_length = 0.03\npolygon_amplitude = 1e-5\nrun_out = 1e-4\n',
     "speed": '[train]\nvehicle = "stops.toml"\nspeed_file = "speed.csv"\nstart = 0.0\n'
              + online.replace("polach", "fastsim") + 'friction_file = "friction.csv"\n' + rigid,
@@ -288,7 +290,8 @@ def write_base(folder: Path, vsi, tablegen, run):
     pair = ["--wheel", "cone-1:20", "--rail", "60E1", "--yaw", "0:0", "--tolerance", "1e-5", "-q"]
     run([tablegen, "geometry", *pair, "--lateral", "-0.0005:0.0005", "-o", "pair.h5"])
     for part in (1, 2):
-        run([tablegen, "geometry", *pair, "--lateral", "-0.0002:0.0002", "--shard", f"{part}/2", "-o", f"part{part}.h5"])
+        run([tablegen, "geometry", *pair, "--lateral", "-0.0002:0.0002", "--shard", f"{part}/2", "-o",
+             f"part{part}.h5"])
     run([tablegen, "creep", "--nodes", "5,5,5,5", "--elements", "8", "-q", "-o", "creep.h5"])
     run([vsi, "run", "online.toml", "-q", "-o", "results.h5"])
     import h5py

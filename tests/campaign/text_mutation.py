@@ -5,7 +5,8 @@ import re
 numbers = ["0", "-1", "nan", "inf", "-inf", "1e300", "-1e300", "1e-300", "5e-324", "1e9", "1e-9", "-0.0", "1e400",
            "9223372036854775807", "-9223372036854775808", "99999999999999999999999", "2147483648", "4294967296", "0x10",
            "1,5", "1.5.2", "--1", "+1", "1e", ".", "1_000"]
-words = ["", "x", '""', "a" * 3000, "\x00", "\x1b[31m", "é", "\ud7ff", "#", "=", "[", "]", "{", "*", "/", "-", ",", ";"]
+words = ["", "x", '""', "a" * 3000, "\x00", "\x1b[31m", "é", "\ud7ff", "#", "=", "[", "]", "{", "*", "/", "-", ",",
+         ";"]
 toml_values = [*numbers[:19], '""', '"x"', "[]", "{}", "[1, 2, 3]", "[[1]]", "true", "1979-05-27", "07:32:00",
                '"' + "a" * 3000 + '"', "[" + "0, " * 1000 + "0]", '[' + '"x", ' * 1000 + '"x"]', "[nan]",
                '"/dev/null"', '"/dev/zero"', '"fifo"', '"."', '"scene.toml"', '"\\u0000"', '"\\u001b[31m"', "'''",
@@ -112,7 +113,8 @@ plain = [flip_bytes, random_bytes, truncate, insert_word, change_number, change_
 def mutate_text(random, content):
     """Content with one or two changes, and their names."""
     matrix = content.startswith(b"%%MatrixMarket") or content.startswith(b"1 1 ")
-    acts = [change_diagonal if matrix and random.random() < 0.4 else random.choice(plain) for _ in range(random.choice((1, 1, 1, 2)))]
+    acts = [change_diagonal if matrix and random.random() < 0.4 else random.choice(plain)
+            for _ in range(random.choice((1, 1, 1, 2)))]
     for act in acts:
         content = act(random, content)
     return content, "+".join(act.__name__ for act in acts)
@@ -145,7 +147,8 @@ def mutate_toml(random, content):
         keys = [i for i, line in enumerate(lines) if assignment.match(line)]
         if not keys:
             break
-        at, act = random.choice(keys), random.choice(("value",) * 12 + ("delete", "repeat", "unknown", "move", "section"))
+        at = random.choice(keys)
+        act = random.choice(("value",) * 12 + ("delete", "repeat", "unknown", "move", "section"))
         if act == "value":
             change_value(random, lines, at)
         elif act == "delete":
