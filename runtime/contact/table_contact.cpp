@@ -1,18 +1,37 @@
 #include "railtab/runtime/contact/table_contact.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/polish_step.hpp"
 
 namespace railtab {
 
 namespace {
 
+/// The walks along a profile count its knots in steps of length. @throws InputError where a knot lies far off
+void require_near(const ProfileKnots& profile) {
+  constexpr double farthest = 1.0, steepest = 2.0;  // m; of dy/ds and dz/ds, whose squares sum to 1
+  for (std::size_t i = 0; i < profile.s.size(); ++i) {
+    const bool near = std::abs(profile.y[i]) <= farthest && std::abs(profile.z[i]) <= farthest &&
+                      std::abs(profile.dy[i]) <= steepest && std::abs(profile.dz[i]) <= steepest;
+    if (near) continue;
+    throw input_error(
+        fmt::format("profile {}, knot {}", profile.name, i),
+        fmt::format("({}, {}) m, slopes {} and {}", profile.y[i], profile.z[i], profile.dy[i], profile.dz[i]),
+        "a place within 1 m and slopes of an arc length");
+  }
+}
+
 WheelRailPair pair_of(const GeometryTableData& data) {
+  require_near(data.wheel);
+  require_near(data.rail);
   PairDimensions dimensions;
   dimensions.track_gauge = data.track_gauge;
   dimensions.gauge_height = data.gauge_height;

@@ -16,7 +16,11 @@ TEST_F(VsiCommand, AGeometryTableOfWrongNumbersIsNamed) {
   table = small_geometry_table();
   table.flange_back = 1e-300;
   write_geometry_table(folder_ / "wheelset.h5", table);
+  table = small_geometry_table();
+  table.rail.y[3] = 9e15;
+  write_geometry_table(folder_ / "knots.h5", table);
   write("q.csv", "y,yaw,roll,dz\n0,0,0,1e-4\n");
+  expect_refused("contact knots.h5 --query q.csv -o out", "knots.h5: profile made-up rail, knot 3: found (9e+15, ");
   expect_refused("contact cells.h5 --query q.csv -o out", "cells.h5: node 0: found halves at node 0");
   expect_refused("contact wheelset.h5 --query q.csv -o out", "wheelset.h5: ");
   write("scene.toml", "[contact]\ntable = \"cells.h5\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");

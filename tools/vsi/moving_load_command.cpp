@@ -89,8 +89,8 @@ ModalDeck deck_of_options(const CommandLine& line, const DynamicModes& modes) {
   span.Iy = 1.0;
   span.damping_ratio = line.number("damping");
   require_between("--length", span.length, 0.5, 1000.0, "m");
-  require_positive("--mass", span.mass, "kg/m");
-  require_positive("--bending-stiffness", span.E, "N m²");
+  require_between("--mass", span.mass, 1.0, 1e7, "kg/m");
+  require_between("--bending-stiffness", span.E, 1.0, 1e16, "N m²");
   require_between("--damping", span.damping_ratio, 0.0, 0.5, "-");
   ModalDeck deck = simply_supported_deck(span, modes);
   deck.name = "span";
