@@ -36,7 +36,6 @@ set(railtab_contact_headers
 set(railtab_contact_files_headers
   tables/files/creep_table_file.hpp
   tables/files/geometry_table_file.hpp
-  tables/files/shipped_creep_table.hpp
   runtime/contact_files/creep_law_file.hpp)
 set(railtab_solver_headers
   runtime/vsi/step_record.hpp

@@ -11,7 +11,7 @@ namespace railtab {
 namespace {
 
 /// A limit found at a few points holds for the whole leaf only with some room below it [m].
-constexpr double height_margin = 20e-6;
+constexpr double limit_margin = 20e-6;
 /// Table and online search agree where their pairs are this near along the wheel [m].
 constexpr double same_pair = 5e-6;
 /// A patch shallower than this may be on one side only [m].
@@ -174,7 +174,7 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
       if (found || p.penetration < grazing) continue;
       wrong = true;
       const double height = pose.z - first_touch - p.penetration / std::cos(p.angle);
-      trial.trusted_lowering = std::min(trial.trusted_lowering, height - height_margin);
+      trial.trusted_lowering = std::min(trial.trusted_lowering, height - limit_margin);
     }
   };
   missing(online, table);

@@ -12,23 +12,23 @@ namespace railtab {
 namespace {
 
 /// One number of a solved case, and the dataset that holds it.
-struct Column {
+struct ShardColumn {
   std::string_view path, description;
   std::function<double(const SolvedCreepCase&)> get;
   std::function<void(SolvedCreepCase&, double)> set;
 };
 
-Column member(std::string_view path, std::string_view description, double SolvedCreepCase::*m) {
+ShardColumn member(std::string_view path, std::string_view description, double SolvedCreepCase::*m) {
   return {path, description, [m](const SolvedCreepCase& c) { return c.*m; },
           [m](SolvedCreepCase& c, double value) { c.*m = value; }};
 }
-Column member(std::string_view path, std::string_view description, double CreepForce::*m) {
+ShardColumn member(std::string_view path, std::string_view description, double CreepForce::*m) {
   return {path, description, [m](const SolvedCreepCase& c) { return c.force.*m; },
           [m](SolvedCreepCase& c, double value) { c.force.*m = value; }};
 }
 
-const std::vector<Column>& columns() {
-  static const std::vector<Column> all{
+const std::vector<ShardColumn>& columns() {
+  static const std::vector<ShardColumn> all{
       member("force_x", "F_x/(mu F_n) on the wheel", &CreepForce::x),
       member("force_y", "F_y/(mu F_n) on the wheel", &CreepForce::y),
       member("moment", "M_z/(mu F_n sqrt(ab)) on the wheel", &CreepForce::moment),
@@ -43,11 +43,11 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-Field field_of(const Column& column, const char* dimension) {
+Field field_of(const ShardColumn& column, const char* dimension) {
   return {std::string(column.path), {dimension}, "1", std::string(column.description)};
 }
 
-std::vector<double> column_of(const Column& column, std::span<const SolvedCreepCase> solved) {
+std::vector<double> column_of(const ShardColumn& column, std::span<const SolvedCreepCase> solved) {
   std::vector<double> values;
   values.reserve(solved.size());
   for (const SolvedCreepCase& c : solved) values.push_back(column.get(c));
@@ -144,13 +144,13 @@ ArrayFileWriter create_creep_partial(const std::filesystem::path& file, const Cr
       out, header,
       "An unfinished creep table: the cases solved so far. The same tablegen creep command goes on from here.");
   FieldWriter histories(out);
-  for (const Column& column : columns()) histories.create_growing(field_of(column, "records"));
+  for (const ShardColumn& column : columns()) histories.create_growing(field_of(column, "records"));
   out.flush();
   return out;
 }
 
 void append(ArrayFileWriter& partial, std::span<const SolvedCreepCase> solved) {
-  for (const Column& column : columns()) partial.append(column.path, column_of(column, solved));
+  for (const ShardColumn& column : columns()) partial.append(column.path, column_of(column, solved));
 }
 
 void write_creep_shard(const std::filesystem::path& file, const CreepShardHeader& header,
@@ -158,7 +158,7 @@ void write_creep_shard(const std::filesystem::path& file, const CreepShardHeader
   ArrayFileWriter out(file, creep_shard_filetype, creep_shard_format_version);
   write_header(out, header, "One shard of a creep table, for tablegen merge.");
   FieldWriter arrays(out);
-  for (const Column& column : columns()) arrays.write(field_of(column, "cases"), column_of(column, solved));
+  for (const ShardColumn& column : columns()) arrays.write(field_of(column, "cases"), column_of(column, solved));
   out.close();
 }
 
@@ -173,7 +173,7 @@ CreepShard read_creep_shard(const std::filesystem::path& file, std::string_view 
   const char* const dimension = partial ? "records" : "cases";
   FieldReader arrays(in);
   arrays.set(dimension, rows, partial ? "" : "options");
-  for (const Column& column : columns()) {
+  for (const ShardColumn& column : columns()) {
     const std::vector<double> values = arrays.numbers(field_of(column, dimension));
     shard.solved.resize(values.size());  // only now is it sure that the file has so many
     for (std::size_t i = 0; i < values.size(); ++i) column.set(shard.solved[i], values[i]);

@@ -13,6 +13,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/creep_layout.hpp"
+#include "railtab/tablegen/random_number.hpp"
 #include "railtab/tablegen/rolling_contact.hpp"
 
 namespace railtab {
@@ -20,9 +21,6 @@ namespace railtab {
 namespace {
 
 using std::numbers::pi;
-
-/// Uniform in [0, 1), the same on every platform.
-double uniform(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1p-53; }
 
 double log_uniform(std::mt19937_64& generator, const Interval& interval) {
   return interval.low * std::pow(interval.high / interval.low, uniform(generator));

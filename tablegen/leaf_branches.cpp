@@ -16,7 +16,7 @@ constexpr double enlarged = 1.001;
 /// Minima up to this height above first touch are linked [m]: more than touch, so that none seems to end at the limit.
 constexpr double linked_height = 1e-3;
 /// Branches that come this near to touching count [m].
-constexpr double height_margin = 20e-6;
+constexpr double touching_margin = 20e-6;
 /// Cost of leaving a minimum without a partner when lists of minima are aligned [m].
 constexpr double gap_cost = 1e-3;
 /// Two solutions of the touch equations nearer than this are one [m].
@@ -260,7 +260,7 @@ void BoxSamples::collect() {
     SampledBranch& b = all[c];
     // A patch at the largest lowering touches at a lower one, how much lower is not asked here.
     if (!lowered_data_[c].empty()) b.least_height = std::min(b.least_height, lowering_);
-    if (b.least_height > lowering_ + height_margin) continue;
+    if (b.least_height > lowering_ + touching_margin) continue;
     b.everywhere = std::all_of(b.at_sample.begin(), b.at_sample.end(), [](bool here) { return here; });
     b.data.insert(b.data.end(), lowered_data_[c].begin(), lowered_data_[c].end());
     branches_.push_back(std::move(b));
@@ -268,7 +268,7 @@ void BoxSamples::collect() {
   const auto lower = [](const SampledBranch& p, const SampledBranch& q) { return p.least_height < q.least_height; };
   std::sort(branches_.begin(), branches_.end(), lower);
   if (branches_.size() > GeometryTable::max_branches) {
-    missing_height_ = branches_[GeometryTable::max_branches].least_height - height_margin;
+    missing_height_ = branches_[GeometryTable::max_branches].least_height - touching_margin;
     branches_.resize(GeometryTable::max_branches);
   }
   const auto inner = [](const SampledBranch& p, const SampledBranch& q) {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/tablegen/loaded_sweep.hpp"
@@ -129,7 +130,7 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
   options.validate();
   GeometryTableData table = read_geometry_table(file);
   if (!table.shard.whole()) throw input_error(file.string(), "a part of a table", "a whole one: merge the parts first");
-  const TableContact contact{GeometryTable(table)};
+  const TableContact contact = in_file(file.string(), [&table] { return TableContact(GeometryTable(table)); });
   std::filesystem::path partial = file;
   partial += ".loaded-partial";
   require_replaceable(partial, {filetype});

@@ -22,7 +22,7 @@ void LoadedSweepOptions::validate() const {
   require(lateral.low >= -0.1 && lateral.high <= 0.1, "lateral", lateral.low, "within -0.1..0.1 m");
   require(lateral.low < lateral.high, "lateral", lateral.high, "more than the lower end");
   require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low < roll.high, "roll", roll.low,
-          "an interval within +-0.1 rad: moments are derivatives with respect to roll");
+          "LO:HI within +-0.1 rad, LO below HI: moments are derivatives with respect to roll");
   require(yaw >= 0.0 && yaw <= 0.2, "yaw", yaw, "0..0.2 rad");
   require(largest_load >= 1e3 && largest_load <= 1e7, "largest load", largest_load, "1e3..1e7 N");
   require(levels >= 5 && levels <= 1000, "levels", levels, "5..1000");
@@ -63,14 +63,12 @@ struct ColumnPlace {
   }
 };
 
-using Column = LoadedSweepColumn;
-
 class LoadedSweep {
  public:
   LoadedSweep(const ContactSearch& search, const LoadedSweepOptions& options, LoadedColumnStore store,
               const Progress& progress)
       : search_(search), options_(options), progress_(progress), keep_(std::move(store.keep)) {
-    for (Column& column : store.known) {
+    for (LoadedSweepColumn& column : store.known) {
       const ColumnPlace place{column.y0, column.roll, column.yaw};
       solved_.emplace(place, std::move(column));
     }
@@ -162,7 +160,7 @@ class LoadedSweep {
     std::vector<ColumnPlace> missing;
     for (const ColumnPlace& place : wanted)
       if (!solved_.contains(place)) missing.push_back(place);
-    std::vector<Column> found(missing.size());
+    std::vector<LoadedSweepColumn> found(missing.size());
     ParallelFailure failure;
     std::mutex one_at_a_time;
     std::size_t done = 0;
@@ -233,7 +231,8 @@ class LoadedSweep {
     });
   }
 
-  [[nodiscard]] bool agrees(const Column& low, const Column& middle, const Column& high, double width) const {
+  [[nodiscard]] bool agrees(const LoadedSweepColumn& low, const LoadedSweepColumn& middle,
+                            const LoadedSweepColumn& high, double width) const {
     const std::vector<double> low_mixed = mixed(low), high_mixed = mixed(high);
     for (std::size_t k = 1; k < middle.solution.level.size(); ++k) {
       const LoadedNode &p = low.solution.level[k], &m = middle.solution.level[k], &q = high.solution.level[k];
@@ -271,7 +270,7 @@ class LoadedSweep {
   [[nodiscard]] static double level_of(const LoadedNode& node) { return std::pow(node.z_w * node.force / 5.0, 0.25); }
 
   /// ∂²z/∂w∂y0 at the nodes of a column, from differences of its slopes.
-  [[nodiscard]] std::vector<double> mixed(const Column& column) const {
+  [[nodiscard]] std::vector<double> mixed(const LoadedSweepColumn& column) const {
     const std::vector<LoadedNode>& level = column.solution.level;
     const double step = column_.largest_level / (options_.levels - 1);
     const std::size_t last = level.size() - 1;
@@ -295,9 +294,9 @@ class LoadedSweep {
     const std::size_t columns = data.columns(), levels = static_cast<std::size_t>(data.levels);
     data.height.resize(4 * nodes.size() * levels * columns);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      std::vector<const Column*> of_node;
+      std::vector<const LoadedSweepColumn*> of_node;
       for (std::size_t k = 0; k < columns; ++k) {
-        const Column& column = solved_.at({nodes[i], k / yaw_squared_.size(), k % yaw_squared_.size()});
+        const LoadedSweepColumn& column = solved_.at({nodes[i], k / yaw_squared_.size(), k % yaw_squared_.size()});
         of_node.push_back(&column);
         data.shift.insert(data.shift.end(), {column.shift.y, column.shift.slope});
         data.touch.push_back(column.solution.level.front().z);
@@ -323,13 +322,16 @@ class LoadedSweep {
     return data;
   }
 
-  static void add_parts(const std::vector<const Column*>& columns, std::size_t level, LoadedTableData& data) {
+  static void add_parts(const std::vector<const LoadedSweepColumn*>& columns, std::size_t level,
+                        LoadedTableData& data) {
     std::uint32_t pressed = 0;
     for (std::size_t p = 0; p < data.parts(); ++p) {
-      const auto presses = [&](const Column* column) { return column->solution.level[level].part[p].share > 0.0; };
+      const auto presses = [&](const LoadedSweepColumn* column) {
+        return column->solution.level[level].part[p].share > 0.0;
+      };
       if (std::none_of(columns.begin(), columns.end(), presses)) continue;
       pressed |= 1U << p;
-      for (const Column* column : columns) {
+      for (const LoadedSweepColumn* column : columns) {
         for (const double value : column->solution.level[level].part[p].values()) {
           data.part.push_back(static_cast<float>(value));
         }
@@ -341,12 +343,12 @@ class LoadedSweep {
   const ContactSearch& search_;
   const LoadedSweepOptions& options_;
   const Progress& progress_;
-  std::function<void(const Column&)> keep_;
+  std::function<void(const LoadedSweepColumn&)> keep_;
   std::vector<double> roll_, yaw_squared_;
   LoadedColumnOptions column_;
   std::vector<ContactJump> jumps_;  ///< of the reference that all warps go through
   std::vector<LateralWarp> warp_;   ///< (roll, yaw²)
-  std::map<ColumnPlace, Column> solved_;
+  std::map<ColumnPlace, LoadedSweepColumn> solved_;
 };
 
 }  // namespace

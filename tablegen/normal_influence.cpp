@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "railtab/tablegen/fftw_values.hpp"
 #include "railtab/tablegen/rolling_contact_product.hpp"
 
 namespace railtab {
@@ -12,8 +13,6 @@ namespace railtab {
 namespace {
 
 using Complex = std::complex<double>;
-
-fftw_complex* raw(Complex* p) { return reinterpret_cast<fftw_complex*>(p); }
 
 Complex* allocate(int count) { return reinterpret_cast<Complex*>(fftw_alloc_complex(static_cast<std::size_t>(count))); }
 

@@ -2,15 +2,10 @@
 
 #include <algorithm>
 
+#include "railtab/tablegen/fftw_values.hpp"
 #include "railtab/tablegen/influence_numbers.hpp"
 
 namespace railtab {
-
-namespace {
-
-fftw_complex* raw(std::complex<double>* p) { return reinterpret_cast<fftw_complex*>(p); }
-
-}  // namespace
 
 std::mutex& fftw_planner() {
   static std::mutex mutex;

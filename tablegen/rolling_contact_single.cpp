@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <mutex>
 
+#include "railtab/tablegen/fftw_values.hpp"
+
 namespace railtab {
 
 namespace {
 
-fftwf_complex* raw(std::complex<float>* p) { return reinterpret_cast<fftwf_complex*>(p); }
-
-std::complex<float>* allocate(int count) {
+std::complex<float>* allocate_single(int count) {
   return reinterpret_cast<std::complex<float>*>(fftwf_alloc_complex(static_cast<std::size_t>(count)));
 }
 
@@ -20,9 +20,9 @@ RollingContactSingle::RollingContactSingle(const RollingContactProduct& product)
       ny_(product.across()),
       padded_x_(product.padded_along()),
       padded_y_(product.padded_across()),
-      rows_(allocate(ny_ * padded_x_)),
-      spectrum_(allocate(padded_x_ * padded_y_)),
-      product_(allocate(padded_x_ * padded_y_)) {
+      rows_(allocate_single(ny_ * padded_x_)),
+      spectrum_(allocate_single(padded_x_ * padded_y_)),
+      product_(allocate_single(padded_x_ * padded_y_)) {
   const std::lock_guard lock(fftw_planner());
   const unsigned flags = FFTW_ESTIMATE;  // a timed plan could sum in another order on the next run
   const int px = padded_x_, py = padded_y_, ny = ny_;

@@ -12,6 +12,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
+#include "railtab/tablegen/random_number.hpp"
 
 namespace railtab {
 
@@ -22,10 +23,7 @@ constexpr double same_patch = 0.5e-3;
 /// Normal-force errors are relative to the force, but to no less than this [N].
 constexpr double force_floor = 1000.0;
 
-/// Uniform in [0, 1), the same on every platform.
-double uniform(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1p-53; }
-
-double uniform(std::mt19937_64& generator, const Interval& interval) {
+double uniform_in(std::mt19937_64& generator, const Interval& interval) {
   return interval.low + (interval.high - interval.low) * uniform(generator);
 }
 
@@ -41,10 +39,10 @@ std::vector<Query> draw_queries(const ContactSearch& search, const VerificationO
                                 std::mt19937_64& generator) {
   std::vector<Query> queries(static_cast<std::size_t>(count));
   for (Query& q : queries) {
-    q.pose.y = uniform(generator, options.lateral);
-    q.pose.yaw = uniform(generator, options.yaw);
-    q.pose.roll = uniform(generator, options.roll);
-    q.pose.z = uniform(generator, options.lowering);
+    q.pose.y = uniform_in(generator, options.lateral);
+    q.pose.yaw = uniform_in(generator, options.yaw);
+    q.pose.roll = uniform_in(generator, options.roll);
+    q.pose.z = uniform_in(generator, options.lowering);
   }
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::size_t n = 0; n < queries.size(); ++n) {

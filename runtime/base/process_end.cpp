@@ -14,7 +14,7 @@ namespace railtab {
 
 namespace {
 
-constexpr int done = 0, failed = 1, wrong_input = 2;
+using exit_code::done, exit_code::failed, exit_code::wrong_input;
 
 /// Without memory of its own, which may be what is missing.
 void write_printable(std::string_view text, std::FILE* stream) noexcept {

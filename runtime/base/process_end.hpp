@@ -5,6 +5,13 @@
 
 namespace railtab {
 
+/// How a process ends.
+namespace exit_code {
+inline constexpr int done = 0, failed = 1, wrong_input = 2;
+inline constexpr int clause_fails = 3;   ///< computed, and a clause that was asked for fails (vsi assess --fail-on)
+inline constexpr int interrupted = 130;  ///< by Ctrl-C; the same command goes on
+}  // namespace exit_code
+
 /// Writes a message to standard error, bytes that are no printable characters as \xNN. That it cannot be written there
 /// (a full disk) changes nothing else.
 void print_message(std::string_view text) noexcept;

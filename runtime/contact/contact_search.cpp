@@ -5,13 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/contact/contact_search_walk.hpp"
 
 namespace railtab {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double height_error = 2e-6;  // of the screening heights, with reserve [m]
 
 // Interval j of a block lies between elements j + 1 and j + 2 of its gaps. It is looked at where an end is inside the

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -17,7 +17,6 @@ namespace {
 constexpr double rail_spacing = 0.05e-3;  // [m]
 constexpr int group_size = 16;            // rail samples per group
 constexpr double nowhere = -1e3;          // radius of a scan point that cannot touch: far above every rail [m]
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace railtab {
 namespace {
 
 /// Points side by side: divisions and roots of several points run in parallel.
-using Lanes = Eigen::Array<double, 8, 1>;
+using Eight = Eigen::Array<double, 8, 1>;
 using LanePieces = std::array<std::size_t, 8>;
 
 // Newton's method finds the foot point on the rail. Its last step is not evaluated again where the penetration, counted
@@ -22,10 +22,10 @@ constexpr double small = 1e-8, small_on_piece = 1e-5;
 
 /// A curve at several points: position and derivatives by arc length.
 struct CurveLanes {
-  PlaneVector<Lanes> at, tangent, bend;
+  PlaneVector<Eight> at, tangent, bend;
 };
 
-CurveLanes on_pieces(const ProfileCurve& curve, const LanePieces& piece, const Lanes& s) {
+CurveLanes on_pieces(const ProfileCurve& curve, const LanePieces& piece, const Eight& s) {
   CurveLanes lanes;
   for (std::size_t i = 0; i < piece.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -40,7 +40,7 @@ CurveLanes on_pieces(const ProfileCurve& curve, const LanePieces& piece, const L
   return lanes;
 }
 
-LanePieces pieces_of(const ProfileCurve& curve, const Lanes& s) {
+LanePieces pieces_of(const ProfileCurve& curve, const Eight& s) {
   LanePieces piece;
   for (std::size_t i = 0; i < piece.size(); ++i) piece[i] = curve.piece_of(s[static_cast<Eigen::Index>(i)]);
   return piece;
@@ -49,8 +49,8 @@ LanePieces pieces_of(const ProfileCurve& curve, const Lanes& s) {
 }  // namespace
 
 struct Overlap::PointLanes {
-  Lanes penetration;
-  PlaneVector<Lanes> at;
+  Eight penetration;
+  PlaneVector<Eight> at;
 };
 
 OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
@@ -82,22 +82,22 @@ OverlapPoint Overlap::at(double s_wheel, double s_rail) const noexcept {
 Overlap::PointLanes Overlap::at(const Eigen::Array<double, 8, 1>& s_wheel,
                                 Eigen::Array<double, 8, 1> s_rail) const noexcept {
   const CurveLanes wheel = on_pieces(pair_.wheel(), pieces_of(pair_.wheel(), s_wheel), s_wheel);
-  const Lanes radius = pair_.nominal_radius() + wheel.at.z;
-  const Lanes axial = pair_.tape_circle_offset() + wheel.at.y;
-  const Lanes slope = wheel.tangent.z / wheel.tangent.y;
-  const Lanes w2 = silhouette_cosine2(slope, trigonometry_);
-  const Lanes below = radius * w2.max(0.0).sqrt();
+  const Eight radius = pair_.nominal_radius() + wheel.at.z;
+  const Eight axial = pair_.tape_circle_offset() + wheel.at.y;
+  const Eight slope = wheel.tangent.z / wheel.tangent.y;
+  const Eight w2 = silhouette_cosine2(slope, trigonometry_);
+  const Eight below = radius * w2.max(0.0).sqrt();
   PointLanes point;
   point.at = in_rail_head(silhouette_y(axial, radius, slope, trigonometry_), below, centre_, trigonometry_);
   const ProfileCurve& rail = pair_.rail();
   for (int i = 0;; ++i) {
     const LanePieces piece = pieces_of(rail, s_rail);
     const CurveLanes r = on_pieces(rail, piece, s_rail);
-    const PlaneVector<Lanes> e{point.at.y - r.at.y, point.at.z - r.at.z};
-    const FootOfNormal<Lanes> foot(r.tangent, r.bend, e);
-    const Lanes step = foot.step();
+    const PlaneVector<Eight> e{point.at.y - r.at.y, point.at.z - r.at.z};
+    const FootOfNormal<Eight> foot(r.tangent, r.bend, e);
+    const Eight step = foot.step();
     s_rail += step;
-    const Lanes size = step.abs();
+    const Eight size = step.abs();
     bool found = (size < small_on_piece).all();
     for (std::size_t k = 0; k < piece.size() && found; ++k) {
       const auto lane = static_cast<Eigen::Index>(k);
@@ -203,17 +203,17 @@ OverlapEnds Overlap::ends(double level, const OverlapFlank& low, const OverlapFl
 
 OverlapArea Overlap::area(const ContactPatch& patch, double level, double s_low, double s_high) const noexcept {
   // Gauss and Legendre: exact for the parabola of constant curvatures; six points for what departs from it.
-  static const Lanes node{{-0.9324695142031521, -0.6612093864662645, -0.2386191860831969, 0.2386191860831969,
+  static const Eight node{{-0.9324695142031521, -0.6612093864662645, -0.2386191860831969, 0.2386191860831969,
                            0.6612093864662645, 0.9324695142031521, 0.0, 0.0}};
-  static const Lanes weight{{0.1713244923791704, 0.3607615730481386, 0.4679139345726910, 0.4679139345726910,
+  static const Eight weight{{0.1713244923791704, 0.3607615730481386, 0.4679139345726910, 0.4679139345726910,
                              0.3607615730481386, 0.1713244923791704, 0.0, 0.0}};
   constexpr Eigen::Index first = 0, last = 5;
   const double middle = 0.5 * (s_low + s_high);
   const double half = 0.5 * (s_high - s_low);
   if (!(half > 0.0)) return {};
-  const Lanes from_patch = middle - patch.s_wheel + half * node;
+  const Eight from_patch = middle - patch.s_wheel + half * node;
   const PointLanes point = at(patch.s_wheel + from_patch, patch.s_rail + from_patch);
-  const Lanes part = weight * (point.penetration - level).max(0.0);
+  const Eight part = weight * (point.penetration - level).max(0.0);
   // The silhouette's own speed along the wheel profile has steps where the curvature has.
   const double chord = std::hypot(point.at.y[last] - point.at.y[first], point.at.z[last] - point.at.z[first]) /
                        (half * (node[last] - node[first]));

@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // A wheel with less curvature is straight: its curvature's sign is rounding [1/m].
-constexpr double straight = 1e-6;
+constexpr double straightness = 1e-6;
 
 double between(double y, double y0, double z0, double y1, double z1) noexcept {
   return z0 + (y - y0) * (z1 - z0) / (y1 - y0);
@@ -135,7 +134,7 @@ void PaperSearch::add_contact(const WheelsetPose& pose, const PoseTrigonometry& 
   const double s_first = wheel_[static_cast<std::size_t>(zone.first)].s;
   const double s_last = wheel_[static_cast<std::size_t>(zone.last)].s;
   const bool found = convex.status == PairStatus::converged && convex.patch.s_wheel >= s_first &&
-                     convex.patch.s_wheel <= s_last && convex.patch.curv_wheel > -straight;  // Eq. 2
+                     convex.patch.s_wheel <= s_last && convex.patch.curv_wheel > -straightness;  // Eq. 2
   if (!found) {
     add_overlap(pose, trig, wheel, zone, patches);
   } else if (convex.patch.penetration > 0.0) {  // Eq. 3

@@ -75,6 +75,7 @@ struct WheelForce {
 };
 
 enum class WheelSide { left, right };
+inline constexpr std::array<WheelSide, 2> wheel_sides{WheelSide::left, WheelSide::right};
 
 /// Forces of patches at the pose that relative_pose() returns.
 /// Normal forces are those of patch_loads() (Eq. 11), creep forces come by the model's law from the relative velocity

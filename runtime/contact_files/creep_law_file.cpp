@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
-#include "railtab/tables/files/shipped_creep_table.hpp"
 
 namespace railtab {
 
@@ -18,7 +18,7 @@ constexpr double same_poisson = 0.005;
 
 TableCreep read_table_creep(const std::filesystem::path& file, double nu) {
   const std::filesystem::path name = file.empty() ? shipped_creep_table() : file;
-  auto table = std::make_shared<const CreepTable>(read_creep_table(name));
+  auto table = in_file(name.string(), [&name] { return std::make_shared<const CreepTable>(read_creep_table(name)); });
   const double found = table->data().poisson;
   if (std::abs(found - nu) > same_poisson) {
     throw input_error(

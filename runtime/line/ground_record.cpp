@@ -13,7 +13,7 @@
 namespace railtab {
 namespace {
 
-void check_points(const std::vector<double>& time, const std::vector<GroundVector>& values) {
+void check_record(const std::vector<double>& time, const std::vector<GroundVector>& values) {
   if (time.size() < 2 || values.size() != time.size()) {
     throw input_error("ground record", fmt::format("{} times and {} values", time.size(), values.size()),
                       "as many of both, at least 2");
@@ -74,7 +74,7 @@ void GroundRecord::integrate() {
 }
 
 GroundRecord GroundRecord::from_acceleration(std::vector<double> time, std::vector<GroundVector> acceleration) {
-  check_points(time, acceleration);
+  check_record(time, acceleration);
   GroundRecord record(std::move(time), std::move(acceleration));
   // c0 + c1 τ with ∫ = −v(T) and ∬ = −d(T)
   const double T = record.end() - record.begin();
@@ -90,7 +90,7 @@ GroundRecord GroundRecord::from_acceleration(std::vector<double> time, std::vect
 }
 
 GroundRecord GroundRecord::from_displacement(std::vector<double> time, const std::vector<GroundVector>& displacement) {
-  check_points(time, displacement);
+  check_record(time, displacement);
   std::vector<GroundVector> acceleration = clamped_curvatures(time, displacement);
   return {std::move(time), std::move(acceleration)};
 }

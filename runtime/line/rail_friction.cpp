@@ -15,7 +15,7 @@ constexpr double most = 2.0;
 
 /// @param place name of a point for messages
 template <class Place>
-void check_points(const std::vector<double>& x, const std::vector<double>& friction, const Place& place) {
+void check_friction(const std::vector<double>& x, const std::vector<double>& friction, const Place& place) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!(friction[i] >= 0.0 && friction[i] <= most)) {
       throw input_error(place(i), fmt::format("a coefficient of friction of {}", friction[i]),
@@ -37,7 +37,7 @@ RailFriction::RailFriction(std::vector<double> x, std::vector<double> left, std:
                       "as many coefficients of each rail, at least one");
   }
   for (const std::vector<double>& value : value_) {
-    check_points(x_, value, [](std::size_t i) { return fmt::format("friction along the track, point {}", i + 1); });
+    check_friction(x_, value, [](std::size_t i) { return fmt::format("friction along the track, point {}", i + 1); });
   }
 }
 
@@ -59,7 +59,7 @@ RailFriction read_rail_friction(const std::filesystem::path& file) {
   require_argument(columns[0]);
   for (std::size_t c = 1; c < 3; ++c) {
     static_cast<void>(factor_to_si(columns[c], {{"1", 1.0}, {"-", 1.0}}));
-    check_points(columns[0].values, columns[c].values, [&](std::size_t i) { return columns[c].place(i + 1); });
+    check_friction(columns[0].values, columns[c].values, [&](std::size_t i) { return columns[c].place(i + 1); });
   }
   return {std::move(columns[0].values), std::move(columns[1].values), std::move(columns[2].values)};
 }

@@ -25,7 +25,7 @@ class RailFriction {
   std::array<std::vector<double>, 2> value_;  // by RailSide
 };
 
-/// Columns x[m], left[-], right[-] (docs/file_formats/histories.md). @throws InputError with file and line
+/// Columns x[m], left[1], right[1] (docs/file_formats/histories.md). @throws InputError with file and line
 [[nodiscard]] RailFriction read_rail_friction(const std::filesystem::path& file);
 
 }  // namespace railtab

@@ -23,7 +23,7 @@ std::size_t line_at(const std::vector<double>& points, double value) {
 
 /// @param place name of a point for messages
 template <class Place>
-void check_points(const std::vector<double>& time, const std::vector<double>& speed, const Place& place) {
+void check_speeds(const std::vector<double>& time, const std::vector<double>& speed, const Place& place) {
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (!(speed[i] >= slowest && speed[i] <= fastest)) {
       throw input_error(place(i), fmt::format("{} m/s", speed[i]), fmt::format("{} to {} m/s", slowest, fastest));
@@ -49,7 +49,7 @@ SpeedProfile::SpeedProfile(std::vector<double> time, std::vector<double> speed)
     throw input_error("speed profile", fmt::format("{} times and {} speeds", time_.size(), speed_.size()),
                       "as many of both, at least 2");
   }
-  check_points(time_, speed_, [](std::size_t i) { return fmt::format("speed profile, point {}", i + 1); });
+  check_speeds(time_, speed_, [](std::size_t i) { return fmt::format("speed profile, point {}", i + 1); });
   travel_.assign(time_.size(), 0.0);
   for (std::size_t i = 1; i < time_.size(); ++i) {
     travel_[i] = travel_[i - 1] + 0.5 * (speed_[i - 1] + speed_[i]) * (time_[i] - time_[i - 1]);
@@ -104,7 +104,7 @@ SpeedProfile read_speed_profile(const std::filesystem::path& file) {
   require_argument(columns[0]);
   const double factor = factor_to_si(columns[1], {{"m/s", 1.0}, {"km/h", 1.0 / 3.6}});
   for (double& v : columns[1].values) v *= factor;
-  check_points(columns[0].values, columns[1].values, [&](std::size_t i) { return columns[1].place(i + 1); });
+  check_speeds(columns[0].values, columns[1].values, [&](std::size_t i) { return columns[1].place(i + 1); });
   return {std::move(columns[0].values), std::move(columns[1].values)};
 }
 

@@ -9,7 +9,7 @@
 namespace railtab {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// In the shortest period; on a deck with a free end, where accelerations jump, peaks are those of the samples.
 constexpr double samples_per_period = 16.0, samples_with_jumps = 64.0;
 /// A sample this near to the best peak may belong to a higher one: between samples a motion of the shortest period

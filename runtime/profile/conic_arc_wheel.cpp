@@ -3,12 +3,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/base/constants.hpp"
+
 namespace railtab {
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr double cone_slope = 1.0 / 40.0;
 constexpr double flank_angle = 70.0 * pi / 180.0;
 constexpr ProfilePoint flank_point{-37.5 * mm, 10.0 * mm};
@@ -16,7 +18,7 @@ constexpr double root_radius = 14 * mm;
 constexpr double tip_radius = 12 * mm;
 constexpr double flange_height = 30 * mm;
 constexpr double back = -70 * mm;
-constexpr double y_end = 60 * mm;
+constexpr double field_side = 60 * mm;
 
 double dot(ProfilePoint a, ProfilePoint b) { return a.y * b.y + a.z * b.z; }
 
@@ -45,7 +47,7 @@ std::vector<ProfileSegment> conic_arc_stand_in_segments() {
   return {arc_segment({tip.y, flange_height - back_radius}, back_radius, -0.5 * pi, 0.0),
           arc_segment(tip, tip_radius, 0.0, flank_angle), straight_segment(flank_begin, root_on_flank),
           arc_segment(root, root_radius, pi + flank_angle, pi + cone_angle),
-          straight_segment(root_on_cone, {y_end, -cone_slope * y_end})};
+          straight_segment(root_on_cone, {field_side, -cone_slope * field_side})};
 }
 
 }  // namespace railtab

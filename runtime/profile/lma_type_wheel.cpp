@@ -3,19 +3,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/base/constants.hpp"
+
 namespace railtab {
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Radii from the flange's back to the field side.
-constexpr double tip = 12 * mm, flank = 15 * mm;                      // convex
-constexpr double root = 14 * mm, inner = 90 * mm, middle = 450 * mm;  // concave
-constexpr double fillet = 50 * mm;                                    // convex, between the two cones
-constexpr double cones_meet = 30.0 * mm;                              // y at which 1:40 and 1:15 intersect
-constexpr double y_end = 60.0 * mm;
+constexpr double tip_arc = 12 * mm, flank = 15 * mm;                              // convex
+constexpr double root_arc = 14 * mm, inner_arc = 90 * mm, middle_arc = 450 * mm;  // concave
+constexpr double fillet = 50 * mm;                                                // convex, between the two cones
+constexpr double cones_meet = 30.0 * mm;                                          // y at which 1:40 and 1:15 intersect
+constexpr double outer_end = 60.0 * mm;
 
 /// Direction out of the wheel at a place whose tangent falls by beta from the flange to the field side.
 ProfilePoint out(double beta) { return {std::sin(beta), std::cos(beta)}; }
@@ -38,25 +39,25 @@ std::vector<ProfileSegment> lma_type_segments() {
   // Tangent angles at the joints, from the fitted centres y = 15.50, -5.503, -24.870, -53.615 and -53.996 mm.
   const double at_cone = std::atan(1.0 / 40.0);
   const double at_edge = std::atan(1.0 / 15.0);
-  const double at_middle = std::asin((15.50 + 5.503) * mm / (middle - inner));
-  const double at_inner = std::asin((-5.503 + 24.870) * mm / (inner - root));
-  const double at_root = std::asin((-24.870 + 53.615) * mm / (root + flank));
-  const double at_tip = std::asin((-53.996 + 53.615) * mm / (flank - tip));
+  const double at_middle = std::asin((15.50 + 5.503) * mm / (middle_arc - inner_arc));
+  const double at_inner = std::asin((-5.503 + 24.870) * mm / (inner_arc - root_arc));
+  const double at_root = std::asin((-24.870 + 53.615) * mm / (root_arc + flank));
+  const double at_tip = std::asin((-53.996 + 53.615) * mm / (flank - tip_arc));
 
   // Centres by tangency, from the R450 to the tip; the R450 passes through the tape circle.
   ProfilePoint centre{15.50 * mm, 0.0};
-  centre.z = std::sqrt(middle * middle - centre.y * centre.y);
+  centre.z = std::sqrt(middle_arc * middle_arc - centre.y * centre.y);
   std::vector<ProfileSegment> from_field;
-  const ProfilePoint cone_begin = along(centre, -middle, out(at_cone));
-  from_field.push_back(concave(centre, middle, at_middle, at_cone));
-  centre = along(centre, -(middle - inner), out(at_middle));
-  from_field.push_back(concave(centre, inner, at_inner, at_middle));
-  centre = along(centre, -(inner - root), out(at_inner));
-  from_field.push_back(concave(centre, root, at_root, at_inner));
-  centre = along(centre, -(root + flank), out(at_root));
+  const ProfilePoint cone_begin = along(centre, -middle_arc, out(at_cone));
+  from_field.push_back(concave(centre, middle_arc, at_middle, at_cone));
+  centre = along(centre, -(middle_arc - inner_arc), out(at_middle));
+  from_field.push_back(concave(centre, inner_arc, at_inner, at_middle));
+  centre = along(centre, -(inner_arc - root_arc), out(at_inner));
+  from_field.push_back(concave(centre, root_arc, at_root, at_inner));
+  centre = along(centre, -(root_arc + flank), out(at_root));
   from_field.push_back(convex(centre, flank, at_tip, at_root));
-  centre = along(centre, flank - tip, out(at_tip));
-  from_field.push_back(convex(centre, tip, -0.5 * pi, at_tip));
+  centre = along(centre, flank - tip_arc, out(at_tip));
+  from_field.push_back(convex(centre, tip_arc, -0.5 * pi, at_tip));
 
   // The two cones and the arc between them, of tangent length R tan(half the angle).
   const double tangent = fillet * std::tan(0.5 * (at_edge - at_cone));
@@ -68,7 +69,7 @@ std::vector<ProfileSegment> lma_type_segments() {
   std::vector<ProfileSegment> segments(from_field.rbegin(), from_field.rend());
   segments.push_back(straight_segment(cone_begin, cone_end));
   segments.push_back(convex(along(cone_end, -fillet, out(at_cone)), fillet, at_cone, at_edge));
-  segments.push_back(straight_segment(edge_begin, along(edge_begin, (y_end - edge_begin.y) / edge.y, edge)));
+  segments.push_back(straight_segment(edge_begin, along(edge_begin, (outer_end - edge_begin.y) / edge.y, edge)));
   return segments;
 }
 

@@ -6,14 +6,13 @@
 #include <optional>
 #include <string_view>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_text.hpp"
 
 namespace railtab {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// The entries of the header that are used.
 struct MiniprofHeader {

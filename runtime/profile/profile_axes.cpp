@@ -7,14 +7,13 @@
 #include <cstddef>
 #include <optional>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 
 namespace railtab {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 void mirror_z(ProfilePoints& outline) {
   for (OutlinePoint& p : outline.points) p.z = -p.z;

@@ -6,12 +6,13 @@
 #include <numbers>
 #include <span>
 
+#include "railtab/runtime/base/constants.hpp"
+
 namespace railtab {
 
 namespace {
 
 // Everything here is in mm, as the standard prints it, until a segment is made of it.
-constexpr double mm = 1e-3;
 
 /// z and its derivatives over y [mm].
 struct Value {
@@ -72,7 +73,7 @@ constexpr double y_ed = -38.426669071;
 constexpr double y_dc = -35.0;
 constexpr double y_cb = -26.0;
 constexpr double y_ba = 32.15796;
-constexpr double y_end = 60.0;
+constexpr double tread_end = 60.0;
 
 /// The cubic over zone C that closes its steps of value and slope against D and B (Hermite's).
 struct JointCorrection {
@@ -129,7 +130,7 @@ std::vector<ProfileSegment> s1002_segments() {
   return {arc_zone_segment(zone_h, shift_h, y_begin, y_hg), arc_zone_segment(zone_g, shift_g, y_hg, y_gf),
           arc_zone_segment(zone_f, shift_f, y_gf, y_fe),    straight_zone_segment(zone_e, shift_e, y_fe, y_ed),
           arc_zone_segment(zone_d, 0.0, y_ed, y_dc),        polynomial_segment(zone_c, close_zone_c(), y_dc, y_cb),
-          polynomial_segment(zone_b, none, y_cb, y_ba),     straight_zone_segment(zone_a, shift_a, y_ba, y_end)};
+          polynomial_segment(zone_b, none, y_cb, y_ba),     straight_zone_segment(zone_a, shift_a, y_ba, tread_end)};
 }
 
 }  // namespace railtab

@@ -9,7 +9,7 @@ namespace railtab {
 namespace {
 
 constexpr std::size_t counters = 4, head = 6;
-constexpr double most_count = 9007199254740992.0;  // 2^53: whole numbers are exact up to it
+constexpr double most_exact = 9007199254740992.0;  // 2^53: whole numbers are exact up to it
 constexpr double half_range = 4294967296.0;        // 2^32: each half of the checksum is exact in a double
 
 std::uint64_t slot_checksum(std::span<const double> counts, std::span<const double> state) {
@@ -35,7 +35,7 @@ std::optional<CheckpointSlot> decode_checkpoint(std::span<const double> slot) {
   if (!(high >= 0 && high < half_range && low >= 0 && low < half_range)) return std::nullopt;
   const std::uint64_t sum = (static_cast<std::uint64_t>(high) << 32) | static_cast<std::uint64_t>(low);
   const double length = slot[counters - 1];
-  const auto counts = [](double value) { return value >= 0.0 && value <= most_count && value == std::floor(value); };
+  const auto counts = [](double value) { return value >= 0.0 && value <= most_exact && value == std::floor(value); };
   if (!std::all_of(slot.begin(), slot.begin() + counters, counts)) return std::nullopt;
   if (!(length >= 0 && length <= static_cast<double>(slot.size() - head))) return std::nullopt;
   const std::span<const double> state = slot.subspan(head, static_cast<std::size_t>(length));

@@ -12,7 +12,7 @@
 namespace railtab::scene {
 namespace {
 
-std::string place(const SceneCase& at, std::size_t index) {
+std::string place_of_motion(const SceneCase& at, std::size_t index) {
   return fmt::format("[[ground_motion]] {} of {}", index + 1, at.scene.ground_motion.size());
 }
 
@@ -57,9 +57,9 @@ const Warning ground_at_rest{
       for (std::size_t i = 0; i < at.records.size(); ++i) {
         if (moves(at, i)) continue;
         const bool by_factor = at.scene.ground_motion[i].factor == 0.0;
-        list.push_back(place(at, i) + (by_factor
-                                           ? " is multiplied by ground_motion.factor = 0: the ground stays at rest"
-                                           : " is zero throughout: the ground stays at rest"));
+        list.push_back(place_of_motion(at, i) +
+                       (by_factor ? " is multiplied by ground_motion.factor = 0: the ground stays at rest"
+                                  : " is zero throughout: the ground stays at rest"));
       }
     }};
 
@@ -67,7 +67,7 @@ const Warning ground_drift{"the drift correction changes a record by more than a
                            [](const SceneCase& at, Warnings& list) {
                              for (std::size_t i = 0; i < at.records.size(); ++i) {
                                if (!moves(at, i)) continue;
-                               auto corrected = of_drift_correction(at.records[i], place(at, i));
+                               auto corrected = of_drift_correction(at.records[i], place_of_motion(at, i));
                                if (corrected) list.push_back(std::move(*corrected));
                              }
                            }};
@@ -78,10 +78,11 @@ const Warning ground_lateral_motion{
       if (vehicle_plane(at.scene) != MotionPlane::vertical) return;
       for (std::size_t i = 0; i < at.records.size(); ++i) {
         if (at.records[i].peak()[0] <= rounding * at.records[i].given_peak()[0]) continue;
-        list.push_back(place(at, i) + (lateral_ground_is_left_out(at.scene)
-                                           ? " moves the ground along y too: nothing in a vertical scene follows it"
-                                           : " moves the ground along y: the structure follows it, the train, whose "
-                                             "wheels follow the rails vertically, does not"));
+        list.push_back(place_of_motion(at, i) +
+                       (lateral_ground_is_left_out(at.scene)
+                            ? " moves the ground along y too: nothing in a vertical scene follows it"
+                            : " moves the ground along y: the structure follows it, the train, whose "
+                              "wheels follow the rails vertically, does not"));
       }
     }};
 
@@ -91,7 +92,7 @@ const Warning ground_after_run{
         const double begin = at.records[i].begin() + at.scene.ground_motion[i].start;
         if (begin < at.duration) continue;
         list.push_back(fmt::format("{} begins at t = {:.6g} s, the run ends at {:.6g} s: the ground stays at rest",
-                                   place(at, i), begin, at.duration));
+                                   place_of_motion(at, i), begin, at.duration));
       }
     }};
 
@@ -101,8 +102,8 @@ const Warning ground_moves_nothing{
       if (at.records.size() < 2) return;
       for (std::size_t i = 0; i < at.records.size(); ++i) {
         if (reach_of_station(at.scene.ground_motion, i).meets(moved)) continue;
-        list.push_back(fmt::format("{}, at x = {:.6g} m, moves nothing: wheels and supports are at {}", place(at, i),
-                                   at.scene.ground_motion[i].x, text(moved, "x", "m")));
+        list.push_back(fmt::format("{}, at x = {:.6g} m, moves nothing: wheels and supports are at {}",
+                                   place_of_motion(at, i), at.scene.ground_motion[i].x, text(moved, "x", "m")));
       }
     }};
 

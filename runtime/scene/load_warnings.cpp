@@ -10,7 +10,7 @@
 namespace railtab::scene {
 namespace {
 
-std::string place(const SceneCase& at, std::size_t index) {
+std::string place_of_load(const SceneCase& at, std::size_t index) {
   return fmt::format("[[load]] {} of {}", index + 1, at.scene.loads.size());
 }
 
@@ -42,8 +42,8 @@ std::optional<std::string> outside_run(const SceneCase& at, std::size_t index) {
                                  : history.high < run.low ? "its last value acts throughout"
                                                           : "its first value acts throughout";
   const std::string_view name = over_time ? "t" : "x", unit = over_time ? "s" : "m";
-  return fmt::format("{} is specified for {}, the run is at {}: {}", place(at, index), text(history, name, unit),
-                     text(run, name, unit), value);
+  return fmt::format("{} is specified for {}, the run is at {}: {}", place_of_load(at, index),
+                     text(history, name, unit), text(run, name, unit), value);
 }
 
 /// When a load is at a point of its history: a time, or the place of a vehicle's loaded body.
@@ -81,7 +81,7 @@ std::optional<std::string> short_pulse(const SceneCase& at, std::size_t index) {
   return fmt::format(
       "{}: {} rises and falls within {:.3g} s at t = {:.6g} s, in less than four time steps ({:.3g} s): "
       "it may act in part or not at all; an integration.time_step of {:.3g} s resolves it",
-      place(at, index), names[component], length, shortest.low, resolved * step, length / resolved);
+      place_of_load(at, index), names[component], length, shortest.low, resolved * step, length / resolved);
 }
 
 /// One warning for each load for which `warning` says something.
@@ -97,7 +97,7 @@ void of_loads(const SceneCase& at, Warnings& list, const Warning& warning) {
 const Warning load_zero{"the load is zero throughout", [](const SceneCase& at, Warnings& list) {
                           of_loads(at, list, [](const SceneCase& c, std::size_t i) -> std::optional<std::string> {
                             if (!is_zero(c, i)) return std::nullopt;
-                            return place(c, i) + " is zero throughout: it does not act";
+                            return place_of_load(c, i) + " is zero throughout: it does not act";
                           });
                         }};
 const Warning load_outside_run{"the load lies outside the run",

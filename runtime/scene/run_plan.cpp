@@ -75,6 +75,9 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, Model
                              ? "elastic contact forces: half-space solutions, from the loaded part of the table"
                              : "elastic contact forces: an ellipse per patch");
     plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+    if (!scene.contact.friction_file.empty()) {
+      plan.built.push_back(fmt::format("friction of {}", scene.contact.friction_file.filename().string()));
+    }
     return;
   }
   plan.built.emplace_back("wheels that follow the rails rigidly, vertical motion only");
@@ -86,9 +89,11 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, Model
 
 void describe_structure(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   if (model.structure) {
-    plan.built.push_back(fmt::format("{} track, {} rail nodes, {} span(s)",
+    const std::size_t spans = scene.spans.size();
+    plan.built.push_back(fmt::format("{} track, {} rail nodes{}",
                                      scene.track_kind == TrackKind::imported ? "imported" : "flexible",
-                                     2 * model.structure->rail[0].x.size(), scene.spans.size()));
+                                     2 * model.structure->rail[0].x.size(),
+                                     spans == 0 ? "" : fmt::format(", {} span{}", spans, spans == 1 ? "" : "s")));
     if (scene.reduction.kind != Reduction::none) plan.built.push_back(reduction_text(scene.reduction));
   }
   if (track_on_import(scene)) {

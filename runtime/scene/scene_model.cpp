@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
@@ -25,10 +26,14 @@ constexpr int paper_points = 1000;              // of the published method's dis
 constexpr double paper_curvature_floor = 1e-6;  // 1/m [MontenegroCalcada2023, section 2.2]
 
 WheelRailPair scene_pair(const ContactParameters& contact) {
-  if (!contact.table.empty()) return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair();
-  return WheelRailPair(ProfileCurve(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination)),
-                       ProfileCurve(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination)),
-                       contact.dimensions);
+  if (!contact.table.empty()) {
+    return in_file(contact.table.string(),
+                   [&] { return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair(); });
+  }
+  ProfileCurve wheel(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination));
+  ProfileCurve rail(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination));
+  return in_file("scene: contact",
+                 [&] { return WheelRailPair(std::move(wheel), std::move(rail), contact.dimensions); });
 }
 
 /// The loaded contact of a table, where the scene's forces are to come from it; it leaves the table.
@@ -55,7 +60,8 @@ ContactGeometry scene_geometry(const ContactParameters& contact) {
     case ContactMode::table: {
       GeometryTableData table = read_geometry_table(contact.table);
       std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
-      return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded));
+      return in_file(contact.table.string(),
+                     [&] { return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded)); });
     }
     case ContactMode::online:
       return ContactGeometry(ContactSearch(scene_pair(contact)));

@@ -10,13 +10,13 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Columns = StructureSupports::Columns;
 
-constexpr double rounding = 1e-12;
+constexpr double relative_rounding = 1e-12;
 
 /// A ι + A_s, without what is zero but for rounding.
 Columns relative(const Sparse& matrix, const Sparse& carried, const Columns& of_supports) {
   Sparse sum = matrix * carried;
   sum += Sparse(of_supports);
-  sum.prune(matrix.diagonal().cwiseAbs().maxCoeff(), rounding);
+  sum.prune(matrix.diagonal().cwiseAbs().maxCoeff(), relative_rounding);
   return sum;
 }
 
@@ -48,7 +48,7 @@ Sparse carried_by_supports(const StiffnessFactor& factor, const Columns& of_supp
     const Eigen::Index count = std::min(at_a_time, columns.cols() - first);
     const Eigen::MatrixXd answer = factor.solve(Eigen::MatrixXd(columns.middleCols(first, count)));
     for (Eigen::Index j = 0; j < count; ++j) {
-      const double least = rounding * answer.col(j).cwiseAbs().maxCoeff();
+      const double least = relative_rounding * answer.col(j).cwiseAbs().maxCoeff();
       for (Eigen::Index i = 0; i < answer.rows(); ++i) {
         if (std::abs(answer(i, j)) <= least) continue;
         entries.emplace_back(static_cast<int>(i), static_cast<int>(first + j), -answer(i, j));

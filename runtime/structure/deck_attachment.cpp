@@ -9,13 +9,14 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
 
 namespace {
 
-constexpr double rounding = 1e-6;  // [m], by which nodes of one line may differ
+constexpr double same_place = 1e-6;  // [m], by which nodes of one line may differ
 
 struct DeckNode {
   int number = 0;
@@ -53,10 +54,9 @@ void settle_expanded(std::vector<DeckNode>& nodes) {
 /// Adds `value` times motion `k` of a node to row `to`; what is held moves with its support, if there is one.
 void add_motion(DeckAttachment& deck, int to, const FeNode& node, std::size_t k, double value) {
   if (value == 0.0) return;
-  constexpr std::size_t lateral = 1, vertical = 2;
   std::vector<int> rows = node.rows[k];
-  if (rows.empty() && (k == lateral || k == vertical) && node.support[k - lateral] != held) {
-    rows.push_back(support_dof(node.support[k - lateral]));
+  if (rows.empty() && (k == y_dof || k == z_dof) && node.support[k - y_dof] != held) {
+    rows.push_back(support_dof(node.support[k - y_dof]));
   }
   if (rows.empty()) return;  // at rest
   const double share = value / static_cast<double>(rows.size());
@@ -97,7 +97,7 @@ void add_beam_shapes(DeckAttachment& deck, const FeNode& a, const FeNode& b, dou
 DeckFunction beam_deck(std::vector<DeckNode> nodes) {
   std::vector<double> x;
   for (const DeckNode& n : nodes) {
-    if (!x.empty() && n.node.position[0] - x.back() <= rounding) {
+    if (!x.empty() && n.node.position[0] - x.back() <= same_place) {
       throw input_error(named(n.number), fmt::format("a second deck node at x = {} m", n.node.position[0]),
                         "one of each position along a beam");
     }
@@ -107,7 +107,7 @@ DeckFunction beam_deck(std::vector<DeckNode> nodes) {
     return n.node.rows[4].size() == 1 || n.node.rows[5].size() == 1;
   });
   return [x, rotations, nodes = std::move(nodes)](double at, double y, double z) -> std::optional<DeckAttachment> {
-    if (at < x.front() - rounding || at >= x.back() - rounding) return std::nullopt;
+    if (at < x.front() - same_place || at >= x.back() - same_place) return std::nullopt;
     const double inside = std::clamp(at, x.front(), x.back());
     const std::size_t e = interval_at(x, inside);
     const FeNode &a = nodes[e].node, &b = nodes[e + 1].node;
@@ -130,7 +130,7 @@ class DeckSurface {
   explicit DeckSurface(std::vector<DeckNode> nodes) : nodes_(std::move(nodes)) {}
 
   [[nodiscard]] std::optional<DeckAttachment> operator()(double x, double y, double z) const {
-    if (x < nodes_.front().node.position[0] - rounding || x >= nodes_.back().node.position[0] - rounding) {
+    if (x < nodes_.front().node.position[0] - same_place || x >= nodes_.back().node.position[0] - same_place) {
       return std::nullopt;
     }
     double radius = first_radius(x, y);
@@ -230,13 +230,13 @@ DeckFunction deck_function(const FeStructure& structure, const std::vector<int>&
   settle_expanded(nodes);
   std::stable_sort(nodes.begin(), nodes.end(),
                    [](const DeckNode& a, const DeckNode& b) { return a.node.position[0] < b.node.position[0]; });
-  if (nodes.size() < 2 || nodes.back().node.position[0] - nodes.front().node.position[0] <= rounding) {
+  if (nodes.size() < 2 || nodes.back().node.position[0] - nodes.front().node.position[0] <= same_place) {
     throw input_error("structure.deck",
                       nodes.size() == 1 ? fmt::format("node {} alone", nodes.front().number)
                                         : fmt::format("{} nodes at one place along the track", nodes.size()),
                       "nodes along the track, on which it lies");
   }
-  if (high - low <= rounding) return beam_deck(std::move(nodes));
+  if (high - low <= same_place) return beam_deck(std::move(nodes));
   return DeckSurface(std::move(nodes));
 }
 

@@ -17,8 +17,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Columns = StructureSupports::Columns;
 
-constexpr std::size_t lateral = 1, vertical = 2;  // what the ground moves; else it holds at rest
-
 std::string place_of(std::size_t support, std::size_t count) {
   return fmt::format("scene: [[support]] {} of {}", support + 1, count);
 }
@@ -54,9 +52,9 @@ double hold(FeStructure& structure, const FeSupport& support, std::size_t number
     x += node.position[0] / static_cast<double>(nodes.size());
     for (std::size_t k = 0; k < 6; ++k) {
       if (!holds[k]) continue;
-      const bool moves = k == lateral || k == vertical;
-      const int to = moves ? static_cast<int>(2 * number + k - lateral) : RowSplit::resting;
-      if (moves) node.support[k - lateral] = to;
+      const bool moves = k == y_dof || k == z_dof;
+      const int to = moves ? static_cast<int>(2 * number + k - y_dof) : RowSplit::resting;
+      if (moves) node.support[k - y_dof] = to;
       for (int row : node.rows[k]) {
         int& column = column_of_row[static_cast<std::size_t>(row)];
         if (column != RowSplit::dof) {
@@ -236,7 +234,7 @@ Eigen::MatrixXd translations(const FeStructure& structure) {
     const auto row = static_cast<std::size_t>(i);
     if (structure.node_of_row[row] == no_node) continue;  // an inner mode rests in rigid motions
     const auto motion = static_cast<std::size_t>(structure.motion[row]);
-    if (motion == lateral || motion == vertical) r(i, static_cast<Eigen::Index>(motion - lateral)) = 1.0;
+    if (motion == y_dof || motion == z_dof) r(i, static_cast<Eigen::Index>(motion - y_dof)) = 1.0;
   }
   return r;
 }
@@ -244,8 +242,8 @@ Eigen::MatrixXd translations(const FeStructure& structure) {
 void stand_on_ground(const std::vector<int>& nodes, FeStructure& structure, StructureSupports& supports) {
   const auto loose = std::find_if(nodes.begin(), nodes.end(), [&](int name) {
     const FeNode& node = structure.nodes.at(name);
-    return (node.rows[lateral].empty() && node.support[0] == held) ||
-           (node.rows[vertical].empty() && node.support[1] == held);
+    return (node.rows[y_dof].empty() && node.support[0] == held) ||
+           (node.rows[z_dof].empty() && node.support[1] == held);
   });
   if (loose != nodes.end() && !supports.alike_only()) {
     supports.beyond = fmt::format("whose deck node {} has no row of y or z and stands on no [[support]]", *loose);

@@ -128,7 +128,6 @@ Sparse read_symmetric(const std::filesystem::path& file, Eigen::Index rows) {
 
 // The role of each row: degree of freedom, moved by the ground (y and z of a support), or held.
 std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& support_x) {
-  constexpr std::size_t lateral = 1, vertical = 2;
   std::vector<int> column_of_row(table.sign.size(), RowSplit::dof);
   for (const auto& [name, node] : table.nodes) {
     if (!node.support) continue;
@@ -136,9 +135,9 @@ std::vector<int> columns_of_rows(const DofTable& table, std::vector<double>& sup
     support_x.push_back(node.x);
     for (std::size_t k = 0; k < node.dof.size(); ++k) {
       if (node.dof[k] == held) continue;
-      const bool moves = k == lateral || k == vertical;
+      const bool moves = k == y_dof || k == z_dof;
       column_of_row[static_cast<std::size_t>(node.dof[k])] =
-          moves ? first + static_cast<int>(k - lateral) : RowSplit::resting;
+          moves ? first + static_cast<int>(k - y_dof) : RowSplit::resting;
     }
   }
   return column_of_row;

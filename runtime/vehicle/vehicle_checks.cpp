@@ -21,7 +21,6 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Eigen::Index;
 
-constexpr int roll = 3, pitch = 4;
 constexpr double softest = 0.01;  // Hz: what resists less is free
 
 constexpr double square(double x) { return x * x; }
@@ -54,9 +53,9 @@ void check_rigid_motions(const FreeVehicle& vehicle, const Matrix& matrix, const
   // of rotations what positions leave that are written in whole millimetres
   constexpr double ties = 1e-9, ties_of_rotations = 1e-6;
   for (int k = 0; k < 6; ++k) {
-    if (geometric == GeometricStiffness::in_matrices && (k == roll || k == pitch)) continue;
+    if (geometric == GeometricStiffness::in_matrices && (k == roll_dof || k == pitch_dof)) continue;
     const Vector v = vehicle.rigid.col(k);
-    if (std::abs(resistance(matrix, v)) <= (k < roll ? ties : ties_of_rotations)) continue;
+    if (std::abs(resistance(matrix, v)) <= (k < roll_dof ? ties : ties_of_rotations)) continue;
     throw input_error(fmt::format("{}: {}", file.string(), row_text(vehicle, largest(matrix * v))),
                       fmt::format("{:.3g} that resists {} of the whole vehicle", v.dot(matrix * v), motion_names[k]),
                       fmt::format("0: a vehicle that nothing ties to the ground (no track, contact or gravity, or "
@@ -68,7 +67,7 @@ void check_rigid_motions(const FreeVehicle& vehicle, const Matrix& matrix, const
 // About its axle a wheelset rolls on what the profiles say, and nothing else turns with it.
 void check_rotation(const FreeVehicle& vehicle, const TableBody& wheelset) {
   constexpr double rounding = 1e-9;
-  const int row = wheelset.row[pitch];
+  const int row = wheelset.row[pitch_dof];
   const auto rejection = [&](const std::filesystem::path& file, std::string_view found) {
     return input_error(fmt::format("{}: {}", file.string(), row_text(vehicle, row)), found,
                        "a wheelset that turns freely about its axle: axle boxes are bodies of their own, or rows that "
@@ -119,7 +118,7 @@ Matrix unresisted_motions(const FreeVehicle& vehicle, const Matrix& stiffness) {
     if (eigen.values[k] < softest_omega2) motions.col(count++) = vehicle.rigid * factor.solve_LT(eigen.vectors.col(k));
   }
   for (Index w = 0; w < wheelsets; ++w) {
-    motions(vehicle.wheelset(static_cast<std::size_t>(w)).row[pitch], count++) = 1.0;
+    motions(vehicle.wheelset(static_cast<std::size_t>(w)).row[pitch_dof], count++) = 1.0;
   }
   return motions.leftCols(count);
 }
@@ -133,7 +132,7 @@ Matrix stiffness_on_rails(const FreeVehicle& vehicle) {
     const DofIndices& row = vehicle.wheelset(w).row;
     K(row[1], row[1]) += support;
     K(row[2], row[2]) += support;
-    K(row[roll], row[roll]) += square(half_gauge) * support;
+    K(row[roll_dof], row[roll_dof]) += square(half_gauge) * support;
   }
   return K;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
@@ -43,7 +44,7 @@ VehicleModel build_vehicle(const VehicleData& data, MotionPlane plane, const Veh
   if (vertical_data) {
     for (DofIndices& dof : parts.held_dofs) dof[0] = held;
   }
-  VehicleModel vehicle = assemble_vehicle(parts);
+  VehicleModel vehicle = in_file(data.place, [&parts] { return assemble_vehicle(parts); });
   vehicle.top_speed = data.top_speed;
   const bool linear = choice == ForceElementChoice::linear;
   vehicle.linearised = linear ? data.linearised : data.stand_ins;

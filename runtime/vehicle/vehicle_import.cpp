@@ -9,6 +9,7 @@
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
 #include "railtab/runtime/fe/fe_frame.hpp"
 #include "railtab/runtime/fe/fe_matrix.hpp"
@@ -22,8 +23,6 @@ namespace railtab {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-
-constexpr std::size_t x_dof = 0, y_dof = 1, z_dof = 2, roll_dof = 3, pitch_dof = 4, yaw_dof = 5;
 
 Matrix read_dense(const std::filesystem::path& file, Eigen::Index rows) {
   const Eigen::SparseMatrix<double> matrix = read_matrix_market(file);

@@ -8,6 +8,7 @@
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/geometric_stiffness.hpp"
@@ -16,8 +17,6 @@
 
 namespace railtab {
 namespace {
-
-constexpr int x_dof = 0, y_dof = 1, z_dof = 2, roll_dof = 3, pitch_dof = 4, yaw_dof = 5;
 
 void check_bodies(const std::string& name, const std::vector<RigidBody>& bodies) {
   for (const RigidBody& body : bodies) {

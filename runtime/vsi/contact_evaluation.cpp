@@ -10,8 +10,6 @@ namespace {
 
 using Matrix12 = NewtonWorkspace::Matrix12;
 
-constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
-
 WheelContact contact_of_wheel(const WheelContactModel& model, std::size_t wheel, const WheelsetPose& pose, Pairs pairs,
                               NewtonWorkspace& ws) {
   if (ws.found.empty()) return wheel_contact(*model.geometry, pose);
@@ -40,7 +38,7 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
     end_force.setZero();
     for (int side = 0; side < 2; ++side) {
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
-      const WheelSide wheel_side = sides[index(side)];
+      const WheelSide wheel_side = wheel_sides[index(side)];
       const std::size_t number = index(2 * w + side);
       const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
       WheelContact& contact = s.contact[number];
@@ -87,7 +85,7 @@ void differentiate(const WheelContactModel& model, const ContactProblem& problem
       const std::size_t number = index(2 * w + side);
       const ContactMemory* start = problem.start ? &problem.start->memory[number] : nullptr;
       const Matrix9 t = (start ? problem.mean_weight : 1.0) *
-                        wheel_force_tangent(model, sides[index(side)], motion, rail, s.contact[number],
+                        wheel_force_tangent(model, wheel_sides[index(side)], motion, rail, s.contact[number],
                                             {problem.velocity_rate, problem.rail_velocity_rate, start});
       const int r = 6 + 3 * side;
       tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();

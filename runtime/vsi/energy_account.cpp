@@ -9,8 +9,6 @@ namespace railtab {
 
 namespace {
 
-constexpr std::array<WheelSide, 2> sides{WheelSide::left, WheelSide::right};
-
 // Of bump stops, and of friction that has not begun to slide.
 double stored(const ForceElements& elements, const Eigen::VectorXd& x, const Eigen::VectorXd& friction) {
   double sum = 0.0;
@@ -73,7 +71,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
   for (int w = 0; w < model_.wheelsets(); ++w) {
     const WheelsetMotion motion = wheelset_motion(problem, problem.predicted, w);
     for (int side = 0; side < 2; ++side) {
-      const WheelSide wheel_side = sides[index(side)];
+      const WheelSide wheel_side = wheel_sides[index(side)];
       const RailHeadMotion rail = rail_motion(problem, problem.predicted, w, side);
       const WheelsetPose pose = relative_pose(pair, wheel_side, motion, rail);
       const WheelContact found = wheel_contact(*model_.geometry, pose);

@@ -5,6 +5,7 @@
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 #include "table_command_line.hpp"
@@ -39,8 +40,9 @@ void conicity_command(const std::vector<std::string>& arguments) {
   }
   const WheelsetRoll roll = roll_option(line);
   const double difference = line.number("diameter-difference");
-  const TableContact table{GeometryTable(read_geometry_table(file))};
-  const std::optional<WheelsetFunctions> found = wheelset_functions(table, roll, difference);
+  const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(read_geometry_table(file))); });
+  const std::optional<WheelsetFunctions> found =
+      in_file(file, [&] { return wheelset_functions(table, roll, difference); });
   if (!found) throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");
   const WheelsetFunctions& functions = *found;
   const EquivalentConicity wave = conicity_of_wave(functions.radius_difference, amplitude);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/creep_job.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -84,7 +85,7 @@ nlohmann::ordered_json table_description(const CreepTableData& table, const std:
     j["axes"][std::string(axis_names(table.layout)[i])] = {
         {"low", nodes.front()}, {"high", nodes.back()}, {"nodes", nodes.size()}};
   }
-  j["bytes"] = CreepTable(table).bytes();
+  j["bytes"] = in_file(file, [&table] { return CreepTable(table).bytes(); });
   j["file_bytes"] = std::filesystem::file_size(file);
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
   j["provenance"] = {{"program_version", table.provenance.program_version},
@@ -105,7 +106,7 @@ std::string table_text(const CreepTableData& table, const std::string& file) {
   }
   text += fmt::format("  size         {:.2f} MiB on disk, {:.2f} MiB in memory\n",
                       static_cast<double>(std::filesystem::file_size(file)) / 1048576.0,
-                      static_cast<double>(CreepTable(table).bytes()) / 1048576.0);
+                      in_file(file, [&table] { return static_cast<double>(CreepTable(table).bytes()); }) / 1048576.0);
   for (const auto& [name, value] : table.statistics) text += fmt::format("  {:36} {:.4g}\n", name, value);
   text += fmt::format("  generated    {} by version {}: {}\n", table.provenance.created,
                       table.provenance.program_version, table.provenance.command_line);

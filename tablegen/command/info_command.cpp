@@ -10,6 +10,7 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "creep_report.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/report/html_page.hpp"
@@ -99,7 +100,7 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   j["leaves"] = table.leaf_branch.size();
   j["leaves_limited"] = limited_leaves(table);
   j["branches"] = branches_of(table);
-  if (table.shard.whole()) j["bytes"] = GeometryTable(table).bytes();
+  if (table.shard.whole()) j["bytes"] = in_file(file, [&] { return GeometryTable(table).bytes(); });
   j["file_bytes"] = std::filesystem::file_size(file);
   j["tolerance"] = table.tolerance;
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
@@ -161,8 +162,9 @@ void geometry_info(const TableCommandLine& line, const std::string& file) {
     if (line.given("html")) throw input_error(file, "a part of a table", "a whole one: merge the parts first");
     return line.json() ? print_json(description) : print_text(text);
   }
-  const TableContact table{GeometryTable(data)};
-  const std::optional<WheelsetFunctions> functions = wheelset_functions(table, WheelsetRoll::off, 0.0);
+  const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(data)); });
+  const std::optional<WheelsetFunctions> functions =
+      in_file(file, [&] { return wheelset_functions(table, WheelsetRoll::off, 0.0); });
   if (line.given("html")) {
     if (!functions)
       throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");

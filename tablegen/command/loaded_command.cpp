@@ -17,10 +17,10 @@ namespace po = boost::program_options;
 po::options_description loaded_options() {
   const LoadedSweepOptions defaults;
   po::options_description own("Options (SI units)");
-  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "the geometry table of the pair")     //
-      ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"), "wheelset lateral shift without roll and yaw")  //
-      ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                             //
-      ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head")             //
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "the geometry table of the pair")       //
+      ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"), "wheelset lateral shift without roll and yaw")    //
+      ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                               //
+      ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head, LO below HI")  //
       ("largest-load", text_value("300e3")->value_name("N"),
        "vertical force of the centred wheel at the last level of energy")  //
       ("levels", text_value("33")->value_name("N"), "levels of energy")    //

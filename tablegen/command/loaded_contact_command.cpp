@@ -11,6 +11,7 @@
 #include "command/print.hpp"
 #include "geometry_options.hpp"
 #include "geometry_request.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
@@ -44,8 +45,8 @@ ContactSearch requested_search(const TableCommandLine& line) {
       throw input_error(fmt::format("--{}", other), line.text(other), "no profiles beside --table, which has its own");
     }
   }
-  const TableContact table{GeometryTable(read_geometry_table(line.text("table")))};
-  return table.search();
+  const std::string file = line.text("table");
+  return in_file(file, [&] { return TableContact(GeometryTable(read_geometry_table(file))).search(); });
 }
 
 LoadedContactOptions requested_options(const TableCommandLine& line) {

@@ -5,6 +5,7 @@
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/tablegen/creep_job.hpp"
@@ -37,6 +38,13 @@ std::string shard_type(const Files& shards) {
   return type;
 }
 
+/// "a.h5, b.h5", in the order of the command line.
+std::string names_of(const Files& files) {
+  std::string names;
+  for (const std::filesystem::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
+  return names;
+}
+
 void merge_creep(const Files& shards, const std::string& file, const TableProvenance& provenance) {
   CreepTableData table = merge_creep_shards(shards);
   table.provenance = provenance;
@@ -49,12 +57,15 @@ void merge_geometry(const Files& shards, const std::string& file, const TablePro
     parts.push_back(read_geometry_table(shard));
     if (parts.back().shard.whole()) throw input_error(shard.string(), "a whole table", "shards; it needs no merge");
   }
-  GeometryTableData table = merge_geometry_tables(std::move(parts));
-  try {
-    certify_merged_geometry_table(table);
-  } catch (const ComputationError& e) {
-    throw ComputationError(fmt::format("{}: not written: {}", file, e.what()));
-  }
+  GeometryTableData table = in_file(names_of(shards), [&] {
+    GeometryTableData whole = merge_geometry_tables(std::move(parts));
+    try {
+      certify_merged_geometry_table(whole);
+    } catch (const ComputationError& e) {
+      throw ComputationError(fmt::format("{}: not written: {}", file, e.what()));
+    }
+    return whole;
+  });
   table.provenance = provenance;
   write_geometry_table(file, table);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/report/chart.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"
@@ -14,7 +15,6 @@ namespace railtab {
 
 namespace {
 
-constexpr double mm = 1e-3;
 constexpr double clearance = 14.0;   // between wheel and rail, drawn apart [mm]
 constexpr double margin = 3.0;       // around the picture [mm]
 constexpr double rail_depth = 34.0;  // of the head shown [mm]

@@ -7,6 +7,7 @@
 #include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "creep_report.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/loaded_verification.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -97,7 +98,8 @@ std::string text(const LoadedVerification& v) {
 
 void verify_creep(const TableCommandLine& line, const std::string& file) {
   if (line.given("dz")) throw input_error("--dz", "on a creep table", "a geometry table, or no --dz");
-  const TableCreep law{std::make_shared<const CreepTable>(read_creep_table(file))};
+  const TableCreep law =
+      in_file(file, [&file] { return TableCreep{std::make_shared<const CreepTable>(read_creep_table(file))}; });
   CreepVerificationOptions options;
   options.samples = static_cast<int>(line.whole_number("samples", 1, 10'000'000));
   options.seed = static_cast<std::uint64_t>(line.whole_number("seed", 0, 1LL << 53));
@@ -121,7 +123,7 @@ void verify_geometry(const TableCommandLine& line, const std::string& file) {
   GeometryTableData table = read_geometry_table(file);
   std::optional<LoadedTableData> loaded = std::move(table.loaded);
   table.loaded.reset();
-  const TableContact contact{GeometryTable(std::move(table))};
+  const TableContact contact = in_file(file, [&] { return TableContact(GeometryTable(std::move(table))); });
   VerificationOptions options = verification_options(contact.table().data());
   options.samples = static_cast<int>(line.whole_number("samples", 1, 100'000'000));
   options.seed = static_cast<std::uint64_t>(line.whole_number("seed", 0, 1LL << 53));

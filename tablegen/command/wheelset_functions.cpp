@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 const char* status_word(ConicityStatus status) {
   switch (status) {

@@ -11,7 +11,7 @@
 namespace railtab {
 namespace {
 
-constexpr int format_version = 1;
+constexpr int creep_format_version = 1;
 
 struct AxisText {
   const char* name;
@@ -81,7 +81,7 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
   const std::vector<float> values = rounded(table.values);
   CreepTableData stored = table;  // as it will be read, for the checksum
   stored.values.assign(values.begin(), values.end());
-  ArrayFileWriter out(file, creep_table_filetype, format_version);
+  ArrayFileWriter out(file, creep_table_filetype, creep_format_version);
   out.attribute("", "description",
                 "Forces of exact rolling contact (Kalker), normalised: G = 1, mu F_n = 1, sqrt(ab) = 1; on the wheel, "
                 "x forward, y right, z down. Layout: docs/file_formats/creep_table.md");
@@ -100,7 +100,7 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
 }
 
 CreepTableData read_creep_table(const std::filesystem::path& name) {
-  const ArrayFileReader file(name, creep_table_filetype, format_version);
+  const ArrayFileReader file(name, creep_table_filetype, creep_format_version);
   FieldReader in(file);
   CreepTableData table;
   const std::string layout = file.text("options", "layout");

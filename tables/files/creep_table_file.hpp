@@ -17,4 +17,9 @@ void write_creep_table(const std::filesystem::path& file, const CreepTableData& 
 /// @throws InputError with file and place: missing, not HDF5, truncated, of another type or version, checksum wrong.
 [[nodiscard]] CreepTableData read_creep_table(const std::filesystem::path& file);
 
+/// The creep table that comes with railtab, for Poisson's ratio 0.28: in the folder RAILTAB_DATA_DIR of the
+/// environment, in share/railtab beside the running program's bin, where railtab was installed, or in the source tree,
+/// in that order. @throws InputError where it is in none of them.
+[[nodiscard]] std::filesystem::path shipped_creep_table();
+
 }  // namespace railtab

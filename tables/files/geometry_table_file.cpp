@@ -14,7 +14,7 @@
 namespace railtab {
 namespace {
 
-constexpr int format_version = 4;
+constexpr int geometry_format_version = 4;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.
 struct Column {
@@ -172,7 +172,7 @@ int count_of(const ArrayFileReader& file, const char* attribute) {
 }  // namespace
 
 void write_geometry_table(const std::filesystem::path& file, const GeometryTableData& table) {
-  ArrayFileWriter out(file, geometry_table_filetype, format_version);
+  ArrayFileWriter out(file, geometry_table_filetype, geometry_format_version);
   out.attribute("", "description",
                 "Wheel-rail contact geometry of one pair. SI units; x forward, y right, z down; right wheel. "
                 "Layout: docs/file_formats/geometry_table.md");
@@ -191,7 +191,7 @@ void write_geometry_table(const std::filesystem::path& file, const GeometryTable
 }
 
 GeometryTableData read_geometry_table(const std::filesystem::path& name) {
-  const ArrayFileReader file(name, geometry_table_filetype, format_version);
+  const ArrayFileReader file(name, geometry_table_filetype, geometry_format_version);
   FieldReader in(file);
   GeometryTableData table;
   table.wheel = read_profile(file, in, "profiles/wheel", ProfileKind::wheel);

@@ -11,24 +11,26 @@ namespace {
 constexpr const char* group = "loaded";
 
 /// Arrays of numbers with their place in the file. One list serves writer, reader and checksum.
-struct Column {
+struct TableColumn {
   std::vector<double> LoadedTableData::*values;
   Field field;
 };
 
-const std::array<Column, 6>& columns() {
+const std::array<TableColumn, 6>& columns() {
   using Values = Field::Values;
-  static const std::array<Column, 6> list{
-      Column{&LoadedTableData::lateral,
-             {"loaded/lateral", {"lateral"}, "m", "nodes of the reduced lateral shift y0", Values::increasing}},
-      Column{&LoadedTableData::roll, {"loaded/roll", {"roll"}, "rad", "nodes of the roll", Values::increasing}},
-      Column{&LoadedTableData::yaw_squared,
-             {"loaded/yaw_squared", {"yaw"}, "rad^2", "nodes of the square of the yaw", Values::increasing}},
-      Column{&LoadedTableData::cut,
-             {"loaded/cut", {"cuts"}, "m", "arc lengths on the rail profile between its parts", Values::increasing}},
-      Column{&LoadedTableData::shift,
-             {"loaded/shift", {"lateral", "roll", "yaw", "2"}, "m; 1", "lateral shift y at the nodes, and dy/dy0"}},
-      Column{&LoadedTableData::touch, {"loaded/touch", {"lateral", "roll", "yaw"}, "m", "height of first touch"}}};
+  static const std::array<TableColumn, 6> list{
+      TableColumn{&LoadedTableData::lateral,
+                  {"loaded/lateral", {"lateral"}, "m", "nodes of the reduced lateral shift y0", Values::increasing}},
+      TableColumn{&LoadedTableData::roll, {"loaded/roll", {"roll"}, "rad", "nodes of the roll", Values::increasing}},
+      TableColumn{&LoadedTableData::yaw_squared,
+                  {"loaded/yaw_squared", {"yaw"}, "rad^2", "nodes of the square of the yaw", Values::increasing}},
+      TableColumn{
+          &LoadedTableData::cut,
+          {"loaded/cut", {"cuts"}, "m", "arc lengths on the rail profile between its parts", Values::increasing}},
+      TableColumn{
+          &LoadedTableData::shift,
+          {"loaded/shift", {"lateral", "roll", "yaw", "2"}, "m; 1", "lateral shift y at the nodes, and dy/dy0"}},
+      TableColumn{&LoadedTableData::touch, {"loaded/touch", {"lateral", "roll", "yaw"}, "m", "height of first touch"}}};
   return list;
 }
 
@@ -55,7 +57,7 @@ void write_loaded_table(ArrayFileWriter& file, const LoadedTableData& table) {
   FieldWriter out(file);
   out.set("levels", static_cast<std::size_t>(table.levels));
   out.set("cuts", table.cut.size());
-  for (const Column& column : columns()) {
+  for (const TableColumn& column : columns()) {
     if (column.values == &LoadedTableData::cut && table.cut.empty()) continue;
     out.write(column.field, table.*column.values);
   }
@@ -77,7 +79,7 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
   table.contact_modulus = in.number(group, "contact_modulus", 0.0);
   in.set("levels", static_cast<std::size_t>(table.levels), group);
   const bool cut = file.contains("loaded/cut");
-  for (const Column& column : columns()) {
+  for (const TableColumn& column : columns()) {
     if (column.values == &LoadedTableData::cut && !cut) continue;
     table.*column.values = in.numbers(column.field);
   }
@@ -95,7 +97,7 @@ std::uint64_t loaded_checksum(const LoadedTableData& table, std::uint64_t sum) n
     const double length = static_cast<double>(values.size());
     sum = checksum(values, checksum({&length, 1}, sum));
   };
-  for (const Column& column : columns()) add(table.*column.values);
+  for (const TableColumn& column : columns()) add(table.*column.values);
   const std::array<double, 3> level{static_cast<double>(table.levels), table.largest_level, table.contact_modulus};
   add(level);
   for (const auto& [name, value] : table.statistics) add({&value, 1});

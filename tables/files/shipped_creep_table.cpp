@@ -1,4 +1,4 @@
-#include "railtab/tables/files/shipped_creep_table.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 #include <fmt/format.h>
 

@@ -16,7 +16,7 @@
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
-#include "railtab/tables/files/shipped_creep_table.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 
 namespace railtab {
 namespace {

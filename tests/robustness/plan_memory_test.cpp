@@ -62,6 +62,15 @@ TEST_F(PlanMemory, BoundsARunOnRigidTrack) {
   expect_bound("name = \"rigid\"\n" + rigid_scene + "duration = 0.5\n", 0.5);
 }
 
+// Of twenty steps: most of it is the program and its libraries, whose pages the plan has not all touched.
+TEST_F(PlanMemory, BoundsATinyRunClosely) {
+  expect_bound("name = \"tiny\"\n" + rigid_scene + "time_step = 1e-3\nduration = 0.02\n", 0.8);
+  expect_bound(
+      "name = \"tinier\"\n[contact]\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[integration]\n"
+      "time_step = 1e-3\nduration = 0.02\n",
+      0.8);
+}
+
 TEST_F(PlanMemory, BoundsARunOnALongTrackClosely) {
   expect_bound(
       "name = \"long\"\n[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 4000.0\nlength_after = 4000.0\n"

@@ -131,7 +131,7 @@ struct FlangeImpact {
 };
 
 struct FlangeRun {
-  std::vector<double> t, y, Y_left, Y_right;
+  std::vector<double> t, y, z, roll, Y_left, Y_right;
   std::vector<FlangeImpact> impacts;
   EnergyBalance energy;
 };
@@ -159,6 +159,8 @@ inline FlangeRun run_flanged(const VsiModel& model, ContactForceRule rule, doubl
     }
     result.t.push_back(record.time);
     result.y.push_back(record.bodies.at(1).displacement[1]);
+    result.z.push_back(record.bodies.at(1).displacement[2]);
+    result.roll.push_back(record.bodies.at(1).displacement[3]);
     result.Y_left.push_back(record.wheels[0].Y);
     result.Y_right.push_back(record.wheels[1].Y);
     if (touches && !touched) {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "railtab/runtime/base/motion_names.hpp"
+
 namespace railtab::report {
 namespace {
-
-constexpr int lateral = 1, vertical = 2;  // of MotionRecord's six
 
 void raise(Extreme& extreme, double value, double time, const std::string& where) {
   if (!extreme.found() || value > extreme.value) extreme = {value, time, where};
@@ -78,15 +78,13 @@ void HeadlineCollector::add(const StepRecord& step) {
   for (std::size_t i = 0; i < step.bodies.size(); ++i) {
     if (!is_car_body(header_.body_names[i])) continue;
     const std::string vehicle = vehicle_of(header_.body_names[i]);
-    raise(headline_.car_body_vertical, std::abs(step.bodies[i].acceleration[vertical]), step.time, vehicle);
-    raise(headline_.car_body_lateral, std::abs(step.bodies[i].acceleration[lateral]), step.time, vehicle);
+    raise(headline_.car_body_vertical, std::abs(step.bodies[i].acceleration[z_dof]), step.time, vehicle);
+    raise(headline_.car_body_lateral, std::abs(step.bodies[i].acceleration[y_dof]), step.time, vehicle);
   }
   for (std::size_t i = 0; i < step.nodes.size(); ++i) {
     if (!is_deck(header_.node_names[i])) continue;
-    raise(headline_.deck_acceleration, std::abs(step.nodes[i].acceleration[vertical]), step.time,
-          header_.node_names[i]);
-    raise(headline_.deck_displacement, std::abs(step.nodes[i].displacement[vertical]), step.time,
-          header_.node_names[i]);
+    raise(headline_.deck_acceleration, std::abs(step.nodes[i].acceleration[z_dof]), step.time, header_.node_names[i]);
+    raise(headline_.deck_displacement, std::abs(step.nodes[i].displacement[z_dof]), step.time, header_.node_names[i]);
   }
 }
 

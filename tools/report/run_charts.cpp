@@ -10,13 +10,13 @@
 
 #include "channel_values.hpp"
 #include "headline.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "wheel_band.hpp"
 
 namespace railtab::report {
 namespace {
 
-constexpr int lateral = 1, vertical = 2;  // of MotionRecord's six
 constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 constexpr double kN = 1e-3, mm = 1e3;
 constexpr const char* over_position = "position of the wheel along the track [m]";
@@ -273,7 +273,7 @@ std::string RunCharts::car_bodies() {
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const std::vector<std::string>& names = runs_[r].header.body_names;
     const std::vector<std::size_t> bodies = indices(names, is_car_body);
-    for (const auto& [chart, direction] : {std::pair{&up, vertical}, std::pair{&side, lateral}}) {
+    for (const auto& [chart, direction] : {std::pair{&up, z_dof}, std::pair{&side, y_dof}}) {
       add_motions(
           *chart, r, bodies,
           [k = direction](const StepRecord& step, std::size_t i) { return step.bodies[i].acceleration[k]; },
@@ -297,10 +297,10 @@ std::string RunCharts::structure() {
     const auto name = [&](std::size_t i) {
       return fmt::format("{} (x = {:.1f} m)", header.node_names[i], header.node_x[i]);
     };
-    const auto moved = [](const StepRecord& step, std::size_t i) { return mm * step.nodes[i].displacement[vertical]; };
+    const auto moved = [](const StepRecord& step, std::size_t i) { return mm * step.nodes[i].displacement[z_dof]; };
     add_motions(
-        acceleration, r, deck,
-        [](const StepRecord& step, std::size_t i) { return step.nodes[i].acceleration[vertical]; }, name);
+        acceleration, r, deck, [](const StepRecord& step, std::size_t i) { return step.nodes[i].acceleration[z_dof]; },
+        name);
     add_motions(displacement, r, deck, moved, name);
     add_motions(rail, r, others, moved, name);
   }
@@ -321,8 +321,8 @@ std::string RunCharts::deck_envelope() const {
     for (const std::size_t i : indices(header.node_names, is_deck)) {
       auto& [low, high] = extremes.try_emplace(header.node_x[i], 0.0, 0.0).first->second;
       for (const StepRecord& step : runs_[r].steps) {
-        low = std::min(low, mm * step.nodes[i].displacement[vertical]);
-        high = std::max(high, mm * step.nodes[i].displacement[vertical]);
+        low = std::min(low, mm * step.nodes[i].displacement[z_dof]);
+        high = std::max(high, mm * step.nodes[i].displacement[z_dof]);
       }
     }
     constexpr std::size_t fewest = 3;  // else the histories say it all

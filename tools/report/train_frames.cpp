@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "headline.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/report/history_store.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"
@@ -111,16 +112,15 @@ std::string frame_data(const RunResults& results, const FrameWriter& writer) {
   const auto motion = [](std::vector<MotionRecord> StepRecord::*of, const std::vector<std::size_t>& chosen, int k) {
     return [of, &chosen, k](const StepRecord& step, std::size_t i) { return (step.*of)[chosen[i]].displacement[k]; };
   };
-  constexpr int vertical = 2, pitch = 4;
   return fmt::format(
       R"({{"frames":{},"time":{},"position":{},"spans":[{},{}],"deck_names":{},"deck_x":{},"deck_z":{},)"
       R"("body_names":{},"body_x":{},"body_z":{},"body_pitch":{},"wheel_x":{},"load":{},{},)"
       R"("wheel":[{},{}],"rail":[{},{}]}})",
       writer.count(), writer.times(&StepRecord::time), writer.times(&StepRecord::position), numbers(header.span_from),
       numbers(header.span_to), chosen_names(header.node_names, deck), numbers(at(header.node_x, deck)),
-      writer.array(deck.size(), motion(&StepRecord::nodes, deck, vertical)), chosen_names(header.body_names, bodies),
-      numbers(at(header.body_x, bodies)), writer.array(bodies.size(), motion(&StepRecord::bodies, bodies, vertical)),
-      writer.array(bodies.size(), motion(&StepRecord::bodies, bodies, pitch)), numbers(header.wheel_x),
+      writer.array(deck.size(), motion(&StepRecord::nodes, deck, z_dof)), chosen_names(header.body_names, bodies),
+      numbers(at(header.body_x, bodies)), writer.array(bodies.size(), motion(&StepRecord::bodies, bodies, z_dof)),
+      writer.array(bodies.size(), motion(&StepRecord::bodies, bodies, pitch_dof)), numbers(header.wheel_x),
       numbers(header.static_wheel_load), wheel_arrays(writer), numbers(header.wheel_y), numbers(header.wheel_z),
       numbers(header.rail_y), numbers(header.rail_z));
 }

@@ -32,12 +32,12 @@ namespace {
 using assess::Assessment;
 using assess::StageReport;
 
-constexpr int done = 0, failed = 1, clause_fails = 3, interrupted = 130;
-constexpr const char* usage =
+using exit_code::done, exit_code::failed, exit_code::clause_fails, exit_code::interrupted;
+constexpr const char* assess_usage =
     "vsi assess SCENE.toml [--stage check|moving-load|contact] [--speed-kmh V|LO:HI:STEP] [--seeds N]\n"
     "           [--clauses FILE.toml] [--fail-on any|verified] [-o DIR]";
 
-po::options_description options() {
+po::options_description assess_options() {
   po::options_description own("Options");
   own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge")  //
       ("stage", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
@@ -81,7 +81,7 @@ std::vector<AssessmentStage> stages_of(const CommandLine& line) {
   return stages;
 }
 
-std::vector<double> speeds_of(const CommandLine& line) {
+std::vector<double> assess_speeds(const CommandLine& line) {
   const bool si = line.given("speed"), kmh = line.given("speed-kmh");
   if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
   if (!si && !kmh) return {};
@@ -97,7 +97,7 @@ Request request_of(const CommandLine& line) {
   request.folder = line.given("output") ? fs::path(line.text("output"))
                                         : fs::path(request.scene_file.stem().string() + ".assessment");
   request.stages = stages_of(line);
-  request.speeds = speeds_of(line);
+  request.speeds = assess_speeds(line);
   constexpr int most_seeds = 1000;
   if (line.given("seeds")) request.seeds = static_cast<int>(line.whole_number("seeds", 1, most_seeds));
   if (line.given("fail-on")) {
@@ -268,7 +268,7 @@ int assess_scene(const SceneParameters& scene, const Request& request, const Com
 }  // namespace
 
 int assess_command(const Arguments& arguments) {
-  const CommandLine line(usage, options(), {"scene"}, arguments);
+  const CommandLine line(assess_usage, assess_options(), {"scene"}, arguments);
   if (line.help_printed()) return done;
   const Request request = request_of(line);
   const SceneParameters scene = read_scene(request.scene_file);

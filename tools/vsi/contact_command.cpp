@@ -14,6 +14,7 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/column_file.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
@@ -201,7 +202,7 @@ int contact_command(const Arguments& arguments) {
   std::shared_ptr<const LoadedTable> loaded;
   if (data.loaded) loaded = std::make_shared<const LoadedTable>(std::move(*data.loaded));
   data.loaded.reset();
-  const TableContact contact{GeometryTable(std::move(data))};
+  const TableContact contact = in_file(table, [&] { return TableContact(GeometryTable(std::move(data))); });
   const bool by_load = has_column(query, "load"), total = line.given("total");
   const Queries queries{contact, ContactGeometry(contact, std::move(loaded)),
                         read_number_rows(query, {"y", "yaw", "roll", by_load ? "load" : "dz"}), by_load,

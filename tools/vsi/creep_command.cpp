@@ -11,6 +11,7 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/column_file.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
@@ -62,7 +63,7 @@ CreepLaw wanted_law(const CommandLine& line, const std::string& name) {
     return creep_law(name, nu, table);
   }
   if (name == "table" && !table.empty()) {
-    return TableCreep{std::make_shared<const CreepTable>(read_creep_table(table))};
+    return in_file(table, [&table] { return TableCreep{std::make_shared<const CreepTable>(read_creep_table(table))}; });
   }
   return creep_law(name, 0.28);
 }

@@ -25,11 +25,11 @@ namespace po = boost::program_options;
 namespace {
 
 constexpr double slowest = 1.0, fastest = 200.0;  // [m/s]
-constexpr const char* usage =
+constexpr const char* moving_load_usage =
     "vsi moving-load [SCENE.toml | --length M --mass KG/M --bending-stiffness N*M2 --damping RATIO] [--train NAME] "
     "--speed LO:HI[:STEP] [-o RESPONSE.csv]";
 
-po::options_description options() {
+po::options_description moving_load_options() {
   po::options_description own("Options");
   own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge; its train is not used")  //
       ("length", text_value()->value_name("M"), "without a scene: span of a simply supported beam")                   //
@@ -49,7 +49,7 @@ po::options_description options() {
 }
 
 /// None where the command line has none.
-std::optional<SpeedRange> speeds_of(const CommandLine& line) {
+std::optional<SpeedRange> speed_range(const CommandLine& line) {
   const bool si = line.given("speed"), kmh = line.given("speed-kmh");
   if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
   if (!si && !kmh) return std::nullopt;
@@ -165,7 +165,7 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optio
 }  // namespace
 
 int moving_load_command(const Arguments& arguments) {
-  const CommandLine line(usage, options(), {"scene"}, arguments);
+  const CommandLine line(moving_load_usage, moving_load_options(), {"scene"}, arguments);
   if (line.help_printed()) return 0;
   if (arguments.empty() || (arguments.size() == 1 && line.json())) {
     print_trains(line.json());
@@ -178,7 +178,7 @@ int moving_load_command(const Arguments& arguments) {
     require_replaceable_text(line.text("output"), response_columns());
     if (line.given("scene")) require_no_input(line.text("output"), {line.text("scene")});
   }
-  const std::optional<SpeedRange> speeds = speeds_of(line);
+  const std::optional<SpeedRange> speeds = speed_range(line);
   double seconds = 0.0;
   const std::vector<DeckResponse> responses = [&] {
     const Stopwatch watch(seconds);

@@ -143,7 +143,8 @@ void print_responses(const std::vector<DeckResponse>& responses, double seconds)
                     1e3 * w.passage->displacement.value, w.train->name, 3.6 * w.passage->speed,
                     w.passage->displacement.x);
   }
-  print_formatted("{} passages in {:.2f} s\n", count_passages(responses), seconds);
+  const std::size_t passages = count_passages(responses);
+  print_formatted("{} passage{} in {:.2f} s\n", passages, passages == 1 ? "" : "s", seconds);
 }
 
 void print_responses_as_json(const std::vector<DeckResponse>& responses, double seconds) {

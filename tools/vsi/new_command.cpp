@@ -96,7 +96,7 @@ std::string scene_text(const NewScene& scene, double length, const std::string& 
              "start = {:.6g}                 # of the first wheelset; the bridge begins at x = 0 [m]\n\n"
              "{}\n"
              "[track]\n"
-             "length_before = {:.6g}        # the train's length and its run-in [m]\n"
+             "length_before = {:.6g}        # the train's length and its pre-roll [m]\n"
              "length_after = {:.6g}         # so that the train can leave the bridge [m]\n",
              mark,
              quoted(fmt::format("{} x {} {} at {:.6g} km/h", scene.coaches, scene.vehicle, what, scene.speed_kmh)),

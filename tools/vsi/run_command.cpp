@@ -66,6 +66,8 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
                      {"warnings", plan.warnings}});
     return 0;
   }
+  for (const std::string& warning : plan.warnings) print_warning(warning);
+  if (options.quiet) return 0;
   print_formatted("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
   print_formatted("  {} degrees of freedom of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
                   plan.vehicle_dofs, plan.wheels);
@@ -75,7 +77,6 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   print_formatted("  {:.4g} MB of results\n", 1e-6 * plan.memory.results);
   for (const std::string& part : plan.built) print_formatted("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) print_formatted("  left out: {}\n", part);
-  for (const std::string& warning : plan.warnings) print_warning(warning);
   return 0;
 }
 

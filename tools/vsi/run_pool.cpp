@@ -25,7 +25,7 @@ namespace railtab::vsi {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int done = 0, failed = 1, wrong_input = 2, interrupted = 130;
+using exit_code::done, exit_code::failed, exit_code::wrong_input, exit_code::interrupted;
 constexpr int kept = 3;  // of a process whose run was finished before
 volatile std::sig_atomic_t asked = 0;
 

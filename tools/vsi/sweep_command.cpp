@@ -25,7 +25,7 @@ namespace po = boost::program_options;
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int done = 0, failed = 1;
+using exit_code::done, exit_code::failed;
 
 std::string whole_text(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -85,7 +85,7 @@ void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
   }
 }
 
-std::vector<double> speeds_of(const CommandLine& line) {
+std::vector<double> sweep_speeds(const CommandLine& line) {
   const bool si = line.given("speed"), kmh = line.given("speed-kmh");
   if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
   if (!si && !kmh) throw input_error("--speed", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
@@ -146,7 +146,7 @@ int sweep_command(const Arguments& arguments) {
   const SceneParameters scene = read_scene(scene_file);
   constexpr int most_seeds = 100000;
   const int seeds = static_cast<int>(line.whole_number("seeds", 1, most_seeds));
-  const std::vector<SweepRun> all = sweep_runs(scene, speeds_of(line), seeds);
+  const std::vector<SweepRun> all = sweep_runs(scene, sweep_speeds(line), seeds);
   for (const SweepRun& run : all) static_cast<void>(scene_of(scene, run));
   const PartOf shard = line.part("shard");
   std::vector<SweepRun> own;

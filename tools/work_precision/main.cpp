@@ -21,7 +21,7 @@
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"
-#include "railtab/tables/files/shipped_creep_table.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 #include "scaling_figure.hpp"
 #include "scene_figure.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
-#include "railtab/tables/files/shipped_creep_table.hpp"
 
 namespace {
 
