@@ -18,8 +18,6 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr std::size_t vertical = 2;
-
 void set_modes(const Sparse& stiffness, const Sparse& mass, const Sparse& damping, int modes, ModalStructure& result,
                ModalBasis& basis) {
   basis = lowest_modes(stiffness, mass, modes);
@@ -46,15 +44,16 @@ void set_shapes(const std::vector<NodeMotion>& motions, const ModalBasis& basis,
 /// Of the structure itself, where it gives way most.
 void set_flexibility(const std::vector<NodeMotion>& motions, const std::vector<int>& deck, const Sparse& stiffness,
                      ModalStructure& result) {
+  constexpr std::size_t vertical_motion = 2;
   const int softest = softest_node(result, deck);
   for (const NodeMotion& m : motions) {
-    if (m.node != softest || m.motion != vertical || m.rows.nonZeros() == 0) continue;
+    if (m.node != softest || m.motion != vertical_motion || m.rows.nonZeros() == 0) continue;
     const Eigen::MatrixXd load = m.rows;
     result.whole_flexibility[softest] = m.rows.dot(positive_definite_factor(stiffness).solve(load).col(0));
   }
 }
 
-std::string number(double value) { return fmt::format("{:.15g}", std::abs(value) < 1e-300 ? 0.0 : value); }
+std::string written_number(double value) { return fmt::format("{:.15g}", std::abs(value) < 1e-300 ? 0.0 : value); }
 
 }  // namespace
 
@@ -128,8 +127,8 @@ std::string write_modes(const ModalStructure& structure, const std::filesystem::
   const auto mark = [](const char* what) { return fmt::format("# {}, by vsi structure: m, N, kg\n", what); };
   std::string modes = mark("natural modes") + "mode,frequency,mass,damping\n";
   for (Eigen::Index m = 0; m < structure.omega.size(); ++m) {
-    modes += fmt::format("{},{},1,{}\n", m + 1, number(structure.omega[m] / (2.0 * std::numbers::pi)),
-                         number(structure.damping[m]));
+    modes += fmt::format("{},{},1,{}\n", m + 1, written_number(structure.omega[m] / (2.0 * std::numbers::pi)),
+                         written_number(structure.damping[m]));
   }
   constexpr std::array<const char*, 6> names{"ux", "uy", "uz", "rotx", "roty", "rotz"};
   const FeNode& first = structure.at.nodes.begin()->second;
@@ -141,18 +140,18 @@ std::string write_modes(const ModalStructure& structure, const std::filesystem::
   for (const auto& [node, place] : structure.at.nodes) {
     low = low.cwiseMin(place.position);
     high = high.cwiseMax(place.position);
-    nodes += fmt::format("{} {} {} {}\n", node, number(place.position[0]), number(place.position[1]),
-                         number(place.position[2]));
+    nodes += fmt::format("{} {} {} {}\n", node, written_number(place.position[0]), written_number(place.position[1]),
+                         written_number(place.position[2]));
     for (Eigen::Index m = 0; m < structure.omega.size(); ++m) {
       shapes += fmt::format("{},{}", m + 1, node);
       for (const std::vector<int>& rows : place.rows) {
-        if (!rows.empty()) shapes += fmt::format(",{}", number(structure.shape(rows.front(), m)));
+        if (!rows.empty()) shapes += fmt::format(",{}", written_number(structure.shape(rows.front(), m)));
       }
       shapes += '\n';
     }
   }
   for (const auto& [node, value] : structure.whole_flexibility) {
-    flexibility += fmt::format("{},{}\n", node, number(value));
+    flexibility += fmt::format("{},{}\n", node, written_number(value));
   }
   write_text_file(file(".modes.csv"), modes);
   write_text_file(file(".shapes.csv"), shapes);
