@@ -244,14 +244,28 @@ ModalStructure read_modal_structure(const ImportParameters& parameters) {
   return structure;
 }
 
+int softest_node(const ModalStructure& structure, const std::vector<int>& deck) {
+  constexpr double near_centre = 0.5;  // [m] beyond the node next to it
+  double least = INFINITY;
+  for (const int node : deck) least = std::min(least, std::abs(structure.at.nodes.at(node).position[1]));
+  int softest = no_node;
+  double most = -1.0;
+  for (const int node : deck) {
+    if (std::abs(structure.at.nodes.at(node).position[1]) > least + near_centre) continue;
+    const double flexibility = flexibility_at(structure, node).by_modes;
+    if (flexibility > most) {
+      most = flexibility;
+      softest = node;
+    }
+  }
+  return softest;
+}
+
 std::vector<StaticFlexibility> static_flexibility(const ModalStructure& structure, const ImportParameters& parameters) {
   std::vector<StaticFlexibility> result;
   for (const auto& [node, whole] : structure.whole_flexibility) result.push_back(flexibility_at(structure, node));
   if (result.empty()) {
-    const std::vector<int> deck = deck_of(structure, parameters);
-    const DeckExtent extent = deck_extent(structure.at, deck);
-    const int middle = nearest_deck_node(structure.at, deck, 0.5 * (extent.begin + extent.end));
-    result.push_back(flexibility_at(structure, middle));
+    result.push_back(flexibility_at(structure, softest_node(structure, deck_of(structure, parameters))));
   }
   constexpr double rounding = 0.05;
   for (const StaticFlexibility& at : result) {

@@ -32,7 +32,10 @@ struct StaticFlexibility {
   /// Share of `whole` that the modes leave out.
   [[nodiscard]] double lost() const noexcept { return 1.0 - by_modes / whole.value_or(by_modes); }
 };
-/// At every deck node whose whole flexibility is known, else at the deck's middle. Not empty.
+/// The node next to the track's centre line that gives way most along z by the modes: a midspan.
+/// @param deck nodes with vertical shapes, at least one
+[[nodiscard]] int softest_node(const ModalStructure& structure, const std::vector<int>& deck);
+/// At every deck node whose whole flexibility is known, else at the softest one. Not empty.
 /// @throws InputError where modes are more flexible than the structure by over 5 %: shapes, modal masses or units do
 /// not belong together
 [[nodiscard]] std::vector<StaticFlexibility> static_flexibility(const ModalStructure& structure,

@@ -80,6 +80,29 @@ TEST_F(FirstMinute, ANewSceneWithoutABridgeIsValid) {
   }
 }
 
+TEST_F(FirstMinute, ModesThatAreWrittenAreRead) {
+  const std::string track = "[contact]\nnormal = \"rigid\"\n[integration]\nduration = 0.01\n";
+  write("s.toml", track + "[[bridge]]\nlength = 20\n");
+  const Outcome outcome = vsi("structure s.toml --modes 12 -o span");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const std::size_t section = outcome.output.find("[structure]");
+  ASSERT_NE(section, std::string::npos) << outcome.output;
+  write("m.toml", track + outcome.output.substr(section));
+  const nlohmann::json own = nlohmann::json::parse(vsi("structure s.toml --modes 12 --json").output);
+  const nlohmann::json read = nlohmann::json::parse(vsi("structure m.toml --modes 12 --json").output);
+  for (std::size_t m = 0; m < 12; ++m) {
+    const double frequency = own["frequencies"][m];
+    EXPECT_NEAR(read["frequencies"][m], frequency, 1e-9 * frequency);
+  }
+  EXPECT_TRUE(read["mass_z"].is_null());
+  EXPECT_NE(read["left_out"][0].get<std::string>().find("static flexibility beyond the modes"), std::string::npos);
+  EXPECT_EQ(vsi("structure s.toml --modes 12 -o span -q").exit_code, 0) << "modes replace modes";
+  expect_refused("structure m.toml -o again", "-o: found a scene whose structure is given by modes");
+  write("span.modes.csv", "mine\n");
+  expect_refused("structure s.toml -o span", "span.modes.csv: found a file that begins with 'mine'");
+  expect_refused("structure s.toml --modes 0 -o again", "--modes: found 0 with -o");
+}
+
 TEST_F(FirstMinute, WrongFlagsOfANewScene) {
   expect_refused("new s.toml --train mancester-coach", "mancester-coach");
   expect_refused("new s.toml --span -3", "--span: found -3, expected 0.5 to 1000 m");

@@ -19,6 +19,7 @@
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/structure/modal_bridge.hpp"
+#include "railtab/runtime/structure/mode_output.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 
 namespace railtab {
@@ -251,6 +252,32 @@ TEST_F(ModesOfABridge, ThePlanStatesWhatIsLost) {
   EXPECT_NE(other.find("how much is not known without structure.static_flexibility; the 12 modes have "),
             std::string::npos)
       << other;
+}
+
+/// Two spans, whose axis has two nodes at the pier, as vsi structure writes and reads them.
+TEST_F(ModesOfABridge, WhatIsWrittenIsReadAgain) {
+  BridgeParameters span;
+  span.length = 20.0;
+  span.elements = 10;
+  span.track_offset = 1.5;
+  const ModalStructure written = modes_at_deck({span, span}, 30);
+  const std::string section = railtab::write_modes(written, folder_ / "two");
+  const SceneParameters parsed = scene(section);
+  const ModalStructure read = read_modal_structure(parsed.structure);
+  ASSERT_EQ(read.at.nodes.size(), 22u);
+  EXPECT_TRUE(read.omega.isApprox(written.omega, 1e-12));
+  EXPECT_TRUE(read.damping.isApprox(written.damping, 1e-12));
+  EXPECT_TRUE(read.shape.isApprox(written.shape, 1e-12));
+  EXPECT_EQ(read.at.nodes.at(1).position[1], -1.5);
+  const Bridge bridge = modal_bridge(parsed.structure);
+  EXPECT_NEAR(bridge.end, 40.0, 1e-12);
+  // a span alone: a force on the one does not move the other
+  const Eigen::MatrixXd K = dense(bridge.matrices.stiffness, 30);
+  const auto at = [&](double x) -> Eigen::RowVectorXd { return bridge.attach(x, 0.0, 1.9)->rows.row(2); };
+  const double own = at(10.0) * K.llt().solve(at(10.0).transpose());
+  const double other = at(30.0) * K.llt().solve(at(10.0).transpose());
+  EXPECT_NEAR(own, std::pow(20.0, 3) / (48.0 * span.E * span.Iy), 0.02 * own);
+  EXPECT_LT(std::abs(other), 1e-6 * own);
 }
 
 /// By one axle at the middle that moves slowly: the deflection of all modes, and their damping.

@@ -5,12 +5,14 @@
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
+#include "command/output_place.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/structure/mode_output.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 
 namespace railtab::vsi {
@@ -35,6 +37,16 @@ Found summary_of(const SceneParameters& scene, int modes) {
   }
   if (!scene.spans.empty()) return {summarise(scene.spans, modes), {}};
   throw input_error("scene", "no bridge", "a [[bridge]], or a [structure] with a file of nodes");
+}
+
+/// What is written of the bridge by its modes.
+ModalStructure modes_of(const SceneParameters& scene, int modes) {
+  if (modes == 0) throw input_error("--modes", "0 with -o", "modes to write");
+  if (scene.structure.files.by_modes()) {
+    throw input_error("-o", "a scene whose structure is given by modes", "a [[bridge]], or a [structure] by matrices");
+  }
+  if (!scene.structure.files.nodes.empty()) return modes_at_deck(scene.structure, modes);
+  return modes_at_deck(scene.spans, modes);
 }
 
 std::vector<std::string> warnings(const SceneParameters& scene, const StructureSummary& s) {
@@ -86,12 +98,17 @@ void print_as_json(const SceneParameters& scene, const Found& found) {
 int structure_command(const Arguments& arguments) {
   po::options_description own("Options");
   own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge")  //
-      ("modes", text_value("10")->value_name("N"), "natural frequencies of the bridge without its track, 0 for none");
-  const CommandLine line("vsi structure SCENE.toml [--modes N]", own, {"scene"}, arguments);
+      ("modes", text_value("10")->value_name("N"),
+       "natural frequencies of the bridge without its track, 0 for none")  //
+      ("output,o", text_value()->value_name("PREFIX"),
+       "write the modes for structure.format = \"modes\": PREFIX.modes.csv, .shapes.csv, .nodes.csv, "
+       ".flexibility.csv");
+  const CommandLine line("vsi structure SCENE.toml [--modes N] [-o PREFIX]", own, {"scene"}, arguments);
   if (line.help_printed()) return 0;
   constexpr int most_modes = 500;
   const int modes = static_cast<int>(line.whole_number("modes", 0, most_modes));
   const std::filesystem::path file = line.required("scene");
+  if (line.given("output")) require_writable_place(line.text("output") + ".modes.csv", "-o");
   const SceneParameters scene = read_scene(file);
   const Found found = [&] {
     try {
@@ -100,12 +117,15 @@ int structure_command(const Arguments& arguments) {
       throw with_scene_line(wrong, scene, file);
     }
   }();
+  std::string section;
+  if (line.given("output")) section = write_modes(modes_of(scene, modes), line.text("output"));
   for (const std::string& warning : warnings(scene, found.summary))
     print_message(fmt::format("vsi structure: warning: {}\n", warning));
   if (line.json()) {
     print_as_json(scene, found);
   } else {
     print(scene, found);
+    if (!section.empty()) print_formatted("Modes for a scene:\n{}", section);
   }
   return 0;
 }
