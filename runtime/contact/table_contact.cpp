@@ -22,10 +22,10 @@ void require_near(const ProfileKnots& profile) {
     const bool near = std::abs(profile.y[i]) <= farthest && std::abs(profile.z[i]) <= farthest &&
                       std::abs(profile.dy[i]) <= steepest && std::abs(profile.dz[i]) <= steepest;
     if (near) continue;
-    throw input_error(
-        fmt::format("profile {}, knot {}", profile.name, i),
-        fmt::format("({}, {}) m, slopes {} and {}", profile.y[i], profile.z[i], profile.dy[i], profile.dz[i]),
-        "a place within 1 m and slopes of an arc length");
+    throw input_error(fmt::format("profile {}, knot {}", profile.name, i),
+                      fmt::format("({:.6g}, {:.6g}) m, slopes {:.6g} and {:.6g}", profile.y[i], profile.z[i],
+                                  profile.dy[i], profile.dz[i]),
+                      "a place within 1 m and slopes of an arc length");
   }
 }
 

@@ -90,6 +90,10 @@ TEST_F(MovingLoadCommand, WrongInput) {
   expect_refused("moving-load --train hslm-a1 --speed 40:90", "a scene, or --length");
   expect_refused("moving-load --length 25 --mass 15e3 --bending-stiffness 30e9 --damping 1 --speed 40:90",
                  "--damping: found 1");
+  expect_refused("moving-load --length 25 --mass 15e3 --bending-stiffness 1e-300 --damping 0.01 --speed 40:90",
+                 "--bending-stiffness");
+  expect_refused("moving-load --length 25 --mass 1e300 --bending-stiffness 30e9 --damping 0.01 --speed 40:90",
+                 "--mass");
   expect_refused("moving-load --length 25 --mass 1 --bending-stiffness 1 --damping 0.01 --speed 40:90",
                  "a first natural frequency of 0.002513 Hz");
   expect_refused(span + "--speed 1:2 --modes 100", "fewer --modes");
