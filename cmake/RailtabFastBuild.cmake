@@ -30,7 +30,7 @@ function(railtab_targets_below folder result)
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-set(railtab_sources_together 8)  # per compilation: enough units for two cores in every large library
+set(railtab_sources_together 16)  # per compilation
 
 # Every target of the project that compiles sources. Those with OpenMP's options cannot share what was compiled without.
 # Sources of tests stay apart: each program has few.

@@ -206,7 +206,7 @@ EquivalentConicity conicity_of_wave(const RadiusDifferenceCurve& curve, double a
   const std::optional<Wave> wave = find_wave(curve, amplitude, result.status);
   if (!wave) return result;
   const double half = half_wavelength(curve, *wave);
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   result.tan_gamma = 0.5 * pi * pi / (half * half);
   result.y_low = wave->low;
   result.y_high = wave->high;

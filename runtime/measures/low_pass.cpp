@@ -12,7 +12,7 @@ const double edge = std::numbers::sqrt2 - 1.0;
 
 /// Two stable poles of (FM1), each for its conjugate too, residues doubled.
 std::vector<PoleTerm> low_pass_terms(double cut_off) {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   const double omega = 2.0 * pi * cut_off * std::pow(edge, -1.0 / (2 * order));
   std::vector<PoleTerm> terms;
   for (int k = 1; 2 * k <= order; ++k) {

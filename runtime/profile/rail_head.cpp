@@ -44,7 +44,7 @@ struct Inclination {
   }
   /// Arc from tangent angle theta_begin to theta_end on the upright head.
   [[nodiscard]] ProfileSegment arc(ProfilePoint centre, double radius, double theta_begin, double theta_end) const {
-    const double pi = std::numbers::pi;
+    using std::numbers::pi;
     return arc_segment((*this)(centre), radius, pi - (theta_begin - alpha), pi - (theta_end - alpha));
   }
 };

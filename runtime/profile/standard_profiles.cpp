@@ -29,7 +29,7 @@ std::vector<ProfileSegment> cone_segments(double slope) {
 std::vector<ProfileSegment> knife_edge_segments() {
   constexpr double r = knife_edge_radius;
   constexpr double blade_depth = 37.5e-3;
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   return {straight_segment({-r, blade_depth}, {-r, r}), arc_segment({0, r}, r, 1.5 * pi, 0.5 * pi),
           straight_segment({r, r}, {r, blade_depth})};
 }

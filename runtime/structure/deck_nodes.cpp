@@ -11,9 +11,6 @@ namespace railtab {
 
 namespace {
 
-/// A place whose distance from zero is what turning axes and units leaves [m].
-double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
-
 DeckExtent unchecked_extent(const FeStructure& structure, const std::vector<int>& deck) {
   DeckExtent extent{INFINITY, -INFINITY};
   for (const int number : deck) {

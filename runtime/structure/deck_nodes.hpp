@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "railtab/runtime/structure/fe_structure.hpp"
 
 namespace railtab {
+
+/// A place [m] without the distance from zero that turning axes and units leaves.
+[[nodiscard]] inline double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
 
 /// Begin and end of a deck along the track [m].
 struct DeckExtent {

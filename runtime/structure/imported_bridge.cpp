@@ -74,9 +74,6 @@ std::vector<double> positions(const FeStructure& structure) {
   return x;
 }
 
-/// A place whose distance from zero is what turning axes and units leaves [m].
-double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
-
 Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
   Bridge bridge;

@@ -20,8 +20,6 @@ namespace railtab {
 
 namespace {
 
-constexpr std::size_t vertical = 2;
-
 /// One damping ratio for all modes, where their table has none.
 std::optional<double> common_damping(const FeDamping& damping) {
   if (damping.ratio) return damping.ratio;
@@ -70,7 +68,7 @@ std::vector<int> deck_of(const ModalStructure& structure, const ImportParameters
   const std::vector<int> deck = selected_nodes(structure.at, parameters.deck, "structure.deck");
   bool moves = false;
   for (const int number : deck) {
-    const std::vector<int>& rows = structure.at.nodes.at(number).rows[vertical];
+    const std::vector<int>& rows = structure.at.nodes.at(number).rows[z_dof];
     if (rows.empty()) {
       throw input_error(fmt::format("structure.deck: node {}", number), "no vertical shape of the modes there",
                         fmt::format("a node of {} with its vertical motion", parameters.files.shapes.string()));
@@ -87,7 +85,7 @@ std::vector<int> deck_of(const ModalStructure& structure, const ImportParameters
 StaticFlexibility flexibility_at(const ModalStructure& structure, int node) {
   const FeNode& place = structure.at.nodes.at(node);
   const Eigen::ArrayXd share =
-      structure.shape.row(place.rows[vertical].front()).transpose().array().square() / structure.omega.array().square();
+      structure.shape.row(place.rows[z_dof].front()).transpose().array().square() / structure.omega.array().square();
   StaticFlexibility result{node, place.position[0], share.sum(), share[share.size() - 1], {}};
   const auto whole = structure.whole_flexibility.find(node);
   if (whole != structure.whole_flexibility.end()) result.whole = whole->second;
@@ -138,14 +136,14 @@ void add_vertical_motions(const ModalStructure& structure, const std::vector<Rep
     StructureNode own{
         node.name, place.position[0], {held, held, held, held, held, held}, place.position[1], place.position[2]};
     const std::size_t first = first_of(reported, node.number);
-    const Eigen::VectorXd motion = structure.shape.row(place.rows[vertical].front());
+    const Eigen::VectorXd motion = structure.shape.row(place.rows[z_dof].front());
     const bool rests = at_rest(structure, motion);
     if (first < nodes.size()) {
-      own.dof[vertical] = nodes[first].dof[vertical];
+      own.dof[z_dof] = nodes[first].dof[z_dof];
     } else if (!rests) {
-      own.dof[vertical] = basis.add(motion);
+      own.dof[z_dof] = basis.add(motion);
     }
-    if (own.dof[vertical] == held && !rests) {
+    if (own.dof[z_dof] == held && !rests) {
       throw input_error("structure.report", fmt::format("{} positions with {} modes", reported.size(), motion.size()),
                         fmt::format("fewer positions: {} modes cannot tell the motion at x = {:.6g} m from that at the "
                                     "positions before it",
@@ -167,7 +165,7 @@ void add_other_motions(const ModalStructure& structure, const std::vector<Report
     }
     std::vector<std::string_view> lost;
     for (std::size_t k = 0; k < 6; ++k) {
-      if (k == vertical || place.rows[k].empty()) continue;
+      if (k == z_dof || place.rows[k].empty()) continue;
       const Eigen::VectorXd motion = structure.shape.row(place.rows[k].front());
       if (at_rest(structure, motion)) continue;
       bridge.nodes[n].dof[k] = basis.add(motion);
@@ -235,7 +233,7 @@ ModalStructure read_modal_structure(const ImportParameters& parameters) {
   if (files.flexibility.empty()) return structure;
   for (const auto& [node, value] : read_flexibility(files.flexibility)) {
     const auto known = structure.at.nodes.find(node);
-    if (known == structure.at.nodes.end() || known->second.rows[vertical].empty()) {
+    if (known == structure.at.nodes.end() || known->second.rows[z_dof].empty()) {
       throw input_error(files.flexibility.string(), fmt::format("node {}", node),
                         "a node of structure.mode_shapes with its vertical motion");
     }

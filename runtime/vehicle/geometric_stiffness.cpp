@@ -4,14 +4,13 @@
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_terms.hpp"
 
 namespace railtab {
 
 namespace {
-
-constexpr int z_dof = 2, pitch_dof = 4;
 
 // A unit between two bodies that carries `force` at rest, that on body a.
 struct PreloadedUnit {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 
 namespace railtab {
 
@@ -18,8 +19,6 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Complex = std::complex<double>;
-
-constexpr int y_dof = 1, roll_dof = 3;
 
 // Rows that move while the wheelsets stand, with mass and without.
 struct Rows {

@@ -45,7 +45,7 @@ MeasuredValue value_of_deck(const DeckAssessment& deck, std::string measure, Ass
 }
 
 void check_span(const BridgeParameters& span, DeckAssessment& deck, Assessment& assessment) {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   deck.span = span.length;
   deck.lateral_frequency = 0.5 * pi / (span.length * span.length) * std::sqrt(span.E * span.Iz / span.mass);
   const double standing = largest_static_deflection(deck.deck, find_axle_train("lm71", deck.deck.length())).value;

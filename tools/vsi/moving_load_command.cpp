@@ -153,10 +153,10 @@ std::vector<DeckResponse> respond(std::vector<ModalDeck> decks, const std::optio
                         "--speed LO:HI[:STEP] (m/s) or --speed-kmh LO:HI[:STEP]; EN 1991-2 asks for 40 m/s to 1.2 "
                         "times the line's speed");
     }
-    const double done = static_cast<double>(responses.size() - 1), all = static_cast<double>(decks.size());
+    const double passed = static_cast<double>(responses.size() - 1), all = static_cast<double>(decks.size());
     if (speeds) check_effort(response, speeds->low);
     response.responses = train_responses(response.deck, response.trains, speeds.value_or(SpeedRange{}), line.workers(),
-                                         [&](double share) { bar.show((done + share) / all); });
+                                         [&](double share) { bar.show((passed + share) / all); });
   }
   bar.wipe();
   return responses;
