@@ -50,8 +50,8 @@ function(railtab_fast_build)
     if(NOT "${links}" MATCHES "GTest::|benchmark::")
       set_target_properties(${target} PROPERTIES
         UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${railtab_sources_together})
-      # What names hide is told by the sources apart; GCC 12 takes arrays for too small in functions that it inlines.
-      target_compile_options(${target} PRIVATE -Wno-shadow -Wno-array-bounds -Wno-stringop-overflow)
+      # GCC 12 takes arrays for too small in functions that it inlines.
+      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
     endif()
     if(NOT "${links}" MATCHES "railtab_[a-z]+" OR target STREQUAL railtab_report)
       continue()  # knows nothing of Eigen

@@ -18,7 +18,6 @@ namespace railtab {
 
 namespace {
 
-constexpr std::string_view mark = ".part-";
 constexpr std::string_view alphabet = "abcdefghijklmnopqrstuvwxyz234567";
 constexpr std::size_t suffix_length = 12;
 
@@ -32,12 +31,12 @@ std::string random_suffix() {
 
 /// The output whose temporary file has this name; empty where it is no such name.
 std::string output_of(std::string_view name) {
-  if (name.size() <= mark.size() + suffix_length) return {};
+  if (name.size() <= temporary_mark.size() + suffix_length) return {};
   const std::string_view suffix = name.substr(name.size() - suffix_length);
   name.remove_suffix(suffix_length);
   const auto known = [](char c) { return alphabet.find(c) != std::string_view::npos; };
-  if (!name.ends_with(mark) || !std::all_of(suffix.begin(), suffix.end(), known)) return {};
-  return std::string(name.substr(0, name.size() - mark.size()));
+  if (!name.ends_with(temporary_mark) || !std::all_of(suffix.begin(), suffix.end(), known)) return {};
+  return std::string(name.substr(0, name.size() - temporary_mark.size()));
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -78,7 +77,7 @@ TemporaryFile create_temporary(const std::filesystem::path& file) {
   remove_abandoned(file);
   constexpr int most_names = 1000;  // one that is taken, or that a remover takes away before it is locked, is rare
   for (int i = 0; i < most_names; ++i) {
-    const std::filesystem::path name = fmt::format("{}{}{}", file.string(), mark, random_suffix());
+    const std::filesystem::path name = fmt::format("{}{}{}", file.string(), temporary_mark, random_suffix());
     constexpr int everybody = 0666;  // cut by the umask, as for every new file
     const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, everybody);
     if (descriptor < 0 && errno == EEXIST) continue;

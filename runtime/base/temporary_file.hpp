@@ -3,11 +3,15 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "railtab/runtime/base/writer_lock.hpp"
 
 namespace railtab {
+
+/// What follows the name of an output in that of what is written before it gets its name.
+inline constexpr std::string_view temporary_mark = ".part-";
 
 /// What an output is written to before it gets its name: an empty file beside it, FILE.part-<12 random characters>.
 /// Removed with this object, unless it got its name.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,8 +13,6 @@
 namespace railtab {
 
 namespace {
-
-constexpr std::array<const char*, 6> motion_columns{"ux", "uy", "uz", "rotx", "roty", "rotz"};
 
 int whole(double value, const std::string& place, const char* what) {
   if (value >= 1.0 && value <= std::numeric_limits<int>::max() && value == std::floor(value)) {
@@ -62,9 +59,9 @@ std::vector<FeMode> read_mode_table(const std::filesystem::path& file) {
 FeShapes read_mode_shapes(const std::filesystem::path& file, const std::vector<FeMode>& modes) {
   std::vector<std::string> columns{"mode", "node"};
   std::vector<int> motions;
-  for (std::size_t k = 0; k < motion_columns.size(); ++k) {
-    if (!has_column(file, motion_columns[k])) continue;
-    columns.emplace_back(motion_columns[k]);
+  for (std::size_t k = 0; k < shape_columns.size(); ++k) {
+    if (!has_column(file, shape_columns[k])) continue;
+    columns.emplace_back(shape_columns[k]);
     motions.push_back(static_cast<int>(k));
   }
   if (motions.empty() || motions.front() > 2) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -21,6 +22,9 @@ struct FeMode {
 /// Modes from a table with the columns mode, frequency, mass and perhaps damping, by rising frequency.
 /// @throws InputError with file and line: a mode twice, a value out of range
 [[nodiscard]] std::vector<FeMode> read_mode_table(const std::filesystem::path& file);
+
+/// Columns of tables of shapes, by motion: along x, y, z and about them.
+inline constexpr std::array<const char*, 6> shape_columns{"ux", "uy", "uz", "rotx", "roty", "rotz"};
 
 /// Shapes of the modes at nodes, as matrix rows.
 struct FeShapes {

@@ -7,6 +7,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/structure/modal_bridge.hpp"
@@ -79,11 +80,7 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
   const FeStructure structure = by_modes ? std::move(modal.at) : read_on_supports(parameters);
   if (!by_modes) require_held(structure);
   const std::vector<int> nodes = selected_nodes(structure, parameters.deck, "structure.deck");
-  double begin = INFINITY, end = -INFINITY;
-  for (const int number : nodes) {
-    begin = std::min(begin, structure.nodes.at(number).position[0]);
-    end = std::max(end, structure.nodes.at(number).position[0]);
-  }
+  const auto [begin, end] = deck_extent(structure, nodes);
   if (!(end - begin > 0.5)) {
     throw input_error("structure.deck", fmt::format("a deck of {:.4g} m along the track", end - begin),
                       "a longer one: see structure.units and structure.axes");

@@ -9,9 +9,7 @@
 
 namespace railtab {
 
-namespace {
-
-DeckExtent unchecked_extent(const FeStructure& structure, const std::vector<int>& deck) {
+DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
   DeckExtent extent{INFINITY, -INFINITY};
   for (const int number : deck) {
     extent.begin = std::min(extent.begin, structure.nodes.at(number).position[0]);
@@ -20,11 +18,9 @@ DeckExtent unchecked_extent(const FeStructure& structure, const std::vector<int>
   return extent;
 }
 
-}  // namespace
-
-DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
+DeckExtent plausible_deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
   constexpr double shortest = 0.5, longest = 1e5, highest = -0.5, lowest = 60.0;  // [m]
-  const DeckExtent extent = unchecked_extent(structure, deck);
+  const DeckExtent extent = deck_extent(structure, deck);
   if (!(extent.end - extent.begin >= shortest && extent.end - extent.begin <= longest)) {
     throw input_error(
         "structure.deck",
@@ -57,7 +53,7 @@ int nearest_deck_node(const FeStructure& structure, const std::vector<int>& deck
 
 std::vector<ReportedDeckNode> reported_deck_nodes(const FeStructure& structure, const std::vector<int>& deck,
                                                   const std::vector<double>& positions) {
-  const DeckExtent extent = unchecked_extent(structure, deck);
+  const DeckExtent extent = deck_extent(structure, deck);
   std::vector<ReportedDeckNode> nodes;
   for (const double x : positions) {
     if (x < extent.begin || x > extent.end) {

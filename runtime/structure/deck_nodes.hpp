@@ -17,9 +17,10 @@ struct DeckExtent {
   double begin = 0.0, end = 0.0;
 };
 /// @param deck numbers of its nodes, at least one
-/// @throws InputError where no bridge is so long or so short, or the deck lies above the track or far below it: wrong
-/// units, axes or origins
 [[nodiscard]] DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck);
+/// The same of the deck of a bridge under track. @throws InputError where no bridge is so long or so short, or the deck
+/// lies above the track or far below it: wrong units, axes or origins
+[[nodiscard]] DeckExtent plausible_deck_extent(const FeStructure& structure, const std::vector<int>& deck);
 
 /// A deck's node that is reported, by name.
 struct ReportedDeckNode {

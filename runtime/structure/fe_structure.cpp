@@ -126,6 +126,12 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
   return s;
 }
 
+Eigen::AlignedBox3d box_around(const FeStructure& structure) {
+  Eigen::AlignedBox3d box;
+  for (const auto& [number, node] : structure.nodes) box.extend(node.position);
+  return box;
+}
+
 std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection, const std::string& key) {
   std::set<int> nodes;
   if (!selection.set.empty()) {

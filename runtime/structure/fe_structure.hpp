@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <Eigen/SparseCore>
 #include <array>
 #include <filesystem>
@@ -78,6 +79,9 @@ struct FeStructure {
 /// and units: with q_railtab = S·q_model, S = ±(unit of length) for a translation and ±1 for a rotation, K becomes F·L
 /// · S⁻ᵀ K S⁻¹, and likewise M and C with the second. @throws InputError with file and line, row, or key
 [[nodiscard]] FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame);
+
+/// Around all nodes, railtab's axes [m].
+[[nodiscard]] Eigen::AlignedBox3d box_around(const FeStructure& structure);
 
 /// Numbers of the selected nodes, ascending. @throws InputError naming `key` where there is no such set or no node
 [[nodiscard]] std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection,

@@ -91,7 +91,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   bridge.support_x = supports.x;
   bridge.beyond_supports = supports.beyond;
   bridge.dof_x = positions(structure);
-  const DeckExtent extent = deck_extent(structure, deck);
+  const DeckExtent extent = plausible_deck_extent(structure, deck);
   bridge.end = extent.end;
   const auto [low, high] = std::minmax_element(bridge.dof_x.begin(), bridge.dof_x.end());
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge

@@ -298,7 +298,7 @@ Bridge modal_bridge(const ImportParameters& parameters) {
   const std::vector<int> deck = deck_of(structure, parameters);
   Bridge bridge;
   DeckFunction at_rows = deck_function(structure.at, deck);
-  const DeckExtent extent = deck_extent(structure.at, deck);
+  const DeckExtent extent = plausible_deck_extent(structure.at, deck);
   bridge.end = extent.end;
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
   bridge.spans.push_back({extent.begin - rounding, extent.end + rounding});

@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/fe/mode_files.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/structure/stiffness_factor.hpp"
@@ -44,10 +46,9 @@ void set_shapes(const std::vector<NodeMotion>& motions, const ModalBasis& basis,
 /// Of the structure itself, where it gives way most.
 void set_flexibility(const std::vector<NodeMotion>& motions, const std::vector<int>& deck, const Sparse& stiffness,
                      ModalStructure& result) {
-  constexpr std::size_t vertical_motion = 2;
   const int softest = softest_node(result, deck);
   for (const NodeMotion& m : motions) {
-    if (m.node != softest || m.motion != vertical_motion || m.rows.nonZeros() == 0) continue;
+    if (m.node != softest || m.motion != z_dof || m.rows.nonZeros() == 0) continue;
     const Eigen::MatrixXd load = m.rows;
     result.whole_flexibility[softest] = m.rows.dot(positive_definite_factor(stiffness).solve(load).col(0));
   }
@@ -130,16 +131,12 @@ std::string write_modes(const ModalStructure& structure, const std::filesystem::
     modes += fmt::format("{},{},1,{}\n", m + 1, written_number(structure.omega[m] / (2.0 * std::numbers::pi)),
                          written_number(structure.damping[m]));
   }
-  constexpr std::array<const char*, 6> names{"ux", "uy", "uz", "rotx", "roty", "rotz"};
   const FeNode& first = structure.at.nodes.begin()->second;
   std::string shapes = mark("shapes of natural modes") + "mode,node", nodes = mark("nodes"),
               flexibility = mark("static flexibility") + "node,flexibility\n";
-  for (std::size_t k = 0; k < 6; ++k) shapes += first.rows[k].empty() ? "" : fmt::format(",{}", names[k]);
+  for (std::size_t k = 0; k < 6; ++k) shapes += first.rows[k].empty() ? "" : fmt::format(",{}", shape_columns[k]);
   shapes += '\n';
-  Eigen::Vector3d low = first.position, high = first.position;
   for (const auto& [node, place] : structure.at.nodes) {
-    low = low.cwiseMin(place.position);
-    high = high.cwiseMax(place.position);
     nodes += fmt::format("{} {} {} {}\n", node, written_number(place.position[0]), written_number(place.position[1]),
                          written_number(place.position[2]));
     for (Eigen::Index m = 0; m < structure.omega.size(); ++m) {
@@ -158,8 +155,8 @@ std::string write_modes(const ModalStructure& structure, const std::filesystem::
   write_text_file(file(".nodes.csv"), nodes);
   write_text_file(file(".flexibility.csv"), flexibility);
   const std::string name = prefix.filename().string();
-  low.array() += 0.0;  // no "-0"
-  high.array() += 0.0;
+  const Eigen::AlignedBox3d box = box_around(structure.at);
+  const Eigen::Array3d low = box.min().array() + 0.0, high = box.max().array() + 0.0;  // no "-0"
   return fmt::format(
       "[structure]\nformat = \"modes\"\nmode_table = \"{0}.modes.csv\"\nmode_shapes = \"{0}.shapes.csv\"\n"
       "nodes = \"{0}.nodes.csv\"\nstatic_flexibility = \"{0}.flexibility.csv\"\naxes = \"x y z\"\n"

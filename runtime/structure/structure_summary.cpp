@@ -36,12 +36,9 @@ void add_modes(const Eigen::SparseMatrix<double>& mass, const Eigen::SparseMatri
 }
 
 void set_corners(const FeStructure& structure, StructureSummary& summary) {
-  summary.low.setConstant(INFINITY);
-  summary.high.setConstant(-INFINITY);
-  for (const auto& [number, node] : structure.nodes) {
-    summary.low = summary.low.cwiseMin(node.position);
-    summary.high = summary.high.cwiseMax(node.position);
-  }
+  const Eigen::AlignedBox3d box = box_around(structure);
+  summary.low = box.min();
+  summary.high = box.max();
 }
 
 }  // namespace

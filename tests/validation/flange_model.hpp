@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "hunting_model.hpp"
+#include "runge_kutta.hpp"
 
 namespace railtab::hunting {
 
@@ -105,16 +106,8 @@ class EquationsOfMotion {
     return {s[1], (-2.0 * fy * share * creep_y - 2.0 * ky * s[0]) / m, s[3],
             (-2.0 * Lcp * fx * share * creep_x - 2.0 * kx * l * l * s[2]) / Iz};
   }
-  /// Runge-Kutta's classical step.
   void step(double dt, State& s) const {
-    const auto plus = [](const State& a, double h, const State& b) {
-      State c = a;
-      for (std::size_t i = 0; i < 4; ++i) c[i] += h * b[i];
-      return c;
-    };
-    const State k1 = rate(s), k2 = rate(plus(s, 0.5 * dt, k1)), k3 = rate(plus(s, 0.5 * dt, k2)),
-                k4 = rate(plus(s, dt, k3));
-    for (std::size_t i = 0; i < 4; ++i) s[i] += dt / 6.0 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    runge_kutta_step([this](const State& at) { return rate(at); }, dt, s);
   }
 
  private:

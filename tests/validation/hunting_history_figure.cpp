@@ -16,6 +16,7 @@
 #include "../reference_table.hpp"
 #include "hunting_model.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "runge_kutta.hpp"
 #include "svg_figure.hpp"
 
 namespace railtab::hunting {
@@ -36,13 +37,7 @@ class Equations {
   Equations(Suspension suspension, double speed) : V_(speed), sprung_(suspension == Suspension::primary ? 1.0 : 0.0) {}
   using State = std::array<double, 4>;
   void step(double dt, State& s) const {
-    const auto plus = [](State a, double h, const State& b) {
-      for (std::size_t i = 0; i < 4; ++i) a[i] += h * b[i];
-      return a;
-    };
-    const State k1 = rate(s), k2 = rate(plus(s, 0.5 * dt, k1)), k3 = rate(plus(s, 0.5 * dt, k2)),
-                k4 = rate(plus(s, dt, k3));
-    for (std::size_t i = 0; i < 4; ++i) s[i] += dt / 6.0 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    runge_kutta_step([this](const State& at) { return rate(at); }, dt, s);
   }
 
  private:

@@ -17,13 +17,13 @@
 #include "../reference_table.hpp"
 #include "manchester_rolling.hpp"
 #include "manchester_run.hpp"
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "svg_figure.hpp"
 
 namespace railtab {
 namespace {
 
-constexpr double mm = 1e-3;
 constexpr double yaw_per_shift = 2.4;  // in cases A1.2 and A2.2 [rad/m]
 constexpr int shifts = 21;             // of 0.5 mm
 constexpr std::array sides{-1.0, 1.0};

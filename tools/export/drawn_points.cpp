@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "railtab/runtime/base/motion_names.hpp"
+
 namespace railtab::vtk {
 namespace {
 
@@ -34,9 +36,8 @@ Motion Motion::at(const Eigen::Vector3d& arm) const {
 }
 
 Motion Motion::without_pitch() const {
-  constexpr Eigen::Index pitch = 4;
   Motion result = *this;
-  for (auto& six : result.of) six[pitch] = 0.0;
+  for (auto& six : result.of) six[pitch_dof] = 0.0;
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/writer_lock.hpp"
 #include "run_parts.hpp"
@@ -48,12 +49,12 @@ void write_whole(const fs::path& file, std::string_view text) {
   if (!out) throw ComputationError(fmt::format("{}: could not be written, the disk may be full", file.string()));
 }
 
-constexpr std::string_view part_mark = ".part-", lock_name = "lock";
+constexpr std::string_view lock_name = "lock";
 
 /// Folders that a process left behind which was ended from outside: nobody holds their lock any more.
 void remove_abandoned_folders(const fs::path& final_name) {
   const fs::path parent = final_name.has_parent_path() ? final_name.parent_path() : fs::path(".");
-  const std::string begin = fmt::format("{}{}", final_name.filename().string(), part_mark);
+  const std::string begin = fmt::format("{}{}", final_name.filename().string(), temporary_mark);
   std::vector<fs::path> left;
   std::error_code failed;
   for (fs::directory_iterator entry(parent, failed), end; !failed && entry != end; entry.increment(failed)) {
@@ -70,7 +71,7 @@ class NewFolder {
   explicit NewFolder(const fs::path& final_name) : final_(final_name) {
     remove_abandoned_folders(final_);
     std::random_device random;
-    name_ = fmt::format("{}{}{:08x}", final_.string(), part_mark, random());
+    name_ = fmt::format("{}{}{:08x}", final_.string(), temporary_mark, random());
     std::error_code failed;
     if (!fs::create_directory(name_, failed)) {
       throw input_error(final_.string(), fmt::format("a place that cannot be written ({})", failed.message()),

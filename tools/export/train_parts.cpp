@@ -4,6 +4,8 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "drawn_points.hpp"
 #include "headline.hpp"
@@ -61,8 +63,15 @@ std::vector<DrawnBody> drawn_bodies(const ResultHeader& header) {
   return bodies;
 }
 
-Part bodies_part(const ResultHeader& header) {
-  auto bodies = std::make_shared<const std::vector<DrawnBody>>(drawn_bodies(header));
+/// Shared by the functions of parts, which std::function copies.
+template <class Drawn>
+using Shared = std::shared_ptr<const std::vector<Drawn>>;
+template <class Drawn>
+Shared<Drawn> shared(std::vector<Drawn> drawn) {
+  return std::make_shared<const std::vector<Drawn>>(std::move(drawn));
+}
+
+Part bodies_part(const ResultHeader& header, const Shared<DrawnBody>& bodies) {
   return {"bodies", [bodies, &header](const StepRecord& step) {
             Grid grid;
             DrawnPoints points(grid);
@@ -141,10 +150,8 @@ Motion motion_of(const DrawnWheelset& wheelset, const StepRecord& step) {
   return wheelset.body ? Motion(step.bodies[*wheelset.body]) : Motion();
 }
 
-Part wheelsets_part(const RunResults& results) {
-  const ResultHeader& header = results.header;
-  auto wheelsets = std::make_shared<const std::vector<DrawnWheelset>>(drawn_wheelsets(results));
-  return {"wheelsets", [wheelsets, &header, half = half_rail_distance(header)](const StepRecord& step) {
+Part wheelsets_part(const ResultHeader& header, const Shared<DrawnWheelset>& wheelsets) {
+  return {"wheelsets", [wheelsets, half = half_rail_distance(header)](const StepRecord& step) {
             Grid grid;
             DrawnPoints points(grid);
             std::vector<std::int32_t> body;
@@ -196,9 +203,7 @@ struct ContactValues {
 };
 
 /// Forces on the rails, where the largest patch of each wheel is; they move with the wheelset.
-Part contact_forces_part(const RunResults& results) {
-  const ResultHeader& header = results.header;
-  auto wheelsets = std::make_shared<const std::vector<DrawnWheelset>>(drawn_wheelsets(results));
+Part contact_forces_part(const ResultHeader& header, const Shared<DrawnWheelset>& wheelsets) {
   return {"contact_forces", [wheelsets, &header, half = half_rail_distance(header)](const StepRecord& step) {
             Grid grid;
             DrawnPoints points(grid);
@@ -225,9 +230,11 @@ bool is_wheelset(std::string_view body_name) noexcept { return body_name.find("w
 std::vector<Part> train_parts(const RunResults& results) {
   const ResultHeader& header = results.header;
   std::vector<Part> parts;
-  if (!drawn_bodies(header.body_x.empty() ? ResultHeader{} : header).empty()) parts.push_back(bodies_part(header));
-  if (!drawn_wheelsets(results).empty()) parts.push_back(wheelsets_part(results));
-  if (!header.wheel_x.empty()) parts.push_back(contact_forces_part(results));
+  const Shared<DrawnBody> bodies = shared(header.body_x.empty() ? std::vector<DrawnBody>{} : drawn_bodies(header));
+  const Shared<DrawnWheelset> wheelsets = shared(drawn_wheelsets(results));
+  if (!bodies->empty()) parts.push_back(bodies_part(header, bodies));
+  if (!wheelsets->empty()) parts.push_back(wheelsets_part(header, wheelsets));
+  if (!header.wheel_x.empty()) parts.push_back(contact_forces_part(header, wheelsets));
   return parts;
 }
 
