@@ -22,12 +22,11 @@ class DividedSubstitution {
  public:
   /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
   void begin(const SubstitutionFactor& factor, const Eigen::VectorXd& known, std::span<const int> few);
-  /// The same with the known load by add_known(ordered), which adds to zeros in the factor's order.
-  template <class AddKnown>
-  void begin_with(const SubstitutionFactor& factor, std::span<const int> few, AddKnown&& add_known) {
+  /// The same with the known load that set_known(ordered) sets in the factor's order.
+  template <class SetKnown>
+  void begin_with(const SubstitutionFactor& factor, std::span<const int> few, SetKnown&& set_known) {
     begin(factor, few);
-    known_.setZero();
-    add_known(known_);
+    set_known(known_);
     factor.forward(known_);
   }
   /// The same without known load: for few entries of solutions under loads on few unknowns.

@@ -3,6 +3,7 @@
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -274,6 +275,16 @@ class Division {
     }
   }
 
+  void find_consecutive() {
+    layout_.consecutive.assign(static_cast<std::size_t>(layout_.slots / 8), 1);
+    for (std::size_t b = 0; b < layout_.consecutive.size(); ++b) {
+      const int* const first = &layout_.unknown[8 * sections * b];
+      for (int k = 0; k < 8 * sections; ++k) {
+        if (first[k] < 0 || first[k] != first[k % sections] + k / sections) layout_.consecutive[b] = 0;
+      }
+    }
+  }
+
   // False where pairs stand in slots that differ from section to section.
   bool pair_slots(const MirrorPairs& pairs) {
     layout_.mirrored.assign(section_.size(), -1);
@@ -300,6 +311,7 @@ class Division {
       if ((paired >= 0) != (layout_.mirrored[static_cast<std::size_t>(i - layout_.range.begin)] >= 0)) return false;
       layout_.unknown[static_cast<std::size_t>(sections * p.number + p.section)] = static_cast<int>(i);
     }
+    find_consecutive();
     for (int slot = 0; slot < layout_.slots; ++slot) {
       const int paired = other[static_cast<std::size_t>(slot)];
       if (paired < 0) {
@@ -318,6 +330,25 @@ class Division {
   std::vector<int> section_;  // of the unknowns in the range
   std::set<int> first_;       // slots of the first unknowns of pairs
 };
+
+/// Element i of each of eight vectors as the vector i.
+void transpose(std::array<Lanes, 8>& r) noexcept {
+  for (std::size_t i = 0; i < 8; i += 2) {
+    const Lanes a = r[i], b = r[i + 1];
+    r[i] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    r[i + 1] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (const std::size_t i : {0, 1, 4, 5}) {
+    const Lanes a = r[i], b = r[i + 2];
+    r[i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+    r[i + 2] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Lanes a = r[i], b = r[i + 4];
+    r[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+    r[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
 
 }  // namespace
 
@@ -377,8 +408,22 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
   constexpr double root = 0.70710678118654752440;  // √½
   double* const to = ordered.data();
   const double* const from = natural.data();
-  for (std::size_t k = 0; k < unknown.size(); ++k) to[k] = unknown[k] < 0 ? 0.0 : from[unknown[k]];
   auto* const slot = reinterpret_cast<Lanes*>(to);  // NOLINT: Eigen aligns to 64 bytes
+  const auto gather = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) to[k] = unknown[k] < 0 ? 0.0 : from[unknown[k]];
+  };
+  constexpr std::size_t eight = 8 * sections;
+  for (std::size_t b = 0; b < consecutive.size(); ++b) {
+    if (consecutive[b] == 0) {
+      gather(eight * b, eight * (b + 1));
+      continue;
+    }
+    std::array<Lanes, 8> part;
+    for (std::size_t s = 0; s < 8; ++s) std::memcpy(&part[s], from + unknown[eight * b + s], sizeof part[s]);
+    transpose(part);
+    std::copy(part.begin(), part.end(), slot + 8 * b);
+  }
+  gather(eight * consecutive.size(), unknown.size());
   for (const auto& [one, two] : paired_slots) {
     const Lanes u = slot[one], v = slot[two];
     slot[one] = root * (u + v);

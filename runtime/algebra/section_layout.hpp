@@ -55,6 +55,7 @@ struct SectionLayout {
   std::vector<int> unknown;           ///< of every slot and section; -1: none
   MirrorPairs paired_slots;           ///< of the first and the second unknowns of pairs, alike in all sections
   std::vector<int> single_slots;      ///< of unknowns without a pair
+  std::vector<char> consecutive;      ///< of every eight slots, whether they are consecutive unknowns in all sections
 
   [[nodiscard]] Eigen::Index border_begin() const noexcept { return Eigen::Index{sections} * slots; }
   [[nodiscard]] Eigen::Index interface_begin() const noexcept {

@@ -145,28 +145,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
     divisible_->stiffness = by_sums_and_differences(structure.stiffness, divisible_->pairs);
     divisible_->damping = by_sums_and_differences(structure.damping, divisible_->pairs);
   }
-  // The union of both patterns: a zero times one keeps an entry's place.
-  const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
-  entry_begin_.push_back(0);
-  for (int j = 0; j < pattern.outerSize(); ++j) {
-    for (Sparse::InnerIterator entry(pattern, j); entry; ++entry) {
-      entry_row_.push_back(static_cast<int>(entry.row()));
-      entry_.push_back({0.0, 0.0});
-    }
-    entry_begin_.push_back(static_cast<int>(entry_.size()));
-  }
-  const auto fill = [&](const Sparse& matrix, double Entry::*value) {
-    for (int j = 0; j < matrix.outerSize(); ++j) {
-      int p = entry_begin_[static_cast<std::size_t>(j)];
-      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
-        if (entry.row() < j) continue;
-        while (entry_row_[static_cast<std::size_t>(p)] != entry.row()) ++p;
-        entry_[static_cast<std::size_t>(p)].*value = entry.value();
-      }
-    }
-  };
-  fill(structure.stiffness, &Entry::stiffness);
-  fill(structure.damping, &Entry::damping);
+  if (!divisible_) set_entries(structure.stiffness, structure.damping);
   if (active.count > 0) activate(active);
 }
 
@@ -191,6 +170,31 @@ void StructureResponse::set_divisible(const StructureModel& structure) {
   }
 }
 
+void StructureResponse::set_entries(const Sparse& stiffness, const Sparse& damping) {
+  // The union of both patterns: a zero times one keeps an entry's place.
+  const Sparse pattern = (stiffness + damping).triangularView<Eigen::Lower>();
+  entry_begin_.push_back(0);
+  for (int j = 0; j < pattern.outerSize(); ++j) {
+    for (Sparse::InnerIterator entry(pattern, j); entry; ++entry) {
+      entry_row_.push_back(static_cast<int>(entry.row()));
+      entry_.push_back({0.0, 0.0});
+    }
+    entry_begin_.push_back(static_cast<int>(entry_.size()));
+  }
+  const auto fill = [&](const Sparse& matrix, double Entry::*value) {
+    for (int j = 0; j < matrix.outerSize(); ++j) {
+      int p = entry_begin_[static_cast<std::size_t>(j)];
+      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
+        if (entry.row() < j) continue;
+        while (entry_row_[static_cast<std::size_t>(p)] != entry.row()) ++p;
+        entry_[static_cast<std::size_t>(p)].*value = entry.value();
+      }
+    }
+  };
+  fill(stiffness, &Entry::stiffness);
+  fill(damping, &Entry::damping);
+}
+
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
@@ -204,6 +208,10 @@ void StructureResponse::activate(const DofRange& dofs) {
         product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
       }
       return;
+    }
+    if (entry_begin_.empty() && divisible_->stiffness.rows() > 0) {
+      const auto back = [&](const Sparse& matrix) { return by_sums_and_differences(matrix, divisible_->pairs); };
+      set_entries(back(divisible_->stiffness), back(divisible_->damping));
     }
   }
   factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);

@@ -114,6 +114,7 @@ class StructureResponse {
   /// Matrices by sums and differences of the rails, for a division into sections.
   struct Divisible;
   void set_divisible(const StructureModel& structure);
+  void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
   std::unique_ptr<Divisible> divisible_;   ///< null where the unknowns have no lines

@@ -127,6 +127,31 @@ TEST(NestedDissection, HubsDoNotFillTheFactor) {
   EXPECT_LT(entries_per_unknown(2), 1.5 * fine);
 }
 
+// In sections where the active unknowns are many, as a whole where they are few: the same increment.
+TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
+  TrackParameters track;
+  track.length_before = track.length_after = 15.0;
+  const StructureModel structure = build_track_bridge(track, {BridgeParameters{}});
+  StructureModel unlike = structure;
+  unlike.dof_line.clear();
+  const HhtScheme scheme{.alpha = -0.1, .time_step = 1e-3};
+  StructureResponse in_sections(structure, scheme), whole(unlike, scheme);
+  const int n = structure.dofs();
+  Prediction prediction;
+  prediction.weighted_displacement = 1e-3 * Eigen::VectorXd::Random(n);
+  prediction.weighted_velocity = Eigen::VectorXd::Random(n);
+  const Eigen::VectorXd load = 1e5 * Eigen::VectorXd::Random(n);
+  for (const DofRange& range : {DofRange{0, n}, DofRange{300, 400}, DofRange{0, n}}) {
+    in_sections.activate(range);
+    whole.activate(range);
+    EXPECT_EQ(in_sections.in_sections(), range.count == n);
+    EXPECT_FALSE(whole.in_sections());
+    const Eigen::VectorXd expected = whole.increment(prediction, load);
+    EXPECT_LT((in_sections.increment(prediction, load) - expected).cwiseAbs().maxCoeff(),
+              1e-11 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
 TEST(StructureResponse, RefusesANumberThatIsNotFinite) {
   StructureModel structure = short_bridge();
   structure.stiffness.coeffRef(7, 7) = std::numeric_limits<double>::quiet_NaN();
