@@ -204,8 +204,8 @@ void bind_geometry(py::module_& module) {
 
     Forces are those of the table's loaded part where it has one, else of Hertz's ellipse of steel.
 
-    >>> table.contacts(0.0, load=60e3)["rolling_radius"].round(4)
-    array([0.4599])
+    >>> table.contacts(0.001, load=60e3)["rolling_radius"].round(4)
+    array([0.4605])
     )");
   geometry.def("rail_force", &rail_force, y, dz, py::kw_only(), z, load, roll, yaw,
                R"(Force on the rail without friction, shape (..., 3): F_y, F_z [N] and the moment about x through the

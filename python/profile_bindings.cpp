@@ -16,7 +16,9 @@ ProfileKind profile_kind(const std::string& name) {
   throw input_error("profile", fmt::format("the kind \"{}\"", name), "wheel or rail");
 }
 
-Doubles array_of(const std::vector<double>& values) { return {static_cast<py::ssize_t>(values.size()), values.data()}; }
+Doubles array_of(const std::vector<double>& values) {
+  return Doubles(static_cast<py::ssize_t>(values.size()), values.data());
+}
 
 /// A function of the curve's point, over arc lengths.
 template <std::size_t size, class Function>
@@ -53,7 +55,7 @@ void bind_profiles(py::module_& module) {
 
     >>> wheel = railtab.Profile.wheel("S1002")
     >>> wheel
-    <railtab.Profile S1002: wheel, 0.151 m>
+    <railtab.Profile S1002: wheel, 0.153 m>
     >>> s = np.linspace(wheel.s[0], wheel.s[-1], 1000)
     >>> wheel.points(s).shape
     (1000, 2)

@@ -175,10 +175,10 @@ void bind_wheel(py::module_& module) {
             py::arg("friction") = 0.3, py::arg("damping") = 0.0, py::arg("young") = ElasticMaterial{}.E,
             py::arg("poisson") = ElasticMaterial{}.nu);
   const auto wheelset = py::arg("wheelset");
-  const auto velocity = py::arg("wheelset_velocity") = py::none(),
-             rail = py::arg("rail") = py::none(), rail_velocity = py::arg("rail_velocity") = py::none(),
-             rail_yaw = py::arg("rail_yaw") = 0.0, rail_slope = py::arg("rail_slope") = 0.0,
-             rail_friction = py::arg("rail_friction") = 1.0, side = py::arg("side") = "right";
+  const auto velocity = py::arg("wheelset_velocity") = py::none(), rail = py::arg("rail") = py::none(),
+             rail_velocity = py::arg("rail_velocity") = py::none(), rail_yaw = py::arg("rail_yaw") = 0.0,
+             rail_slope = py::arg("rail_slope") = 0.0, rail_friction = py::arg("rail_friction") = 1.0,
+             side = py::arg("side") = "right";
   wheel.def(
       "force",
       [](const Wheel& w, const Doubles& q, const OptionalDoubles& v, const OptionalDoubles& r,

@@ -5,7 +5,7 @@ the shapes. The user's guide is docs/guide/python.md.
 
 >>> import railtab
 >>> railtab.standard_profiles("rail")
-['60E1', 'CHN60', 'JIS60-stand-in', 'knife-edge']
+['60E1', 'UIC60', 'CHN60', 'JIS60-stand-in']
 """
 import numpy
 

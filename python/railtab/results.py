@@ -28,7 +28,7 @@ class Results(Mapping):
     ...     Q = results["wheels/Q"]
     ...     unit = results.unit("wheels/Q")
     >>> Q.shape[1], unit
-    (4, 'N')
+    (8, 'N')
     """
 
     def __init__(self, file: str | os.PathLike[str]) -> None:
