@@ -153,16 +153,19 @@ void bind_table(py::module_& module) {
     ratio a/b, creepages ux, uy and spin phi, normalised: numbers or arrays that broadcast to a shape (...).
     Returns force (..., 3): F_x, F_y, M_z on the wheel; derivative (..., 3, 4): of these with respect to a/b, ux, uy, phi;
     inside (...): outside, force and derivative are zero.)");
-  table.def_property_readonly("info", [](const CreepTable& t) {
-    using namespace py::literals;
-    const CreepTableData& data = t.data();
-    py::dict info("poisson"_a = data.poisson, "elements"_a = data.elements,
-                  "layout"_a = std::string(creep_table_layout_name(data.layout)), "bytes"_a = t.bytes(),
-                  "program_version"_a = data.provenance.program_version,
-                  "command_line"_a = data.provenance.command_line, "created"_a = data.provenance.created);
-    for (const auto& [name, value] : data.statistics) info[py::str(name)] = value;
-    return info;
-  });
+  table.def_property_readonly(
+      "info",
+      [](const CreepTable& t) {
+        using namespace py::literals;
+        const CreepTableData& data = t.data();
+        py::dict info("poisson"_a = data.poisson, "elements"_a = data.elements,
+                      "layout"_a = std::string(creep_table_layout_name(data.layout)), "bytes"_a = t.bytes(),
+                      "program_version"_a = data.provenance.program_version,
+                      "command_line"_a = data.provenance.command_line, "created"_a = data.provenance.created);
+        for (const auto& [name, value] : data.statistics) info[py::str(name)] = value;
+        return info;
+      },
+      "dict: Poisson's ratio, layout, size in memory [bytes], provenance, measured errors.");
 }
 
 }  // namespace
@@ -185,7 +188,8 @@ void bind_creep(py::module_& module) {
             return Law{creep_law(name, nu, table.value_or(std::filesystem::path()))};
           }),
           py::arg("name") = "table", py::kw_only(), py::arg("nu") = 0.28, py::arg("table") = py::none());
-  law.def_property_readonly("name", [](const Law& l) { return std::string(creep_law_name(l.law)); });
+  law.def_property_readonly(
+      "name", [](const Law& l) { return std::string(creep_law_name(l.law)); }, "table, polach, fastsim or linear.");
   const auto ratio = py::arg("ratio"), ux = py::arg("ux"), uy = py::arg("uy"), phi = py::arg("phi");
   law.def("force", &law_force, ratio, ux, uy, phi,
           "F_x, F_y, M_z on the wheel, shape (..., 3), from a/b, creepages and spin that broadcast to a shape (...).");

@@ -77,9 +77,11 @@ void bind_profiles(py::module_& module) {
       py::arg("name"), py::arg("inclination") = 1.0 / 40.0, py::arg("smoothing") = 0.0,
       "A built-in rail profile by its name, inclined to the track centre, or one from a file, inclined already.\n\n"
       "inclination: its tangent [-]; smoothing: as of wheel().");
-  profile.def_property_readonly("name", [](const Profile& p) { return p.curve.knots().name; });
   profile.def_property_readonly(
-      "kind", [](const Profile& p) { return p.curve.knots().kind == ProfileKind::wheel ? "wheel" : "rail"; });
+      "name", [](const Profile& p) { return p.curve.knots().name; }, "Built-in name, or name of the file.");
+  profile.def_property_readonly(
+      "kind", [](const Profile& p) { return p.curve.knots().kind == ProfileKind::wheel ? "wheel" : "rail"; },
+      "wheel or rail.");
   profile.def_property_readonly(
       "notes", [](const Profile& p) { return p.curve.knots().notes; }, "What was repaired in a file's points.");
   profile.def_property_readonly(

@@ -176,7 +176,8 @@ void bind_record(py::module_& module) {
       "time", [](const Record& r) { return r.step.time; }, "[s]");
   record.def_property_readonly(
       "position", [](const Record& r) { return r.step.position; }, "Of the first wheelset along the track [m].");
-  record.def_property_readonly("newton_iterations", [](const Record& r) { return r.step.newton_iterations; });
+  record.def_property_readonly(
+      "newton_iterations", [](const Record& r) { return r.step.newton_iterations; }, "Of the step.");
   record.def_property_readonly(
       "wheels", [](const py::object& r) { return view(r, r.cast<const Record&>().step.wheels); },
       R"(Structured array, shape (w,): left, right, front wheelset first; Q, Y, X [N] on the rail and the columns of the

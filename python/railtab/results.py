@@ -100,6 +100,7 @@ class Results(Mapping):
         return pandas.DataFrame(values.reshape(len(values), -1), index=index, columns=columns)
 
     def close(self) -> None:
+        """Closes the file."""
         self._file.close()
 
     def __enter__(self) -> Results:

@@ -7,8 +7,7 @@
 namespace railtab::report {
 namespace {
 
-void line(std::string& text, std::string_view name, const Extreme& extreme, double factor,
-          std::string_view unit) {
+void line(std::string& text, std::string_view name, const Extreme& extreme, double factor, std::string_view unit) {
   if (!extreme.found()) return;
   fmt::format_to(std::back_inserter(text), "  {:<28}{:>10.4g} {:<6} {}, t = {:.3f} s\n", name, factor * extreme.value,
                  unit, extreme.where, extreme.time);
