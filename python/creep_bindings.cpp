@@ -151,8 +151,8 @@ void bind_table(py::module_& module) {
             R"(Force, derivatives and whether the table covers the query.
 
     ratio a/b, creepages ux, uy and spin phi, normalised: numbers or arrays that broadcast to a shape (...).
-    Returns force (..., 3): F_x, F_y, M_z on the wheel; derivative (..., 3, 4): of these with respect to a/b, ux, uy, phi;
-    inside (...): outside, force and derivative are zero.)");
+    Returns force (..., 3): F_x, F_y, M_z on the wheel; derivative (..., 3, 4): of these with respect to a/b, ux, uy and
+    phi; inside (...): outside, force and derivative are zero.)");
   table.def_property_readonly(
       "info",
       [](const CreepTable& t) {

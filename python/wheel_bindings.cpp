@@ -157,8 +157,8 @@ void bind_wheel(py::module_& module) {
     young, poisson   of wheel and rail [Pa], [-]
 
     Motions are in the track frame, x forward, y right, z down. Of the wheelset (..., 6): x, y, z [m], roll, pitch, yaw
-    [rad], its displacement from the centred position on undeflected rails; of the rail head (..., 3): y, z [m], roll [rad].
-    railtab.displacement() makes one of y, z, roll and yaw.
+    [rad], its displacement from the centred position on undeflected rails; of the rail head (..., 3): y, z [m], roll
+    [rad]. railtab.displacement() makes one of y, z, roll and yaw.
 
     >>> contact = railtab.WheelContact(table, speed=55.0)
     >>> q = railtab.displacement(y=np.linspace(-1e-3, 1e-3, 5), z=table.height(0.0, load=60e3))
@@ -187,8 +187,8 @@ void bind_wheel(py::module_& module) {
         return force(w, {q, v, r, rv, yaw, slope, mu, of_side});
       },
       wheelset, velocity, rail, rail_velocity, py::kw_only(), rail_yaw, rail_slope, rail_friction, side,
-      R"(Forces, shape (..., 9): six on the wheelset, x, y, z [N] and moments about its centre [N m], then y, z [N] on the
-    rail head and the moment about x through its origin [N m].
+      R"(Forces, shape (..., 9): six on the wheelset, x, y, z [N] and moments about its centre [N m], then y, z [N]
+    on the rail head and the moment about x through its origin [N m].
 
     wheelset, wheelset_velocity   (..., 6) [m, rad], per second; velocity beside the running speed
     rail, rail_velocity           (..., 3) of the rail head there

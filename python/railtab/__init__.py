@@ -1,7 +1,7 @@
 """Wheel-rail contact from tables, and train-bridge runs.
 
-SI units; x forward, y right, z down. Arguments of look-ups are numbers or arrays, which NumPy broadcasts; docstrings state
-the shapes. The user's guide is docs/guide/python.md.
+SI units; x forward, y right, z down. Arguments of look-ups are numbers or arrays, which NumPy broadcasts; docstrings
+state the shapes. The user's guide is docs/guide/python.md.
 
 >>> import railtab
 >>> railtab.standard_profiles("rail")
@@ -28,6 +28,11 @@ from ._railtab import (
 from .results import Results, open_results
 from .runs import run, sweep
 
+try:
+    from ._rolling import rolling_contact
+except ImportError:  # built without tablegen
+    pass
+
 __all__ = [
     "ComputationError",
     "ContactGeometry",
@@ -48,6 +53,8 @@ __all__ = [
     "standard_profiles",
     "sweep",
 ]
+if "rolling_contact" in globals():
+    __all__.append("rolling_contact")
 
 
 def displacement(y=0.0, z=0.0, roll=0.0, yaw=0.0) -> numpy.ndarray:

@@ -79,7 +79,7 @@ class Results(Mapping):
         return [f"wheelset {1 + w // 2} {('left', 'right')[w % 2]}" for w in range(self._wheels())]
 
     def to_pandas(self, name: str) -> Any:
-        """A history as a pandas.DataFrame over time [s], its columns named by wheels, or by bodies or nodes and direction.
+        """A history as a pandas.DataFrame over time [s]; columns are wheels, or bodies or nodes with directions.
 
         >>> with railtab.open_results(results_file) as results:
         ...     results.to_pandas("wheels/Q").columns[0]
@@ -110,7 +110,9 @@ class Results(Mapping):
         self.close()
 
     def __repr__(self) -> str:
-        return f"<railtab.Results {self._file.filename}: {self._records} records>" if self._file else "<closed railtab.Results>"
+        if not self._file:
+            return "<closed railtab.Results>"
+        return f"<railtab.Results {self._file.filename}: {self._records} records>"
 
     def _dataset(self, name: str) -> h5py.Dataset:
         data = self._file.get(name)

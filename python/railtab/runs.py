@@ -31,7 +31,8 @@ def run(
 
     output       results file; without one nothing is written
     changes      keys of the scene with other values, {"train.speed_kmh": 250, "contact.mode": "online"}; None takes a
-                 key out of the scene. Of several [[bridge]], "bridge.2.length" is the second's. Files are relative to the scene.
+                 key out of the scene. Of several [[bridge]], "bridge.2.length" is the second's. Files are relative to
+                 the scene.
     resume       go on from the last checkpoint in output; complete results are left alone
     on_step      called with each StepRecord that is recorded (output.every). StopIteration ends the run there, other
                  exceptions too, and they are raised again; the results up to there are kept, with a checkpoint.
@@ -40,8 +41,8 @@ def run(
     Returns the summary with the keys of `vsi run --json` (docs/guide/vsi.md). Warnings of the scene are issued by
     warnings.warn. Ctrl-C ends the run after its step. Other Python threads run meanwhile.
 
-    Raises InputError where the scene is wrong, and ComputationError where the run cannot go on: what it has come to is in
-    output.
+    Raises InputError where the scene is wrong, and ComputationError where the run cannot go on: its results up to there
+    are in output.
 
     >>> summary = railtab.run(scene_file, changes={"integration.duration": 0.05})
     >>> summary["complete"], summary["steps"]
@@ -71,9 +72,9 @@ def sweep(
     changes  of all runs, as of run()
     threads  runs at a time
 
-    Returns one row per run, which pandas.DataFrame takes as they are: the keys with their values, then complete, message
-    and the numbers of run()'s summary, those with a place and a time by their value. A run that cannot go on has
-    complete = False.
+    Returns one row per run, which pandas.DataFrame takes as they are: the keys with their values, then complete,
+    message and the numbers of run()'s summary, those with a place and a time by their value. A run that cannot go on
+    has complete = False.
 
     >>> rows = railtab.sweep(scene_file, {"train.speed_kmh": [180, 200]}, changes={"integration.duration": 0.05})
     >>> [(row["train.speed_kmh"], row["complete"]) for row in rows]

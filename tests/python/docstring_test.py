@@ -32,8 +32,8 @@ def main():
         os.symlink(TABLE, "s1002_60e1.h5")
         Path("scene.toml").write_text(SCENE)
         railtab.run("scene.toml", "results.h5", changes={"integration.duration": 0.02})
-        given = {"railtab": railtab, "np": numpy, "table": railtab.GeometryTable.open(TABLE), "scene_file": "scene.toml",
-                 "results_file": "results.h5", "displacement": railtab.displacement}
+        given = {"railtab": railtab, "np": numpy, "displacement": railtab.displacement, "scene_file": "scene.toml",
+                 "table": railtab.GeometryTable.open(TABLE), "results_file": "results.h5"}
         runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
         bare = []
         for name, text in objects():

@@ -121,7 +121,7 @@ class Broadcasting(unittest.TestCase):
         wrong = self.assertRaisesRegex
         with wrong(railtab.InputError, "contacts: found y = nan .number 1 in memory., expected finite"):
             table.contacts([0.0, numpy.nan], 1e-4)
-        with wrong(railtab.InputError, "rail_force: query 1: found dz = -1e-05, expected 0 to 0.01 m below first touch"):
+        with wrong(railtab.InputError, "query 1: found dz = -1e-05, expected 0 to 0.01 m below first"):
             table.rail_force(0.0, [0.0, -1e-5])
         with wrong(railtab.InputError, "contacts: found 2 of dz, z and load, expected one"):
             table.contacts(0.0, 1e-4, load=1e4)

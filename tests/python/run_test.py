@@ -143,11 +143,11 @@ class Runs(FolderTest):
         self.same("file.h5", "changed.h5", but=["header/scene_text"])
         with railtab.open_results("changed.h5") as results:
             self.assertTrue(results.scene_text.startswith(text))
-            self.assertIn('# changed: without train.speed_kmh, train.speed = 50.0, bridge.length = 12.5', results.scene_text)
+            self.assertIn("# changed: without train.speed_kmh, train.speed = 50.0, bridge", results.scene_text)
 
     def test_one_of_several_bridges(self):
-        Path("two.toml").write_text(Path("scene.toml").read_text().replace("length = 10\n", "length = 10\n[[bridge]]\nlength = 6\n", 1)
-                                    .replace("[[bridge]]", "[[bridge]]", 1))
+        one = "[[bridge]]\nlength = 10\n"
+        Path("two.toml").write_text(Path("scene.toml").read_text().replace(one, one + "[[bridge]]\nlength = 6\n"))
         short = {"integration.duration": 0.02}
         railtab.run("two.toml", "r.h5", changes={"bridge.2.length": 8.0, **short})
         with railtab.open_results("r.h5") as results:
@@ -157,7 +157,8 @@ class Runs(FolderTest):
 
     def test_wrong_input(self):
         wrong = self.assertRaisesRegex
-        with wrong(railtab.InputError, r"scene.toml:4: train.speed_kmh: found -1, expected .*changed: train.speed_kmh = -1"):
+        message = r"scene.toml:4: train.speed_kmh: found -1, expected .*changed: train.speed_kmh = -1"
+        with wrong(railtab.InputError, message):
             railtab.run("scene.toml", changes={"train.speed_kmh": -1})
         with wrong(railtab.InputError, "unknown key 'train.sped'; did you mean 'train.speed'"):
             railtab.run("scene.toml", changes={"train.sped": 5.0})

@@ -44,7 +44,9 @@ def same_default(stub, written):
     if isinstance(stub, bool) or written is None:
         return str(stub) == written
     number = re.search(r"-?[\d.]+(e[+-]?\d+)?", written)
-    return abs(float(number[0]) - stub) <= 1e-12 * abs(stub) if isinstance(stub, (int, float)) else repr(stub) == written
+    if isinstance(stub, (int, float)):
+        return abs(float(number[0]) - stub) <= 1e-12 * abs(stub)
+    return repr(stub) == written
 
 
 def public(names):
