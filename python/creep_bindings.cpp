@@ -1,4 +1,3 @@
-#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <memory>
@@ -184,7 +183,7 @@ void bind_creep(py::module_& module) {
   of_package(law);
   law.def(py::init([](const std::string& name, double nu, const std::optional<std::filesystem::path>& table) {
             if (table && name != "table")
-              throw input_error("CreepLaw " + name, "a table", "the law table, or no table");
+              throw input_error(fmt::format("CreepLaw {}", name), "a table", "the law table, or no table");
             return Law{creep_law(name, nu, table.value_or(std::filesystem::path()))};
           }),
           py::arg("name") = "table", py::kw_only(), py::arg("nu") = 0.28, py::arg("table") = py::none());

@@ -13,7 +13,7 @@ namespace railtab::scene {
 namespace {
 
 std::string change_text(const KeyChange& change) {
-  if (change.value.empty()) return "without " + change.key;
+  if (change.value.empty()) return fmt::format("without {}", change.key);
   return fmt::format("{} = {}", change.key, change.value);
 }
 
@@ -53,13 +53,13 @@ toml::table& entry_of(const KeyChange& change, toml::table& root, std::vector<st
                        fmt::format("{0}.1.KEY for a key of the first [[{0}]], and so on", section));
   }
   toml::table* const entry = list->get(number - 1)->as_table();
-  if (!entry) throw change_error(change, "no [[" + std::string(section) + "]]", "a scene whose sections are tables");
+  if (!entry) throw change_error(change, fmt::format("no [[{}]]", section), "a scene whose sections are tables");
   return *entry;
 }
 
 /// The value that a change's text stands for.
 toml::table parsed(const KeyChange& change) {
-  const std::string text = "value = " + change.value;
+  const std::string text = fmt::format("value = {}", change.value);
   try {
     check_toml_bounds(text, change.key);
     toml::table table = toml::parse(text);
@@ -108,7 +108,7 @@ void change_keys(const std::vector<KeyChange>& changes, toml::table& root) {
 
 std::string changes_text(const std::vector<KeyChange>& changes) {
   std::string text;
-  for (const KeyChange& change : changes) text += (text.empty() ? "" : ", ") + change_text(change);
+  for (const KeyChange& change : changes) text += fmt::format("{}{}", text.empty() ? "" : ", ", change_text(change));
   return text;
 }
 
