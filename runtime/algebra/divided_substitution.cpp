@@ -2,35 +2,35 @@
 
 namespace railtab {
 
-void DividedSubstitution::begin(const SparseLdlt& factor, const Eigen::VectorXd& known, std::span<const int> few) {
-  begin(factor, few);
-  factor.into(known, known_);
-  factor.forward(known_);
-}
-
-void DividedSubstitution::begin(const SparseLdlt& factor, std::span<const int> few) {
+void DividedSubstitution::begin(const SubstitutionFactor& factor, std::span<const int> few) {
   few_.assign(few.begin(), few.end());
   factor.find_path(few_, path_);
   if (work_.size() == factor.room()) return;
   for (Eigen::VectorXd* vector : {&known_, &work_, &solved_}) vector->setZero(factor.room());
 }
 
-void DividedSubstitution::respond(const SparseLdlt& factor, Eigen::VectorXd& solution) {
+void DividedSubstitution::begin(const SubstitutionFactor& factor, const Eigen::VectorXd& known,
+                                std::span<const int> few) {
+  begin(factor, few);
+  factor.into(known, known_);
+  factor.forward(known_);
+}
+
+void DividedSubstitution::respond(const SubstitutionFactor& factor, Eigen::VectorXd& solution) {
   factor.backward(known_, solved_, path_);
-  for (int unknown : few_) solution[unknown] = solved_[factor.position(unknown)];
+  factor.read(few_, solved_, solution);
 }
 
-void DividedSubstitution::respond(const SparseLdlt& factor, double weight, const Eigen::VectorXd& extra,
+void DividedSubstitution::respond(const SubstitutionFactor& factor, double weight, const Eigen::VectorXd& extra,
                                   Eigen::VectorXd& solution) {
-  factor.visit(path_, [&](int first, int columns) { work_.segment(first, columns).setZero(); });
-  for (int unknown : few_) work_[factor.position(unknown)] = weight * extra[unknown];
+  factor.load(path_, few_, weight, extra, work_);
   factor.forward(work_, path_);
-  factor.visit(path_, [&](int first, int columns) { work_.segment(first, columns) += known_.segment(first, columns); });
+  factor.add(path_, known_, work_);
   factor.backward(work_, solved_, path_);
-  for (int unknown : few_) solution[unknown] = solved_[factor.position(unknown)];
+  factor.read(few_, solved_, solution);
 }
 
-void DividedSubstitution::finish(const SparseLdlt& factor, Eigen::VectorXd& solution) {
+void DividedSubstitution::finish(const SubstitutionFactor& factor, Eigen::VectorXd& solution) {
   factor.backward_off(path_, known_, solved_);
   factor.out_of(solved_, solution);
 }

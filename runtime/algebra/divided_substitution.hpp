@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
+#include <vector>
 
-#include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/algebra/substitution_factor.hpp"
 
 namespace railtab {
 
@@ -19,19 +21,28 @@ namespace railtab {
 class DividedSubstitution {
  public:
   /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
-  void begin(const SparseLdlt& factor, const Eigen::VectorXd& known, std::span<const int> few);
+  void begin(const SubstitutionFactor& factor, const Eigen::VectorXd& known, std::span<const int> few);
+  /// The same with the known load by add_known(ordered), which adds to zeros in the factor's order.
+  template <class AddKnown>
+  void begin_with(const SubstitutionFactor& factor, std::span<const int> few, AddKnown&& add_known) {
+    begin(factor, few);
+    known_.setZero();
+    add_known(known_);
+    factor.forward(known_);
+  }
   /// The same without known load: for few entries of solutions under loads on few unknowns.
-  void begin(const SparseLdlt& factor, std::span<const int> few);
+  void begin(const SubstitutionFactor& factor, std::span<const int> few);
   /// The solution at the few unknowns under the known load. Writes only their entries.
-  void respond(const SparseLdlt& factor, Eigen::VectorXd& solution);
-  /// Under known + weight·extra. Reads and writes only their entries.
-  void respond(const SparseLdlt& factor, double weight, const Eigen::VectorXd& extra, Eigen::VectorXd& solution);
+  void respond(const SubstitutionFactor& factor, Eigen::VectorXd& solution);
+  /// Under known + weight·extra. Writes only their entries. @pre extra is zero at all others
+  void respond(const SubstitutionFactor& factor, double weight, const Eigen::VectorXd& extra,
+               Eigen::VectorXd& solution);
   /// The whole solution under the loads of the last respond(), which must have been called.
-  void finish(const SparseLdlt& factor, Eigen::VectorXd& solution);
+  void finish(const SubstitutionFactor& factor, Eigen::VectorXd& solution);
 
  private:
   std::vector<int> few_;
-  SparseLdlt::Path path_;
+  SubstitutionFactor::Path path_;
   Eigen::VectorXd known_, work_, solved_;  // in the factor's order
 };
 

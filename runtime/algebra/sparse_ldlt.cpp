@@ -316,6 +316,20 @@ void SparseLdlt::out_of(const Vector& ordered, Vector& natural) const {
   for (Eigen::Index i = 0; i < size(); ++i) natural[first_ + i] = ordered[position_[static_cast<std::size_t>(i)]];
 }
 
+void SparseLdlt::load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
+                      Vector& ordered) const {
+  visit(path, [&](int first, int columns) { ordered.segment(first, columns).setZero(); });
+  for (int unknown : few) ordered[position(unknown)] = weight * natural[unknown];
+}
+
+void SparseLdlt::add(const Path& path, const Vector& known, Vector& y) const {
+  visit(path, [&](int first, int columns) { y.segment(first, columns) += known.segment(first, columns); });
+}
+
+void SparseLdlt::read(std::span<const int> few, const Vector& ordered, Vector& natural) const {
+  for (int unknown : few) natural[unknown] = ordered[position(unknown)];
+}
+
 void SparseLdlt::forward(double* y, const Block& block, double* scratch) const {
   double* const own = y + block.first;
   if (block.columns <= narrow) {
@@ -359,15 +373,15 @@ void SparseLdlt::backward(const Vector& y, Vector& x, const Block& block, double
   backward(x.data(), block, scratch);
 }
 
-void SparseLdlt::forward(Vector& y) const {
+void SparseLdlt::forward(double* y) const {
   Vector scratch(most_height_);
-  for (const Block& block : blocks_) forward(y.data(), block, scratch.data());
+  for (const Block& block : blocks_) forward(y, block, scratch.data());
 }
 
-void SparseLdlt::backward(Vector& x) const {
+void SparseLdlt::backward(double* x) const {
   Vector scratch(most_height_);
-  x.head(size()).array() *= inverse_D_.array();
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x.data(), *block, scratch.data());
+  Eigen::Map<Vector>(x, size()).array() *= inverse_D_.array();
+  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, scratch.data());
 }
 
 void SparseLdlt::forward(Vector& y, const Path& path) const {
@@ -397,15 +411,6 @@ void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) cons
   for (std::size_t b = blocks_.size(); b-- > 0;) {
     if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b], scratch.data());
   }
-}
-
-SparseLdlt::Vector SparseLdlt::solve(const Vector& load) const {
-  Vector ordered, natural = Vector::Zero(load.size());
-  into(load, ordered);
-  forward(ordered);
-  backward(ordered);
-  out_of(ordered, natural);
-  return natural;
 }
 
 }  // namespace railtab

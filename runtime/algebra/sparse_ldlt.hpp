@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "railtab/runtime/algebra/tree_path.hpp"
+#include "railtab/runtime/algebra/substitution_factor.hpp"
 #include "railtab/runtime/base/dof_range.hpp"
 
 namespace railtab {
@@ -18,18 +18,9 @@ enum class EliminationOrder {
 
 /// Factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
-/// factor's numbers and works on vectors [Davis2006, Sect. 4.8].
-///
-/// The two halves of a back-substitution are apart, and either can be restricted to a path: the blocks of given
-/// unknowns and everything above them in the elimination tree. A load on the path changes the forward half there only,
-/// and the backward half needs nothing else to give the solution there. Where a system is long and narrow, paths are
-/// short.
-///
-/// Vectors that the halves work on are in the factor's own order: into() and out_of().
-class SparseLdlt {
+/// factor's numbers and works on vectors [Davis2006, Sect. 4.8]. Where a system is long and narrow, paths are short.
+class SparseLdlt final : public SubstitutionFactor {
  public:
-  using Vector = Eigen::VectorXd;
-
   static constexpr std::string_view not_positive_definite = "the matrix of a linear system is not positive definite";
 
   /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
@@ -44,44 +35,32 @@ class SparseLdlt {
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
   /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
-  [[nodiscard]] Eigen::Index room() const noexcept { return size() + 1; }
-  /// What one half of a back-substitution reads [bytes].
-  [[nodiscard]] std::size_t bytes() const noexcept;
-  /// All that it keeps [bytes].
-  [[nodiscard]] std::size_t stored_bytes() const noexcept;
+  [[nodiscard]] Eigen::Index room() const noexcept override { return size() + 1; }
+  [[nodiscard]] std::size_t bytes() const noexcept override;
+  [[nodiscard]] std::size_t stored_bytes() const noexcept override;
   /// Entries of L below the diagonal, which are there in column form too while the factor is made.
   [[nodiscard]] std::size_t entries() const noexcept { return entries_; }
 
-  /// Blocks of unknowns and everything above them.
-  using Path = TreePath;
-  void find_path(std::span<const int> unknowns, Path& path) const;
-  /// Calls visitor(first, number) for the neighbouring columns of every block of a path.
-  template <class Visitor>
-  void visit(const Path& path, Visitor&& visitor) const {
-    for (int b : path.nodes()) {
-      visitor(blocks_[static_cast<std::size_t>(b)].first, blocks_[static_cast<std::size_t>(b)].columns);
-    }
-  }
-
+  /// Of an unknown in the factor's order.
   [[nodiscard]] int position(int unknown) const noexcept {
     return position_[static_cast<std::size_t>(unknown - first_)];
   }
-  /// From and to a vector of all unknowns of the system; those that are held are not touched.
-  void into(const Vector& natural, Vector& ordered) const;
-  void out_of(const Vector& ordered, Vector& natural) const;
+  void find_path(std::span<const int> unknowns, Path& path) const override;
+  void into(const Vector& natural, Vector& ordered) const override;
+  void out_of(const Vector& ordered, Vector& natural) const override;
+  void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
+            Vector& ordered) const override;
+  void add(const Path& path, const Vector& known, Vector& y) const override;
+  void read(std::span<const int> few, const Vector& ordered, Vector& natural) const override;
 
-  /// y <- L⁻¹ y.
-  void forward(Vector& y) const;
-  /// x <- L⁻ᵀ D⁻¹ x.
-  void backward(Vector& x) const;
-  /// y <- L⁻¹ y for a y that is zero off the path.
-  void forward(Vector& y, const Path& path) const;
-  /// The entries of L⁻ᵀ D⁻¹ y on the path; those of x elsewhere stay as they are.
-  void backward(const Vector& y, Vector& x, const Path& path) const;
-  /// The entries of L⁻ᵀ D⁻¹ y off the path, for an x that has those on it.
-  void backward_off(const Path& path, const Vector& y, Vector& x) const;
-  /// Full solution in the natural order, of all unknowns of the system; 0 where they are held.
-  [[nodiscard]] Vector solve(const Vector& load) const;
+  void forward(Vector& y) const override { forward(y.data()); }
+  /// The same of room() numbers.
+  void forward(double* y) const;
+  /// x <- L⁻ᵀ D⁻¹ x, of room() numbers.
+  void backward(double* x) const;
+  void forward(Vector& y, const Path& path) const override;
+  void backward(const Vector& y, Vector& x, const Path& path) const override;
+  void backward_off(const Path& path, const Vector& y, Vector& x) const override;
 
  private:
   struct Block {
@@ -90,6 +69,13 @@ class SparseLdlt {
     std::size_t value;   // place of the first column in values_, see there
     int parent;          // block of the first row below; -1: a root
   };
+  /// Calls visitor(first, number) for the neighbouring columns of every block of a path.
+  template <class Visitor>
+  void visit(const Path& path, Visitor&& visitor) const {
+    for (int b : path.nodes()) {
+      visitor(blocks_[static_cast<std::size_t>(b)].first, blocks_[static_cast<std::size_t>(b)].columns);
+    }
+  }
   template <class Simplicial>
   void factorise(const Eigen::SparseMatrix<double>& matrix, std::string_view message);
   void store(const Eigen::MatrixXd& dense, const Block& block);

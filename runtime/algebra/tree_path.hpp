@@ -24,7 +24,18 @@ class TreePath {
     }
   }
   /// After the last add(): nodes() are ascending from here on.
-  void sort() { std::sort(nodes_.begin(), nodes_.end()); }
+  void sort() {
+    // Many nodes are found faster by their marks than sorted.
+    constexpr std::size_t comparisons = 8;
+    if (comparisons * nodes_.size() < mark_.size()) {
+      std::sort(nodes_.begin(), nodes_.end());
+      return;
+    }
+    nodes_.clear();
+    for (std::size_t node = 0; node < mark_.size(); ++node) {
+      if (mark_[node] == collection_) nodes_.push_back(static_cast<int>(node));
+    }
+  }
 
   [[nodiscard]] const std::vector<int>& nodes() const noexcept { return nodes_; }
   [[nodiscard]] bool contains(int node) const noexcept { return mark_[static_cast<std::size_t>(node)] == collection_; }

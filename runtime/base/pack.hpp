@@ -9,6 +9,9 @@ namespace railtab {
 /// Four doubles side by side. Handed over by reference: by value its place depends on the instruction set.
 using Pack [[gnu::vector_size(32)]] = double;
 
+/// Eight doubles side by side, of eight things alike. Handed over by reference, as Pack.
+using Lanes [[gnu::vector_size(64)]] = double;
+
 /// Four neighbouring floats as doubles. GCC 12 converts a vector type by halves, in twice the instructions.
 inline void widen(const float* from, Pack& to) noexcept {
 #ifdef __AVX__

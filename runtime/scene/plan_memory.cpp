@@ -59,7 +59,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const double table = StepOperators::largest_table(model, duration, integration.time_step);
   const double one = m.kept + m.low + table;
   const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
-  const double start = number * n * start_vectors + m.kept + std::max(m.setup, m.low + m.low_setup);
+  const double start = number * n * start_vectors + m.kept + m.setup;
   const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
   const double pieces = number * n < small ? std::min(most_pieces, number * n * start_vectors) : 0.0;
   const double common = built + train;

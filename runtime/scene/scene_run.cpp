@@ -56,7 +56,8 @@ IntegrationParameters pre_roll_parameters(const IntegrationParameters& integrati
 // State at t = 0: steady, after a pre-roll where there is track for it. A pre-roll that fails is left out. Returns why
 // there is no such state, or nothing.
 template <class Warn>
-std::string start(const SceneParameters& scene, const VsiModel& model, const Warn& warn, VsiState& state) {
+std::string start(const SceneParameters& scene, OperatorLevels& operators, const Warn& warn, VsiState& state) {
+  const VsiModel& model = operators.model();
   const std::optional<VsiModel> other = other_model_at_rest(scene, model);
   const VsiModel& at_rest = other ? *other : model;
   const long before = pre_roll_steps(scene, model);
@@ -67,7 +68,7 @@ std::string start(const SceneParameters& scene, const VsiModel& model, const War
     VsiState early(model);
     early.time = -static_cast<double>(before) * scene.integration.time_step;
     const EquilibriumReport rest = steady_start(at_rest, early);
-    if (rest.converged && simulate(model, pre_roll, 0.0, 1, early, {}).complete) {
+    if (rest.converged && simulate(operators, pre_roll, 0.0, 1, early, {}).complete) {
       warn(steady_start_warning(rest));
       state = std::move(early);
       return {};
@@ -126,12 +127,13 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   for (const std::string& warning : of_scene) warn(warning);
   const OutputSelection selection(scene.output, header);
   VsiState state(model);
+  OperatorLevels operators(model, scene.integration.alpha, scene.integration.time_step);
   std::string no_rest;
   if (resume) {
     unpack(resume->state, state);
   } else {
     setup("static equilibrium");
-    no_rest = start(scene, model, warn, state);
+    no_rest = start(scene, operators, warn, state);
     if (no_rest.empty()) {
       displace(scene, model, state);
       for (const std::string& warning : start_warnings(scene, model, state)) warn(warning);
@@ -154,7 +156,7 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   }
   setup("factorising");
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  summary = simulate(model, scene.integration, duration, scene.output.every, state, selected);
+  summary = simulate(operators, scene.integration, duration, scene.output.every, state, selected);
   if (!scene.output.wheels) summary.wheel_extremes = {};
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;

@@ -32,6 +32,7 @@ DeckLine deck_line(const BridgeParameters& span, double start, MotionPlane plane
       if (at_first || at_last || !has_dof(plane, k)) continue;
       dof[k] = static_cast<int>(dof_x.size());
       dof_x.push_back(x);
+      bridge.dof_line.push_back(track_lines + static_cast<int>(k));
     }
     deck.x.push_back(x);
     deck.dof.push_back(dof);

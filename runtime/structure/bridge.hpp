@@ -22,6 +22,7 @@ struct DeckAttachment {
 struct Bridge {
   MatrixAssembly matrices;
   std::vector<double> dof_x;                 // position along the track of each dof [m]
+  std::vector<int> dof_line{};               // StructureModel::dof_line, from track_lines on; empty: all -1
   std::vector<std::array<double, 2>> spans;  // from and to [m]
   std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
   std::string beyond_supports;               // StructureSupports::beyond
@@ -33,6 +34,9 @@ struct Bridge {
   /// empty where the bridge does not carry the track.
   std::function<std::optional<DeckAttachment>(double x, double y, double z)> attach;
 };
+
+/// Lines of dofs (StructureModel::dof_line) that a track has: six of each rail and of the sleepers.
+inline constexpr int track_lines = 18;
 
 /// Simply supported beam spans from x = 0.
 /// @param report positions along the track whose nearest beam node between supports is reported; empty: midspans [m]

@@ -67,6 +67,9 @@ struct StructureModel {
   std::vector<StructureNode> nodes;  ///< nodes of interest
   /// Position along the track of every dof [m], not decreasing; empty where it is not known.
   std::vector<double> dof_x;
+  /// Dofs of one number are alike and follow each other along x, such as the vertical displacements of a rail's nodes;
+  /// -1: alike to no other. Empty where dof_x is.
+  std::vector<int> dof_line{};
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.
   std::vector<std::array<double, 2>> spans;
   StructureSupports supports;

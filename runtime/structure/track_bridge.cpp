@@ -52,13 +52,15 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPl
   return nodes;
 }
 
-/// Numbers of the track's dofs, after those of the bridge.
-void number_dofs(NodeLine& line, std::vector<double>& dof_x) {
+/// Numbers of the track's dofs, after those of the bridge. @param first_line StructureModel::dof_line of its x
+void number_dofs(NodeLine& line, int first_line, Bridge& bridge) {
   for (size_t i = 0; i < line.x.size(); ++i) {
-    for (int& index : line.dof[i]) {
+    for (size_t k = 0; k < 6; ++k) {
+      int& index = line.dof[i][k];
       if (index == held) continue;
-      index = static_cast<int>(dof_x.size());
-      dof_x.push_back(line.x[i]);
+      index = static_cast<int>(bridge.dof_x.size());
+      bridge.dof_x.push_back(line.x[i]);
+      bridge.dof_line.push_back(first_line + static_cast<int>(k));
     }
   }
 }
@@ -178,6 +180,11 @@ class OrderAlongTrack {
                      [&dof_x](int a, int b) { return dof_x[static_cast<size_t>(a)] < dof_x[static_cast<size_t>(b)]; });
     for (size_t i = 0; i < order.size(); ++i) number_[static_cast<size_t>(order[i])] = static_cast<int>(i);
   }
+  void sort(std::vector<int>& of_dof) const {
+    std::vector<int> sorted(of_dof.size());
+    for (size_t i = 0; i < of_dof.size(); ++i) sorted[static_cast<size_t>(number_[i])] = of_dof[i];
+    of_dof = std::move(sorted);
+  }
   void renumber(DofIndices& dof) const {
     for (int& index : dof) {
       if (index >= 0) index = number_[static_cast<size_t>(index)];
@@ -200,8 +207,9 @@ class OrderAlongTrack {
 StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane) {
   track.validate();
   TrackNodes nodes = place_nodes(track, bridge.end, plane);
-  number_dofs(nodes.sleeper, bridge.dof_x);
-  for (NodeLine& rail : nodes.rail) number_dofs(rail, bridge.dof_x);
+  bridge.dof_line.resize(bridge.dof_x.size(), -1);
+  number_dofs(nodes.sleeper, 0, bridge);
+  for (size_t side = 0; side < 2; ++side) number_dofs(nodes.rail[side], 6 + 6 * static_cast<int>(side), bridge);
 
   MatrixAssembly& assembly = bridge.matrices;
   const RailBeamParameters& rail = track.rail;
@@ -223,6 +231,8 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
   build_matrices(assembly, static_cast<int>(bridge.dof_x.size()), model);
   std::sort(bridge.dof_x.begin(), bridge.dof_x.end());
   model.dof_x = std::move(bridge.dof_x);
+  order.sort(bridge.dof_line);
+  model.dof_line = std::move(bridge.dof_line);
   model.spans = std::move(bridge.spans);
   model.warnings = std::move(bridge.warnings);
   model.left_out = std::move(bridge.left_out);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -21,8 +19,6 @@ double mean_wheel_load(const VehicleModel& vehicle) {
   for (int w = 0; w < wheelsets; ++w) sum += static_wheel_load(vehicle, w);
   return sum / wheelsets;
 }
-
-double length(double time_step, int level) { return std::ldexp(time_step, -level); }
 
 }  // namespace
 
@@ -52,21 +48,26 @@ void record_stops(const VsiModel& model, VsiState& state) {
   }
 }
 
-Integrator::Integrator(const VsiModel& model, const IntegrationParameters& parameters,
+Integrator::Integrator(OperatorLevels& operators, const IntegrationParameters& parameters,
                        std::function<void(const EnergyBalance&)> energy, bool contact_energy)
-    : model_(model),
+    : model_(operators.model()),
       parameters_(parameters),
-      wheel_load_(mean_wheel_load(model.vehicle)),
-      force_rule_(model, parameters, wheel_load_),
+      wheel_load_(mean_wheel_load(model_.vehicle)),
+      force_rule_(model_, parameters, wheel_load_),
       division_(parameters, force_rule_.automatic(), wheel_load_),
-      retry_(model),
-      contact_law_(make_contact_law(model)),
-      workspace_(model),
+      retry_(model_),
+      contact_law_(make_contact_law(model_)),
+      workspace_(model_),
+      operators_(operators),
       energy_(std::move(energy)),
       contact_energy_(contact_energy) {
-  if (model.structure) active_ = {0, model.structure->dofs()};
-  if (model.window) window_.emplace(model, parameters.time_step);
-  static_cast<void>(operators(0, parameters.time_step));
+  if (model_.structure) active_ = {0, model_.structure->dofs()};
+  if (model_.window) window_.emplace(model_, parameters.time_step);
+}
+
+void Integrator::prepare(VsiState& state) {
+  if (window_) active_ = window_->move(state);
+  static_cast<void>(operators(0, state.time + parameters_.time_step));
 }
 
 bool Integrator::step(VsiState& state) {
@@ -117,7 +118,7 @@ StepReport Integrator::attempt(int level, VsiState& state) {
   limits.rejected = division_.rejected_events(level, rule);
   limits.force_jump = division_.force_jump();
   limits.light_touch = division_.light_touch();
-  const double end = state.time + length(parameters_.time_step, level);
+  const double end = state.time + operators_.length(level);
   StepReport report;
   ContactForceRule used = rule;
   for (std::optional<GeometrySource> geometry = GeometrySource::model; geometry;
@@ -139,7 +140,7 @@ StepReport Integrator::attempt(int level, VsiState& state) {
 }
 
 StepReport Integrator::solve(int level, const StepLimits& limits, VsiState& state) {
-  const double end = state.time + length(parameters_.time_step, level);
+  const double end = state.time + operators_.length(level);
   const StepOperators& op = operators(level, end);
   const StepReport report = advance(model_, op, limits, state, *contact_law_, workspace_);
   counts_.newton_iterations += report.newton_iterations;
@@ -175,24 +176,9 @@ StepLimits Integrator::limits_of(ContactForceRule rule) const {
   return limits;
 }
 
-StepOperators& Integrator::operators(int level, double end) {
+const StepOperators& Integrator::operators(int level, double end) {
   const Stopwatch watch = times_.measure(Phase::setup);
-  auto found = operators_.find(level);
-  if (found == operators_.end()) {
-    make_room(level);
-    const HhtScheme scheme{.alpha = parameters_.alpha, .time_step = length(parameters_.time_step, level)};
-    found = operators_.emplace(level, StepOperators(model_, scheme)).first;
-  }
-  found->second.update_for_time(model_, end, active_);
-  return found->second;
-}
-
-// Memory is bounded: of divided steps' operators, those of the level farthest from the one to come go. Nobody holds on
-// to operators of another level: a step that is divided no longer needs its own.
-void Integrator::make_room(int level) {
-  if (operators_.size() < most_operators) return;
-  const auto finest = std::prev(operators_.end()), coarsest = std::next(operators_.begin());
-  operators_.erase(std::abs(finest->first - level) > std::abs(coarsest->first - level) ? finest : coarsest);
+  return operators_.update(level, end, active_);
 }
 
 void Integrator::reinitialise(VsiState& state) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include "railtab/runtime/vsi/contact_retry.hpp"
 #include "railtab/runtime/vsi/force_rule_policy.hpp"
 #include "railtab/runtime/vsi/moving_window.hpp"
+#include "railtab/runtime/vsi/operator_levels.hpp"
 #include "railtab/runtime/vsi/step_division.hpp"
 
 namespace railtab {
@@ -30,10 +30,13 @@ struct StepCounts {
 /// needed.
 class Integrator {
  public:
+  /// @param operators of the model, with the parameters' time step and α; outlives this
   /// @param energy  called with the energy account after every step; empty: nobody listens
-  Integrator(const VsiModel& model, const IntegrationParameters& parameters,
+  Integrator(OperatorLevels& operators, const IntegrationParameters& parameters,
              std::function<void(const EnergyBalance&)> energy, bool contact_energy);
 
+  /// Makes the operators of the first step, which begins at state.time.
+  void prepare(VsiState& state);
   /// One time step. False where it does not converge however it is divided.
   [[nodiscard]] bool step(VsiState& state);
   /// From here on as in a run that begins here, with the numbers of a checkpoint alone.
@@ -51,8 +54,7 @@ class Integrator {
   [[nodiscard]] StepReport attempt(int level, VsiState& state);
   [[nodiscard]] StepReport solve(int level, const StepLimits& limits, VsiState& state);
   [[nodiscard]] StepLimits limits_of(ContactForceRule rule) const;
-  StepOperators& operators(int level, double end);
-  void make_room(int level);
+  const StepOperators& operators(int level, double end);
   void after_step(const StepReport& report, int level, ContactForceRule rule, VsiState& state);
 
   const VsiModel& model_;
@@ -63,7 +65,7 @@ class Integrator {
   ContactRetry retry_;
   std::unique_ptr<ContactLaw> contact_law_;
   StepWorkspace workspace_;
-  std::map<int, StepOperators> operators_;  // by level
+  OperatorLevels& operators_;
   std::optional<MovingWindow> window_;
   DofRange active_;  // degrees of freedom of the structure
   StepCounts counts_;

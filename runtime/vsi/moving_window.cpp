@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
+#include <iterator>
 
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
@@ -28,6 +30,39 @@ Sparse block(const Sparse& matrix, const DofRange& dofs) {
   return matrix.block(dofs.begin, dofs.begin, dofs.count, dofs.count);
 }
 
+bool alike(const Sparse& a, const Sparse& b) {
+  constexpr double rounding = 1e-11;  // of the same element at another place
+  if (a.rows() != b.rows() || a.nonZeros() != b.nonZeros()) return false;
+  for (int j = 0; j < a.outerSize(); ++j) {
+    Sparse::InnerIterator x(a, j), y(b, j);
+    for (; x && y; ++x, ++y) {
+      if (x.row() != y.row() || std::abs(x.value() - y.value()) > rounding * std::abs(x.value())) return false;
+    }
+    if (x || y) return false;
+  }
+  return true;
+}
+
+/// The modes of spans, once for spans that are alike.
+class SharedModes {
+ public:
+  const ModalBasis& of(Sparse stiffness, Sparse mass) {
+    for (const Span& span : known_) {
+      if (alike(span.stiffness, stiffness) && alike(span.mass, mass)) return span.modes;
+    }
+    ModalBasis modes = lowest_modes(stiffness, mass, span_modes, 1e-6);
+    known_.push_back({std::move(stiffness), std::move(mass), std::move(modes)});
+    return known_.back().modes;
+  }
+
+ private:
+  struct Span {
+    Sparse stiffness, mass;
+    ModalBasis modes;
+  };
+  std::deque<Span> known_;
+};
+
 // Coordinates (0), velocities (1) or accelerations (2) of a span in VsiState::left_behind.
 auto of_span(Eigen::VectorXd& numbers, Eigen::Index first, Eigen::Index modes, int derivative) {
   return numbers.segment(first + derivative * modes, modes);
@@ -49,10 +84,10 @@ Eigen::Index WindowModel::numbers() const noexcept {
 
 WindowModel make_window(const StructureModel& structure, const ReductionParameters& parameters) {
   WindowModel window{parameters.ahead, parameters.behind, {}};
+  SharedModes modes;
   for (const auto& [from, to] : structure.spans) {
     SpanModes span{from, to, dofs_between(structure.dof_x, from, to), {}, {}, {}, {}, {}};
-    ModalBasis basis =
-        lowest_modes(block(structure.stiffness, span.dofs), block(structure.mass, span.dofs), span_modes, 1e-6);
+    const ModalBasis& basis = modes.of(block(structure.stiffness, span.dofs), block(structure.mass, span.dofs));
     span.damping = (basis.shape.transpose() * (block(structure.damping, span.dofs) * basis.shape)).diagonal();
     if (structure.supports.carried.size() > 0) {
       const auto loads = [&](const StructureSupports::Columns& columns) -> Eigen::MatrixXd {
@@ -61,15 +96,24 @@ WindowModel make_window(const StructureModel& structure, const ReductionParamete
       span.support_mass = loads(structure.supports.mass);
       span.support_damping = loads(structure.supports.damping);
     }
-    span.shape = std::move(basis.shape);
-    span.omega2 = std::move(basis.omega2);
+    span.shape = basis.shape;
+    span.omega2 = basis.omega2;
     window.spans.push_back(std::move(span));
   }
   return window;
 }
 
 MovingWindow::MovingWindow(const VsiModel& model, double time_step)
-    : model_(model), scheme_{.alpha = 0.0, .time_step = time_step} {}
+    : model_(model), scheme_{.alpha = 0.0, .time_step = time_step} {
+  for (const SpanModes& span : model.window->spans) {
+    std::vector<int>& dofs = nodes_.emplace_back();
+    for (const StructureNode& node : model.structure->nodes) {
+      if (node.x < span.from || node.x > span.to) continue;
+      std::copy_if(node.dof.begin(), node.dof.end(), std::back_inserter(dofs),
+                   [&](int dof) { return dof != held && dof >= span.dofs.begin && dof < span.dofs.end(); });
+    }
+  }
+}
 
 MovingWindow::Ends MovingWindow::ends(long step) const {
   const WindowModel& window = *model_.window;
@@ -167,28 +211,28 @@ void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotio
   motion.displacement -= SparseLdlt(s.stiffness, range).solve(unbalanced);
 }
 
-// Eq. 12 mode by mode.
-void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd& load,
+// Eq. 12 mode by mode. @param load of the modes; null: none
+void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd* load,
                              VsiState& state) const {
   const Eigen::Index modes = span.omega2.size();
   auto q = of_span(state.left_behind, first, modes, 0);
   auto v = of_span(state.left_behind, first, modes, 1);
   auto a = of_span(state.left_behind, first, modes, 2);
-  Eigen::VectorXd predicted(modes), velocity(modes);
-  predict(scheme_, q, v, a, predicted, velocity);
-  const Eigen::VectorXd increment =
-      (load.array() - span.damping.array() * velocity.array() - span.omega2.array() * predicted.array()) /
-      (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array());
-  update(scheme_, predicted, velocity, increment, {q, v, a});
-  for (const StructureNode& node : model_.structure->nodes) {
-    if (node.x < span.from || node.x > span.to) continue;
-    for (int dof : node.dof) {
-      if (dof == held || dof < span.dofs.begin || dof >= span.dofs.end()) continue;
-      const auto row = span.shape.row(dof - span.dofs.begin);
-      state.structure.displacement[dof] = row * q;
-      state.structure.velocity[dof] = row * v;
-      state.structure.acceleration[dof] = row * a;
-    }
+  const double dt = scheme_.time_step, of_a = dt * dt * (0.5 - scheme_.beta());
+  for (Eigen::Index m = 0; m < modes; ++m) {
+    const double predicted = q[m] + dt * v[m] + of_a * a[m];
+    const double velocity = v[m] + dt * (1.0 - scheme_.gamma()) * a[m];
+    const double increment = ((load ? (*load)[m] : 0.0) - span.damping[m] * velocity - span.omega2[m] * predicted) /
+                             (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping[m] + span.omega2[m]);
+    q[m] = predicted + increment;
+    v[m] = velocity + scheme_.velocity_rate() * increment;
+    a[m] = scheme_.acceleration_rate() * increment;
+  }
+  for (int dof : nodes_[static_cast<std::size_t>(&span - model_.window->spans.data())]) {
+    const auto row = span.shape.row(dof - span.dofs.begin);
+    state.structure.displacement[dof] = row * q;
+    state.structure.velocity[dof] = row * v;
+    state.structure.acceleration[dof] = row * a;
   }
 }
 
@@ -200,10 +244,13 @@ void MovingWindow::step_inactive_spans(VsiState& state) const {
     const Eigen::Index modes = span.omega2.size();
     const bool ahead = model_.ground_motion && span.from >= to_;
     if (span.to <= from_ || ahead) {
-      Eigen::VectorXd load = Eigen::VectorXd::Zero(modes);
-      if (model_.ground_motion)
-        load -= span.support_mass * supports.acceleration + span.support_damping * supports.velocity;
-      step_span(span, first, load, state);
+      if (model_.ground_motion) {
+        const Eigen::VectorXd load =
+            -(span.support_mass * supports.acceleration + span.support_damping * supports.velocity);
+        step_span(span, first, &load, state);
+      } else {
+        step_span(span, first, nullptr, state);
+      }
     }
     first += 3 * modes;
   }

@@ -55,10 +55,11 @@ class MovingWindow {
   [[nodiscard]] Ends ends(long step) const;
   void join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
             VsiState& state) const;
-  void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd& load, VsiState& state) const;
+  void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;
 
   const VsiModel& model_;
   HhtScheme scheme_;
+  std::vector<std::vector<int>> nodes_;  // of every span, dofs of nodes of interest
   bool placed_ = false;
   double from_ = 0.0, to_ = 0.0;
 };

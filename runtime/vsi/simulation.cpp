@@ -47,18 +47,19 @@ std::optional<StopSummary> stop_summary(const VsiModel& model, const StopExtreme
 // A run of whole time steps and those who listen to it.
 class Run {
  public:
-  Run(const VsiModel& model, const IntegrationParameters& integration, int record_every, VsiState& state,
+  Run(OperatorLevels& operators, const IntegrationParameters& integration, int record_every, VsiState& state,
       const RunObserver& observer)
-      : model_(model),
+      : model_(operators.model()),
         parameters_(integration),
         record_every_(record_every),
         state_(state),
         observer_(observer),
-        integrator_(model, integration, observer.energy, observer.contact_energy) {
+        integrator_(operators, integration, observer.energy, observer.contact_energy) {
     assert(integration.reinitialise_every >= 1);
   }
 
   void steps(long first, long last, RunSummary& summary) {
+    if (first < last) integrator_.prepare(state_);
     integrator_.reinitialise(state_);
     if (observer_.ready) observer_.ready();
     bool recorded = true;  // what has been reached
@@ -130,12 +131,19 @@ class Run {
 
 RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration, int record_every,
                     VsiState& state, const RunObserver& observer) {
+  OperatorLevels operators(model, integration.alpha, integration.time_step);
+  return simulate(operators, integration, duration, record_every, state, observer);
+}
+
+RunSummary simulate(OperatorLevels& operators, const IntegrationParameters& integration, double duration,
+                    int record_every, VsiState& state, const RunObserver& observer) {
+  const VsiModel& model = operators.model();
   RunSummary summary;
   const long first = std::lround(state.time / integration.time_step);
   const long steps = std::lround(duration / integration.time_step);
   {
     const Stopwatch watch(summary.seconds_total);
-    Run(model, integration, record_every, state, observer).steps(first, steps, summary);
+    Run(operators, integration, record_every, state, observer).steps(first, steps, summary);
   }
   summary.complete = summary.steps == steps && summary.message.empty();
   summary.vehicle_dofs = static_cast<long>(model.vehicle.dofs()) * static_cast<long>(model.vehicle_x.size());

@@ -6,6 +6,7 @@
 
 #include "railtab/runtime/vsi/energy_account.hpp"
 #include "railtab/runtime/vsi/integration_parameters.hpp"
+#include "railtab/runtime/vsi/operator_levels.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -30,12 +31,12 @@ struct RunObserver {
   std::function<bool()> stop;  ///< asked after every step: true ends the run there, with a checkpoint
 };
 
-/// Operators of steps of different sizes that exist at once: of the whole step and of two divided ones.
-inline constexpr int most_operators = 3;
-
 /// Time integration of a model from time 0 to `duration` [s], with steps halved where Newton fails: the core of
 /// run_scene, for models built in code. The first step begins at state.time, a multiple of the time step.
 [[nodiscard]] RunSummary simulate(const VsiModel& model, const IntegrationParameters& integration, double duration,
+                                  int record_every, VsiState& state, const RunObserver& observer);
+/// The same with operators that runs share. @pre they have the integration's time step and α
+[[nodiscard]] RunSummary simulate(OperatorLevels& operators, const IntegrationParameters& integration, double duration,
                                   int record_every, VsiState& state, const RunObserver& observer);
 
 /// The record of a state.

@@ -13,14 +13,14 @@ void predict_structure(const StepContext& step, const VsiState& state, StepWorks
   const StructureResponse& structure = *step.operators.structure;
   const DofRange& active = structure.active();
   predict(step.hht, state.structure, active, ws.structure_prediction);
-  structure.step_load(step.hht, state.structure, ws.structure_prediction, ws.structure_increment);
+  past_contact_load(step.hht, state.structure, active, ws.structure_increment);
   add_ground_load(step.model, step.hht, step.begin, active, ws.structure_increment);
   ws.rail_dofs.clear();
   for (const RailContact& contact : step.contacts) append_dofs(contact, ws.rail_dofs);
   active.of(ws.structure_load).setZero();
   ws.structure_free.resize(step.model.structure->dofs());
-  ws.structure_solution.begin(structure.factor(), ws.structure_increment, ws.rail_dofs);
-  ws.structure_solution.respond(structure.factor(), ws.structure_free);
+  structure.begin_step(ws.structure_prediction, ws.structure_increment, ws.rail_dofs, ws.structure);
+  ws.structure.substitution.respond(structure.factor(), ws.structure_free);
 }
 
 // Eqs. 12 and 13: predictors and right-hand sides.
@@ -40,8 +40,8 @@ void predict(const StepContext& step, const VsiState& state, ContactLaw& contact
 void respond(const StepContext& step, StepWorkspace& ws) {
   for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   add_rail_forces(step.contacts, ws.solution.force, ws.structure_load);
-  ws.structure_solution.respond(step.operators.structure->factor(), step.hht.load_weight(), ws.structure_load,
-                                ws.structure_free);
+  ws.structure.substitution.respond(step.operators.structure->factor(), step.hht.load_weight(), ws.structure_load,
+                                    ws.structure_free);
 }
 
 // Eq. 16 condensed to the contacts, and the structure's response to their forces, until the two agree.
@@ -75,7 +75,7 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
     const Stopwatch watch = report.times.measure(Phase::structure);
     const DofRange& active = step.operators.structure->active();
     LinearMotion& motion = state.structure;
-    ws.structure_solution.finish(step.operators.structure->factor(), ws.structure_increment);
+    ws.structure.substitution.finish(step.operators.structure->factor(), ws.structure_increment);
     close_load(step.hht, active.of(ws.structure_load), active.of(motion.contact_load), active.of(motion.step_load));
     active.of(motion.contact_load).setZero();
     add_rail_forces(step.contacts, ws.solution.end_force, motion.contact_load);

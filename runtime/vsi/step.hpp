@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/vsi/contact_state.hpp"
 #include "railtab/runtime/vsi/step_operators.hpp"
 #include "railtab/runtime/vsi/step_times.hpp"
@@ -53,7 +52,7 @@ struct StepReport {
 /// Buffers of a step, reused; the next step needs nothing that is in them.
 struct StepWorkspace {
   Prediction structure_prediction;
-  DividedSubstitution structure_solution;
+  StructureSolution structure;
   std::vector<int> rail_dofs;    ///< degrees of freedom of the structure that the wheels load
   Eigen::VectorXd vehicle_load;  ///< of one vehicle
   Eigen::VectorXd structure_free, structure_increment, structure_load, far_field;

@@ -23,7 +23,8 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   }
   respond_to_elements(model);
   if (!model.structure) return;
-  structure = std::make_unique<StructureResponse>(*model.structure, hht);
+  const DofRange active{0, model.window ? 0 : model.structure->dofs()};  // a window is placed by update_for_time()
+  structure = std::make_unique<StructureResponse>(*model.structure, hht, active);
 }
 
 void StepOperators::respond_to_elements(const VsiModel& model) {

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "railtab/runtime/algebra/divided_substitution.hpp"
+#include "railtab/runtime/algebra/section_layout.hpp"
+#include "railtab/runtime/algebra/sectioned_ldlt.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
 
@@ -89,27 +90,61 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
   }
 }
 
-struct StructureResponse::Selected {
-  SparseLdlt factor;
+/// Few entries of solutions.
+struct StructureResponse::FewEntries {
   DividedSubstitution solution{};
   Eigen::VectorXd load, displacement;  // of all unknowns; the load is zero between uses
 
-  Selected(const Sparse& effective, Eigen::Index dofs)
-      : factor(effective, {0, dofs}, not_positive_definite, EliminationOrder::lowest_tree),
-        load(Eigen::VectorXd::Zero(dofs)),
-        displacement(load) {}
+  explicit FewEntries(Eigen::Index dofs) : load(Eigen::VectorXd::Zero(dofs)), displacement(load) {}
   /// Displacement of the unknowns named in DividedSubstitution::begin() under the load.
-  const Eigen::VectorXd& respond() {
+  const Eigen::VectorXd& respond(const SubstitutionFactor& factor) {
     solution.respond(factor, 1.0, load, displacement);
     return displacement;
   }
 };
 
+struct StructureResponse::Selected : FewEntries {
+  SparseLdlt factor;
+
+  Selected(const Sparse& effective, Eigen::Index dofs)
+      : FewEntries(dofs), factor(effective, {0, dofs}, not_positive_definite, EliminationOrder::lowest_tree) {}
+};
+
+struct StructureResponse::Divisible {
+  MirrorPairs pairs;
+  UnknownPlaces places;
+  Sparse effective, stiffness, damping;  // by sums and differences; the latter two empty at rest
+};
+
+namespace {
+
+// The unknowns of both rails at one node.
+MirrorPairs rail_pairs(const StructureModel& structure) {
+  MirrorPairs pairs;
+  const auto& [left, right] = structure.rail;
+  for (std::size_t i = 0; i < std::min(left.dof.size(), right.dof.size()); ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const int l = left.dof[i][k], r = right.dof[i][k];
+      if (l != held && r != held) pairs.push_back({std::min(l, r), std::max(l, r)});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
+    : StructureResponse(structure, scheme, {0, structure.dofs()}) {}
+
+StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active)
     : dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
-  activate({0, dofs_});
+  set_divisible(structure);
+  if (divisible_) {
+    divisible_->stiffness = by_sums_and_differences(structure.stiffness, divisible_->pairs);
+    divisible_->damping = by_sums_and_differences(structure.damping, divisible_->pairs);
+  }
   // The union of both patterns: a zero times one keeps an entry's place.
   const Sparse pattern = (structure.stiffness + structure.damping).triangularView<Eigen::Lower>();
   entry_begin_.push_back(0);
@@ -132,20 +167,45 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   };
   fill(structure.stiffness, &Entry::stiffness);
   fill(structure.damping, &Entry::damping);
+  if (active.count > 0) activate(active);
 }
 
 StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
+  set_divisible(structure);
   activate({0, dofs_});
 }
 
 StructureResponse::~StructureResponse() = default;
 
+void StructureResponse::set_divisible(const StructureModel& structure) {
+  if (structure.dof_line.empty()) return;
+  divisible_ = std::make_unique<Divisible>();
+  divisible_->pairs = rail_pairs(structure);
+  divisible_->places = {structure.dof_x, structure.dof_line};
+  divisible_->effective = by_sums_and_differences(effective_, divisible_->pairs);
+  if (divisible_->effective.nonZeros() >= effective_.nonZeros()) {
+    divisible_->pairs.clear();
+    divisible_->effective = effective_;
+  }
+}
+
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
   factor_.reset();  // not two at a time
+  product_.reset();
+  if (divisible_) {
+    if (auto layout = divide(divisible_->effective, divisible_->places, divisible_->pairs, dofs)) {
+      const auto shared = std::make_shared<const SectionLayout>(std::move(*layout));
+      factor_ = std::make_unique<SectionedLdlt>(divisible_->effective, shared, not_positive_definite);
+      if (divisible_->stiffness.rows() > 0) {
+        product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
+      }
+      return;
+    }
+  }
   factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);
 }
 
@@ -160,9 +220,14 @@ StructureResponse::Memory StructureResponse::memory() const {
   Memory memory;
   memory.kept = entry * nonzeros + sizeof(int) * n + static_cast<double>(factor_->stored_bytes()) +
                 static_cast<double>(load_bytes()) + sizeof(int) * n;
+  if (divisible_) {
+    for (const Sparse* matrix : {&divisible_->effective, &divisible_->stiffness, &divisible_->damping}) {
+      memory.kept += entry * static_cast<double>(matrix->nonZeros()) + sizeof(int) * n;
+    }
+  }
   // The ordering works on four copies of the pattern; then there are the permuted upper triangle and L by columns.
   const double ordering = 4.0 * entry * nonzeros;
-  memory.setup = std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->entries())));
+  memory.setup = std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->bytes()) / sizeof(double)));
   constexpr double per_entry = 12.5, per_dof = 6.0 * sizeof(double);  // stored in blocks; vectors of a substitution
   memory.low_entries = static_cast<double>(SparseLdlt::entries_of_lowest_tree(effective_));
   memory.low = per_entry * memory.low_entries + per_dof * n;
@@ -189,12 +254,18 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
   return bytes;
 }
 
-void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
-                                  Eigen::VectorXd& load) const {
+void StructureResponse::begin_step(const Prediction& prediction, Eigen::VectorXd& load, std::span<const int> few,
+                                   StructureSolution& solution) const {
+  const Eigen::VectorXd& u = prediction.weighted_displacement;
+  const Eigen::VectorXd& v = prediction.weighted_velocity;
+  if (product_) {
+    solution.substitution.begin_with(*factor_, few, [&](Eigen::VectorXd& known) {
+      factor_->into(load, known);
+      product_->subtract(u, v, solution.motion, known);
+    });
+    return;
+  }
   const Eigen::Index first = active_.begin, last = active_.end();
-  past_contact_load(scheme, motion, active_, load);
-  const double* const u = prediction.weighted_displacement.data();
-  const double* const v = prediction.weighted_velocity.data();
   double* const f = load.data();
   for (Eigen::Index j = first; j < last; ++j) {
     double sum = 0.0;
@@ -208,6 +279,20 @@ void StructureResponse::step_load(const HhtScheme& scheme, const LinearMotion& m
     }
     f[j] -= sum;
   }
+  solution.substitution.begin(*factor_, load, few);
+}
+
+Eigen::VectorXd StructureResponse::increment(const Prediction& prediction, Eigen::VectorXd load) const {
+  StructureSolution solution;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(dofs_);
+  begin_step(prediction, load, {}, solution);
+  solution.substitution.respond(*factor_, result);
+  solution.substitution.finish(*factor_, result);
+  return result;
+}
+
+std::size_t StructureResponse::load_bytes() const noexcept {
+  return product_ ? product_->bytes() : entry_.size() * (sizeof(Entry) + sizeof(int));
 }
 
 StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,
@@ -235,7 +320,7 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     const int loaded = rail.dof[node][load];
     if (loaded == held) continue;
     s.load[loaded] = 1.0;
-    const Eigen::VectorXd& moved = s.respond();
+    const Eigen::VectorXd& moved = s.respond(s.factor);
     s.load[loaded] = 0.0;
     for (std::size_t other = 0; other < 2; ++other) {
       const DofIndices* const dofs = &structure.rail[other].dof[static_cast<std::size_t>(column.first[other])];
@@ -318,15 +403,15 @@ Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, con
 
 Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>& contacts) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  Selected& s = selected();
+  FewEntries s(dofs_);
   std::vector<int> involved;
   for (const RailContact& contact : contacts) append_dofs(contact, involved);
-  s.solution.begin(s.factor, involved);
+  s.solution.begin(*factor_, involved);
   Eigen::MatrixXd result(3 * n, 3 * n);
   for (Eigen::Index j = 0; j < 3 * n; ++j) {
     const RailContact& loaded = contacts[static_cast<std::size_t>(j / 3)];
     add_rail_load(loaded, Eigen::Vector3d::Unit(j % 3), s.load);
-    const Eigen::VectorXd& moved = s.respond();
+    const Eigen::VectorXd& moved = s.respond(*factor_);
     for (Eigen::Index i = 0; i < n; ++i) {
       result.block<3, 1>(3 * i, j) = rail_head(contacts[static_cast<std::size_t>(i)], moved);
     }

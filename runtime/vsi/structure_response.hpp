@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/algebra/divided_substitution.hpp"
+#include "railtab/runtime/algebra/sectioned_product.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
@@ -30,31 +31,46 @@ void append_dofs(const RailContact& contact, std::vector<int>& dofs);
 /// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
 void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
 
-/// The structure for one time-step size: the factor of its effective matrix, made once.
+/// Buffers of the structure's solution of one step, reused.
+struct StructureSolution {
+  DividedSubstitution substitution;
+  SectionedProduct::Buffers motion;
+};
+
+/// The structure for one time-step size: the factor of its effective matrix, made once for every range of active
+/// unknowns. Long tracks and bridges are factored in sections side by side, anything else as a whole.
 class StructureResponse {
  public:
   /// @throws InputError naming the matrix and the entry that is not finite; ComputationError where the effective matrix
   ///         is not positive definite.
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
+  /// @param active the unknowns that take part; none: there is no factor until activate()
+  StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active);
   /// At rest: K̄ = K.
   explicit StructureResponse(const StructureModel& structure);
   ~StructureResponse();
 
-  [[nodiscard]] const SparseLdlt& factor() const noexcept { return *factor_; }
+  [[nodiscard]] const SubstitutionFactor& factor() const noexcept { return *factor_; }
+  /// Whether the active unknowns are factored in sections.
+  [[nodiscard]] bool in_sections() const noexcept { return product_ != nullptr; }
 
   /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
   void activate(const DofRange& dofs);
   [[nodiscard]] const DofRange& active() const noexcept { return active_; }
 
-  /// Right-hand side of Eq. 13 without contact forces at the end of the step. Not at rest.
-  void step_load(const HhtScheme& scheme, const LinearMotion& motion, const Prediction& prediction,
-                 Eigen::VectorXd& load) const;
-  /// What step_load() reads of the matrices [bytes].
-  [[nodiscard]] std::size_t load_bytes() const noexcept { return entry_.size() * (sizeof(Entry) + sizeof(int)); }
+  /// The forward half of Eq. 13 without contact forces at the end of the step. Not at rest.
+  /// @param load what does not come from the prediction: past_contact_load() and others; is used up
+  /// @param few unknowns that the contact forces stand on
+  void begin_step(const Prediction& prediction, Eigen::VectorXd& load, std::span<const int> few,
+                  StructureSolution& solution) const;
+  /// The increment of such a step without contacts.
+  [[nodiscard]] Eigen::VectorXd increment(const Prediction& prediction, Eigen::VectorXd load) const;
+  /// What begin_step() reads of stiffness and damping [bytes].
+  [[nodiscard]] std::size_t load_bytes() const noexcept;
 
   /// Memory of a run's operator [bytes]. Those of compliances are counted, not made.
   struct Memory {
-    double kept = 0.0;   ///< matrix, factor and what step_load() reads
+    double kept = 0.0;   ///< matrices, factor and what begin_step() reads
     double setup = 0.0;  ///< besides that while the factor is made
     double low = 0.0;    ///< the factor that compliances come from, with its solver
     double low_setup = 0.0;
@@ -95,8 +111,14 @@ class StructureResponse {
   void visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept;
   [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
 
+  /// Matrices by sums and differences of the rails, for a division into sections.
+  struct Divisible;
+  void set_divisible(const StructureModel& structure);
+
   Eigen::SparseMatrix<double> effective_;  ///< K̄
-  std::unique_ptr<SparseLdlt> factor_;
+  std::unique_ptr<Divisible> divisible_;   ///< null where the unknowns have no lines
+  std::unique_ptr<SubstitutionFactor> factor_;
+  std::unique_ptr<SectionedProduct> product_;  ///< of sections
   DofRange active_;
   /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
   struct Entry {
@@ -106,6 +128,7 @@ class StructureResponse {
   std::vector<int> entry_row_, entry_begin_;
   /// Gives few entries of solutions, with a factor of its own in the order of the lowest tree: three times as large as
   /// that of the steps.
+  struct FewEntries;
   struct Selected;
   [[nodiscard]] Selected& selected();
   std::unique_ptr<Selected> selected_;  ///< made when first needed

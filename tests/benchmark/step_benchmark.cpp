@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "railtab/runtime/algebra/nested_dissection.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
@@ -82,7 +83,8 @@ SceneParameters viaduct(const std::string& table, int spans) {
   return scene;
 }
 
-/// Ways to substitute: Eigen's scalar factor in two orders, and the supernodal one of the steps.
+/// Ways to substitute: Eigen's scalar factor in two orders, the supernodal one of a whole, and that of the steps in
+/// sections.
 void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
   const StructureModel& s = *model.structure;
   const Sparse effective = effective_matrix(scheme, s.mass, s.damping, s.stiffness);
@@ -91,14 +93,29 @@ void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
   const Eigen::SimplicialLDLT<Sparse> minimum_degree(effective);
   const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, NestedDissection> dissected(effective);
   const SparseLdlt blocks(effective);
+  const StructureResponse response(s, scheme);
+  const SubstitutionFactor& sections = response.factor();
+  const TreePath nothing = [&] {
+    TreePath path;
+    sections.find_path({}, path);
+    return path;
+  }();
+  Eigen::VectorXd w(sections.room()), z = Eigen::VectorXd::Zero(sections.room());
   constexpr int rounds = 101;
-  const auto [scalar_dissected, scalar, block] =
-      least_seconds<3>(rounds, {[&] { x = dissected.solve(load); }, [&] { x = minimum_degree.solve(load); },
+  const auto [scalar_dissected, scalar, block, sectioned] =
+      least_seconds<4>(rounds, {[&] { x = dissected.solve(load); }, [&] { x = minimum_degree.solve(load); },
                                 [&] {
                                   blocks.into(load, y);
                                   blocks.forward(y);
-                                  blocks.backward(y);
+                                  blocks.backward(y.data());
                                   blocks.out_of(y, x);
+                                },
+                                [&] {
+                                  sections.into(load, w);
+                                  sections.forward(w);
+                                  sections.backward(w, z, nothing);
+                                  sections.backward_off(nothing, w, z);
+                                  sections.out_of(z, x);
                                 }});
   const auto line = [&](const char* name, double seconds, std::size_t bytes) {
     fmt::print("  {:<34}{:8.4f} ms {:8.1f} MB {:8.1f} GB/s\n", name, 1e3 * seconds, 1e-6 * static_cast<double>(bytes),
@@ -111,6 +128,7 @@ void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
   line("entries, nested dissection", scalar_dissected, bytes(dissected));
   line("entries, minimum degree", scalar, bytes(minimum_degree));
   line("supernodes, minimum degree", block, blocks.bytes());
+  if (response.in_sections()) line("sections side by side", sectioned, sections.bytes());
 }
 
 }  // namespace

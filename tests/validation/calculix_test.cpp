@@ -212,9 +212,9 @@ std::vector<double> shaken(const StructureModel& structure) {
   std::vector<double> relative;
   for (int step = 0; step < 1000; ++step) {
     predict(hht, motion, p);
-    response.step_load(hht, motion, p, load);
+    past_contact_load(hht, motion, {0, structure.dofs()}, load);
     add_ground_load(model, hht, step * hht.time_step, {0, structure.dofs()}, load);
-    update(hht, p, response.solve(load), motion);
+    update(hht, p, response.increment(p, load), motion);
     const double ground = model.ground_motion->at(0.0, (step + 1) * hht.time_step).displacement[1];
     relative.push_back(motion.displacement[midspan] - ground);
   }

@@ -144,9 +144,9 @@ double supported_mass_error(double time_step) {
   const int every = static_cast<int>(std::lround(point_step / time_step));
   for (int step = 0; relative.size() < expected.size(); ++step) {
     predict(hht, motion, p);
-    response.step_load(hht, motion, p, load);
+    past_contact_load(hht, motion, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, p, response.solve(load), motion);
+    update(hht, p, response.increment(p, load), motion);
     const double ground = model.ground_motion->at(3.0, (step + 1) * time_step).displacement[1];
     if ((step + 1) % every == 0) relative.push_back(motion.displacement[0] - ground);
   }
@@ -192,15 +192,15 @@ double two_routes(double time_step) {
   for (int step = 0; step * time_step < 2.0; ++step) {
     const double end = (step + 1) * time_step;
     predict(hht, absolute, p);
-    response.step_load(hht, absolute, p, load);
+    past_contact_load(hht, absolute, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, p, response.solve(load), absolute);
+    update(hht, p, response.increment(p, load), absolute);
     const GroundPoint now = model.ground_motion->at(0.0, end);
     predict(hht, relative, p);
-    response.step_load(hht, relative, p, load);
+    past_contact_load(hht, relative, {0, s.dofs()}, load);
     const double before = model.ground_motion->at(0.0, step * time_step).acceleration[0];
     load -= (hht.load_weight() * now.acceleration[0] - hht.alpha * before) * inertia;
-    update(hht, p, response.solve(load), relative);
+    update(hht, p, response.increment(p, load), relative);
     worst = std::max(worst,
                      std::abs(absolute.displacement[midspan] - now.displacement[0] - relative.displacement[midspan]));
     size = std::max(size, std::abs(relative.displacement[midspan]));

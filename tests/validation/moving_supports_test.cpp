@@ -93,9 +93,9 @@ std::vector<double> relative_history(StructureModel structure, double time_step,
   const RailContact at = rail_contact(s, RailSide::left, 1.0);
   for (int step = 0; step * time_step < end - 1e-9; ++step) {
     predict(hht, motion, p);
-    response.step_load(hht, motion, p, load);
+    past_contact_load(hht, motion, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, p, response.solve(load), motion);
+    update(hht, p, response.increment(p, load), motion);
     const SupportMotion now = support_motion(*model.ground_motion, s.supports.x, (step + 1) * time_step);
     const double head = rail_head(at, motion.displacement)[1] + carried_head(at, s.supports, now.displacement)[1];
     relative.push_back(head - now.displacement[1]);

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "railtab/runtime/base/dof_range.hpp"
+
+namespace railtab {
+
+/// Where the unknowns of a long structure stand.
+struct UnknownPlaces {
+  std::vector<double> x;  ///< along the structure, not decreasing [m]; empty: not known
+  /// Unknowns of the same number are alike and follow each other along x, such as the vertical displacements of a
+  /// rail's nodes; -1: alike to no other.
+  std::vector<int> line;
+};
+
+/// Pairs of unknowns u, v that take part by (u + v)/√2, in the place of the first, and (u − v)/√2: of both rails, in
+/// which a symmetric track falls apart into a vertical and a lateral system.
+using MirrorPairs = std::vector<std::array<int, 2>>;
+
+/// TᵀAT with the orthogonal T of the pairs, without entries that are zero.
+[[nodiscard]] Eigen::SparseMatrix<double> by_sums_and_differences(const Eigen::SparseMatrix<double>& matrix,
+                                                                  const MirrorPairs& pairs);
+
+/// A long structure cut across into sections whose unknowns correspond to each other, so that all sections can be
+/// eliminated side by side: unknowns of equal number ("slot") have entries with the same slots, where a section lacks
+/// an unknown or an entry there is a zero. Unknowns at a cut that both sides act upon are interface unknowns.
+///
+/// Vectors in this layout hold the slots one after the other, of each the sections side by side; then, in the same way,
+/// the border slots, copies of the interface unknowns beside each section; then the interface unknowns themselves.
+struct SectionLayout {
+  static constexpr int sections = 8;
+
+  struct Place {
+    int section;  ///< -1: an interface unknown
+    int number;   ///< slot, or of the interface unknown
+  };
+  struct Interface {
+    int cut;                  ///< between sections cut - 1 and cut
+    std::array<int, 2> slot;  ///< border slot in section cut - 1, and in section cut
+    int unknown;
+  };
+
+  DofRange range;
+  int slots = 0, borders = 0;
+  std::vector<int> elimination;       ///< the slots in an order of elimination that keeps the factor sparse
+  std::vector<Place> place;           ///< of the unknowns in the range
+  std::vector<Interface> interfaces;  ///< interface unknowns
+  std::vector<int> border_of;         ///< of every border slot and section the interface unknown, -1: none
+  std::vector<int> mirrored;          ///< of the unknowns in the range the other one of the pair; -1: none
+  std::vector<int> unknown;           ///< of every slot and section; -1: none
+  MirrorPairs paired_slots;           ///< of the first and the second unknowns of pairs, alike in all sections
+  std::vector<int> single_slots;      ///< of unknowns without a pair
+
+  [[nodiscard]] Eigen::Index border_begin() const noexcept { return Eigen::Index{sections} * slots; }
+  [[nodiscard]] Eigen::Index interface_begin() const noexcept {
+    return border_begin() + Eigen::Index{sections} * borders;
+  }
+  /// Position of an unknown in a vector of this layout.
+  [[nodiscard]] Eigen::Index position(Eigen::Index u) const noexcept {
+    const Place& p = place[static_cast<std::size_t>(u - range.begin)];
+    return p.section < 0 ? interface_begin() + p.number : Eigen::Index{sections} * p.number + p.section;
+  }
+
+  /// Of a vector of all unknowns, the entry of this layout that stands in the place of `u`: its own, or the sum
+  /// or the difference of its pair. Its inverse is itself.
+  template <class Value>
+  [[nodiscard]] double combined(Eigen::Index u, Value&& value) const {
+    constexpr double root = 0.70710678118654752440;  // √½
+    const int other = mirrored[static_cast<std::size_t>(u - range.begin)];
+    if (other < 0) return value(u);
+    return other > u ? root * (value(u) + value(other)) : root * (value(other) - value(u));
+  }
+  /// Sets the slots and the interface unknowns.
+  void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const;
+  void out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const;
+  /// Copies interface unknowns to the borders beside the sections.
+  void spread_interfaces(Eigen::VectorXd& ordered) const;
+  /// Adds what stands at the borders to the interface unknowns.
+  void fold_borders(Eigen::VectorXd& ordered) const;
+
+  /// Where an entry (i, j) of a matrix stands: between two slots of a section, border slots counted on from the others,
+  /// or between two interface unknowns (section -1).
+  struct EntryPlace {
+    int section, row, column;
+  };
+  [[nodiscard]] EntryPlace place_entry(Eigen::Index i, Eigen::Index j) const noexcept;
+};
+
+/// Cuts the unknowns in a range into sections, slots numbered along x. Cuts stand at nodes of the sparsest line that
+/// goes all the way, where the sections' nodes coincide best.
+/// @param matrix symmetric, whole pattern, by_sums_and_differences() of the pairs
+/// @return nothing where an unknown is alike to no other, the structure is short or couples over more than a section,
+///         or a division would not pay
+[[nodiscard]] std::optional<SectionLayout> divide(const Eigen::SparseMatrix<double>& matrix,
+                                                  const UnknownPlaces& places, const MirrorPairs& pairs,
+                                                  const DofRange& range);
+
+}  // namespace railtab

@@ -1,0 +1,143 @@
+#include "railtab/runtime/algebra/sectioned_product.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Stiffness and damping of an entry where these are the same in all sections that have both unknowns.
+std::optional<std::array<double, 2>> common_value(const SectionLayout& l, int row, int column, const Lanes& stiffness,
+                                                  const Lanes& damping) {
+  constexpr double equal = 1e-12;  // of the same element at another place
+  std::optional<std::array<double, 2>> common;
+  for (int s = 0; s < SectionLayout::sections; ++s) {
+    const auto has = [&](int slot) {
+      return slot < l.slots
+                 ? l.unknown[static_cast<std::size_t>(SectionLayout::sections * slot + s)] >= 0
+                 : l.border_of[static_cast<std::size_t>(SectionLayout::sections * (slot - l.slots) + s)] >= 0;
+    };
+    if (!has(row) || !has(column)) continue;
+    const std::array<double, 2> here{stiffness[s], damping[s]};
+    if (!common) common = here;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (std::abs(here[k] - (*common)[k]) > equal * std::abs((*common)[k])) return std::nullopt;
+    }
+  }
+  return common;
+}
+
+}  // namespace
+
+SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& damping,
+                                   std::shared_ptr<const SectionLayout> layout)
+    : layout_(std::move(layout)) {
+  const SectionLayout& l = *layout_;
+  const auto visit = [&](const Sparse& matrix, auto&& visitor) {
+    for (Eigen::Index j = l.range.begin; j < l.range.end(); ++j) {
+      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
+        if (entry.row() < l.range.begin || entry.row() >= l.range.end()) continue;
+        visitor(l.place_entry(entry.row(), j), entry.value());
+      }
+    }
+  };
+  std::vector<std::vector<int>> rows(static_cast<std::size_t>(l.slots));
+  std::map<std::pair<int, int>, std::array<double, 2>> between;
+  for (const Sparse* matrix : {&stiffness, &damping}) {
+    visit(*matrix, [&](const SectionLayout::EntryPlace& p, double value) {
+      if (p.section < 0) {
+        between[{p.row, p.column}][matrix == &damping ? 1 : 0] += value;
+      } else if (p.row >= p.column) {
+        rows[static_cast<std::size_t>(p.column)].push_back(p.row);
+      }
+    });
+  }
+  for (const auto& [place, value] : between) {
+    interface_.push_back({place.first, place.second, value[0], value[1]});
+  }
+  for (int j = 0; j < l.slots; ++j) {
+    std::vector<int>& column = rows[static_cast<std::size_t>(j)];
+    std::sort(column.begin(), column.end());
+    column.erase(std::unique(column.begin(), column.end()), column.end());
+  }
+  std::vector<std::vector<Pair>> values(rows.size());
+  for (std::size_t j = 0; j < rows.size(); ++j) values[j].resize(rows[j].size(), Pair{});
+  for (const Sparse* matrix : {&stiffness, &damping}) {
+    visit(*matrix, [&](const SectionLayout::EntryPlace& p, double number) {
+      if (p.section < 0 || p.row < p.column) return;
+      const std::vector<int>& column = rows[static_cast<std::size_t>(p.column)];
+      const auto place = std::lower_bound(column.begin(), column.end(), p.row) - column.begin();
+      Pair& pair = values[static_cast<std::size_t>(p.column)][static_cast<std::size_t>(place)];
+      (matrix == &damping ? pair.damping : pair.stiffness)[p.section] = number;
+    });
+  }
+  alike_.begin.assign(1, 0);
+  other_.begin.assign(1, 0);
+  for (int j = 0; j < l.slots; ++j) {
+    const std::vector<int>& column = rows[static_cast<std::size_t>(j)];
+    for (std::size_t p = 0; p < column.size(); ++p) {
+      const Pair& pair = values[static_cast<std::size_t>(j)][p];
+      if (const auto number = common_value(l, column[p], j, pair.stiffness, pair.damping)) {
+        alike_.row.push_back(column[p]);
+        alike_.value.push_back(*number);
+      } else {
+        other_.row.push_back(column[p]);
+        other_.value.push_back(pair);
+      }
+    }
+    alike_.begin.push_back(static_cast<int>(alike_.row.size()));
+    other_.begin.push_back(static_cast<int>(other_.row.size()));
+  }
+}
+
+void SectionedProduct::subtract(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Buffers& buffers,
+                                Eigen::VectorXd& ordered) const {
+  const SectionLayout& l = *layout_;
+  if (buffers.u.size() != ordered.size()) {
+    buffers.u.setZero(ordered.size());
+    buffers.v.setZero(ordered.size());
+  }
+  for (const auto& [from, to] : {std::pair{&u, &buffers.u}, std::pair{&v, &buffers.v}}) {
+    l.into(*from, *to);
+    l.spread_interfaces(*to);
+  }
+  const auto* const U = reinterpret_cast<const Lanes*>(buffers.u.data());  // NOLINT: Eigen aligns to 64 bytes
+  const auto* const V = reinterpret_cast<const Lanes*>(buffers.v.data());  // NOLINT
+  auto* const y = reinterpret_cast<Lanes*>(ordered.data());                // NOLINT
+  for (int j = 0; j < l.slots; ++j) {
+    const auto column = static_cast<std::size_t>(j);
+    const Lanes u_j = U[j], v_j = V[j];
+    Lanes sum{};
+    for (int p = alike_.begin[column]; p < alike_.begin[column + 1]; ++p) {
+      const auto& [k, c] = alike_.value[static_cast<std::size_t>(p)];
+      const int i = alike_.row[static_cast<std::size_t>(p)];
+      sum += k * U[i] + c * V[i];
+      if (i != j) y[i] -= k * u_j + c * v_j;
+    }
+    for (int p = other_.begin[column]; p < other_.begin[column + 1]; ++p) {
+      const Pair& e = other_.value[static_cast<std::size_t>(p)];
+      const int i = other_.row[static_cast<std::size_t>(p)];
+      sum += e.stiffness * U[i] + e.damping * V[i];
+      if (i != j) y[i] -= e.stiffness * u_j + e.damping * v_j;
+    }
+    y[j] -= sum;
+  }
+  const Eigen::Index first = l.interface_begin();
+  for (const InterfaceEntry& e : interface_) {
+    ordered[first + e.row] -= e.stiffness * buffers.u[first + e.column] + e.damping * buffers.v[first + e.column];
+  }
+}
+
+std::size_t SectionedProduct::bytes() const noexcept {
+  return alike_.value.size() * 2 * sizeof(double) + other_.value.size() * sizeof(Pair) +
+         (alike_.row.size() + alike_.begin.size() + other_.row.size() + other_.begin.size()) * sizeof(int) +
+         interface_.size() * sizeof(InterfaceEntry);
+}
+
+}  // namespace railtab

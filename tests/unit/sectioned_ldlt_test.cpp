@@ -1,0 +1,157 @@
+#include "railtab/runtime/algebra/sectioned_ldlt.hpp"
+
+#include <gtest/gtest.h>
+
+#include "railtab/runtime/algebra/divided_substitution.hpp"
+#include "railtab/runtime/algebra/sectioned_product.hpp"
+#include "railtab/runtime/base/dof_indices.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
+
+namespace railtab {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+MirrorPairs both_rails(const StructureModel& s) {
+  MirrorPairs pairs;
+  for (std::size_t i = 0; i < s.rail[0].dof.size(); ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (s.rail[0].dof[i][k] != held) pairs.push_back({s.rail[0].dof[i][k], s.rail[1].dof[i][k]});
+    }
+  }
+  return pairs;
+}
+
+Sparse effective_matrix(const StructureModel& s) { return 1.6e7 * s.mass + 4e3 * s.damping + s.stiffness; }
+
+double difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+/// A structure in sections beside the same as a whole.
+struct Sectioned {
+  StructureModel structure;
+  MirrorPairs pairs;
+  Sparse effective;
+  std::shared_ptr<const SectionLayout> layout;
+
+  Sectioned(StructureModel model, const DofRange& range, bool paired = true)
+      : structure(std::move(model)), effective(effective_matrix(structure)) {
+    if (paired) pairs = both_rails(structure);
+    const auto found =
+        divide(by_sums_and_differences(effective, pairs), {structure.dof_x, structure.dof_line}, pairs, range);
+    if (found) layout = std::make_shared<const SectionLayout>(*found);
+  }
+  [[nodiscard]] SectionedLdlt factor() const {
+    return {by_sums_and_differences(effective, pairs), layout, "not positive definite"};
+  }
+};
+
+StructureModel track_with(const std::vector<double>& spans, double before = 30.0, double after = 20.0) {
+  TrackParameters track;
+  track.length_before = before;
+  track.length_after = after;
+  std::vector<BridgeParameters> bridges;
+  for (double length : spans) {
+    bridges.emplace_back();
+    bridges.back().length = length;
+  }
+  return build_track_bridge(track, bridges);
+}
+
+DofRange whole(const StructureModel& s) { return {0, s.dofs()}; }
+
+TEST(SectionedLdlt, SolvesAsTheWholeFactorDoes) {
+  for (const std::vector<double>& spans :
+       {std::vector<double>{}, {32.0}, {20.0, 24.0, 31.5}, {32, 32, 32, 32, 32, 32}}) {
+    for (const bool paired : {true, false}) {
+      const StructureModel s = track_with(spans);
+      const Sectioned sectioned(s, whole(s), paired);
+      ASSERT_TRUE(sectioned.layout) << spans.size();
+      const Eigen::VectorXd load = Eigen::VectorXd::Random(s.dofs());
+      EXPECT_LT(difference(sectioned.factor().solve(load), SparseLdlt(sectioned.effective).solve(load)), 1e-11)
+          << spans.size() << " spans, " << (paired ? "sums and differences" : "rails");
+    }
+  }
+}
+
+TEST(SectionedLdlt, OfARangeHoldsTheRest) {
+  const StructureModel s = track_with({32.0, 32.0}, 100.0, 100.0);
+  const auto begin = std::lower_bound(s.dof_x.begin(), s.dof_x.end(), -40.0) - s.dof_x.begin();
+  const auto end = std::upper_bound(s.dof_x.begin(), s.dof_x.end(), 32.0) - s.dof_x.begin();
+  const DofRange range{begin, end - begin};
+  const Sectioned sectioned(s, range);
+  ASSERT_TRUE(sectioned.layout);
+  const Eigen::VectorXd load = Eigen::VectorXd::Random(s.dofs());
+  EXPECT_LT(difference(sectioned.factor().solve(load), SparseLdlt(sectioned.effective, range).solve(load)), 1e-11);
+}
+
+TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
+  const StructureModel s = track_with({32.0, 32.0});
+  const Sectioned sectioned(s, whole(s));
+  ASSERT_TRUE(sectioned.layout);
+  const SectionedLdlt factor = sectioned.factor();
+  const SparseLdlt reference(sectioned.effective);
+  const int n = s.dofs(), rail = s.rail[0].dof[40][2];
+  DividedSubstitution solution;
+  for (const std::vector<int>& few :
+       {std::vector<int>{700, 3, 3, 704, 12}, std::vector<int>{rail}, std::vector<int>{}, std::vector<int>{n - 1}}) {
+    const Eigen::VectorXd known = Eigen::VectorXd::Random(n);
+    solution.begin(factor, known, few);
+    Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n), whole_solution;
+    for (const double size : {0.0, 1.0, -7.0}) {
+      for (int unknown : few) extra[unknown] = size * (1.0 + 0.1 * unknown);
+      solution.respond(factor, 0.95, extra, answer);
+      const Eigen::VectorXd expected = reference.solve(known + 0.95 * extra);
+      for (int unknown : few) EXPECT_NEAR(answer[unknown], expected[unknown], 1e-11 * expected.cwiseAbs().maxCoeff());
+    }
+    solution.finish(factor, whole_solution);
+    EXPECT_LT(difference(whole_solution, reference.solve(known + 0.95 * extra)), 1e-11);
+  }
+}
+
+TEST(SectionedLdlt, RejectsAMatrixThatIsNotPositiveDefinite) {
+  const StructureModel s = track_with({32.0});
+  Sectioned sectioned(s, whole(s));
+  ASSERT_TRUE(sectioned.layout);
+  sectioned.effective *= -1.0;
+  EXPECT_THROW(static_cast<void>(sectioned.factor()), ComputationError);
+}
+
+TEST(SectionedProduct, IsThatOfTheMatrices) {
+  const StructureModel s = track_with({20.0, 24.0});
+  const Sectioned sectioned(s, whole(s));
+  ASSERT_TRUE(sectioned.layout);
+  const SectionedLdlt factor = sectioned.factor();
+  const SectionedProduct product(by_sums_and_differences(s.stiffness, sectioned.pairs),
+                                 by_sums_and_differences(s.damping, sectioned.pairs), sectioned.layout);
+  const Eigen::VectorXd u = Eigen::VectorXd::Random(s.dofs()), v = 1e3 * Eigen::VectorXd::Random(s.dofs());
+  SectionedProduct::Buffers buffers;
+  Eigen::VectorXd ordered = Eigen::VectorXd::Zero(factor.room());
+  product.subtract(u, v, buffers, ordered);
+  sectioned.layout->fold_borders(ordered);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(s.dofs());
+  factor.out_of(ordered, result);
+  EXPECT_LT(difference(-result, s.stiffness * u + s.damping * v), 1e-12);
+}
+
+TEST(SectionLayout, DividesNoStructureThatIsShortOrUnlike) {
+  const StructureModel s = track_with({32.0}, 1.2, 1.2);
+  EXPECT_TRUE(Sectioned(s, whole(s)).layout);
+  EXPECT_FALSE(Sectioned(s, {0, 400}).layout) << "four bays";
+  StructureModel unlike = track_with({32.0});
+  unlike.dof_line[7] = -1;
+  EXPECT_FALSE(Sectioned(unlike, whole(unlike)).layout);
+}
+
+// A track without offset falls apart into a vertical and a lateral system, and the sections' columns are as short as
+// those of the halves.
+TEST(SectionLayout, SumsAndDifferencesOfTheRailsShortenTheColumns) {
+  const StructureModel s = track_with({32.0, 32.0, 32.0});
+  const double paired = static_cast<double>(Sectioned(s, whole(s)).factor().bytes());
+  EXPECT_LT(paired, 0.75 * static_cast<double>(Sectioned(s, whole(s), false).factor().bytes()));
+}
+
+}  // namespace
+}  // namespace railtab
