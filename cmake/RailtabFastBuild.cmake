@@ -47,6 +47,11 @@ function(railtab_fast_build)
     if(target MATCHES "^railtab_precompiled" OR NOT type MATCHES "EXECUTABLE|STATIC_LIBRARY|SHARED_LIBRARY")
       continue()
     endif()
+    if(RAILTAB_PYTHON AND type STREQUAL "EXECUTABLE")
+      # reuse headers that were precompiled for libraries, whose code is position-independent in another way
+      set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+      target_compile_options(${target} PRIVATE -fPIC)
+    endif()
     if(NOT "${links}" MATCHES "GTest::|benchmark::")
       set_target_properties(${target} PROPERTIES
         UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${railtab_sources_together})

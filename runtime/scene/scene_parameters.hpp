@@ -147,9 +147,16 @@ struct SceneParameters {
   void validate() const;
 };
 
+/// A key whose value is not that of the scene's file.
+struct KeyChange {
+  std::string key;    ///< "train.speed"; of a [[bridge]] where there are several, "bridge.2.length" for the second
+  std::string value;  ///< as TOML writes it, files relative to the scene; empty: the scene shall not have the key
+};
+
+/// @param changes made in their order before the scene is read; its text says them in a comment at its end
 /// @throws InputError with file and line: unknown key (with the nearest valid spelling), wrong type, value out of
 /// range,
-///         missing file.
-[[nodiscard]] SceneParameters read_scene(const std::filesystem::path& file);
+///         missing file; with the changes.
+[[nodiscard]] SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes = {});
 
 }  // namespace railtab

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/key_changes.hpp"
 #include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/toml_leaves.hpp"
@@ -313,11 +315,13 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
 
 namespace railtab {
 
-SceneParameters read_scene(const std::filesystem::path& file) {
+SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes) {
   scene::SceneDraft draft;
   draft.parameters.text = read_toml_text(file, "a TOML scene");
   try {
-    const toml::table root = toml::parse(draft.parameters.text, file.string());
+    toml::table root = toml::parse(draft.parameters.text, file.string());
+    in_file(file.string(), [&] { scene::change_keys(changes, root); });
+    if (!changes.empty()) draft.parameters.text += fmt::format("\n# changed: {}\n", scene::changes_text(changes));
     const std::vector<scene::Leaf> leaves = scene::leaves_of(root, file);
     scene::assign(draft, file, leaves);
     return scene::settle(std::move(draft), file, leaves);
@@ -326,6 +330,9 @@ SceneParameters read_scene(const std::filesystem::path& file) {
     const std::string key = scene::key_before(draft.parameters.text, at);
     throw InputError(
         fmt::format("{}:{}: {}{}{}", file.string(), at.line, key, key.empty() ? "" : ": ", wrong.description()));
+  } catch (const InputError& wrong) {
+    if (changes.empty()) throw;
+    throw InputError(fmt::format("{} (changed: {})", wrong.what(), scene::changes_text(changes)));
   }
 }
 

@@ -209,6 +209,58 @@ TEST_F(Scene, SupportsOfAnImportedStructure) {
   EXPECT_EQ(message(scene + "[[ground_motion]]\nfile = \"pair.h5\"\n"), "no error");
 }
 
+// Keys with other values than the file's: as if the file had them, but for the scene's text, which says so.
+TEST_F(Scene, ChangedKeysCountAsIfTheFileHadThem) {
+  const std::string text = std::string(online) + R"([train]
+speed_kmh = 180
+[[bridge]]
+length = 20
+[[bridge]]
+length = 30
+)";
+  static_cast<void>(read(text));
+  const auto changed = [&](const std::vector<KeyChange>& changes) {
+    return read_scene(folder_ / "scene.toml", changes);
+  };
+  const SceneParameters scene = changed({{"train.speed_kmh", ""},
+                                         {"train.speed", "40"},
+                                         {"bridge.2.length", "25.5"},
+                                         {"bridge.2.damping_ratio", "0.02"},
+                                         {"track.rail.mass", "54"},
+                                         {"contact.material.nu", "0.3"},
+                                         {"contact.creep_law", "\"polach\""}});
+  EXPECT_EQ(scene.train.speed, 40.0);
+  ASSERT_EQ(scene.spans.size(), 2u);
+  EXPECT_EQ(scene.spans[0].length, 20.0);
+  EXPECT_EQ(scene.spans[0].damping_ratio, BridgeParameters{}.damping_ratio);
+  EXPECT_EQ(scene.spans[1].length, 25.5);
+  EXPECT_EQ(scene.spans[1].damping_ratio, 0.02);
+  EXPECT_EQ(scene.track.rail.mass, 54.0);
+  EXPECT_EQ(scene.contact.material.nu, 0.3);
+  EXPECT_EQ(scene.contact.creep_law, "polach");
+  EXPECT_EQ(scene.text.substr(0, text.size()), text);
+  EXPECT_NE(scene.text.find("# changed: without train.speed_kmh, train.speed = 40, "), std::string::npos);
+
+  const auto refused = [&](const KeyChange& change, const std::string& part) {
+    try {
+      static_cast<void>(changed({change}));
+      ADD_FAILURE() << change.key;
+    } catch (const InputError& wrong) {
+      EXPECT_NE(std::string(wrong.what()).find(part), std::string::npos) << wrong.what();
+    }
+  };
+  refused({"train.speed_kmh", "fast"}, "scene.toml: train.speed_kmh: found the value fast");
+  refused({"train.speed_kmh", "1\ny = 2"}, "found the value");
+  refused({"train.speed_kmh", "-1"}, "train.speed_kmh: found -1, expected");
+  refused({"train.speed_kmh", "-1"}, "(changed: train.speed_kmh = -1)");
+  refused({"train.speeed", "1"}, "did you mean 'train.speed'");
+  refused({"bridge.length", "1"}, "found 2 [[bridge]] in the scene");
+  refused({"bridge.3.length", "1"}, "found 2 [[bridge]] in the scene");
+  refused({"load.1.start", "1"}, "found 0 [[load]] in the scene");
+  refused({"train.speed_kmh.x", "1"}, "found speed_kmh, which is no section");
+  refused({"", "1"}, "unknown key ''");
+}
+
 TEST(SceneExamples, TheDemoSceneNamesOnlyTheTableThatTheDemoMakes) {
   try {
     const SceneParameters scene = read_scene(RAILTAB_SOURCE_DIR "/docs/examples/demo.toml");

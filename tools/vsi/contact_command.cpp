@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <memory>
-#include <numbers>
+#include <optional>
 #include <vector>
 
 #include "command/command_line.hpp"
@@ -14,11 +13,10 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/column_file.hpp"
-#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "railtab/runtime/contact/contact_response.hpp"
-#include "railtab/tables/files/geometry_table_file.hpp"
+#include "railtab/runtime/contact/frictionless_contact.hpp"
+#include "railtab/runtime/contact_files/contact_table_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -29,7 +27,6 @@ constexpr const char* patch_header =
     "concave,source";
 constexpr const char* loaded_columns = ",normal_force,a,b,pressure";
 constexpr const char* total_header = "query,dz,fy,fz,mx";
-constexpr double deepest = 0.01;      // m: beyond, the profiles are through each other
 constexpr double rounding = 1e-13;    // m: of the height of first touch
 constexpr double largest_load = 1e7;  // N
 
@@ -37,15 +34,10 @@ struct Counts {
   long queries = 0, patches = 0, table = 0;
 };
 
-/// What carries a load in one patch.
-struct PatchLoading {
-  double normal_force = 0.0, a = 0.0, b = 0.0, pressure = 0.0;
-};
-
 /// The contacts that a table or the online search describes.
 struct Queries {
   const TableContact& table;
-  ContactGeometry geometry;  ///< with the loaded part where the table has one
+  const ContactGeometry& geometry;  ///< with the loaded part where the table has one
   NumberRows rows;
   bool by_load, online;
 
@@ -54,80 +46,23 @@ struct Queries {
   }
 };
 
-/// Frictionless force on the rail (y, z) and its moment about the rail-head origin.
-Vector3 force_on_rail(const ContactGeometry& geometry, const WheelsetPose& pose) {
-  WheelContactModel model;
-  model.geometry = &geometry;
-  model.friction = 0.0;
-  model.speed = 1.0;
-  WheelsetMotion motion;
-  motion.displacement << 0.0, pose.y, pose.z, pose.roll, 0.0, pose.yaw;
-  return wheel_force(model, WheelSide::right, motion, {}, wheel_contact(geometry, pose)).rail;
-}
-
 /// The lowering at which the wheel carries a vertical load.
-double lowering_of(const Queries& queries, WheelsetPose pose, double touch, double load, const std::string& place) {
+double lowering_of(const Queries& queries, const WheelsetPose& touch, double load, const std::string& place) {
   if (!(load > 0.0 && load <= largest_load)) {
     throw input_error(place, fmt::format("load = {}", load), fmt::format("above 0, at most {} N", largest_load));
   }
-  const auto excess = [&](double dz) {
-    pose.z = touch + dz;
-    return force_on_rail(queries.geometry, pose)[1] - load;
-  };
-  double low = 0.0, high = 1e-6, at_high = excess(high), at_low = -load;
-  while (at_high < 0.0 && high < deepest) {
-    low = high;
-    at_low = at_high;
-    high = std::min(deepest, 2.0 * high);
-    at_high = excess(high);
-  }
-  if (at_high < 0.0) {
-    throw input_error(place, fmt::format("load = {} N, not carried {} m below first touch", load, deepest),
-                      "a load that the contact carries");
-  }
-  boost::uintmax_t passes = 200;
-  const auto close = [](double a, double b) { return std::abs(a - b) <= 1e-15; };
-  const auto [below, above] = boost::math::tools::toms748_solve(excess, low, high, at_low, at_high, close, passes);
-  return 0.5 * (below + above);
-}
-
-/// Of every patch: parts of the loaded contact count to the nearest along the rail; without a loaded part, Hertz's.
-std::vector<PatchLoading> loadings(const ContactGeometry& geometry, const WheelsetPose& pose,
-                                   const ContactPatches& patches) {
-  std::vector<PatchLoading> result(static_cast<std::size_t>(patches.count));
-  const WheelContact contact = wheel_contact(geometry, pose);
-  if (contact.by_patches()) {
-    const PatchLoads loads = patch_loads({}, geometry, pose, patches);
-    for (std::size_t i = 0; i < loads.size(); ++i) {
-      const double N = loads[i].elastic_force, a = loads[i].hertz.a1 * std::cbrt(N),
-                   b = loads[i].hertz.b1 * std::cbrt(N);
-      if (N > 0.0) result[i] = {N, a, b, 1.5 * N / (std::numbers::pi * a * b)};
-    }
-    return result;
-  }
-  for (std::size_t p = 0; p < contact.loaded.parts && patches.count > 0; ++p) {
-    const LoadedPart& part = contact.loaded.part[p];
-    const auto distance = [&](const ContactPatch& patch) { return std::abs(patch.s_rail - part.s_rail); };
-    const ContactPatch* const nearest = std::min_element(
-        patches.begin(), patches.end(), [&](const auto& p_, const auto& q_) { return distance(p_) < distance(q_); });
-    PatchLoading& of = result[static_cast<std::size_t>(nearest - patches.begin())];
-    const double N = part.share * contact.loaded.force[1] / std::cos(part.angle);
-    of.pressure = std::max(of.pressure, part.pressure);
-    if (N > of.normal_force) {
-      of.a = part.a;
-      of.b = part.b;
-    }
-    of.normal_force += N;
-  }
-  return result;
+  const std::optional<double> lowering = lowering_under_load(queries.geometry, touch, load);
+  if (lowering) return *lowering;
+  throw input_error(place, fmt::format("load = {} N, not carried {} m below first touch", load, deepest_lowering),
+                    "a load that the contact carries");
 }
 
 void append_patches(const Queries& queries, const WheelsetPose& pose, std::size_t query, std::string& text,
                     Counts& counts) {
   const ContactPatches patches = queries.patches(pose);
   const bool loaded = queries.geometry.loaded() != nullptr;
-  const std::vector<PatchLoading> loads =
-      loaded ? loadings(queries.geometry, pose, patches) : std::vector<PatchLoading>{};
+  std::array<PatchLoading, ContactPatches::capacity> loads;
+  if (loaded) loads = patch_loadings(queries.geometry, pose, patches);
   std::size_t number = 0;
   for (const ContactPatch& p : patches) {
     // x + 0.0 turns -0 into 0
@@ -159,8 +94,9 @@ std::string answer(const Queries& queries, bool total, Counts& counts) {
     const std::vector<double>& q = queries.rows.rows[i];
     const std::string& place = queries.rows.places[i];
     WheelsetPose pose{q[0], 0.0, q[2], q[1]};
-    if (!queries.by_load && !(q[3] >= 0.0 && q[3] <= deepest)) {
-      throw input_error(place, fmt::format("dz = {}", q[3]), fmt::format("0 to {} m below first touch", deepest));
+    if (!queries.by_load && !(q[3] >= 0.0 && q[3] <= deepest_lowering)) {
+      throw input_error(place, fmt::format("dz = {}", q[3]),
+                        fmt::format("0 to {} m below first touch", deepest_lowering));
     }
     const double touch = queries.table.search().touch_height(pose.y, pose.roll, pose.yaw);
     if (!std::isfinite(touch)) {
@@ -168,10 +104,11 @@ std::string answer(const Queries& queries, bool total, Counts& counts) {
                         fmt::format("y = {}, yaw = {}, roll = {}, where wheel and rail never meet", q[0], q[1], q[2]),
                         "a position on the rail");
     }
-    const double dz = queries.by_load ? lowering_of(queries, pose, touch, q[3], place) : q[3];
+    pose.z = touch;
+    const double dz = queries.by_load ? lowering_of(queries, pose, q[3], place) : q[3];
     pose.z = touch + dz;
     if (total) {
-      const Vector3 f = force_on_rail(queries.geometry, pose);
+      const Vector3 f = frictionless_force(queries.geometry, pose);
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", i, dz, f[0] + 0.0, f[1] + 0.0, f[2] + 0.0);
     } else {
       append_patches(queries, pose, i, text, counts);
@@ -198,13 +135,9 @@ int contact_command(const Arguments& arguments) {
   const std::string table = line.required("table"), query = line.required("query"), output = line.required("output");
   require_writable_place(output, "-o");
   require_no_input(output, {query, table});
-  GeometryTableData data = read_geometry_table(table);
-  std::shared_ptr<const LoadedTable> loaded;
-  if (data.loaded) loaded = std::make_shared<const LoadedTable>(std::move(*data.loaded));
-  data.loaded.reset();
-  const TableContact contact = in_file(table, [&] { return TableContact(GeometryTable(std::move(data))); });
+  const ContactTable contact = read_contact_table(table);
   const bool by_load = has_column(query, "load"), total = line.given("total");
-  const Queries queries{contact, ContactGeometry(contact, std::move(loaded)),
+  const Queries queries{contact.patches, contact.geometry,
                         read_number_rows(query, {"y", "yaw", "roll", by_load ? "load" : "dz"}), by_load,
                         line.given("online")};
   const char* const mark = total ? total_header : patch_header;

@@ -16,16 +16,14 @@
 #include "commands.hpp"
 #include "headline.hpp"
 #include "headline_text.hpp"
-#include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
-#include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/scene/recorded_run.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -111,7 +109,7 @@ class Interrupt {
 /// What a run says that could not begin, and its exit code. Results of another run that are in its place stay there.
 int conclude_without_results(const RunSummary& summary, const RunOptions& options) {
   if (options.ended) options.ended({}, summary);
-  if (options.json) print_json_line(headline_json({}, summary));
+  if (options.json) print_json_line(report::headline_json({}, summary));
   print_message(
       fmt::format("vsi run: {}; no step was made, and {} stays as it was\n", summary.message, options.output));
   return 1;
@@ -121,13 +119,13 @@ int conclude_without_results(const RunSummary& summary, const RunOptions& option
 int conclude(const SceneParameters& scene, const report::Headline& headline, const RunSummary& summary,
              const RunOptions& options) {
   if (options.ended) options.ended(headline, summary);
-  constexpr int interrupted = 130;  // as a shell says of a program that Ctrl-C has ended
+  constexpr int by_interrupt = 130;  // as a shell says of a program that Ctrl-C has ended
   if (options.json) {
-    nlohmann::ordered_json json = headline_json(headline, summary);
+    nlohmann::ordered_json json = report::headline_json(headline, summary);
     json["results"] = options.output;
     print_json_line(json);
   } else if (!options.quiet && summary.steps > 0) {
-    print_formatted("{}Results: {}\n", headline_text(headline, summary), options.output);
+    print_formatted("{}Results: {}\n", report::headline_text(headline, summary), options.output);
   }
   if (!options.quiet) {
     const std::string uncovered = report::uncovered_queries(summary);
@@ -140,7 +138,7 @@ int conclude(const SceneParameters& scene, const report::Headline& headline, con
         "vsi run: interrupted at t = {:.6g} s; everything up to there is in {}; the same command with --resume "
         "goes on from there\n",
         headline.simulated_time, options.output));
-    return interrupted;
+    return by_interrupt;
   }
   print_message(fmt::format("vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
                             headline.simulated_time, summary.message, options.output));
@@ -158,28 +156,20 @@ void say_what_is_replaced(const RunOptions& options) {
   }
 }
 
-/// Results, headline and progress of a run, from its first record or from a checkpoint of its results file.
-class RunRecorder {
+/// Headline and progress of a run.
+class RunDisplay {
  public:
-  explicit RunRecorder(const RunOptions& options)
+  explicit RunDisplay(const RunOptions& options)
       : options_(options), setup_(!options.quiet && !options.json), progress_("run", !options.quiet && !options.json) {}
 
-  /// Take up what the file holds up to its last checkpoint, if it has one.
-  [[nodiscard]] std::optional<RunCheckpoint> take_up(const RunResults& before) {
-    const std::optional<Checkpoint> checkpoint = ResultWriter::read_checkpoint(options_.output);
-    if (!checkpoint) return std::nullopt;
-    if (checkpoint->records > before.steps.size()) {
-      throw input_error(options_.output, "records that were added while it was read",
-                        "a file that no other run writes");
-    }
+  /// The run goes on from records that its file holds.
+  void take_up(const RunResults& before, std::span<const StepRecord> records) {
     collector_.emplace(before.header);
-    for (std::size_t i = 0; i < checkpoint->records; ++i) collector_->add(before.steps[i]);
-    resumed_ = true;
-    writer_.emplace(ResultWriter::resume(options_.output, *checkpoint));
-    return RunCheckpoint{checkpoint->step, checkpoint->state};
+    for (const StepRecord& record : records) collector_->add(record);
   }
 
   [[nodiscard]] RunObserver observer() {
+    const bool resumed = collector_.has_value();
     RunObserver observer;
     observer.setup = [this](std::string_view part) { setup_.show(part); };
     observer.note = [this](std::string_view note) {
@@ -188,22 +178,16 @@ class RunRecorder {
     observer.warning = [this](std::string_view warning) {
       if (!options_.quiet) print_warning(warning);
     };
-    observer.ready = [this] {
-      replace_results();
+    observer.ready = [this, resumed] {
+      if (!resumed) say_what_is_replaced(options_);
       setup_.end();
       Interrupt::listen();
     };
     observer.stop = [] { return Interrupt::asked(); };
-    observer.start = [this](const ResultHeader& header) {
-      if (writer_) return;  // taken up
-      header_ = header;
-      collector_.emplace(header);
+    observer.start = [this, resumed](const ResultHeader& header) {
+      if (!resumed) collector_.emplace(header);
     };
-    observer.record = [this](const StepRecord& step) {
-      writer_->append(step);
-      collector_->add(step);
-    };
-    observer.checkpoint = [this](long step, std::span<const double> state) { writer_->checkpoint(state, step); };
+    observer.record = [this](const StepRecord& step) { collector_->add(step); };
     observer.progress = [this](double fraction) {
       progress_.show(fraction);
       if (options_.progress) options_.progress(fraction);
@@ -211,101 +195,45 @@ class RunRecorder {
     return observer;
   }
 
-  /// Whether the results of a run that cannot go on have a checkpoint.
-  [[nodiscard]] bool resumable() {
-    if (!writer_) return false;
-    writer_.reset();
-    if (!std::filesystem::exists(options_.output)) return false;
-    return ResultWriter::read_checkpoint(options_.output).has_value();
-  }
-
   /// @return exit code
-  [[nodiscard]] int finish(const SceneParameters& scene, RunSummary summary) {
+  [[nodiscard]] int finish(const SceneParameters& scene, const RunSummary& summary, bool has_results) {
     setup_.end();
     progress_.wipe();
-    if (resumed_ && summary.complete) {
-      summary.message = fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then",
-                                    static_cast<double>(summary.counted_from) * scene.integration.time_step);
-    }
-    if (!writer_) {
-      if (is_file(options_.output) && std::filesystem::file_size(options_.output) > 0) {
-        return conclude_without_results(summary, options_);
-      }
-      replace_results();  // with nothing but the reason
-    }
-    writer_->finish(summary);
+    if (!has_results) return conclude_without_results(summary, options_);
     return conclude(scene, collector_->result(summary), summary, options_);
   }
 
  private:
-  /// Only where the set-up has succeeded: earlier results are worth more than a run that could not begin.
-  void replace_results() {
-    if (writer_) return;
-    say_what_is_replaced(options_);
-    writer_.emplace(options_.output, header_);
-  }
-
   const RunOptions& options_;
   SetupProgress setup_;
   ProgressBar progress_;
-  std::optional<ResultWriter> writer_;
   std::optional<report::HeadlineCollector> collector_;
-  ResultHeader header_;
-  bool resumed_ = false;
 };
 
 /// Results must not overwrite what the run reads.
 void check_output(const SceneParameters& scene, const std::filesystem::path& scene_file, const RunOptions& options) {
   const std::string& output = options.output;
   require_writable_place(output, "-o");
-  require_no_input(output, {scene_file});
-  for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
   // says how results that are wanted are damaged, not only that they may not be replaced
   if (options.resume && std::filesystem::is_regular_file(output) && is_array_file(output)) {
     static_cast<void>(array_file_type(output));
   }
-  require_replaceable(output, {results_filetype});
+  require_results_place(output, scene, scene_file);
   require_fitting_name(output, "-o", "an HDF5 file", {".h5", ".hdf5"});
 }
 
 }  // namespace
 
-void check_same_run(const RunResults& before, const SceneParameters& scene, const std::string& file) {
-  if (before.header.scene_text != scene.text) {
-    throw input_error(file, "results of another scene", "results of this scene to resume, or another -o");
-  }
-  const std::vector<std::string>& sums = before.header.input_checksums;
-  for (std::size_t i = 0; i < scene.files.size(); ++i) {
-    if (i < sums.size() && file_checksum(scene.files[i]) == sums[i]) continue;
-    throw input_error(file, fmt::format("results made with other contents of {}", scene.files[i].string()),
-                      "the file as it was when the run began, or another -o");
-  }
-  if (before.header.program_version != RAILTAB_VERSION) {
-    throw input_error(file, "results of railtab " + before.header.program_version,
-                      "results of railtab " RAILTAB_VERSION);
-  }
-  const std::string& mode = before.summary.contact_mode;
-  if (!mode.empty() && mode != contact_mode_name(scene.contact)) {
-    throw input_error(file, fmt::format("results of --contact {}", mode), "results of the same contact mode to resume");
-  }
-}
-
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
-  remove_abandoned(output_file(options.output));  // also where results are gone on with
-  RunRecorder recorder(options);
-  std::optional<RunCheckpoint> from;
-  if (options.resume && std::filesystem::exists(options.output)) {
-    const RunResults before = read_results(options.output);
-    check_same_run(before, scene, options.output);
-    if (before.summary.complete) {
-      return conclude(scene, report::headline_of(before), before.summary, options);
-    }
-    from = recorder.take_up(before);
-  }
+  RecordedRun run(scene, options.output, options.resume);
+  if (run.is_complete()) return conclude(scene, report::headline_of(*run.before()), run.before()->summary, options);
+  RunDisplay display(options);
+  if (run.is_resumed()) display.take_up(*run.before(), run.records_before());
   try {
-    return recorder.finish(scene, run_scene(scene, recorder.observer(), from));
+    const RunSummary summary = run.run(display.observer());
+    return display.finish(scene, summary, run.has_results());
   } catch (const ComputationError& failure) {
-    if (!recorder.resumable()) throw;
+    if (!run.is_resumable()) throw;
     throw ComputationError(fmt::format("{}; the same command with --resume goes on from the last checkpoint in {}",
                                        failure.what(), options.output));
   }

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "headline.hpp"
-#include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 
 namespace railtab::vsi {
@@ -21,9 +20,5 @@ struct RunOptions {
 /// complete results alone. @return exit code. @throws InputError as run_scene(), and where the results in the way are
 /// another run's
 int run_to_file(const SceneParameters& scene, const RunOptions& options);
-
-/// Results that a run goes on from must be its own: of the same scene, files, version and contact mode.
-/// @throws InputError naming `file`
-void check_same_run(const RunResults& before, const SceneParameters& scene, const std::string& file);
 
 }  // namespace railtab::vsi

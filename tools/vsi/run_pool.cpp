@@ -18,6 +18,7 @@
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/scene/recorded_run.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "run_command.hpp"
 
@@ -118,7 +119,7 @@ void RunPool::set_aside(const SweepRun& run, const char* suffix, const std::stri
 void RunPool::check_results(const SweepRun& run, const SceneParameters& scene) const {
   const fs::path results = file(run, ".h5");
   const RunResults before = read_results(results);
-  if (!finished(run)) return check_same_run(before, scene, results.string());
+  if (!finished(run)) return check_same_run(before, scene, results);
   if (before.header.scene_text != scene.text) {
     throw input_error(results.string(), "results of another scene", "those of this run");
   }

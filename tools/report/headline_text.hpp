@@ -5,11 +5,11 @@
 
 #include "headline.hpp"
 
-namespace railtab::vsi {
+namespace railtab::report {
 
 /// The headline of a run for the terminal, one number a line with unit and place.
-[[nodiscard]] std::string headline_text(const report::Headline& headline, const RunSummary& summary);
+[[nodiscard]] std::string headline_text(const Headline& headline, const RunSummary& summary);
 /// The same numbers as one JSON object, SI units; quantities that the run does not have are left out.
-[[nodiscard]] nlohmann::ordered_json headline_json(const report::Headline& headline, const RunSummary& summary);
+[[nodiscard]] nlohmann::ordered_json headline_json(const Headline& headline, const RunSummary& summary);
 
-}  // namespace railtab::vsi
+}  // namespace railtab::report

@@ -4,11 +4,10 @@
 
 #include <iterator>
 
-namespace railtab::vsi {
+namespace railtab::report {
 namespace {
 
-void line(std::string& text, std::string_view name, const report::Extreme& extreme, double factor,
-          std::string_view unit) {
+void line(std::string& text, std::string_view name, const Extreme& extreme, double factor, std::string_view unit) {
   if (!extreme.found()) return;
   fmt::format_to(std::back_inserter(text), "  {:<28}{:>10.4g} {:<6} {}, t = {:.3f} s\n", name, factor * extreme.value,
                  unit, extreme.where, extreme.time);
@@ -32,7 +31,7 @@ class TimeTable {
   double total_, steps_;
 };
 
-void member(nlohmann::ordered_json& json, const char* name, const report::Extreme& extreme) {
+void member(nlohmann::ordered_json& json, const char* name, const Extreme& extreme) {
   if (!extreme.found()) return;
   json[name] = {{"value", extreme.value}, {"time", extreme.time}, {"where", extreme.where}};
 }
@@ -64,7 +63,7 @@ nlohmann::ordered_json contact_energy_json(const ContactEnergy& e) {
 
 }  // namespace
 
-std::string headline_text(const report::Headline& headline, const RunSummary& summary) {
+std::string headline_text(const Headline& headline, const RunSummary& summary) {
   std::string text;
   line(text, "deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
   line(text, "deck displacement", headline.deck_displacement, 1e3, "mm");
@@ -76,7 +75,7 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   line(text, "wheel unloading", headline.unloading, 100.0, "%");
   line(text, "largest Q", headline.largest_Q, 1e-3, "kN");
   line(text, "smallest Q", headline.smallest_Q, 1e-3, "kN");
-  if (!text.empty()) text = fmt::format("Largest values of {}:\n", report::steps_of_extremes(summary)) + text;
+  if (!text.empty()) text = fmt::format("Largest values of {}:\n", steps_of_extremes(summary)) + text;
   if (summary.contact_queries > 0) {
     fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
                    summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
@@ -116,7 +115,7 @@ std::string headline_text(const report::Headline& headline, const RunSummary& su
   return text;
 }
 
-nlohmann::ordered_json headline_json(const report::Headline& headline, const RunSummary& summary) {
+nlohmann::ordered_json headline_json(const Headline& headline, const RunSummary& summary) {
   nlohmann::ordered_json json{{"complete", summary.complete}, {"message", summary.message}};
   member(json, "max_deck_acceleration", headline.deck_acceleration);
   member(json, "max_deck_displacement", headline.deck_displacement);
@@ -159,4 +158,4 @@ nlohmann::ordered_json headline_json(const report::Headline& headline, const Run
   return json;
 }
 
-}  // namespace railtab::vsi
+}  // namespace railtab::report

@@ -1,0 +1,73 @@
+#include "railtab/runtime/contact/frictionless_contact.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numbers>
+
+namespace railtab {
+
+Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept {
+  WheelContactModel model;
+  model.geometry = &geometry;
+  model.friction = 0.0;
+  model.speed = 1.0;
+  WheelsetMotion motion;
+  motion.displacement << 0.0, pose.y, pose.z, pose.roll, 0.0, pose.yaw;
+  return wheel_force(model, WheelSide::right, motion, {}, wheel_contact(geometry, pose)).rail;
+}
+
+std::optional<double> lowering_under_load(const ContactGeometry& geometry, const WheelsetPose& touch, double load) {
+  WheelsetPose pose = touch;
+  const auto excess = [&](double dz) {
+    pose.z = touch.z + dz;
+    return frictionless_force(geometry, pose)[1] - load;
+  };
+  double low = 0.0, high = 1e-6, at_high = excess(high), at_low = -load;
+  while (at_high < 0.0 && high < deepest_lowering) {
+    low = high;
+    at_low = at_high;
+    high = std::min(deepest_lowering, 2.0 * high);
+    at_high = excess(high);
+  }
+  if (at_high < 0.0) return std::nullopt;
+  boost::uintmax_t passes = 200;
+  const auto close = [](double a, double b) { return std::abs(a - b) <= 1e-15; };
+  const auto [below, above] = boost::math::tools::toms748_solve(excess, low, high, at_low, at_high, close, passes);
+  return 0.5 * (below + above);
+}
+
+std::array<PatchLoading, ContactPatches::capacity> patch_loadings(const ContactGeometry& geometry,
+                                                                  const WheelsetPose& pose,
+                                                                  const ContactPatches& patches) noexcept {
+  std::array<PatchLoading, ContactPatches::capacity> result;
+  LoadedLookup loaded;
+  if (geometry.loaded()) loaded = geometry.loaded()->lookup(pose.y, pose.z, pose.roll, pose.yaw);
+  if (loaded.table_share < 1.0) {
+    const PatchLoads loads = patch_loads({}, geometry, pose, patches);
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const double N = loads[i].elastic_force, a = loads[i].hertz.a1 * std::cbrt(N),
+                   b = loads[i].hertz.b1 * std::cbrt(N);
+      if (N > 0.0) result[i] = {N, a, b, 1.5 * N / (std::numbers::pi * a * b)};
+    }
+    return result;
+  }
+  for (std::size_t p = 0; p < loaded.parts && patches.count > 0; ++p) {
+    const LoadedPart& part = loaded.part[p];
+    const auto distance = [&](const ContactPatch& patch) { return std::abs(patch.s_rail - part.s_rail); };
+    const ContactPatch* const nearest =
+        std::min_element(patches.begin(), patches.end(),
+                         [&](const auto& one, const auto& other) { return distance(one) < distance(other); });
+    PatchLoading& of = result[static_cast<std::size_t>(nearest - patches.begin())];
+    const double N = part.share * loaded.force[1] / std::cos(part.angle);
+    of.pressure = std::max(of.pressure, part.pressure);
+    if (N > of.normal_force) {
+      of.a = part.a;
+      of.b = part.b;
+    }
+    of.normal_force += N;
+  }
+  return result;
+}
+
+}  // namespace railtab

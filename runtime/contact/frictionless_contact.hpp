@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "railtab/runtime/contact/contact_response.hpp"
+
+namespace railtab {
+
+/// Beyond this lowering below first touch, the profiles are through each other [m].
+inline constexpr double deepest_lowering = 0.01;
+
+/// Force on the rail (y, z) [N] and its moment about x through the rail-head origin [N m] of a right wheel that rests
+/// at a pose, without friction.
+[[nodiscard]] Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept;
+
+/// The lowering below first touch at which the wheel carries a vertical load [m], 0 to deepest_lowering; none where the
+/// contact does not carry it there.
+/// @param touch the pose at first touch @param load above 0 [N]
+[[nodiscard]] std::optional<double> lowering_under_load(const ContactGeometry& geometry, const WheelsetPose& touch,
+                                                        double load);
+
+/// What carries the load in one patch: normal force [N], semi-axes along and across the rolling direction [m], largest
+/// pressure [Pa]. Zero where the patch bears nothing.
+struct PatchLoading {
+  double normal_force = 0.0, a = 0.0, b = 0.0, pressure = 0.0;
+};
+
+/// Of the patches at a pose: parts of the loaded contact count to the nearest patch along the rail; without a loaded
+/// part, Hertz's ellipse of patch_loads() for steel.
+[[nodiscard]] std::array<PatchLoading, ContactPatches::capacity> patch_loadings(const ContactGeometry& geometry,
+                                                                                const WheelsetPose& pose,
+                                                                                const ContactPatches& patches) noexcept;
+
+}  // namespace railtab

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "railtab/runtime/contact/contact_geometry.hpp"
+
+namespace railtab {
+
+/// A geometry table from its file, for patches, and as what forces come from: with the loaded part where the file has
+/// one.
+struct ContactTable {
+  TableContact patches;
+  ContactGeometry geometry;
+};
+
+/// @throws InputError as read_geometry_table() and TableContact, naming the file
+[[nodiscard]] ContactTable read_contact_table(const std::filesystem::path& file);
+
+}  // namespace railtab

@@ -1,0 +1,109 @@
+#include "railtab/runtime/scene/recorded_run.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "railtab/runtime/base/file_checksum.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/temporary_file.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/tables/files/array_file.hpp"
+
+namespace railtab {
+
+RecordedRun::RecordedRun(const SceneParameters& scene, std::filesystem::path file, bool resume)
+    : scene_(scene), file_(std::move(file)) {
+  remove_abandoned(output_file(file_));  // also where results are gone on with
+  if (!resume || !std::filesystem::exists(file_)) return;
+  before_ = read_results(file_);
+  check_same_run(*before_, scene_, file_);
+  if (before_->summary.complete) return;
+  checkpoint_ = ResultWriter::read_checkpoint(file_);
+  if (checkpoint_ && checkpoint_->records > before_->steps.size()) {
+    throw input_error(file_.string(), "records that were added while it was read", "a file that no other run writes");
+  }
+}
+
+std::span<const StepRecord> RecordedRun::records_before() const noexcept {
+  if (!checkpoint_) return {};
+  return std::span(before_->steps).first(checkpoint_->records);
+}
+
+RunSummary RecordedRun::run(RunObserver observer) {
+  std::optional<ResultWriter> writer;
+  ResultHeader header;
+  std::optional<RunCheckpoint> from;
+  if (checkpoint_) {
+    writer.emplace(ResultWriter::resume(file_, *checkpoint_));
+    from = RunCheckpoint{checkpoint_->step, checkpoint_->state};
+    has_results_ = true;
+  }
+  const auto replace_results = [&] {
+    if (writer) return;
+    writer.emplace(file_, header);
+    has_results_ = true;
+  };
+  RunObserver writing = observer;
+  writing.start = [&](const ResultHeader& of_run) {
+    header = of_run;
+    if (observer.start) observer.start(of_run);
+  };
+  writing.ready = [&] {
+    if (observer.ready) observer.ready();
+    replace_results();
+  };
+  writing.record = [&](StepRecord& step) {
+    writer->append(step);
+    if (observer.record) observer.record(step);
+  };
+  writing.checkpoint = [&](long step, std::span<const double> state) {
+    writer->checkpoint(state, step);
+    if (observer.checkpoint) observer.checkpoint(step, state);
+  };
+  RunSummary summary = run_scene(scene_, writing, from);
+  if (from && summary.complete) {
+    summary.message = fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then",
+                                  static_cast<double>(summary.counted_from) * scene_.integration.time_step);
+  }
+  if (!writer && is_file(file_) && std::filesystem::file_size(file_) > 0) return summary;  // earlier results stay
+  replace_results();  // with nothing but the reason, where no step was made
+  writer->finish(summary);
+  return summary;
+}
+
+bool RecordedRun::is_resumable() const {
+  return has_results_ && std::filesystem::exists(file_) && ResultWriter::read_checkpoint(file_).has_value();
+}
+
+void require_results_place(const std::filesystem::path& file, const SceneParameters& scene,
+                           const std::filesystem::path& scene_file) {
+  require_no_input(file, {scene_file});
+  for (const std::filesystem::path& read : scene.files) require_no_input(file, {read});
+  require_replaceable(file, {results_filetype});
+}
+
+void check_same_run(const RunResults& before, const SceneParameters& scene, const std::filesystem::path& file) {
+  const std::string place = file.string();
+  if (before.header.scene_text != scene.text) {
+    throw input_error(place, "results of another scene", "results of this scene to resume, or another -o");
+  }
+  const std::vector<std::string>& sums = before.header.input_checksums;
+  for (std::size_t i = 0; i < scene.files.size(); ++i) {
+    if (i < sums.size() && file_checksum(scene.files[i]) == sums[i]) continue;
+    throw input_error(place, fmt::format("results made with other contents of {}", scene.files[i].string()),
+                      "the file as it was when the run began, or another -o");
+  }
+  if (before.header.program_version != RAILTAB_VERSION) {
+    throw input_error(place, "results of railtab " + before.header.program_version,
+                      "results of railtab " RAILTAB_VERSION);
+  }
+  const std::string& mode = before.summary.contact_mode;
+  if (!mode.empty() && mode != contact_mode_name(scene.contact)) {
+    throw input_error(place, fmt::format("results of --contact {}", mode),
+                      "results of the same contact mode to resume");
+  }
+}
+
+}  // namespace railtab
