@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "railtab/runtime/vsi/derailment.hpp"
 #include "railtab/runtime/vsi/integrator.hpp"
@@ -92,7 +93,15 @@ class Run {
   void emit() {
     if (!observer_.record) return;
     const Stopwatch watch = integrator_.times().measure(Phase::output);
-    fill_record(model_, state_, record_);
+    if (!state_.contact.linearised) {
+      fill_record(model_, state_, record_);
+    } else {  // the run goes on with what it had
+      ContactSolution contact = integrator_.evaluated_contact(state_);
+      contact.end_force = state_.contact.end_force;
+      std::swap(state_.contact, contact);
+      fill_record(model_, state_, record_);
+      std::swap(state_.contact, contact);
+    }
     observer_.record(record_);
   }
 
