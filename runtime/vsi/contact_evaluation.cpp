@@ -3,7 +3,6 @@
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
-#include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
 
@@ -24,15 +23,6 @@ WheelContact contact_of_wheel(const WheelContactModel& model, std::size_t wheel,
                         ? ws.found[wheel]
                         : moved_patches(*model.geometry, ws.found[wheel], ws.found_at[wheel], pose);
   return contact;
-}
-
-// Adds a wheel's derivatives to those of its wheelset.
-void add_wheel(const Matrix9& t, int side, Matrix12& tangent) {
-  const int r = 6 + 3 * side;
-  tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
-  tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
-  tangent.block<3, 6>(r, 0) += t.bottomLeftCorner<3, 6>();
-  tangent.block<3, 3>(r, r) += t.bottomRightCorner<3, 3>();
 }
 
 }  // namespace
@@ -89,8 +79,6 @@ void differentiate(const WheelContactModel& model, const ContactProblem& problem
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     Matrix12& tangent = ws.tangent[index(w)];
     tangent.setZero();
-    const bool apart = ws.tangent_rate > 0.0;
-    if (apart) ws.by_displacement[index(w)].setZero();
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
     for (int side = 0; side < 2; ++side) {
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
@@ -99,13 +87,12 @@ void differentiate(const WheelContactModel& model, const ContactProblem& problem
       const Matrix9 t = (start ? problem.mean_weight : 1.0) *
                         wheel_force_tangent(model, wheel_sides[index(side)], motion, rail, s.contact[number],
                                             {problem.velocity_rate, problem.rail_velocity_rate, start});
-      add_wheel(t, side, tangent);
-      if (!apart) continue;
-      add_wheel(wheel_force_tangent(model, wheel_sides[index(side)], motion, rail, s.contact[number],
-                                    {Vector6::Zero(), 0.0, nullptr}),
-                side, ws.by_displacement[index(w)]);
+      const int r = 6 + 3 * side;
+      tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
+      tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
+      tangent.block<3, 6>(r, 0) += t.bottomLeftCorner<3, 6>();
+      tangent.block<3, 3>(r, r) += t.bottomRightCorner<3, 3>();
     }
-    if (apart) ws.by_velocity[index(w)] = (tangent - ws.by_displacement[index(w)]) / ws.tangent_rate;
   }
 }
 
@@ -132,17 +119,6 @@ RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd&
   motion.velocity += problem.predicted_velocity.segment<3>(k) +
                      problem.rail_velocity_rate * (displacement - problem.predicted.segment<3>(k));
   return motion;
-}
-
-ContactSolution contact_at(const VsiModel& model, const VsiState& state) {
-  const ContactProblem problem = present_contact(model, state);
-  WheelContactModel contact = model.contact;
-  contact.speed = model.speed(state.time);
-  ContactSolution now = state.contact;
-  now.displacement = problem.predicted;
-  now.linearised = false;
-  static_cast<void>(evaluate_contact(contact, problem, now));
-  return now;
 }
 
 NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem,

@@ -4,9 +4,6 @@
 
 namespace railtab {
 
-struct VsiModel;
-struct VsiState;
-
 /// Where the published method has its pairs from: its search, or the last one, each pair moving with its bodies.
 enum class Pairs { searched, kept };
 
@@ -23,9 +20,6 @@ struct Wheelsets {
 /// Contact forces at the solution's displacement, and what they are made of.
 ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& solution, NewtonWorkspace& workspace);
-
-/// The contacts as a state has them at its time.
-[[nodiscard]] ContactSolution contact_at(const VsiModel& model, const VsiState& state);
 
 /// df/dq where evaluate() has found the patches.
 void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,

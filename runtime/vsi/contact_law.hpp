@@ -39,9 +39,6 @@ class ContactLaw {
   virtual double correct_far_field(const StepContext& step, StepWorkspace& ws) = 0;
   /// Motion of the vehicles and contact forces at t + Δt.
   virtual void close(const StepContext& step, VsiState& state, StepWorkspace& ws) = 0;
-  /// The contacts at the end of the last accepted step, evaluated anew: where its forces followed Newton's last
-  /// correction by the tangent, they are those of its end within the tolerance, and all else is from before it.
-  [[nodiscard]] virtual ContactSolution evaluated(const VsiState& state) { return state.contact; }
   /// Forgets what the iteration has kept from earlier steps, which no checkpoint has: a run resumed there and one that
   /// goes on are the same to the last bit only if both begin anew.
   virtual void reinitialise() = 0;

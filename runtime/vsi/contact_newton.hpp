@@ -38,9 +38,6 @@ struct ContactSolution {
   std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
   std::vector<WheelContact> contact;  ///< per wheel, of its own (mirrored on the left) side
   std::vector<ContactMemory> memory;  ///< per wheel, what the next step wants to know of this one's end
-  /// Whether the forces have followed Newton's last correction by their tangents: within the tolerance they are those
-  /// at `displacement`. What else is known of the contacts is then as it was before that correction.
-  bool linearised = false;
 };
 
 /// The contact problem of one step, condensed to the contact unknowns q: the linear rest of the train and the structure
@@ -98,53 +95,32 @@ struct NewtonLimits {
 struct GroupNewton {
   bool moved = true;                                                  ///< since its forces were computed
   enum class Turn { rests, goes_back, corrects } turn = Turn::rests;  ///< what its residual asks for
-  bool gains = false;         ///< whether the residual is less than half of that before the last correction
-  bool last = false;          ///< whether its last correction was below the displacement's tolerance
-  bool new_tangent = false;   ///< whether one is wanted before the next correction
-  bool slopes_known = false;  ///< whether by_displacement and by_velocity of NewtonWorkspace are known
+  bool gains = false;        ///< whether the residual is less than half of that before the last correction
+  bool last = false;         ///< whether its last correction was below the displacement's tolerance
+  bool new_tangent = false;  ///< whether one is wanted before the next correction
   double previous = std::numeric_limits<double>::infinity();  ///< largest residual before the last correction [m, rad]
   double part = 1.0;                                          ///< of the last correction that is made
-  double tangent_error = 1.0;  ///< share of a change of the forces by which the tangent has been wrong
   int evaluations = 0;
 };
 
 /// Whether a solution's forces are those at its displacement when its iteration begins.
 enum class InitialForces { unknown, known };
 
-/// Contacts at the end of the last step, the rails' deviations included.
-struct LastContacts {
-  bool known = false;
-  Eigen::VectorXd displacement, velocity, force;  ///< 12 per wheelset
-};
-
 /// Tangents and inverses, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {
   /// The next solution makes its tangents anew: nothing then depends on earlier ones.
-  void forget_tangents() {
-    inverse.clear();
-    last.known = false;
-  }
+  void forget_tangents() { inverse.clear(); }
 
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
-  std::vector<Matrix12> tangent;  ///< per wheelset, df/dq
-  /// Per wheelset, of the force at the end of a step: at fixed velocity, and with respect to the velocity
-  /// (GroupNewton::slopes_known). The tangent also has what the corrections of its own step have taught.
-  std::vector<Matrix12> by_displacement, by_velocity;
-  double tangent_rate = 0.0;                ///< dv/dq of the tangents [1/s]; 0: not of forces at the end of a step
+  std::vector<Matrix12> tangent;            ///< per wheelset, df/dq
   std::vector<Eigen::MatrixXd> compliance;  ///< per group, C
   std::vector<Eigen::MatrixXd> inverse;     ///< per group, of I − C df/dq
   std::vector<GroupNewton> group;
   Eigen::VectorXd residual, correction;
-  Eigen::VectorXd evaluated, evaluated_force;  ///< displacement and force at the last evaluation
-  Eigen::VectorXd before, before_force;        ///< at the one before it
-  Eigen::VectorXd predicted_force;             ///< at the first evaluation, by the last step's tangents
-  LastContacts last;
-  std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
+  Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
+  std::vector<ContactPatches> found;   ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
 };
-
-/// Keeps what the next step's prediction begins with.
-void remember_contacts(const ContactProblem& problem, const ContactSolution& solution, NewtonWorkspace& workspace);
 
 [[nodiscard]] WheelsetMotion wheelset_motion(const ContactProblem& problem, const Eigen::VectorXd& q,
                                              int wheelset) noexcept;

@@ -4,7 +4,6 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
-#include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
@@ -142,16 +141,7 @@ class HertzContacts : public ContactLaw {
     }
     ws.solution.step_load = state.contact.step_load;
     close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
-    remember_contacts(problem_, ws.solution, newton_);
     std::swap(state.contact, ws.solution);
-  }
-
-  ContactSolution evaluated(const VsiState& state) override {
-    ContactSolution contact = state.contact;
-    NewtonWorkspace workspace;
-    const int wheelsets = static_cast<int>(contact.displacement.size()) / wheelset_unknowns;
-    static_cast<void>(evaluate(contact_, problem_, Pairs::searched, {0, wheelsets}, contact, workspace));
-    return contact;
   }
 
   void reinitialise() override { newton_.forget_tangents(); }

@@ -142,8 +142,6 @@ StepReport Integrator::attempt(int level, VsiState& state) {
 StepReport Integrator::solve(int level, const StepLimits& limits, VsiState& state) {
   const double end = state.time + operators_.length(level);
   const StepOperators& op = operators(level, end);
-  // A step that keeps energy begins with the contacts' energy.
-  if (limits.contact_force == ContactForceRule::energy && state.contact.linearised) evaluate_contact_at(model_, state);
   const StepReport report = advance(model_, op, limits, state, *contact_law_, workspace_);
   counts_.newton_iterations += report.newton_iterations;
   counts_.back_substitutions += report.back_substitutions;

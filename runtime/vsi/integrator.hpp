@@ -42,9 +42,6 @@ class Integrator {
   /// From here on as in a run that begins here, with the numbers of a checkpoint alone.
   void reinitialise(VsiState& state);
 
-  /// ContactLaw::evaluated().
-  [[nodiscard]] ContactSolution evaluated_contact(const VsiState& state) { return contact_law_->evaluated(state); }
-
   [[nodiscard]] const StepCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] const StepTimes& times() const noexcept { return times_; }
   [[nodiscard]] StepTimes& times() noexcept { return times_; }

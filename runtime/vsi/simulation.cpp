@@ -4,7 +4,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "railtab/runtime/vsi/derailment.hpp"
 #include "railtab/runtime/vsi/integrator.hpp"
@@ -93,15 +92,7 @@ class Run {
   void emit() {
     if (!observer_.record) return;
     const Stopwatch watch = integrator_.times().measure(Phase::output);
-    if (!state_.contact.linearised) {
-      fill_record(model_, state_, record_);
-    } else {  // the run goes on with what it had
-      ContactSolution contact = integrator_.evaluated_contact(state_);
-      contact.end_force = state_.contact.end_force;
-      std::swap(state_.contact, contact);
-      fill_record(model_, state_, record_);
-      std::swap(state_.contact, contact);
-    }
+    fill_record(model_, state_, record_);
     observer_.record(record_);
   }
 

@@ -1,6 +1,5 @@
 #include "railtab/runtime/vsi/step.hpp"
 
-#include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
 
@@ -121,7 +120,12 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
 void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   if (model.normal_contact == NormalContact::rigid) return;
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
-  ContactSolution now = contact_at(model, state);
+  const ContactProblem problem = present_contact(model, state);
+  WheelContactModel contact = model.contact;
+  contact.speed = model.speed(state.time);
+  ContactSolution now = state.contact;
+  now.displacement = problem.predicted;
+  static_cast<void>(evaluate_contact(contact, problem, now));
   for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
     Eigen::VectorXd& load = state.vehicle[static_cast<std::size_t>(v)].contact_load;
     scatter_wheelset_forces(model, v, now.end_force, load);
@@ -132,7 +136,6 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   state.contact.memory = std::move(now.memory);
   state.contact.normal = std::move(now.normal);
   state.contact.contact = std::move(now.contact);
-  state.contact.linearised = false;
 }
 
 std::unique_ptr<ContactLaw> make_contact_law(const VsiModel& model) {
