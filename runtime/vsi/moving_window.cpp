@@ -46,12 +46,11 @@ bool alike(const Sparse& a, const Sparse& b) {
 /// The modes of spans, once for spans that are alike.
 class SharedModes {
  public:
-  const ModalBasis& of(Sparse stiffness, Sparse mass) {
+  const ModalBasis& of(const Sparse& stiffness, const Sparse& mass) {
     for (const Span& span : known_) {
       if (alike(span.stiffness, stiffness) && alike(span.mass, mass)) return span.modes;
     }
-    ModalBasis modes = lowest_modes(stiffness, mass, span_modes, 1e-6);
-    known_.push_back({std::move(stiffness), std::move(mass), std::move(modes)});
+    known_.push_back({stiffness, mass, lowest_modes(stiffness, mass, span_modes, 1e-6)});
     return known_.back().modes;
   }
 
