@@ -9,6 +9,7 @@ set(railtab_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/railtab)
 
 set(railtab_contact_headers
   runtime/base/input_error.hpp
+  runtime/base/pack.hpp
   tables/creep_table.hpp
   tables/geometry_leaf.hpp
   tables/geometry_table.hpp
@@ -43,7 +44,7 @@ set(railtab_solver_headers
 
 set(railtab_contact_layers base tables profile contact)
 set(railtab_contact_files_layers table_files contact_files)
-set(railtab_solver_layers algebra fe measures vehicle assessment structure moving_load line vsi start stability results scene solver)
+set(railtab_solver_layers algebra fe measures reliability vehicle assessment structure moving_load line vsi start stability results scene solver)
 foreach(component contact contact_files solver)
   list(TRANSFORM railtab_${component}_layers PREPEND railtab_ OUTPUT_VARIABLE layers)
   install(TARGETS ${layers} EXPORT railtab_${component})

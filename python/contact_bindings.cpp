@@ -21,8 +21,6 @@ struct ContactRow {
 
 namespace {
 
-constexpr double largest_load = 1e7;  // N
-
 using OptionalDoubles = std::optional<Doubles>;
 
 /// Poses of a wheelset, given by the lowering below first touch, the height of its centre, or the load.
@@ -49,36 +47,15 @@ class Poses {
   /// @throws InputError where wheel and rail never meet, or the lowering or the load is out of range
   [[nodiscard]] WheelsetPose operator()(py::ssize_t i) const {
     const double vertical = rows_.value(vertical_, i);
-    WheelsetPose pose{rows_.value(y_, i), vertical, rows_.value(roll_, i), rows_.value(yaw_, i)};
+    const WheelsetPose pose{rows_.value(y_, i), vertical, rows_.value(roll_, i), rows_.value(yaw_, i)};
     if (by_ == By::height) return pose;
-    pose.z = geometry_.search().touch_height(pose.y, pose.roll, pose.yaw);
-    if (!std::isfinite(pose.z)) {
-      throw error(
-          i, fmt::format("y = {}, yaw = {}, roll = {}, where wheel and rail never meet", pose.y, pose.yaw, pose.roll),
-          "a position on the rail");
-    }
-    pose.z += by_ == By::lowering ? lowering(i, vertical) : lowering_under(i, pose, vertical);
-    return pose;
+    return lowered_pose(geometry_.search(), geometry_.contact(), pose,
+                        by_ == By::lowering ? Lowering::given : Lowering::under_load, vertical,
+                        [&] { return fmt::format("{}: query {}", rows_.call(), i); })
+        .pose;
   }
 
  private:
-  [[nodiscard]] InputError error(py::ssize_t i, const std::string& found, const std::string& expected) const {
-    return input_error(fmt::format("{}: query {}", rows_.call(), i), found, expected);
-  }
-  [[nodiscard]] double lowering(py::ssize_t i, double dz) const {
-    if (dz >= 0.0 && dz <= deepest_lowering) return dz;
-    throw error(i, fmt::format("dz = {}", dz), fmt::format("0 to {} m below first touch", deepest_lowering));
-  }
-  [[nodiscard]] double lowering_under(py::ssize_t i, const WheelsetPose& touch, double load) const {
-    if (!(load > 0.0 && load <= largest_load)) {
-      throw error(i, fmt::format("load = {}", load), fmt::format("above 0, at most {} N", largest_load));
-    }
-    const std::optional<double> found = lowering_under_load(geometry_.contact(), touch, load);
-    if (found) return *found;
-    throw error(i, fmt::format("load = {} N, not carried {} m below first touch", load, deepest_lowering),
-                "a load that the contact carries");
-  }
-
   const Geometry& geometry_;
   Rows rows_;
   By by_ = By::lowering;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
+#include "railtab/runtime/contact/frictionless_contact.hpp"
 #include "railtab/runtime/contact_files/contact_table_file.hpp"
 
 namespace railtab::python {
@@ -20,9 +21,6 @@ class Geometry {
   [[nodiscard]] virtual const ContactSearch& search() const noexcept = 0;
   [[nodiscard]] const ContactGeometry& contact() const noexcept { return contact_; }
 
- protected:
-  static constexpr double rounding = 1e-13;  ///< of the height of first touch [m]
-
  private:
   ContactGeometry contact_;
 };
@@ -31,7 +29,7 @@ class TableGeometry : public Geometry {
  public:
   explicit TableGeometry(ContactTable table) : Geometry(std::move(table.geometry)), table_(std::move(table.patches)) {}
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose) const noexcept override {
-    return table_.patches(pose, rounding);
+    return table_.patches(pose, touch_rounding);
   }
   [[nodiscard]] const ContactSearch& search() const noexcept override { return table_.search(); }
   [[nodiscard]] const GeometryTable& table() const noexcept { return table_.table(); }
@@ -44,7 +42,7 @@ class SearchGeometry : public Geometry {
  public:
   explicit SearchGeometry(ContactSearch search) : Geometry(ContactGeometry(search)), search_(std::move(search)) {}
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose) const noexcept override {
-    return search_.patches(pose, rounding);
+    return search_.patches(pose, touch_rounding);
   }
   [[nodiscard]] const ContactSearch& search() const noexcept override { return search_; }
 

@@ -71,6 +71,7 @@ struct LoadedTable::Weights {
   static constexpr std::size_t most = most_nodes * most_nodes;
   std::size_t columns;
   std::array<std::array<Pack, 2>, most> column;  ///< over Direction, of which the last two are idle
+  std::array<double, 2 * most> twice;            ///< of the values, each for a quantity and its slope
 
   Weights(const LoadedTable& table, double roll, double yaw) noexcept : columns(table.data_.columns()) {
     const LoadedTableData& data = table.data_;
@@ -82,6 +83,7 @@ struct LoadedTable::Weights {
         column[k][0] =
             Pack{r.value[i] * s.value[j], r.first[i] * s.value[j], r.value[i] * yaw_1, r.second[i] * s.value[j]};
         column[k][1] = Pack{r.first[i] * yaw_1, r.value[i] * yaw_2, 0.0, 0.0};
+        twice[2 * k] = twice[2 * k + 1] = column[k][0][here];
       }
     }
   }
@@ -136,26 +138,34 @@ LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
     while (node + 2 < data_.lateral.size() && data_.lateral[node + 1] <= y0) ++node;
     bucket_.push_back(static_cast<std::uint32_t>(node));
   }
-  const std::size_t middle = static_cast<std::size_t>(data_.levels) / 3;
-  for (std::size_t i = 0; i < data_.lateral.size(); ++i) {
-    const std::size_t first = 4 * i * static_cast<std::size_t>(data_.levels) * columns;
-    const double rise = static_cast<double>(data_.height[first + 4 * middle * columns]);
-    steepness_.push_back(rise / std::pow(static_cast<double>(middle) * level_step_, 2));
-  }
+  const std::size_t middle = data_.roll.size() / 2 * data_.yaw_squared.size();
+  for (std::size_t i = 0; i < nodes; ++i) rise_.push_back(data_.height[4 * (i * columns + middle)]);
 }
 
 std::size_t LoadedTable::bytes() const noexcept {
   return sizeof(double) * (data_.shift.size() + data_.touch.size() + data_.lateral.size()) +
-         sizeof(float) * (data_.height.size() + data_.pressed.size() + data_.part.size()) +
+         sizeof(float) * (data_.height.size() + data_.pressed.size() + data_.part.size() + rise_.size()) +
          sizeof(std::size_t) * part_at_.size();
 }
 
 bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) const noexcept {
   // y and its derivative at a node.
   const auto place = [&](std::size_t node, double& derivative) {
-    double at = 0.0, slope = 0.0;
     const double* const shift = &data_.shift[2 * node * weights.columns];
-    for (std::size_t k = 0; k < weights.columns; ++k) {
+    Pack even{}, odd{}, a, b;
+    std::size_t k = 0;
+    for (; k + 4 <= weights.columns; k += 4) {
+      const double *const from = shift + 2 * k, *const weight = &weights.twice[2 * k];
+      std::memcpy(&a, from, sizeof a);
+      std::memcpy(&b, weight, sizeof b);
+      even += a * b;
+      std::memcpy(&a, from + 4, sizeof a);
+      std::memcpy(&b, weight + 4, sizeof b);
+      odd += a * b;
+    }
+    even += odd;
+    double at = even[0] + even[2], slope = even[1] + even[3];
+    for (; k < weights.columns; ++k) {
       at += weights.value(k) * shift[2 * k];
       slope += weights.value(k) * shift[2 * k + 1];
     }
@@ -186,12 +196,13 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
   cell.width = data_.lateral[high] - data_.lateral[low];
   if (!(y >= corner[0] && y <= corner[2])) return false;
   double t = (y - corner[0]) / (corner[2] - corner[0]);
-  for (int iteration = 0; iteration < 20; ++iteration) {  // nearly linear: two or three suffice
+  constexpr double root = 1e-8;  // of rounding: Newton's next correction is less than its square
+  for (int iteration = 0; iteration < 20; ++iteration) {  // nearly linear: two suffice
     const HermiteBasis basis(t, cell.width);
     const double change =
         (HermiteBasis::sum(basis.value, corner) - y) / (HermiteBasis::sum(basis.first, corner) * cell.width);
     t -= change;
-    if (std::abs(change) < 1e-13) break;
+    if (std::abs(change) < root) break;
   }
   cell.t = std::clamp(t, 0.0, 1.0);
   cell.across = HermiteBasis(cell.t, cell.width);
@@ -202,9 +213,9 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
   return true;
 }
 
-double LoadedTable::height_at(const Cell& cell, int level, const Weights& weights) const noexcept {
+double LoadedTable::touch_height(const Cell& cell, const Weights& weights) const noexcept {
   const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
-  const float* const low = &data_.height[4 * (cell.lateral * levels + static_cast<std::size_t>(level)) * columns];
+  const float* const low = &data_.height[4 * cell.lateral * levels * columns];
   const float* const high = low + 4 * levels * columns;
   Pack at_low{}, at_high{};  // value and slope across are the first and the third
   for (std::size_t k = 0; k < columns; ++k) {
@@ -219,19 +230,23 @@ double LoadedTable::height_at(const Cell& cell, int level, const Weights& weight
          basis[3] * at_high[2];
 }
 
-bool LoadedTable::find_level(double z, const Weights& weights, Cell& cell) const noexcept {
-  const double touch = height_at(cell, 0, weights);
-  if (z <= touch) {
-    cell.level = -1;
-    return true;
-  }
-  const double steepness = (1.0 - cell.t) * steepness_[cell.lateral] + cell.t * steepness_[cell.lateral + 1];
-  const double guess = std::sqrt((z - touch) / steepness) / level_step_;
-  int level = std::clamp(static_cast<int>(std::min(guess, 1e6)), 0, data_.levels - 2);
-  while (level > 0 && height_at(cell, level, weights) > z) --level;
-  while (level < data_.levels - 1 && height_at(cell, level + 1, weights) <= z) ++level;
+void LoadedTable::find_level(double z, const Weights& weights, Cell& cell) const noexcept {
+  const double touch = touch_height(cell, weights);
+  cell.level = -1;
+  if (z <= touch) return;
+  // By the rise of the middle column; found() goes on from there.
+  const double above = z - touch;
+  const auto levels = static_cast<std::size_t>(data_.levels);
+  const float *const low = &rise_[cell.lateral * levels], *const high = low + levels;
+  const auto rise = [&](int level) {
+    const auto k = static_cast<std::size_t>(level);
+    return (1.0 - cell.t) * static_cast<double>(low[k]) + cell.t * static_cast<double>(high[k]);
+  };
+  const double share = std::sqrt(above / rise(data_.levels - 1));
+  int level = std::clamp(static_cast<int>(std::min(share, 1.0) * (data_.levels - 1)), 0, data_.levels - 2);
+  while (level > 0 && rise(level) > above) --level;
+  while (level < data_.levels - 2 && rise(level + 1) <= above) ++level;
   cell.level = level;
-  return level < data_.levels - 1;
 }
 
 /// The place along the energy and how it and y0 follow the pose (y, z, roll, yaw).
@@ -386,6 +401,49 @@ double LoadedTable::margin_share(double roll, double yaw) const noexcept {
   return share * smooth_step((largest - yaw * yaw) / (border * largest));
 }
 
+/// The corners' values, slopes along w and y0 and mixed derivatives, in the directions that are wanted: of the lower
+/// lateral node at both levels, then of the upper one.
+template <bool slopes>
+void LoadedTable::add_corners(const Cell& cell, const Weights& weights, Pack (*corner)[6]) const noexcept {
+  static_assert(directions == 6);
+  constexpr std::size_t wanted = slopes ? directions : by_yaw + 1, packs = slopes ? 2 : 1;
+  const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
+  for (std::size_t lateral = 0; lateral < 2; ++lateral) {
+    const std::size_t node = cell.lateral + lateral;
+    const float* const height = &data_.height[4 * (node * levels + static_cast<std::size_t>(cell.level)) * columns];
+    const double* const touch = &data_.touch[node * columns];
+    Pack touches[2]{}, at_low[wanted]{}, at_high[wanted]{};
+    for (std::size_t k = 0; k < columns; ++k) {
+      const auto& weight = weights.column[k];
+      Pack below, above;
+      widen(height + 4 * k, below);
+      widen(height + 4 * (columns + k), above);
+      for (std::size_t d = 0; d < wanted; ++d) {
+        at_low[d] += weight[d / 4][d % 4] * below;
+        at_high[d] += weight[d / 4][d % 4] * above;
+      }
+      for (std::size_t q = 0; q < packs; ++q) touches[q] += touch[k] * weight[q];
+    }
+    for (std::size_t d = 0; d < wanted; ++d) {
+      at_low[d][0] += touches[d / 4][d % 4];
+      at_high[d][0] += touches[d / 4][d % 4];
+      corner[2 * lateral][d] = at_low[d];
+      corner[2 * lateral + 1][d] = at_high[d];
+    }
+  }
+}
+
+namespace {
+
+/// Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
+std::array<double, 4> across_at(const Pack (*corner)[6], const std::array<double, 4>& basis, Direction d) noexcept {
+  const Pack below{basis[0], basis[0], basis[1], basis[1]}, above{basis[2], basis[2], basis[3], basis[3]};
+  const Pack low = below * corner[0][d] + above * corner[2][d], high = below * corner[1][d] + above * corner[3][d];
+  return {low[0] + low[2], low[1] + low[3], high[0] + high[2], high[1] + high[3]};
+}
+
+}  // namespace
+
 template <bool slopes>
 LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, LoadedSlopes* derivatives) const noexcept {
   LoadedLookup result;
@@ -397,72 +455,57 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   const double y0 = data_.lateral[cell.lateral] + cell.t * cell.width;
   const double lateral_range = data_.lateral.back() - data_.lateral.front();
   inside *= smooth_step(std::min(y0 - data_.lateral.front(), data_.lateral.back() - y0) / (border * lateral_range));
-  if (!(inside > 0.0) || !find_level(z, weights, cell)) return result;
+  if (!(inside > 0.0)) return result;
+  find_level(z, weights, cell);
   if (cell.level < 0) {
     result.table_share = inside;
     return result;
   }
 
-  fetch_parts(cell, roll, yaw);
-  // The corners' values, slopes along w and y0 and mixed derivatives, with their derivatives along roll and yaw.
-  const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
-  constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
-  constexpr std::size_t packs = slopes ? 2 : 1;
-  Pack corner[4][directions]{};
-  Pack shift[4][2]{};  // over the directions: y and ∂y/∂y0 of the lower lateral node, then of the upper one
-  for (std::size_t lateral = 0; lateral < 2; ++lateral) {
-    const std::size_t node = cell.lateral + lateral;
-    const float* const height = &data_.height[4 * (node * levels + static_cast<std::size_t>(cell.level)) * columns];
-    const double* const touch = &data_.touch[node * columns];
-    const double* const place = &data_.shift[2 * node * columns];
-    Pack touches[2]{};
-    for (std::size_t k = 0; k < columns; ++k) {
-      const auto& weight = weights.column[k];
-      Pack below, above;
-      widen(height + 4 * k, below);
-      widen(height + 4 * (columns + k), above);
-      for (std::size_t d = 0; d < wanted; ++d) {
-        corner[2 * lateral][d] += weight[d / 4][d % 4] * below;
-        corner[2 * lateral + 1][d] += weight[d / 4][d % 4] * above;
-      }
-      for (std::size_t q = 0; q < packs; ++q) {
-        shift[2 * lateral][q] += place[2 * k] * weight[q];
-        shift[2 * lateral + 1][q] += place[2 * k + 1] * weight[q];
-        touches[q] += touch[k] * weight[q];
-      }
-    }
-    for (std::size_t d = 0; d < wanted; ++d) {
-      corner[2 * lateral][d][0] += touches[d / 4][d % 4];
-      corner[2 * lateral + 1][d][0] += touches[d / 4][d % 4];
+  const HermiteBasis& t = cell.across;
+  Pack corner[4][directions];
+  std::array<double, 4> line;
+  for (int moved = 0;;) {
+    add_corners<slopes>(cell, weights, corner);
+    line = across_at(corner, t.value, here);
+    if (z < line[0] && cell.level > 0 && moved <= 0) {
+      moved = -1;
+      --cell.level;
+    } else if (z >= line[2] && moved >= 0) {
+      if (cell.level == data_.levels - 2) return result;
+      moved = 1;
+      ++cell.level;
+    } else {
+      break;
     }
   }
-  const HermiteBasis& t = cell.across;
-  // Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
-  const auto across_at = [&](const std::array<double, 4>& basis, Direction d) {
-    const std::array<double, 4> r{basis[0] * corner[0][d][0] + basis[1] * corner[0][d][2] + basis[2] * corner[2][d][0] +
-                                      basis[3] * corner[2][d][2],
-                                  basis[0] * corner[0][d][1] + basis[1] * corner[0][d][3] + basis[2] * corner[2][d][1] +
-                                      basis[3] * corner[2][d][3],
-                                  basis[0] * corner[1][d][0] + basis[1] * corner[1][d][2] + basis[2] * corner[3][d][0] +
-                                      basis[3] * corner[3][d][2],
-                                  basis[0] * corner[1][d][1] + basis[1] * corner[1][d][3] + basis[2] * corner[3][d][1] +
-                                      basis[3] * corner[3][d][3]};
-    return r;
-  };
+  fetch_parts(cell, roll, yaw);
+  constexpr std::size_t packs = slopes ? 2 : 1;
+  Pack shift[4][2]{};  // over the directions: y and ∂y/∂y0 of the lower lateral node, then of the upper one
+  for (std::size_t lateral = 0; lateral < 2; ++lateral) {
+    const double* const place = &data_.shift[2 * (cell.lateral + lateral) * weights.columns];
+    for (std::size_t k = 0; k < weights.columns; ++k) {
+      for (std::size_t q = 0; q < packs; ++q) {
+        shift[2 * lateral][q] += place[2 * k] * weights.column[k][q];
+        shift[2 * lateral + 1][q] += place[2 * k + 1] * weights.column[k][q];
+      }
+    }
+  }
   const auto& sum = HermiteBasis::sum;
-  const std::array<double, 4> line = across_at(t.value, here);
   // The level: the root of a cubic that grows from z or less to z or more.
   double low = 0.0, high = 1.0, u = (z - line[0]) / (line[2] - line[0]);
   if (cell.level == 0) u = std::sqrt(std::max(0.0, u));
+  constexpr double rounding = 1e-13, root = 1e-8;  // of a place; Newton's next correction is less than its square
   for (int iteration = 0; iteration < 60; ++iteration) {
     const HermiteBasis basis(u, level_step_);
     const double excess = sum(basis.value, line) - z, slope = sum(basis.first, line) * level_step_;
     (excess > 0.0 ? high : low) = u;
     double next = u - excess / slope;
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    const bool within = next >= low && next <= high;
+    if (!within) next = 0.5 * (low + high);
     const double change = std::abs(next - u);
     u = next;
-    if (change < 1e-13) break;  // rounding of a place
+    if (change < rounding || (within && change < root * u)) break;
   }
   cell.u = u;
   const double w = (cell.level + u) * level_step_;
@@ -475,8 +518,8 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   };
   const double Y_y0 = along(t.first, here), Z_w = sum(level.first, line);
   if (!(Z_w > 0.0)) return result;
-  const std::array<double, 4> line_y = across_at(t.first, here);
-  const std::array<double, 4> line_r = across_at(t.value, by_roll), line_s = across_at(t.value, by_yaw);
+  const std::array<double, 4> line_y = across_at(corner, t.first, here);
+  const std::array<double, 4> line_r = across_at(corner, t.value, by_roll), line_s = across_at(corner, t.value, by_yaw);
   const double Z_y = sum(level.value, line_y);
   const Eigen::Vector4d y0_1(1.0 / Y_y0, 0.0, -along(t.value, by_roll) / Y_y0, -along(t.value, by_yaw) / Y_y0);
   const Eigen::Vector4d Z_1 =
@@ -488,7 +531,7 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   result.force = 5.0 * w3 * w * w_1;
   if constexpr (slopes) {
     const auto Z = [&](const std::array<double, 4>& at_w, const std::array<double, 4>& at_y, Direction d) {
-      return sum(at_w, across_at(at_y, d));
+      return sum(at_w, across_at(corner, at_y, d));
     };
     const auto symmetric = [](const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
       return Eigen::Matrix4d(a * b.transpose() + b * a.transpose());

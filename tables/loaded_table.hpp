@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "railtab/runtime/base/pack.hpp"
+
 namespace railtab {
 
 /// The loaded contact of a pair: the half-space solution over all poses of a wheelset against its right rail head.
@@ -130,8 +132,11 @@ class LoadedTable {
                                    LoadedSlopes* derivatives) const noexcept;
   [[nodiscard]] double margin_share(double roll, double yaw) const noexcept;
   [[nodiscard]] bool find_lateral(double y, const Weights& weights, Cell& cell) const noexcept;
-  [[nodiscard]] double height_at(const Cell& cell, int level, const Weights& weights) const noexcept;
-  [[nodiscard]] bool find_level(double z, const Weights& weights, Cell& cell) const noexcept;
+  [[nodiscard]] double touch_height(const Cell& cell, const Weights& weights) const noexcept;
+  /// The level below z or one near it; -1 without contact.
+  void find_level(double z, const Weights& weights, Cell& cell) const noexcept;
+  template <bool slopes>
+  void add_corners(const Cell& cell, const Weights& weights, Pack (*corner)[6]) const noexcept;
   /// Asks the memory for what add_parts() will read of the first part.
   void fetch_parts(const Cell& cell, double roll, double yaw) const noexcept;
   template <bool slopes>
@@ -139,7 +144,7 @@ class LoadedTable {
                  LoadedSlopes* derivatives) const noexcept;
 
   LoadedTableData data_;
-  std::vector<double> steepness_;      ///< of each lateral node, (z − z_touch)/w², for the first guess of a level
+  std::vector<float> rise_;            ///< of each (lateral, level), z − z_touch in the middle of roll at yaw 0
   std::vector<std::size_t> part_at_;   ///< of each (lateral, level), where its parts begin
   std::vector<std::uint32_t> bucket_;  ///< of equal stretches of y0, the node at or below their beginning
   std::vector<double> inverse_roll_, inverse_yaw_;  ///< inverse distances between nodes of roll, and of yaw²

@@ -7,10 +7,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <set>
 #include <utility>
-
-#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
 
@@ -149,15 +146,6 @@ class Division {
   }
 
  private:
-  template <class Visitor>
-  void visit_entries(Visitor&& visitor) const {  // of the range
-    const DofRange& range = layout_.range;
-    for (Eigen::Index j = range.begin; j < range.end(); ++j) {
-      for (Sparse::InnerIterator entry(matrix_, j); entry; ++entry) {
-        if (entry.row() >= range.begin && entry.row() < range.end()) visitor(entry.row(), j);
-      }
-    }
-  }
   [[nodiscard]] int section(Eigen::Index unknown) const {
     return section_[static_cast<std::size_t>(unknown - layout_.range.begin)];
   }
@@ -169,7 +157,7 @@ class Division {
   bool find_interfaces() {
     layout_.place.assign(section_.size(), {0, -1});
     bool neighbours = true;
-    visit_entries([&](Eigen::Index i, Eigen::Index j) {
+    visit_entries(matrix_, layout_.range, [&](Eigen::Index i, Eigen::Index j, double) {
       if (section(i) >= section(j)) return;
       neighbours = neighbours && section(i) == section(j) - 1;
       place(j).section = -1;
@@ -186,7 +174,7 @@ class Division {
       }
     }
     // An interface unknown acts upon the sections on both sides of its cut and on no other.
-    visit_entries([&](Eigen::Index i, Eigen::Index j) {
+    visit_entries(matrix_, layout_.range, [&](Eigen::Index i, Eigen::Index j, double) {
       if (place(i).section >= 0 || place(j).section < 0) return;
       const int cut = section(i), beside = place(j).section;
       neighbours = neighbours && (beside == cut || beside == cut - 1);
@@ -257,8 +245,7 @@ class Division {
   void order_slots() {
     const int n = layout_.slots, all = n + layout_.borders;
     std::vector<Eigen::Triplet<double>> entries;
-    visit_entries([&](Eigen::Index i, Eigen::Index j) {
-      const SectionLayout::EntryPlace p = layout_.place_entry(i, j);
+    layout_.visit_places(matrix_, [&](const SectionLayout::EntryPlace& p, double) {
       if (p.section < 0) return;
       entries.emplace_back(p.row, p.column, 1.0);
       if (p.row != p.column) entries.emplace_back(p.column, p.row, 1.0);
@@ -296,12 +283,12 @@ class Division {
       const SectionLayout::Place &p = place(u), &q = place(v);
       if (p.section != q.section) return false;
       if (p.section < 0) continue;
+      if (other[static_cast<std::size_t>(p.number)] < 0) layout_.paired_slots.push_back({p.number, q.number});
       for (const auto& [one, two] : {std::pair{p.number, q.number}, std::pair{q.number, p.number}}) {
         int& known = other[static_cast<std::size_t>(one)];
         if (known >= 0 && known != two) return false;
         known = two;
       }
-      first_.insert(p.number);
     }
     layout_.unknown.assign(static_cast<std::size_t>(layout_.border_begin()), -1);
     for (Eigen::Index i = layout_.range.begin; i < layout_.range.end(); ++i) {
@@ -313,12 +300,7 @@ class Division {
     }
     find_consecutive();
     for (int slot = 0; slot < layout_.slots; ++slot) {
-      const int paired = other[static_cast<std::size_t>(slot)];
-      if (paired < 0) {
-        layout_.single_slots.push_back(slot);
-      } else if (first_.contains(slot)) {
-        layout_.paired_slots.push_back({slot, paired});
-      }
+      if (other[static_cast<std::size_t>(slot)] < 0) layout_.single_slots.push_back(slot);
     }
     return true;
   }
@@ -328,7 +310,6 @@ class Division {
   const Cuts& cuts_;
   SectionLayout layout_;
   std::vector<int> section_;  // of the unknowns in the range
-  std::set<int> first_;       // slots of the first unknowns of pairs
 };
 
 /// Element i of each of eight vectors as the vector i.
@@ -353,8 +334,7 @@ void transpose(std::array<Lanes, 8>& r) noexcept {
 }  // namespace
 
 Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
-  constexpr double root = 0.70710678118654752440;  // √½
-  constexpr double nothing = 1e-14;                // of the entries that it comes from
+  constexpr double nothing = 1e-14;  // of the entries that it comes from
   std::vector<int> other(static_cast<std::size_t>(matrix.rows()), -1);
   for (const auto& [u, v] : pairs) {
     other[static_cast<std::size_t>(u)] = v;
@@ -381,8 +361,8 @@ Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
     if (twin < 0) {
       add(j, 1.0);
     } else {
-      add(std::min(j, twin), root);
-      add(std::max(j, twin), j < twin ? root : -root);
+      add(std::min(j, twin), root_half);
+      add(std::max(j, twin), j < twin ? root_half : -root_half);
     }
     for (const int i : touched) {
       const auto row = static_cast<std::size_t>(i);
@@ -391,9 +371,9 @@ Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
         keep(i, j, sum[row], size[row]);
       } else if (const auto last = static_cast<std::size_t>(pair); i < pair || size[last] == 0.0) {
         const auto [u, v] = std::minmax(row, last);
-        const double of = root * (size[u] + size[v]);
-        keep(static_cast<int>(u), j, root * (sum[u] + sum[v]), of);
-        keep(static_cast<int>(v), j, root * (sum[u] - sum[v]), of);
+        const double of = root_half * (size[u] + size[v]);
+        keep(static_cast<int>(u), j, root_half * (sum[u] + sum[v]), of);
+        keep(static_cast<int>(v), j, root_half * (sum[u] - sum[v]), of);
       }
     }
     for (const int i : touched) sum[static_cast<std::size_t>(i)] = size[static_cast<std::size_t>(i)] = 0.0;
@@ -405,10 +385,9 @@ Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
 }
 
 void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const {
-  constexpr double root = 0.70710678118654752440;  // √½
   double* const to = ordered.data();
   const double* const from = natural.data();
-  auto* const slot = reinterpret_cast<Lanes*>(to);  // NOLINT: Eigen aligns to 64 bytes
+  Lanes* const slot = lanes(ordered);
   const auto gather = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) to[k] = unknown[k] < 0 ? 0.0 : from[unknown[k]];
   };
@@ -426,8 +405,8 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
   gather(eight * consecutive.size(), unknown.size());
   for (const auto& [one, two] : paired_slots) {
     const Lanes u = slot[one], v = slot[two];
-    slot[one] = root * (u + v);
-    slot[two] = root * (u - v);
+    slot[one] = root_half * (u + v);
+    slot[two] = root_half * (u - v);
   }
   for (std::size_t k = 0; k < interfaces.size(); ++k) {
     to[interface_begin() + static_cast<Eigen::Index>(k)] =
@@ -436,9 +415,8 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
 }
 
 void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
-  constexpr double root = 0.70710678118654752440;  // √½
   double* const to = natural.data();
-  const auto* const slot = reinterpret_cast<const Lanes*>(ordered.data());  // NOLINT: Eigen aligns to 64 bytes
+  const Lanes* const slot = lanes(ordered);
   const auto write = [&](int number, const Lanes& value) {
     const int* const of = &unknown[static_cast<std::size_t>(sections * number)];
     for (int s = 0; s < sections; ++s) {
@@ -447,8 +425,8 @@ void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natu
   };
   for (int number : single_slots) write(number, slot[number]);
   for (const auto& [one, two] : paired_slots) {
-    write(one, root * (slot[one] + slot[two]));
-    write(two, root * (slot[one] - slot[two]));
+    write(one, root_half * (slot[one] + slot[two]));
+    write(two, root_half * (slot[one] - slot[two]));
   }
   for (const Interface& f : interfaces) {
     to[f.unknown] = combined(f.unknown, [&](Eigen::Index k) { return ordered[position(k)]; });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "railtab/runtime/base/dof_range.hpp"
+#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
 
@@ -21,6 +22,25 @@ struct UnknownPlaces {
 /// Pairs of unknowns u, v that take part by (u + v)/√2, in the place of the first, and (u − v)/√2: of both rails, in
 /// which a symmetric track falls apart into a vertical and a lateral system.
 using MirrorPairs = std::vector<std::array<int, 2>>;
+inline constexpr double root_half = 0.70710678118654752440;  ///< √½
+
+/// The eight numbers of every slot in a vector of a SectionLayout, which Eigen aligns to 64 bytes.
+[[nodiscard]] inline const Lanes* lanes(const Eigen::VectorXd& vector) noexcept {
+  return reinterpret_cast<const Lanes*>(vector.data());  // NOLINT
+}
+[[nodiscard]] inline Lanes* lanes(Eigen::VectorXd& vector) noexcept {
+  return reinterpret_cast<Lanes*>(vector.data());  // NOLINT
+}
+
+/// Calls visitor(i, j, value) for the entries of a matrix whose row and column lie in a range.
+template <class Visitor>
+void visit_entries(const Eigen::SparseMatrix<double>& matrix, const DofRange& range, Visitor&& visitor) {
+  for (Eigen::Index j = range.begin; j < range.end(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, j); entry; ++entry) {
+      if (entry.row() >= range.begin && entry.row() < range.end()) visitor(entry.row(), j, entry.value());
+    }
+  }
+}
 
 /// TᵀAT with the orthogonal T of the pairs, without entries that are zero.
 [[nodiscard]] Eigen::SparseMatrix<double> by_sums_and_differences(const Eigen::SparseMatrix<double>& matrix,
@@ -71,10 +91,9 @@ struct SectionLayout {
   /// or the difference of its pair. Its inverse is itself.
   template <class Value>
   [[nodiscard]] double combined(Eigen::Index u, Value&& value) const {
-    constexpr double root = 0.70710678118654752440;  // √½
     const int other = mirrored[static_cast<std::size_t>(u - range.begin)];
     if (other < 0) return value(u);
-    return other > u ? root * (value(u) + value(other)) : root * (value(other) - value(u));
+    return other > u ? root_half * (value(u) + value(other)) : root_half * (value(other) - value(u));
   }
   /// Sets the slots and the interface unknowns.
   void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const;
@@ -90,6 +109,12 @@ struct SectionLayout {
     int section, row, column;
   };
   [[nodiscard]] EntryPlace place_entry(Eigen::Index i, Eigen::Index j) const noexcept;
+  /// Calls visitor(EntryPlace, value) for the entries of a matrix in the range.
+  template <class Visitor>
+  void visit_places(const Eigen::SparseMatrix<double>& matrix, Visitor&& visitor) const {
+    visit_entries(matrix, range,
+                  [&](Eigen::Index i, Eigen::Index j, double value) { visitor(place_entry(i, j), value); });
+  }
 };
 
 /// Cuts the unknowns in a range into sections, slots numbered along x. Cuts stand at nodes of the sparsest line that

@@ -14,12 +14,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 constexpr int side_by_side = SectionLayout::sections;
 
-// Of a vector in the layout: the eight numbers of a slot.
-const Lanes* lanes(const Eigen::VectorXd& vector) noexcept {
-  return reinterpret_cast<const Lanes*>(vector.data());  // NOLINT: Eigen aligns to 64 bytes
-}
-Lanes* lanes(Eigen::VectorXd& vector) noexcept { return reinterpret_cast<Lanes*>(vector.data()); }  // NOLINT
-
 /// Columns of the factor as a substitution reads them, in the order of elimination; their slots and rows.
 struct LaneColumns {
   const int* slot;
@@ -74,22 +68,17 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
   for (Lanes& d : numbers.diagonal) {
     for (int s = 0; s < side_by_side; ++s) d[s] = 1.0;  // of a section that lacks the unknown
   }
-  for (Eigen::Index j = l.range.begin; j < l.range.end(); ++j) {
-    for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
-      const Eigen::Index i = entry.row();
-      if (i < l.range.begin || i >= l.range.end()) continue;
-      const SectionLayout::EntryPlace p = l.place_entry(i, j);
-      if (p.section < 0) {
-        numbers.of_interfaces.emplace_back(p.row, p.column, entry.value());
-      } else if (const int row = rank(p.row), column = rank(p.column); row == column) {
-        numbers.diagonal[static_cast<std::size_t>(row)][p.section] = entry.value();
-      } else if (row > column) {
-        const auto first = row_.begin() + begin_[static_cast<std::size_t>(column)];
-        const auto last = row_.begin() + begin_[static_cast<std::size_t>(column + 1)];
-        value_[static_cast<std::size_t>(std::lower_bound(first, last, row) - row_.begin())][p.section] = entry.value();
-      }
+  l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double value) {
+    if (p.section < 0) {
+      numbers.of_interfaces.emplace_back(p.row, p.column, value);
+    } else if (const int row = rank(p.row), column = rank(p.column); row == column) {
+      numbers.diagonal[static_cast<std::size_t>(row)][p.section] = value;
+    } else if (row > column) {
+      const auto first = row_.begin() + begin_[static_cast<std::size_t>(column)];
+      const auto last = row_.begin() + begin_[static_cast<std::size_t>(column + 1)];
+      value_[static_cast<std::size_t>(std::lower_bound(first, last, row) - row_.begin())][p.section] = value;
     }
-  }
+  });
   eliminate(numbers, message);
   factor_interfaces(numbers, message);
   for (int& row : row_) {
@@ -102,16 +91,11 @@ void SectionedLdlt::find_columns(const Sparse& matrix) {
   const SectionLayout& l = *layout_;
   const auto n = static_cast<std::size_t>(l.slots);
   std::vector<std::vector<int>> rows(n);
-  for (Eigen::Index j = l.range.begin; j < l.range.end(); ++j) {
-    for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
-      const Eigen::Index i = entry.row();
-      if (i < l.range.begin || i >= l.range.end()) continue;
-      const SectionLayout::EntryPlace p = l.place_entry(i, j);
-      if (p.section < 0) continue;
-      const int row = rank(p.row), column = rank(p.column);
-      if (row > column) rows[static_cast<std::size_t>(column)].push_back(row);
-    }
-  }
+  l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double) {
+    if (p.section < 0) return;
+    const int row = rank(p.row), column = rank(p.column);
+    if (row > column) rows[static_cast<std::size_t>(column)].push_back(row);
+  });
   begin_.assign(1, 0);
   for (std::vector<int>& column : rows) {
     std::sort(column.begin(), column.end());

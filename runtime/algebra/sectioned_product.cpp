@@ -1,6 +1,5 @@
 #include "railtab/runtime/algebra/sectioned_product.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -39,55 +38,30 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
                                    std::shared_ptr<const SectionLayout> layout)
     : layout_(std::move(layout)) {
   const SectionLayout& l = *layout_;
-  const auto visit = [&](const Sparse& matrix, auto&& visitor) {
-    for (Eigen::Index j = l.range.begin; j < l.range.end(); ++j) {
-      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
-        if (entry.row() < l.range.begin || entry.row() >= l.range.end()) continue;
-        visitor(l.place_entry(entry.row(), j), entry.value());
-      }
-    }
-  };
-  std::vector<std::vector<int>> rows(static_cast<std::size_t>(l.slots));
+  std::vector<std::map<int, Pair>> columns(static_cast<std::size_t>(l.slots));
   std::map<std::pair<int, int>, std::array<double, 2>> between;
   for (const Sparse* matrix : {&stiffness, &damping}) {
-    visit(*matrix, [&](const SectionLayout::EntryPlace& p, double value) {
+    l.visit_places(*matrix, [&](const SectionLayout::EntryPlace& p, double value) {
       if (p.section < 0) {
         between[{p.row, p.column}][matrix == &damping ? 1 : 0] += value;
       } else if (p.row >= p.column) {
-        rows[static_cast<std::size_t>(p.column)].push_back(p.row);
+        Pair& pair = columns[static_cast<std::size_t>(p.column)][p.row];
+        (matrix == &damping ? pair.damping : pair.stiffness)[p.section] = value;
       }
     });
   }
   for (const auto& [place, value] : between) {
     interface_.push_back({place.first, place.second, value[0], value[1]});
   }
-  for (int j = 0; j < l.slots; ++j) {
-    std::vector<int>& column = rows[static_cast<std::size_t>(j)];
-    std::sort(column.begin(), column.end());
-    column.erase(std::unique(column.begin(), column.end()), column.end());
-  }
-  std::vector<std::vector<Pair>> values(rows.size());
-  for (std::size_t j = 0; j < rows.size(); ++j) values[j].resize(rows[j].size(), Pair{});
-  for (const Sparse* matrix : {&stiffness, &damping}) {
-    visit(*matrix, [&](const SectionLayout::EntryPlace& p, double number) {
-      if (p.section < 0 || p.row < p.column) return;
-      const std::vector<int>& column = rows[static_cast<std::size_t>(p.column)];
-      const auto place = std::lower_bound(column.begin(), column.end(), p.row) - column.begin();
-      Pair& pair = values[static_cast<std::size_t>(p.column)][static_cast<std::size_t>(place)];
-      (matrix == &damping ? pair.damping : pair.stiffness)[p.section] = number;
-    });
-  }
   alike_.begin.assign(1, 0);
   other_.begin.assign(1, 0);
   for (int j = 0; j < l.slots; ++j) {
-    const std::vector<int>& column = rows[static_cast<std::size_t>(j)];
-    for (std::size_t p = 0; p < column.size(); ++p) {
-      const Pair& pair = values[static_cast<std::size_t>(j)][p];
-      if (const auto number = common_value(l, column[p], j, pair.stiffness, pair.damping)) {
-        alike_.row.push_back(column[p]);
+    for (const auto& [row, pair] : columns[static_cast<std::size_t>(j)]) {
+      if (const auto number = common_value(l, row, j, pair.stiffness, pair.damping)) {
+        alike_.row.push_back(row);
         alike_.value.push_back(*number);
       } else {
-        other_.row.push_back(column[p]);
+        other_.row.push_back(row);
         other_.value.push_back(pair);
       }
     }
@@ -107,9 +81,8 @@ void SectionedProduct::subtract(const Eigen::VectorXd& u, const Eigen::VectorXd&
     l.into(*from, *to);
     l.spread_interfaces(*to);
   }
-  const auto* const U = reinterpret_cast<const Lanes*>(buffers.u.data());  // NOLINT: Eigen aligns to 64 bytes
-  const auto* const V = reinterpret_cast<const Lanes*>(buffers.v.data());  // NOLINT
-  auto* const y = reinterpret_cast<Lanes*>(ordered.data());                // NOLINT
+  const Lanes *const U = lanes(buffers.u), *const V = lanes(buffers.v);
+  Lanes* const y = lanes(ordered);
   for (int j = 0; j < l.slots; ++j) {
     const auto column = static_cast<std::size_t>(j);
     const Lanes u_j = U[j], v_j = V[j];

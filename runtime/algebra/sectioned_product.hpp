@@ -27,7 +27,7 @@ class SectionedProduct {
 
  private:
   struct Pair {
-    Lanes stiffness, damping;
+    Lanes stiffness{}, damping{};
   };
   struct InterfaceEntry {
     int row, column;

@@ -46,7 +46,6 @@ std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasu
   }
   if (!reasons.empty()) return reasons;
   const MeasureKind* kind = find_measure(clause.measure);
-  if (kind->stages.empty()) return fmt::format("not computed by vsi assess: {}", kind->meaning);
   std::string stages;
   for (const AssessmentStage stage : kind->stages) {
     stages += fmt::format("{}{}", stages.empty() ? "" : " or ", stage_name(stage));

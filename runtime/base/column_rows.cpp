@@ -9,13 +9,9 @@ namespace railtab {
 
 namespace {
 
-void cut(std::string_view text, std::vector<std::string_view>& cells) {
-  cells.clear();
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    cells.push_back(stripped(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
+void cut_cells(std::string_view text, std::vector<std::string_view>& cells) {
+  cut(text, ',', cells);
+  for (std::string_view& cell : cells) cell = stripped(cell);
 }
 
 }  // namespace
@@ -30,7 +26,7 @@ ColumnRows::ColumnRows(const std::filesystem::path& file, std::string_view kind,
     : ColumnRows(file, kind) {
   if (header_.empty()) throw reader_.file_error("no line", header);
   std::vector<std::string_view> names;
-  cut(header, names);
+  cut_cells(header, names);
   if (!std::equal(header_.begin(), header_.end(), names.begin(), names.end())) {
     throw reader_.error(fmt::format("'{}'", stripped(reader_.line()).substr(0, 80)), header);
   }
@@ -62,7 +58,7 @@ bool ColumnRows::next_row() {
     if (reader_.line_number() == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     text = stripped(text);
     if (text.empty() || text.front() == '#') continue;
-    cut(text, cells_);
+    cut_cells(text, cells_);
     return true;
   }
   return false;

@@ -42,6 +42,15 @@ std::size_t split(std::string_view text, std::span<std::string_view> words, std:
   return count;
 }
 
+void cut(std::string_view text, char separator, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    fields.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
 LineReader::LineReader(const std::filesystem::path& file, std::string_view kind) : file_(file) {
   if (!is_file(file)) throw input_error(file.string(), std::string(what_is_at(file)), kind);
   stream_.open(file);

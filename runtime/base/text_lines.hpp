@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -21,6 +22,9 @@ namespace railtab {
 
 /// Cuts text into words at blanks and at the characters of `separators`; words beyond those that fit are counted only.
 std::size_t split(std::string_view text, std::span<std::string_view> words, std::string_view separators = "") noexcept;
+
+/// Cuts text at every separator: fields may be empty, there is one at least. Replaces what `fields` held.
+void cut(std::string_view text, char separator, std::vector<std::string_view>& fields);
 
 /// The whole word as a number; floating-point numbers must be finite.
 template <class Number>

@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 constexpr int kMaximum = 200;  // strips, and elements of a strip
 constexpr int kLanes = 24;     // strips marched together: enough to hide the latency of root and division
-using Lanes = Eigen::Array<double, kLanes, 1>;
+using StripLanes = Eigen::Array<double, kLanes, 1>;
 
 /// Strips of the unit circle (x/a, y/b): y = sin θ, half-length l = cos θ. Padded by empty strips to full lanes.
 struct Strips {
@@ -100,28 +100,29 @@ struct TractionGrowth {
 
 /// Sums over the elements of kLanes strips.
 struct LaneSums {
-  Lanes x = Lanes::Zero(), y = Lanes::Zero(), xi_y = Lanes::Zero();
+  StripLanes x = StripLanes::Zero(), y = StripLanes::Zero(), xi_y = StripLanes::Zero();
 };
 
 /// From the leading edge to the trailing edge: traction grows with the rigid slip, and is cut back to the bound in its
 /// own direction. The growth between two elements' middles is linear in x, so the rule of the middle is exact.
-LaneSums march(const TractionBound& bound, int elements, const TractionGrowth& growth, const Lanes& y, const Lanes& l) {
+LaneSums march(const TractionBound& bound, int elements, const TractionGrowth& growth, const StripLanes& y,
+               const StripLanes& l) {
   const double d = 2.0 / elements;
-  const Lanes step = d * l;
-  const Lanes growth_x = step * (growth.x_0 + growth.x_y * y);
-  const Lanes growth_y0 = step * growth.y_0;
-  const Lanes growth_y1 = step * l * growth.y_x;
-  const Lanes bound_scale = bound.parabolic ? Lanes(l * l) : l;
+  const StripLanes step = d * l;
+  const StripLanes growth_x = step * (growth.x_0 + growth.x_y * y);
+  const StripLanes growth_y0 = step * growth.y_0;
+  const StripLanes growth_y1 = step * l * growth.y_x;
+  const StripLanes bound_scale = bound.parabolic ? StripLanes(l * l) : l;
   LaneSums sums;
-  Lanes px = 0.5 * growth_x - growth_x;  // the first step is half a step, taken around ξ = 1 - d/4
-  Lanes py = 0.5 * (growth_y0 + growth_y1 * (1.0 - 0.25 * d)) - (growth_y0 + growth_y1);
+  StripLanes px = 0.5 * growth_x - growth_x;  // the first step is half a step, taken around ξ = 1 - d/4
+  StripLanes py = 0.5 * (growth_y0 + growth_y1 * (1.0 - 0.25 * d)) - (growth_y0 + growth_y1);
   for (int i = 0; i < elements; ++i) {
     px += growth_x;
     py += growth_y0 + growth_y1 * (1.0 - d * i);
-    const Lanes g = bound.shape[i] * bound_scale;
+    const StripLanes g = bound.shape[i] * bound_scale;
     // 1 where the trial is within the bound: the root of a square is exact.
-    const Lanes largest = (px * px + py * py).max(g * g).max(std::numeric_limits<double>::min());
-    const Lanes cut = g / largest.sqrt();
+    const StripLanes largest = (px * px + py * py).max(g * g).max(std::numeric_limits<double>::min());
+    const StripLanes cut = g / largest.sqrt();
     px *= cut;
     py *= cut;
     sums.x += px;
@@ -141,10 +142,10 @@ CreepForce fastsim_creep(const FastsimCreep& law, double ratio, const Creepage& 
   const double a = std::sqrt(ratio);
   CreepForce total;
   for (int first = 0; first < law.strips; first += kLanes) {
-    const Lanes y = Eigen::Map<const Lanes>(strips.y.data() + first);
-    const Lanes l = Eigen::Map<const Lanes>(strips.half_length.data() + first);
+    const StripLanes y = Eigen::Map<const StripLanes>(strips.y.data() + first);
+    const StripLanes l = Eigen::Map<const StripLanes>(strips.half_length.data() + first);
     const LaneSums sums = march(bound, law.elements, growth, y, l);
-    const Lanes area = l * l * (strips.step * 2.0 / law.elements);  // dx dy = (2l/n)·(l dθ)
+    const StripLanes area = l * l * (strips.step * 2.0 / law.elements);  // dx dy = (2l/n)·(l dθ)
     total.x += (area * sums.x).sum();
     total.y += (area * sums.y).sum();
     total.moment += (area * (a * l * sums.xi_y - y * sums.x / a)).sum();

@@ -1,9 +1,13 @@
 #include "railtab/runtime/contact/frictionless_contact.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 
@@ -35,6 +39,37 @@ std::optional<double> lowering_under_load(const ContactGeometry& geometry, const
   const auto close = [](double a, double b) { return std::abs(a - b) <= 1e-15; };
   const auto [below, above] = boost::math::tools::toms748_solve(excess, low, high, at_low, at_high, close, passes);
   return 0.5 * (below + above);
+}
+
+LoweredPose lowered_pose(const ContactSearch& search, const ContactGeometry& geometry, const WheelsetPose& at,
+                         Lowering by, double value, const std::function<std::string()>& place) {
+  if (by == Lowering::given && !(value >= 0.0 && value <= deepest_lowering)) {
+    throw input_error(place(), fmt::format("dz = {}", value),
+                      fmt::format("0 to {} m below first touch", deepest_lowering));
+  }
+  LoweredPose result{at, value};
+  const double touch = search.touch_height(at.y, at.roll, at.yaw);
+  if (!std::isfinite(touch)) {
+    throw input_error(
+        place(), fmt::format("y = {}, yaw = {}, roll = {}, where wheel and rail never meet", at.y, at.yaw, at.roll),
+        "a position on the rail");
+  }
+  result.pose.z = touch;
+  if (by == Lowering::under_load) {
+    if (!(value > 0.0 && value <= largest_query_load)) {
+      throw input_error(place(), fmt::format("load = {}", value),
+                        fmt::format("above 0, at most {} N", largest_query_load));
+    }
+    const std::optional<double> lowering = lowering_under_load(geometry, result.pose, value);
+    if (!lowering) {
+      throw input_error(place(),
+                        fmt::format("load = {} N, not carried {} m below first touch", value, deepest_lowering),
+                        "a load that the contact carries");
+    }
+    result.lowering = *lowering;
+  }
+  result.pose.z = touch + result.lowering;
+  return result;
 }
 
 std::array<PatchLoading, ContactPatches::capacity> patch_loadings(const ContactGeometry& geometry,

@@ -28,19 +28,27 @@ double low_pass_gain(double frequency, double cut_off) noexcept {
   return 1.0 / (1.0 + edge * std::pow(frequency / cut_off, 2 * order));
 }
 
-ZeroPhaseLowPass::ZeroPhaseLowPass(double cut_off, double step) {
+LowPassSum low_pass_sum(double cut_off, double step) {
   assert(cut_off > 0.0 && samples_fast_enough(cut_off, step));
   constexpr double decayed = 32.0;  // e^-32 = 1e-14
-  const std::vector<PoleTerm> terms = low_pass_terms(cut_off);
-  forward_ = PoleSum(terms, step);
+  LowPassSum sum;
+  sum.terms = low_pass_terms(cut_off);
   double slowest = INFINITY;
-  for (const PoleTerm& term : terms) {
-    centre_ += term.r.real();
+  for (const PoleTerm& term : sum.terms) {
+    sum.centre += term.r.real();
     slowest = std::min(slowest, -term.p.real());
   }
-  look_ahead_ = static_cast<std::size_t>(std::ceil(decayed / (slowest * step)));
-  unit_ = 1.0 / (2.0 * forward_.of_constant() - centre_);
-  backward_ = forward_;
+  sum.look_ahead = static_cast<std::size_t>(std::ceil(decayed / (slowest * step)));
+  sum.unit = 1.0 / (2.0 * PoleSum(sum.terms, step).of_constant() - sum.centre);
+  return sum;
+}
+
+ZeroPhaseLowPass::ZeroPhaseLowPass(double cut_off, double step) {
+  const LowPassSum sum = low_pass_sum(cut_off, step);
+  forward_ = backward_ = PoleSum(sum.terms, step);
+  unit_ = sum.unit;
+  centre_ = sum.centre;
+  look_ahead_ = sum.look_ahead;
 }
 
 void ZeroPhaseLowPass::add(double sample, std::vector<double>& filtered) {

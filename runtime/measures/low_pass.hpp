@@ -36,6 +36,15 @@ class ZeroPhaseLowPass {
   std::vector<double> result_;
 };
 
+/// The constants of (FM1) as a sum over samples.
+struct LowPassSum {
+  std::vector<PoleTerm> terms;
+  double unit = 1.0, centre = 0.0;  ///< 1/(sum of a constant), h(0)
+  std::size_t look_ahead = 1;       ///< samples in which the response decays to 1e-14
+};
+/// @pre as ZeroPhaseLowPass
+[[nodiscard]] LowPassSum low_pass_sum(double cut_off, double step);
+
 /// Whether samples `step` [s] apart are near enough for a cut-off [Hz].
 [[nodiscard]] constexpr bool samples_fast_enough(double cut_off, double step) noexcept {
   return cut_off * step <= 0.25;

@@ -9,9 +9,11 @@ namespace railtab {
 
 /// What a run records, and how often.
 struct OutputParameters {
-  int every = 1;        ///< steps between records, >= 1
-  bool wheels = true;   ///< contact forces and positions
-  bool energy = false;  ///< RunSummary::contact_energy: some time for every step
+  int every = 1;               ///< steps between records, >= 1
+  bool wheels = true;          ///< contact forces and positions
+  bool energy = false;         ///< RunSummary::contact_energy: some time for every step
+  bool deck_envelope = false;  ///< RunSummary::deck: likewise
+  double deck_cut_off = 30.0;  ///< of its filtered acceleration [Hz]
   /// Patterns of names with * and ?; nothing is recorded of what none of them fits.
   std::vector<std::string> bodies{"*"}, nodes{"*"};
 };

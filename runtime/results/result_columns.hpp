@@ -120,6 +120,30 @@ inline constexpr std::array header{
                  &ResultHeader::rail_y},
     HeaderColumn{"header/rail_z", "rail points", "m", "outline of the rail, down", &ResultHeader::rail_z}};
 
+/// Decks: "deck/<quantity>/x" and so on; absent where decks are not followed, and in older files.
+inline constexpr const char *deck_group = "deck", *deck_quantities = "deck/quantities", *deck_cut_off = "deck/cut_off";
+struct DeckPlaceColumn {
+  const char* name;
+  const char* description;
+  std::vector<double> DeckPlaces::*values;
+};
+inline constexpr std::array deck_places{DeckPlaceColumn{"x", "along the track", &DeckPlaces::x},
+                                        DeckPlaceColumn{"y", "right of the track's centre", &DeckPlaces::y}};
+/// Empty until the run has ended.
+struct DeckExtremeColumn {
+  const char* name;
+  bool is_time;
+  const char* description;
+  std::vector<double> DeckExtremes::*values;
+};
+inline constexpr std::array deck_extremes{
+    DeckExtremeColumn{"smallest", false, "smallest value of all steps", &DeckExtremes::smallest},
+    DeckExtremeColumn{"smallest_time", true, "when it occurred", &DeckExtremes::smallest_time},
+    DeckExtremeColumn{"largest", false, "largest value of all steps", &DeckExtremes::largest},
+    DeckExtremeColumn{"largest_time", true, "when it occurred", &DeckExtremes::largest_time}};
+/// Attribute of "deck": of all extremes in their order, as array_file.hpp computes checksums, its upper 52 bits.
+inline constexpr const char* deck_checksum = "extremes_checksum";
+
 template <typename Value>
 struct SummaryEntry {
   const char* name;

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <map>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -66,6 +67,64 @@ ArrayFileReader open_results(const std::filesystem::path& file) {
   return ArrayFileReader(file, results_filetype, columns::format_version);
 }
 
+const Field deck_field{columns::deck_quantities, {"quantities"}, "text", "what is followed on the decks"};
+const Field deck_unit_field{"deck/units", {"quantities"}, "text", "their units"};
+const Field deck_cut_off_field{columns::deck_cut_off, {}, "Hz", "of the filtered acceleration"};
+
+Field field_of(const columns::DeckPlaceColumn& column, const DeckPlaces& places) {
+  return {fmt::format("deck/{}/{}", places.quantity, column.name),
+          {fmt::format("places of {}", places.quantity)},
+          "m",
+          column.description};
+}
+std::string path_of(const columns::DeckExtremeColumn& column, const DeckPlaces& places) {
+  return fmt::format("deck/{}/{}", places.quantity, column.name);
+}
+
+void read_deck_places(const ArrayFileReader& in, FieldReader& fields, ResultHeader& header) {
+  if (!in.contains(deck_field.path)) return;
+  const std::vector<std::string> quantities = fields.texts(deck_field), units = fields.texts(deck_unit_field);
+  header.deck_cut_off = fields.numbers(deck_cut_off_field).front();
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    DeckPlaces& places = header.deck.emplace_back(DeckPlaces{quantities[q], units[q]});
+    for (const auto& column : columns::deck_places) places.*column.values = fields.numbers(field_of(column, places));
+  }
+}
+
+/// Over all extremes, in their order; 52 bits, which a reader of numbers keeps.
+std::int64_t deck_checksum_of(const std::vector<DeckExtremes>& deck) {
+  std::uint64_t sum = checksum_seed;
+  for (const DeckExtremes& extremes : deck) {
+    for (const auto& column : columns::deck_extremes) sum = checksum(extremes.*column.values, sum);
+  }
+  return static_cast<std::int64_t>(sum >> 12U);
+}
+
+/// None of a run that has not ended.
+std::vector<DeckExtremes> read_deck_extremes(const ArrayFileReader& in, const ResultHeader& header) {
+  std::vector<DeckExtremes> deck;
+  for (const DeckPlaces& places : header.deck) {
+    DeckExtremes& extremes = deck.emplace_back();
+    for (const auto& column : columns::deck_extremes) {
+      std::vector<double> values = in.read(path_of(column, places)).values;
+      if (values.empty() || std::isnan(values.front())) return {};
+      if (values.size() != places.x.size()) {
+        throw input_error(fmt::format("{}: {}", in.file().string(), path_of(column, places)),
+                          fmt::format("{} values", values.size()),
+                          fmt::format("{}, one of each place", places.x.size()));
+      }
+      extremes.*column.values = std::move(values);
+    }
+  }
+  if (header.deck.empty()) return deck;
+  constexpr std::int64_t most = std::int64_t{1} << 52;
+  if (in.whole_number(columns::deck_group, columns::deck_checksum, 0, most) != deck_checksum_of(deck)) {
+    throw input_error(fmt::format("{}: {}", in.file().string(), columns::deck_group),
+                      "extremes that are not those that were written", "a file as it was written");
+  }
+  return deck;
+}
+
 ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
   ResultHeader header;
   for (const columns::HeaderText& text : columns::header_texts) header.*text.value = in.text("header", text.name);
@@ -83,6 +142,7 @@ ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
   for (const columns::HeaderColumn& column : columns::header) {  // which agree with the names in number
     if (!column.in_all_files && in.contains(column.path)) header.*column.values = fields.numbers(field_of(column));
   }
+  read_deck_places(in, fields, header);
   if (header.wheel_x.size() % 2 != 0) {
     throw input_error(fmt::format("{}: header/wheel_x", in.file().string()),
                       fmt::format("{} wheels", header.wheel_x.size()),
@@ -155,6 +215,37 @@ void write_header(ArrayFileWriter& out, const ResultHeader& header) {
   for (const columns::MotionGroup& group : columns::motion_groups) fields.write(field_of(group), header.*group.names);
 }
 
+void create_deck(ArrayFileWriter& out, const ResultHeader& header) {
+  if (header.deck.empty()) return;
+  FieldWriter fields(out);
+  std::vector<std::string> quantities, units;
+  for (const DeckPlaces& places : header.deck) {
+    quantities.push_back(places.quantity);
+    units.push_back(places.unit);
+  }
+  fields.write(deck_field, quantities);
+  fields.write(deck_unit_field, units);
+  fields.write(deck_cut_off_field, std::array{header.deck_cut_off});
+  for (const DeckPlaces& places : header.deck) {
+    for (const auto& column : columns::deck_places) fields.write(field_of(column, places), places.*column.values);
+    for (const auto& column : columns::deck_extremes) {
+      out.create_slot(path_of(column, places), column.is_time ? "s" : places.unit, column.description);
+    }
+  }
+  out.attribute(columns::deck_group, columns::deck_checksum, std::int64_t{0});
+}
+
+void write_deck(ArrayFileWriter& out, const std::vector<DeckPlaces>& deck, const std::vector<DeckExtremes>& extremes) {
+  if (extremes.empty()) return;
+  assert(extremes.size() == deck.size());
+  for (std::size_t q = 0; q < deck.size(); ++q) {
+    for (const auto& column : columns::deck_extremes) {
+      out.replace(path_of(column, deck[q]), extremes[q].*column.values);
+    }
+  }
+  out.attribute(columns::deck_group, columns::deck_checksum, deck_checksum_of(extremes));
+}
+
 void create_histories(ArrayFileWriter& out, const ResultHeader& header) {
   FieldWriter fields(out);
   fields.set("wheels", header.wheel_x.size());
@@ -216,6 +307,7 @@ struct ResultWriter::Impl {
   ArrayFileWriter out;
   int flush_every;
   std::size_t wheels, bodies, nodes;
+  std::vector<DeckPlaces> deck;
   int buffered = 0;
   /// Rows that wait for the next flush, by dataset.
   std::map<std::string, std::vector<double>> rows;
@@ -228,7 +320,8 @@ struct ResultWriter::Impl {
         flush_every(every),
         wheels(header.wheel_x.size()),
         bodies(header.body_names.size()),
-        nodes(header.node_names.size()) {
+        nodes(header.node_names.size()),
+        deck(header.deck) {
     assert(every >= 1);
   }
 
@@ -248,6 +341,7 @@ ResultWriter::ResultWriter(const std::filesystem::path& file, const ResultHeader
           header)) {
   write_header(impl_->out, header);
   create_histories(impl_->out, header);
+  create_deck(impl_->out, header);
   write_summary(impl_->out, unfinished(header));
   for (const char* slot : columns::checkpoint_slots) {
     impl_->out.create_slot(
@@ -276,6 +370,9 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
                       fmt::format("the {} of its checkpoint", from.records));
   }
   out.truncate(from.records);
+  for (const DeckPlaces& places : header.deck) {  // those of the part before are no longer true
+    for (const auto& column : columns::deck_extremes) out.replace(path_of(column, places), {});
+  }
   write_summary(out, unfinished(header));
   auto impl = std::make_unique<Impl>(std::move(out), flush_every, header);
   impl->checkpoints = checkpoints;
@@ -346,6 +443,7 @@ std::optional<Checkpoint> ResultWriter::read_checkpoint(const std::filesystem::p
 
 void ResultWriter::finish(const RunSummary& summary) {
   impl_->flush();
+  write_deck(impl_->out, impl_->deck, summary.deck);
   write_summary(impl_->out, summary);
   impl_->out.close();
   impl_->finished = true;
@@ -408,6 +506,7 @@ RunResults read_results(const std::filesystem::path& file) {
   RunResults results;
   results.header = read_header(in, fields);
   results.summary = read_summary(in, results.header.wheel_x.size());
+  results.summary.deck = read_deck_extremes(in, results.header);
   std::vector<StepRecord>& steps = results.steps;
   for (const columns::StepColumn& column : columns::step) {
     const std::vector<double> values = fields.numbers(field_of(column));

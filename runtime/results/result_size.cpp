@@ -39,6 +39,10 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
     for (const std::string& text : header.*list.values) size.file += static_cast<double>(text.size());
   }
   size.file += static_cast<double>(header.scene_text.size());
+  for (const DeckPlaces& places : header.deck) {
+    constexpr double place_columns = 6.0;
+    size.file += place_columns * (number * static_cast<double>(places.x.size()) + page);
+  }
   constexpr double slots = 2.0, copies = 3.0;  // packed, with its counters, and HDF5's own
   size.file += slots * number * state;
   size.memory += copies * number * state;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/scene/toml_leaves.hpp"
 
@@ -15,21 +16,6 @@ namespace {
 std::string change_text(const KeyChange& change) {
   if (change.value.empty()) return fmt::format("without {}", change.key);
   return fmt::format("{} = {}", change.key, change.value);
-}
-
-InputError change_error(const KeyChange& change, std::string_view found, std::string_view expected) {
-  return input_error(change.key, found, expected);
-}
-
-/// Parts of "bridge.2.length".
-std::vector<std::string_view> parts_of(std::string_view key) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= key.size();) {
-    const std::size_t end = std::min(key.find('.', begin), key.size());
-    parts.push_back(key.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
 }
 
 std::optional<std::size_t> whole_number(std::string_view text) {
@@ -49,11 +35,11 @@ toml::table& entry_of(const KeyChange& change, toml::table& root, std::vector<st
   if (named) parts.erase(parts.begin());
   const std::size_t number = named.value_or(1);
   if (parts.empty() || number < 1 || number > count || (!named && count > 1)) {
-    throw change_error(change, fmt::format("{} [[{}]] in the scene", count, section),
-                       fmt::format("{0}.1.KEY for a key of the first [[{0}]], and so on", section));
+    throw input_error(change.key, fmt::format("{} [[{}]] in the scene", count, section),
+                      fmt::format("{0}.1.KEY for a key of the first [[{0}]], and so on", section));
   }
   toml::table* const entry = list->get(number - 1)->as_table();
-  if (!entry) throw change_error(change, fmt::format("no [[{}]]", section), "a scene whose sections are tables");
+  if (!entry) throw input_error(change.key, fmt::format("no [[{}]]", section), "a scene whose sections are tables");
   return *entry;
 }
 
@@ -66,12 +52,13 @@ toml::table parsed(const KeyChange& change) {
     if (table.size() == 1) return table;
   } catch (const toml::parse_error&) {  // said below
   }
-  throw change_error(change, fmt::format("the value {}", change.value),
-                     "a value as TOML writes it: 50.0, \"table\", true, [1, 2]");
+  throw input_error(change.key, fmt::format("the value {}", change.value),
+                    "a value as TOML writes it: 50.0, \"table\", true, [1, 2]");
 }
 
 void change_key(const KeyChange& change, toml::table& root) {
-  std::vector<std::string_view> parts = parts_of(change.key);
+  std::vector<std::string_view> parts;  // of "bridge.2.length"
+  cut(change.key, '.', parts);
   toml::table* table = is_list_section(parts.front()) ? &entry_of(change, root, parts) : &root;
   toml::source_region place = table->source();  // of keys that the scene does not have
   for (; parts.size() > 1; parts.erase(parts.begin())) {
@@ -83,7 +70,7 @@ void change_key(const KeyChange& change, toml::table& root) {
       place = table->get(name)->source();
     }
     table = table->get(name)->as_table();
-    if (!table) throw change_error(change, fmt::format("{}, which is no section", name), "SECTION.KEY");
+    if (!table) throw input_error(change.key, fmt::format("{}, which is no section", name), "SECTION.KEY");
   }
   const std::string_view name = parts.front();
   if (change.value.empty()) {

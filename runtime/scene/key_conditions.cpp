@@ -119,10 +119,11 @@ const Condition with_deck_nodes{
       return unless(at.scene.structure.deck.given() || (bridge && at.scene.track_kind != TrackKind::imported),
                     "no [[bridge]] and no structure.deck");
     }};
-const Condition with_use_of_deck{"track.kind = \"flexible\", or structure.report", [](At at) {
-                                   return unless(
-                                       !at.scene.structure.report.empty() || at.scene.track_kind != TrackKind::imported,
-                                       "track.kind = \"imported\" and no structure.report");
+const Condition with_use_of_deck{"track.kind = \"flexible\", structure.report or output.deck_envelope", [](At at) {
+                                   const bool recorded =
+                                       !at.scene.structure.report.empty() || at.scene.output.deck_envelope;
+                                   return unless(recorded || at.scene.track_kind != TrackKind::imported,
+                                                 "track.kind = \"imported\" and no structure.report");
                                  }};
 const Condition with_model_nodes{"structure.stiffness and structure.nodes", [](At at) {
                                    if (at.scene.structure.files.by_modes())
@@ -131,6 +132,10 @@ const Condition with_model_nodes{"structure.stiffness and structure.nodes", [](A
                                      return std::string("no structure.stiffness");
                                    return unless(!at.scene.structure.files.nodes.empty(), "no structure.nodes");
                                  }};
+
+const Condition with_deck_envelope{"output.deck_envelope = true", [](At at) {
+                                     return unless(at.scene.output.deck_envelope, "no output.deck_envelope = true");
+                                   }};
 
 const Condition with_structure_to_reduce{
     "track.kind = \"flexible\" or \"imported\"", [](At at) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/process_memory.hpp"
+#include "railtab/runtime/results/deck_envelope.hpp"
 #include "railtab/runtime/results/result_size.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
@@ -43,9 +44,16 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const double steps = duration / integration.time_step;
   const OutputSelection selection(scene.output, model_header(model));
   const bool checkpoints = steps >= static_cast<double>(integration.reinitialise_every);
-  const double state = checkpoints ? static_cast<double>(packed(VsiState(model)).size()) : 0.0;
-  const ResultSize results =
-      result_size(selection.of(result_header(scene, model)), std::floor(steps / scene.output.every) + 2.0, state);
+  ResultHeader header = selection.of(result_header(scene, model));
+  double envelope = 0.0;  // numbers
+  if (scene.output.deck_envelope) {
+    const DeckEnvelope deck(model, scene.output.deck_cut_off, integration.time_step);
+    header.deck = deck.places();
+    envelope = static_cast<double>(deck.capacity());
+  }
+  const double state = checkpoints ? static_cast<double>(packed(VsiState(model)).size()) + envelope : 0.0;
+  ResultSize results = result_size(header, std::floor(steps / scene.output.every) + 2.0, state);
+  results.memory += number * envelope;
   plan.results = results.file;
   const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);
   plan.undivided = allocator * std::max(peak, built + train + operators + results.memory);

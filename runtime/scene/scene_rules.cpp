@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/measures/low_pass.hpp"
 
 namespace railtab::scene {
 namespace {
@@ -102,6 +103,24 @@ Broken energy_of_contact_springs(Scene scene) {
   if (!scene.output.energy || !vertical(scene)) return {};
   return Violation{"output.energy", "true with contact.normal = \"rigid\"",
                    "contact.normal = \"hertz\": wheels that follow the rails have no contact springs"};
+}
+
+Broken deck_of_envelope(Scene scene) {
+  if (!scene.output.deck_envelope) return {};
+  const bool by_rows =
+      scene.track_kind == TrackKind::imported && (scene.structure.files.nodes.empty() || !scene.structure.deck.given());
+  const bool bridge = !scene.spans.empty() || scene.structure.files.given();
+  if (scene.track_kind != TrackKind::rigid && bridge && !by_rows) return {};
+  return Violation{"output.deck_envelope", "true without a deck",
+                   "a [[bridge]] under flexible track, or a [structure] with nodes and structure.deck"};
+}
+
+Broken steps_of_envelope(Scene scene) {
+  if (!scene.output.deck_envelope) return {};
+  const double step = scene.integration.time_step, cut_off = scene.output.deck_cut_off;
+  if (samples_fast_enough(cut_off, step)) return {};
+  return Violation{"output.deck_cut_off", fmt::format("{:g} Hz with integration.time_step = {:g} s", cut_off, step),
+                   fmt::format("at most {:.4g} Hz, or shorter steps", 0.25 / step)};
 }
 
 /// The first load for which `found` says something.
@@ -258,6 +277,8 @@ const std::vector<SceneRule>& scene_rules() {
       {"modes carry railtab's track", track_on_modes},
       {"modes have no supports", ground_under_modes},
       {"energy is that of contact springs", energy_of_contact_springs},
+      {"an envelope has a deck", deck_of_envelope},
+      {"an envelope's steps are short", steps_of_envelope},
       {"a load has a file or components", one_source_of_a_load},
       {"a gust has components", gust_without_file},
       {"a constant load has no start", start_of_a_history},

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/results/deck_envelope.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -98,6 +100,38 @@ void note_repairs(const VsiModel& model, const RunObserver& observer) {
   }
 }
 
+// What the scene asks to know of the whole deck, and its places for the header.
+std::optional<DeckEnvelope> deck_envelope(const SceneParameters& scene, const VsiModel& model, ResultHeader& header) {
+  if (!scene.output.deck_envelope) return std::nullopt;
+  std::optional<DeckEnvelope> envelope(std::in_place, model, scene.output.deck_cut_off, scene.integration.time_step);
+  header.deck = envelope->places();
+  header.deck_cut_off = scene.output.deck_cut_off;
+  return envelope;
+}
+
+// The envelope hears of every step; its numbers stand behind the solver's in checkpoints.
+void follow_deck(DeckEnvelope& envelope, RunObserver& observer) {
+  observer.state = [&envelope, then = std::move(observer.state)](const VsiState& state) {
+    envelope.add(state);
+    if (then) then(state);
+  };
+  if (!observer.checkpoint) return;
+  observer.checkpoint = [&envelope, then = std::move(observer.checkpoint)](long step, std::span<const double> state) {
+    std::vector<double> numbers(state.begin(), state.end());
+    envelope.pack(numbers);
+    then(step, numbers);
+  };
+}
+
+void unpack(std::span<const double> numbers, VsiState& state, std::optional<DeckEnvelope>& envelope) {
+  if (envelope) {
+    const std::span<const double> own = numbers.last(packed_envelope(numbers));
+    envelope->unpack(own);
+    numbers = numbers.first(numbers.size() - own.size());
+  }
+  railtab::unpack(numbers, state);
+}
+
 }  // namespace
 
 RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
@@ -127,10 +161,11 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   for (const std::string& warning : of_scene) warn(warning);
   const OutputSelection selection(scene.output, header);
   VsiState state(model);
+  std::optional<DeckEnvelope> envelope = deck_envelope(scene, model, header);
   OperatorLevels operators(model, scene.integration.alpha, scene.integration.time_step);
   std::string no_rest;
   if (resume) {
-    unpack(resume->state, state);
+    unpack(resume->state, state, envelope);
   } else {
     setup("static equilibrium");
     no_rest = start(scene, operators, warn, state);
@@ -154,10 +189,12 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
       observer.record(record);
     };
   }
+  if (envelope) follow_deck(*envelope, selected);
   setup("factorising");
   const double set_up = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   summary = simulate(operators, scene.integration, duration, scene.output.every, state, selected);
   if (!scene.output.wheels) summary.wheel_extremes = {};
+  if (envelope) summary.deck = envelope->finish();
   summary.seconds_setup += set_up;
   summary.seconds_total += set_up;
   summary.contact_mode = contact_mode_name(scene.contact);

@@ -21,12 +21,13 @@ StructureModel build_structure(const SceneParameters& scene) {
     if (file->empty() || !std::filesystem::equivalent(*file, files.stiffness, none)) continue;
     throw input_error(std::string("scene: structure.") + key, "the file of structure.stiffness", "a file of its own");
   }
+  const DeckRecord record = scene.output.deck_envelope ? DeckRecord::everywhere : DeckRecord::named_nodes;
   if (scene.track_kind == TrackKind::imported) {
-    if (!files.nodes.empty()) return import_with_rails(scene.structure);
+    if (!files.nodes.empty()) return import_with_rails(scene.structure, record);
     return import_structure({files.mass, files.damping, files.stiffness, files.dofs});
   }
-  if (track_on_import(scene)) return build_track_on_import(scene.track, scene.structure);
-  return build_track_bridge(scene.track, scene.spans, structure_plane(scene), scene.structure.report);
+  if (track_on_import(scene)) return build_track_on_import(scene.track, scene.structure, record);
+  return build_track_bridge(scene.track, scene.spans, structure_plane(scene), scene.structure.report, record);
 }
 
 }  // namespace railtab

@@ -101,6 +101,57 @@ StructureNode reported(double x, const std::vector<BridgeParameters>& spans, con
       decks.empty() ? "a [[bridge]] that has decks" : fmt::format("0 to {:.6g} m, the bridge", decks.back().x.back()));
 }
 
+DofSum deck_dof(const DeckLine& deck, std::size_t node, std::size_t k, double factor) {
+  const int dof = deck.dof[node][k];
+  return dof == held ? DofSum{} : DofSum{{dof, factor}};
+}
+
+/// −E Iy d²z/dx² at the first or the second node of element e, or −E Iy d³z/dx³ (Hermite's cubic; dz/dx = −pitch).
+enum class BeamForce { moment_first, moment_second, shear };
+DofSum beam_force(const DeckLine& deck, std::size_t e, double EI, BeamForce force) {
+  const double L = deck.x[e + 1] - deck.x[e];
+  std::array<double, 4> of{-6.0, -4.0, 6.0, -2.0};  // z, L·dz/dx of the first node, then of the second
+  if (force == BeamForce::moment_second) of = {6.0, 2.0, -6.0, 4.0};
+  if (force == BeamForce::shear) of = {12.0, 6.0, -12.0, 6.0};
+  const double unit = -EI / (force == BeamForce::shear ? L * L * L : L * L);
+  DofSum sum;
+  for (std::size_t node = 0; node < 2; ++node) {
+    add_sum(deck_dof(deck, e + node, 2, 1.0), unit * of[2 * node], sum);
+    add_sum(deck_dof(deck, e + node, 4, 1.0), -unit * L * of[2 * node + 1], sum);
+  }
+  return sum;
+}
+
+/// Vertical motion of the nodes and, where the track stands beside the axis, of the deck under it.
+void add_displacements(const BridgeParameters& span, const DeckLine& deck, std::vector<DeckRow>& rows) {
+  for (std::size_t i = 0; i < deck.x.size(); ++i) {
+    const DofSum axis = deck_dof(deck, i, 2, 1.0);
+    rows.push_back({{DeckQuantity::displacement, deck.x[i], -span.track_offset}, axis});
+    if (span.track_offset == 0.0) continue;
+    DeckRow& under = rows.emplace_back(DeckRow{{DeckQuantity::displacement, deck.x[i], 0.0}, axis});
+    add_sum(deck_dof(deck, i, 3, 1.0), span.track_offset, under.sum);
+  }
+}
+
+/// At the nodes the mean of both elements' moments, in the elements' middles the shear.
+void add_moments(const BridgeParameters& span, const DeckLine& deck, std::vector<DeckRow>& rows) {
+  const double EI = span.E * span.Iy;
+  const std::size_t last = deck.x.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    DeckRow& row = rows.emplace_back(DeckRow{{DeckQuantity::bending_moment, deck.x[i], -span.track_offset}, {}});
+    const double share = i == 0 || i == last ? 1.0 : 0.5;
+    if (i > 0) add_sum(beam_force(deck, i - 1, EI, BeamForce::moment_second), share, row.sum);
+    if (i < last) add_sum(beam_force(deck, i, EI, BeamForce::moment_first), share, row.sum);
+  }
+}
+void add_shear(const BridgeParameters& span, const DeckLine& deck, std::vector<DeckRow>& rows) {
+  for (std::size_t e = 0; e + 1 < deck.x.size(); ++e) {
+    const double middle = 0.5 * (deck.x[e] + deck.x[e + 1]);
+    rows.push_back({{DeckQuantity::shear_force, middle, -span.track_offset},
+                    beam_force(deck, e, span.E * span.Iy, BeamForce::shear)});
+  }
+}
+
 }  // namespace
 
 DofIndices supported_node(double x, std::vector<double>& support_x) {
@@ -109,7 +160,8 @@ DofIndices supported_node(double x, std::vector<double>& support_x) {
   return {held, support_dof(column), support_dof(column + 1), held, held, held};
 }
 
-Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane, const std::vector<double>& report) {
+Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane, const std::vector<double>& report,
+                   DeckRecord record) {
   Bridge bridge;
   std::vector<DeckLine> decks;
   for (std::size_t s = 0; s < spans.size(); ++s) {
@@ -130,6 +182,12 @@ Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane
     decks.push_back(deck);
   }
   for (const double x : report) bridge.nodes.push_back(reported(x, spans, decks));
+  if (record == DeckRecord::everywhere) {
+    bridge.deck_ends = bridge.spans;
+    for (const auto add : {&add_displacements, &add_moments, &add_shear}) {
+      for (std::size_t s = 0; s < spans.size(); ++s) add(spans[s], decks[s], bridge.deck);
+    }
+  }
   bridge.attach = [decks, spans](double x, double y, double z) -> std::optional<DeckAttachment> {
     for (std::size_t s = 0; s < decks.size(); ++s) {
       if (decks[s].x.front() <= x && x < decks[s].x.back()) return attachment(decks[s], spans[s], x, y, z);

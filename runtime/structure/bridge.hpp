@@ -16,6 +16,8 @@ struct DeckAttachment {
   std::vector<int> dof;
   Eigen::Matrix<double, 6, Eigen::Dynamic> rows;
   Eigen::Vector3d arm;  // [m]
+  /// Motion 0 to 5 for x, y, z, roll, pitch, yaw of the end of the arm.
+  [[nodiscard]] DofSum motion(Eigen::Index k) const;
 };
 
 /// A bridge without its track, in railtab's axes and SI units; x = 0 and the track's centre are those of the track.
@@ -30,9 +32,20 @@ struct Bridge {
   std::vector<std::string> left_out{};       // StructureModel::left_out
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
+  // Rotations of theirs that are fitted to displacements around them: node, 3 to 5 for roll, pitch, yaw.
+  struct FittedRotation {
+    std::size_t node, motion;
+    DofSum sum;
+  };
+  std::vector<FittedRotation> fitted{};
+  std::vector<DeckRow> deck{};                     // vertical motions of the decks' nodes, forces in their sections
+  std::vector<std::array<double, 2>> deck_ends{};  // from and to [m]
   /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;
   /// empty where the bridge does not carry the track.
   std::function<std::optional<DeckAttachment>(double x, double y, double z)> attach;
+  // Vertical displacement of a surface at (x, y) by the nodes around it, which spreads nothing as a spring's attachment
+  // does; not set: that of the attachment.
+  std::function<std::optional<DofSum>(double x, double y)> surface{};
 };
 
 /// Lines of dofs (StructureModel::dof_line) that a track has: six of each rail and of the sleepers.
@@ -42,11 +55,18 @@ inline constexpr int track_lines = 18;
 /// @param report positions along the track whose nearest beam node between supports is reported; empty: midspans [m]
 /// @throws InputError naming the key
 [[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane,
-                                 const std::vector<double>& report = {});
+                                 const std::vector<double>& report = {}, DeckRecord record = DeckRecord::named_nodes);
 
 /// Rails on pads, sleepers and ballast, laid over a bridge and on to the ground before and after it. The one place
 /// where track and bridge are put together. @throws InputError naming the key
-[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane);
+[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane,
+                                       DeckRecord record = DeckRecord::named_nodes);
+
+/// Dofs of the ground under every sleeper; none where it stands on a bridge.
+using SleeperGround = std::vector<std::optional<DofIndices>>;
+/// Adds to the bridge's channels what its decks do under the track and at their ends.
+void add_track_channels(const TrackParameters& track, const std::vector<double>& sleeper_x, const SleeperGround& ground,
+                        MotionPlane plane, Bridge& bridge);
 
 /// Dofs of a node that a support moves along y and z and holds otherwise; the support is added at x.
 [[nodiscard]] DofIndices supported_node(double x, std::vector<double>& support_x);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace railtab {
 
@@ -20,7 +21,7 @@ Columns relative(const Sparse& matrix, const Sparse& carried, const Columns& of_
   return sum;
 }
 
-/// Rows of the nodes of interest, 6 each.
+/// Rows of the nodes of interest, 6 each, besides those that are fitted.
 Columns node_rows(const std::vector<StructureNode>& nodes, const Columns& carried) {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -72,7 +73,10 @@ StructureModel relative_to_supports(StructureModel structure) {
   s.damping = relative(structure.damping, carried, s.damping);
   s.stiffness = Columns(structure.dofs(), s.columns());
   s.carried = carried;
-  s.carried_nodes = node_rows(structure.nodes, s.carried);
+  const auto add = [](const Columns& more, Columns& rows) { rows = rows.size() > 0 ? Columns(rows + more) : more; };
+  add(node_rows(structure.nodes, s.carried), s.carried_nodes);
+  if (structure.fitted_nodes.size() > 0) add(structure.fitted_nodes * s.carried, s.carried_nodes);
+  if (structure.deck.rows.size() > 0) add(structure.deck.rows * s.carried, s.carried_deck);
   return structure;
 }
 
@@ -83,6 +87,8 @@ StructureSupports gathered(const StructureSupports& supports, const Sparse& shar
   result.mass = supports.mass * shares;
   result.damping = supports.damping * shares;
   result.stiffness = supports.stiffness * shares;
+  if (supports.carried_nodes.size() > 0) result.carried_nodes = supports.carried_nodes * shares;
+  if (supports.carried_deck.size() > 0) result.carried_deck = supports.carried_deck * shares;
   return result;
 }
 

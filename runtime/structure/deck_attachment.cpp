@@ -10,6 +10,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
@@ -221,12 +222,7 @@ class DeckSurface {
 
 DeckFunction deck_function(const FeStructure& structure, const std::vector<int>& numbers) {
   std::vector<DeckNode> nodes;
-  double low = INFINITY, high = -INFINITY;
-  for (int number : numbers) {
-    nodes.push_back({number, structure.nodes.at(number)});
-    low = std::min(low, nodes.back().node.position[1]);
-    high = std::max(high, nodes.back().node.position[1]);
-  }
+  for (int number : numbers) nodes.push_back({number, structure.nodes.at(number)});
   settle_expanded(nodes);
   std::stable_sort(nodes.begin(), nodes.end(),
                    [](const DeckNode& a, const DeckNode& b) { return a.node.position[0] < b.node.position[0]; });
@@ -236,7 +232,7 @@ DeckFunction deck_function(const FeStructure& structure, const std::vector<int>&
                                         : fmt::format("{} nodes at one place along the track", nodes.size()),
                       "nodes along the track, on which it lies");
   }
-  if (high - low <= same_place) return beam_deck(std::move(nodes));
+  if (!is_surface(structure, numbers)) return beam_deck(std::move(nodes));
   return DeckSurface(std::move(nodes));
 }
 

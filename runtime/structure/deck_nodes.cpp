@@ -9,6 +9,16 @@
 
 namespace railtab {
 
+bool is_surface(const FeStructure& structure, const std::vector<int>& deck) {
+  constexpr double same_line = 1e-6;  // [m]
+  double low = INFINITY, high = -INFINITY;
+  for (const int number : deck) {
+    low = std::min(low, structure.nodes.at(number).position[1]);
+    high = std::max(high, structure.nodes.at(number).position[1]);
+  }
+  return high - low > same_line;
+}
+
 DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
   DeckExtent extent{INFINITY, -INFINITY};
   for (const int number : deck) {

@@ -12,6 +12,9 @@ namespace railtab {
 /// A place [m] without the distance from zero that turning axes and units leaves.
 [[nodiscard]] inline double without_rounding(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
 
+/// Whether a deck's nodes do not all stand on one line along x.
+[[nodiscard]] bool is_surface(const FeStructure& structure, const std::vector<int>& deck);
+
 /// Begin and end of a deck along the track [m].
 struct DeckExtent {
   double begin = 0.0, end = 0.0;

@@ -11,6 +11,7 @@
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_interpolation.hpp"
 #include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/fe_supports.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
@@ -58,6 +59,27 @@ StructureNode reported(std::string name, const FeNode& node) {
   return result;
 }
 
+/// Vertical motion of every node of a deck.
+std::vector<DeckRow> deck_displacements(const FeStructure& structure, const std::vector<int>& deck) {
+  std::vector<DeckRow> rows;
+  for (const int number : deck) {
+    const FeNode& node = structure.nodes.at(number);
+    rows.push_back({{DeckQuantity::displacement, node.position[0], node.position[1]}, vertical_motion(node)});
+  }
+  return rows;
+}
+
+/// Rotations of a surface's nodes that have none of their own, from the displacements around them.
+void fit_rotations(const FeStructure& structure, const std::vector<ReportedDeckNode>& reported_nodes, Bridge& bridge) {
+  for (std::size_t n = 0; n < reported_nodes.size(); ++n) {
+    const FeNode& node = structure.nodes.at(reported_nodes[n].number);
+    if (!node.rows[roll_dof].empty() || !node.rows[pitch_dof].empty() || !node.rows[yaw_dof].empty()) continue;
+    const SurfaceSlopes slopes = surface_slopes(bridge.surface, node.position[0], node.position[1]);
+    if (slopes.roll) bridge.fitted.push_back({n, roll_dof, *slopes.roll});
+    if (slopes.pitch) bridge.fitted.push_back({n, pitch_dof, *slopes.pitch});
+  }
+}
+
 /// Of every row along the track; an element's inner mode stands where the last of its nodes does.
 std::vector<double> positions(const FeStructure& structure) {
   std::vector<double> x;
@@ -74,7 +96,7 @@ std::vector<double> positions(const FeStructure& structure) {
   return x;
 }
 
-Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
+Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, DeckRecord record) {
   const std::vector<int> deck = selected_nodes(structure, parameters.deck, "structure.deck");
   Bridge bridge;
   append(structure.mass, bridge.matrices.mass);
@@ -96,8 +118,17 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters) {
   const auto [low, high] = std::minmax_element(bridge.dof_x.begin(), bridge.dof_x.end());
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
   bridge.spans.push_back({std::min(extent.begin, *low) - rounding, std::max(bridge.end, *high) + rounding});
-  for (const ReportedDeckNode& node : reported_deck_nodes(structure, deck, parameters.report)) {
+  const std::vector<ReportedDeckNode> named = reported_deck_nodes(structure, deck, parameters.report);
+  for (const ReportedDeckNode& node : named) {
     bridge.nodes.push_back(reported(node.name, structure.nodes.at(node.number)));
+  }
+  if (is_surface(structure, deck)) {
+    bridge.surface = surface_motion(structure, deck);
+    fit_rotations(structure, named, bridge);
+  }
+  if (record == DeckRecord::everywhere) {
+    bridge.deck = deck_displacements(structure, deck);
+    bridge.deck_ends = {{extent.begin, extent.end}};
   }
   return bridge;
 }
@@ -231,15 +262,18 @@ std::vector<std::string> plausibility_warnings(double mass_per_length, double fi
   return warnings;
 }
 
-StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters) {
+StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters,
+                                     DeckRecord record) {
   parameters.validate();
-  if (parameters.files.by_modes()) return lay_track(track, modal_bridge(parameters), MotionPlane::spatial);
+  if (parameters.files.by_modes()) {
+    return lay_track(track, modal_bridge(parameters, record), MotionPlane::spatial, record);
+  }
   FeStructure structure = read_on_supports(parameters);
   require_held(structure);
-  return lay_track(track, bridge_of(std::move(structure), parameters), MotionPlane::spatial);
+  return lay_track(track, bridge_of(std::move(structure), parameters, record), MotionPlane::spatial, record);
 }
 
-StructureModel import_with_rails(const ImportParameters& parameters) {
+StructureModel import_with_rails(const ImportParameters& parameters, DeckRecord record) {
   parameters.validate();
   const FeStructure structure = read_on_supports(parameters);
   require_held(structure);
@@ -258,6 +292,7 @@ StructureModel import_with_rails(const ImportParameters& parameters) {
       model.nodes.push_back(
           reported(fmt::format("deck-{}", x), structure.nodes.at(nearest_deck_node(structure, deck, x))));
     }
+    if (record == DeckRecord::everywhere) set_channels(deck_displacements(structure, deck), model);
   }
   return model;
 }

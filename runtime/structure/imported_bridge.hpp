@@ -38,13 +38,16 @@ struct ImportParameters {
 
 /// Railtab's track laid over the deck of an imported bridge, between whose first and last deck nodes the sleepers rest
 /// on it. Named nodes: "deck-<x>" (the deck node nearest to the track's centre at x), or "deck-midspan-1" where no
-/// position is asked for, and the rails above them. Of an expanded node the motion of its first row is reported.
+/// position is asked for, and the rails above them. Of an expanded node the motion of its first row is reported; a node
+/// of a surface without rotations of its own has roll and pitch of the deck around it (surface_slopes()).
 /// @throws InputError naming file, node or key
-[[nodiscard]] StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters);
+[[nodiscard]] StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters,
+                                                   DeckRecord record = DeckRecord::named_nodes);
 
 /// An imported structure whose own beams are the rails, at the rail-head tops. @throws InputError naming file, node or
 /// key
-[[nodiscard]] StructureModel import_with_rails(const ImportParameters& parameters);
+[[nodiscard]] StructureModel import_with_rails(const ImportParameters& parameters,
+                                               DeckRecord record = DeckRecord::named_nodes);
 
 /// The model on its supports. @throws InputError with file and line, row, or key
 [[nodiscard]] FeStructure read_on_supports(const ImportParameters& parameters);

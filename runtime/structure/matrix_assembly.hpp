@@ -78,4 +78,40 @@ inline void build_matrices(const MatrixAssembly& assembly, int dofs, StructureMo
   split_matrix(assembly.stiffness, dofs, s.columns(), model.stiffness, s.stiffness);
 }
 
+/// Sums of degrees of freedom as the rows of two matrices, of the dofs and of the supports.
+class SumRows {
+ public:
+  void set(int row, const DofSum& sum) {
+    for (const auto& [dof, value] : sum) {
+      if (dof >= 0) {
+        inner_.emplace_back(row, dof, value);
+      } else {
+        outer_.emplace_back(row, support_column(dof), value);
+      }
+    }
+  }
+  void build(Eigen::Index rows, const StructureModel& model, StructureSupports::Columns& of_dofs,
+             StructureSupports::Columns& of_supports) const {
+    of_dofs.resize(rows, model.dofs());
+    of_dofs.setFromTriplets(inner_.begin(), inner_.end());
+    if (outer_.empty()) return;
+    of_supports.resize(rows, model.supports.columns());
+    of_supports.setFromTriplets(outer_.begin(), outer_.end());
+  }
+
+ private:
+  std::vector<Eigen::Triplet<double>> inner_, outer_;
+};
+
+/// The channels of a model whose matrices and supports are there.
+inline void set_channels(const std::vector<DeckRow>& deck, StructureModel& model) {
+  if (deck.empty()) return;
+  SumRows rows;
+  for (std::size_t c = 0; c < deck.size(); ++c) {
+    rows.set(static_cast<int>(c), deck[c].sum);
+    model.deck.channel.push_back(deck[c].at);
+  }
+  rows.build(static_cast<Eigen::Index>(deck.size()), model, model.deck.rows, model.supports.carried_deck);
+}
+
 }  // namespace railtab

@@ -14,6 +14,7 @@
 #include "railtab/runtime/fe/mode_files.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_interpolation.hpp"
 #include "railtab/runtime/structure/deck_nodes.hpp"
 
 namespace railtab {
@@ -293,7 +294,7 @@ std::vector<std::string> lost_by_modes(const ModalStructure& structure, const Im
   return sentences;
 }
 
-Bridge modal_bridge(const ImportParameters& parameters) {
+Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record) {
   const ModalStructure structure = read_modal_structure(parameters);
   const std::vector<int> deck = deck_of(structure, parameters);
   Bridge bridge;
@@ -315,6 +316,28 @@ Bridge modal_bridge(const ImportParameters& parameters) {
   append(S.transpose() * k.asDiagonal() * S, bridge.matrices.stiffness);
   // every mode meets all sleepers on the bridge: last in the order of elimination, it fills the factor least
   bridge.dof_x.assign(static_cast<std::size_t>(structure.omega.size()), extent.end);
+  if (record == DeckRecord::everywhere) {
+    bridge.deck_ends = {{extent.begin, extent.end}};
+    const auto by_shapes = [shape = Eigen::MatrixXd(structure.shape * S)](const DofSum& rows) {
+      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(shape.cols());
+      for (const auto& [row, value] : rows) sum += value * shape.row(row);
+      DofSum modes;
+      for (int m = 0; m < sum.size(); ++m) modes.emplace_back(m, sum[m]);
+      return modes;
+    };
+    if (is_surface(structure.at, deck)) {
+      bridge.surface = [motion = surface_motion(structure.at, deck), by_shapes](double x, double y) {
+        std::optional<DofSum> found = motion(x, y);
+        if (found) found = by_shapes(*found);
+        return found;
+      };
+    }
+    for (const int number : deck) {
+      const FeNode& node = structure.at.nodes.at(number);
+      bridge.deck.push_back({{DeckQuantity::displacement, node.position[0], node.position[1]},
+                             by_shapes({{node.rows[z_dof].front(), 1.0}})});
+    }
+  }
   bridge.attach = [at_rows = std::move(at_rows), shape = Eigen::MatrixXd(structure.shape * S)](
                       double x, double y, double z) -> std::optional<DeckAttachment> {
     const std::optional<DeckAttachment> found = at_rows(x, y, z);

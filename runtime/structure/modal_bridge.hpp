@@ -48,6 +48,6 @@ struct StaticFlexibility {
 /// motions of the reported nodes are degrees of freedom themselves: M = SᵀS, C = Sᵀ 2ζω S, K = Sᵀ ω² S with q = S p.
 /// @throws InputError with file and line, node, or key: also where more positions are reported than the modes can tell
 /// apart
-[[nodiscard]] Bridge modal_bridge(const ImportParameters& parameters);
+[[nodiscard]] Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record = DeckRecord::named_nodes);
 
 }  // namespace railtab

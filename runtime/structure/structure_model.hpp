@@ -8,6 +8,7 @@
 
 #include "railtab/runtime/base/dof_indices.hpp"
 #include "railtab/runtime/base/rail_side.hpp"
+#include "railtab/runtime/structure/deck_channels.hpp"
 
 namespace railtab {
 
@@ -55,7 +56,9 @@ struct StructureSupports {
   /// Rows by the rails' dofs × 2 per support. Not empty: the dofs are relative to what the supports carry along,
   /// and the rails' motion is theirs and carried·s (relative_to_supports()).
   Columns carried{};
-  Columns carried_nodes{};  ///< the same for the nodes of interest, 6 rows each
+  /// What the translations add to the motions of the nodes of interest, 6 rows each, and to the channels of the deck;
+  /// empty: nothing.
+  Columns carried_nodes{}, carried_deck{};
   [[nodiscard]] int columns() const noexcept { return static_cast<int>(2 * x.size()); }
   [[nodiscard]] bool alike_only() const noexcept { return !beyond.empty(); }
 };
@@ -65,6 +68,9 @@ struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide
   std::vector<StructureNode> nodes;  ///< nodes of interest
+  /// Their rotations that are fitted to displacements around them, 6 rows each; empty: none.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> fitted_nodes{};
+  DeckChannels deck{};
   /// Position along the track of every dof [m], not decreasing; empty where it is not known.
   std::vector<double> dof_x;
   /// Dofs of one number are alike and follow each other along x, such as the vertical displacements of a rail's nodes;

@@ -120,13 +120,14 @@ void add_ballast_on_deck(MatrixAssembly& assembly, const TrackParameters& track,
   add_element(assembly.damping, dof, C);
 }
 
-void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const TrackParameters& track, const Bridge& bridge,
-                  std::vector<double>& support_x) {
+SleeperGround add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const TrackParameters& track,
+                           const Bridge& bridge, std::vector<double>& support_x) {
+  SleeperGround grounds(nodes.sleeper.x.size());
   const double bottom = track.rail.height + track.sleeper.height;  // below the rail-head top
   for (size_t i = 0; i < nodes.sleeper.x.size(); ++i) {
     const DofIndices& sleeper = nodes.sleeper.dof[i];
     add_sleeper_mass(assembly, sleeper, track.sleeper);
-    std::optional<DofIndices> ground;
+    std::optional<DofIndices>& ground = grounds[i];
     for (const RailSide side : {RailSide::left, RailSide::right}) {
       const double sign = side == RailSide::left ? -1.0 : 1.0;
       const NodeLine& rail = nodes.rail[static_cast<size_t>(side)];
@@ -141,6 +142,7 @@ void add_sleepers(MatrixAssembly& assembly, const TrackNodes& nodes, const Track
       }
     }
   }
+  return grounds;
 }
 
 StructureNode nearest_node(std::string name, const NodeLine& line, double x) {
@@ -190,6 +192,9 @@ class OrderAlongTrack {
       if (index >= 0) index = number_[static_cast<size_t>(index)];
     }
   }
+  void renumber(DofSum& sum) const {
+    for (auto& [dof, value] : sum) dof = number(dof);
+  }
   void renumber(std::vector<Eigen::Triplet<double>>& entries) const {
     for (auto& e : entries) {
       e = {number(e.row()), number(e.col()), e.value()};
@@ -202,9 +207,27 @@ class OrderAlongTrack {
   std::vector<int> number_;
 };
 
+/// Fitted rotations of the nodes of interest, and the channels of the deck.
+void set_rows(Bridge& bridge, const OrderAlongTrack& order, StructureModel& model) {
+  SumRows fitted;
+  for (Bridge::FittedRotation& rotation : bridge.fitted) {
+    order.renumber(rotation.sum);
+    const std::string& name = bridge.nodes[rotation.node].name;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+      if (model.nodes[n].name == name) fitted.set(static_cast<int>(6 * n + rotation.motion), rotation.sum);
+    }
+  }
+  if (!bridge.fitted.empty()) {
+    const auto rows = static_cast<Eigen::Index>(6 * model.nodes.size());
+    fitted.build(rows, model, model.fitted_nodes, model.supports.carried_nodes);
+  }
+  for (DeckRow& row : bridge.deck) order.renumber(row.sum);
+  set_channels(bridge.deck, model);
+}
+
 }  // namespace
 
-StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane) {
+StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane, DeckRecord record) {
   track.validate();
   TrackNodes nodes = place_nodes(track, bridge.end, plane);
   bridge.dof_line.resize(bridge.dof_x.size(), -1);
@@ -216,7 +239,8 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
   const BeamSection section{rail.E, rail.A, rail.Iy, rail.Iz, rail.GJ, rail.mass, rail.rotary_inertia};
   for (const NodeLine& line : nodes.rail)
     add_beam(assembly, line.x, line.dof, section, {rail.mass_damping, rail.stiffness_damping});
-  add_sleepers(assembly, nodes, track, bridge, bridge.support_x);
+  const SleeperGround ground = add_sleepers(assembly, nodes, track, bridge, bridge.support_x);
+  if (record == DeckRecord::everywhere) add_track_channels(track, nodes.sleeper.x, ground, plane, bridge);
 
   StructureModel model;
   model.supports.x = std::move(bridge.support_x);
@@ -229,6 +253,7 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
     for (DofIndices& dof : line.dof) order.renumber(dof);
   }
   build_matrices(assembly, static_cast<int>(bridge.dof_x.size()), model);
+  set_rows(bridge, order, model);
   std::sort(bridge.dof_x.begin(), bridge.dof_x.end());
   model.dof_x = std::move(bridge.dof_x);
   order.sort(bridge.dof_line);
@@ -243,8 +268,8 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
 }
 
 StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans,
-                                  MotionPlane plane, const std::vector<double>& report) {
-  return lay_track(track, beam_bridge(spans, plane, report), plane);
+                                  MotionPlane plane, const std::vector<double>& report, DeckRecord record) {
+  return lay_track(track, beam_bridge(spans, plane, report, record), plane, record);
 }
 
 }  // namespace railtab

@@ -100,6 +100,7 @@ struct BridgeParameters {
 [[nodiscard]] StructureModel build_track_bridge(const TrackParameters& track,
                                                 const std::vector<BridgeParameters>& spans,
                                                 MotionPlane plane = MotionPlane::spatial,
-                                                const std::vector<double>& report = {});
+                                                const std::vector<double>& report = {},
+                                                DeckRecord record = DeckRecord::named_nodes);
 
 }  // namespace railtab

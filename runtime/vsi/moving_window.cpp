@@ -26,6 +26,12 @@ DofRange dofs_between(const std::vector<double>& x, double from, double to) {
   return {begin, std::upper_bound(x.begin(), x.end(), to) - x.begin() - begin};
 }
 
+// Unknowns with from < x < to.
+DofRange dofs_within(const std::vector<double>& x, double from, double to) {
+  const auto begin = std::upper_bound(x.begin(), x.end(), from) - x.begin();
+  return {begin, std::lower_bound(x.begin(), x.end(), to) - x.begin() - begin};
+}
+
 Sparse block(const Sparse& matrix, const DofRange& dofs) {
   return matrix.block(dofs.begin, dofs.begin, dofs.count, dofs.count);
 }
@@ -102,6 +108,23 @@ WindowModel make_window(const StructureModel& structure, const ReductionParamete
   return window;
 }
 
+namespace {
+
+// What fitted rotations and the channels of the deck need of a span; its ends belong to its neighbours too.
+void add_followed(const StructureModel& structure, const SpanModes& span, std::vector<int>& dofs) {
+  const DofRange inside = dofs_within(structure.dof_x, span.from, span.to);
+  for (const auto* rows : {&structure.fitted_nodes, &structure.deck.rows}) {
+    for (Eigen::Index i = 0; i < rows->nonZeros(); ++i) {
+      const int dof = rows->innerIndexPtr()[i];
+      if (dof >= inside.begin && dof < inside.end()) dofs.push_back(dof);
+    }
+  }
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+}
+
+}  // namespace
+
 MovingWindow::MovingWindow(const VsiModel& model, double time_step)
     : model_(model), scheme_{.alpha = 0.0, .time_step = time_step} {
   for (const SpanModes& span : model.window->spans) {
@@ -111,6 +134,7 @@ MovingWindow::MovingWindow(const VsiModel& model, double time_step)
       std::copy_if(node.dof.begin(), node.dof.end(), std::back_inserter(dofs),
                    [&](int dof) { return dof != held && dof >= span.dofs.begin && dof < span.dofs.end(); });
     }
+    add_followed(*model.structure, span, dofs);
   }
 }
 

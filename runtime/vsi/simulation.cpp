@@ -67,10 +67,12 @@ class Run {
     if (first == 0) {
       record_wheel_extremes(model_, state_);
       record_stops(model_, state_);
+      tell_state();
       emit();
     }
     while (summary.steps < last && summary.message.empty()) {
       if (!make_step(summary)) break;
+      tell_state();
       recorded = summary.steps % record_every_ == 0;
       if (recorded) emit();
       summary.interrupted = observer_.stop && observer_.stop() && summary.steps < last;
@@ -89,6 +91,12 @@ class Run {
   }
 
  private:
+  void tell_state() {
+    if (!observer_.state) return;
+    const Stopwatch watch = integrator_.times().measure(Phase::output);
+    observer_.state(state_);
+  }
+
   void emit() {
     if (!observer_.record) return;
     const Stopwatch watch = integrator_.times().measure(Phase::output);

@@ -22,6 +22,7 @@ struct RunObserver {
   std::function<void()> ready;                     ///< once, when the set-up is over and the first step begins
   /// The initial state, then every output.every steps, and the last step in any case. The listener may change it.
   std::function<void(StepRecord&)> record;
+  std::function<void(const VsiState&)> state;  ///< the initial state and that after every step, not of halved ones
   /// After every step, halved ones too: the energy account, kept only where somebody listens. Not for wheels that
   /// follow the rails.
   std::function<void(const EnergyBalance&)> energy;

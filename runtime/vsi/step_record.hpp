@@ -39,6 +39,18 @@ struct StepRecord {
   int newton_iterations = 0;
 };
 
+/// Where one quantity is followed on the decks (DeckQuantity).
+struct DeckPlaces {
+  std::string quantity, unit;    ///< "displacement", "acceleration", "filtered_acceleration", "twist", …; SI
+  std::vector<double> x{}, y{};  ///< along the track, right of its centre [m]
+  friend bool operator==(const DeckPlaces&, const DeckPlaces&) = default;
+};
+
+/// Extremes of that quantity at those places over all steps of a run, and when they occurred [s].
+struct DeckExtremes {
+  std::vector<double> smallest{}, smallest_time{}, largest{}, largest_time{};
+};
+
 /// Names and constants that do not change during a run.
 struct ResultHeader {
   std::string scene_name;
@@ -57,6 +69,8 @@ struct ResultHeader {
   std::vector<double> node_x;                            ///< [m]
   std::vector<double> node_y, node_z;                    ///< as of bodies; empty where one is not known [m]
   std::vector<double> span_from, span_to;                ///< of the bridge's spans along the track [m]
+  std::vector<DeckPlaces> deck{};                        ///< of RunSummary::deck; empty: decks are not followed
+  double deck_cut_off = 0;                               ///< of its filtered acceleration [Hz]
   std::string wheel_profile, rail_profile;               ///< names
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]
   /// What the run was built of, what was left out, and what it was warned of before its first step.
@@ -130,6 +144,7 @@ struct RunSummary {
   std::string contact_mode;                     ///< table, online, paper
   std::optional<ContactEnergy> contact_energy;  ///< where output.energy asks for it
   std::optional<StopSummary> stops;             ///< where a bump stop of the vehicles was engaged
+  std::vector<DeckExtremes> deck{};             ///< as ResultHeader::deck; empty of a run that was killed
   WheelExtremes wheel_extremes;                 ///< none where wheels are not recorded, and in older files
 };
 

@@ -14,6 +14,7 @@
 #include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/tablegen/loaded_rolling.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
@@ -245,16 +246,13 @@ std::string elements_csv(const Case& c) {
 
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& expected) {
+  std::vector<std::string_view> fields;
+  cut(text, ',', fields);
   std::vector<double> values;
-  std::size_t begin = 0;
-  while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::optional<double> value = parse_number(std::string_view(text).substr(begin, end - begin));
-    if (!value) break;
-    values.push_back(*value);
-    begin = end + 1;
+  for (std::string_view field : fields) {
+    if (const std::optional<double> value = parse_number(field)) values.push_back(*value);
   }
-  if (values.size() != count || begin != text.size() + 1) {
+  if (fields.size() != count || values.size() != count) {
     throw input_error(option, fmt::format("\"{}\"", text), expected);
   }
   return values;

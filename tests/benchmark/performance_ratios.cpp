@@ -188,7 +188,6 @@ double step_to_back_substitution() {
   StepWorkspace workspace(model);
   const std::unique_ptr<ContactLaw> contacts = make_contact_law(model);
   const DofRange all{0, model.structure->dofs()};
-  operators.update_for_time(model, state.time + scheme.time_step, all);
   const SubstitutionFactor& factor = operators.structure->factor();
   const Eigen::VectorXd load = Eigen::VectorXd::Ones(model.structure->dofs());
   constexpr int repeated = 20;

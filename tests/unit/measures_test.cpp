@@ -8,10 +8,13 @@
 #include <numbers>
 #include <random>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/measures/comfort.hpp"
 #include "railtab/runtime/measures/deck_twist.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
+#include "railtab/runtime/measures/low_pass_bank.hpp"
 #include "railtab/runtime/measures/percentile.hpp"
+#include "railtab/runtime/measures/running_extremes.hpp"
 #include "railtab/runtime/measures/running_safety.hpp"
 #include "railtab/runtime/measures/track_mean.hpp"
 #include "railtab/runtime/measures/weighting.hpp"
@@ -49,6 +52,66 @@ std::array<double, 20> frequencies(double lowest) {
   std::array<double, 20> f{};
   for (std::size_t i = 0; i < f.size(); ++i) f[i] = lowest * std::pow(100.0 / lowest, static_cast<double>(i) / 19.0);
   return f;
+}
+
+// Of many series at once, over several blocks: as each by itself, also where it is packed and unpacked on the way.
+TEST(LowPassBank, FiltersEachSeriesAsItWouldBeAlone) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  constexpr double step = 1e-3, cut_off = 30.0;
+  constexpr std::size_t series = 7, samples = 3000;
+  std::vector<Samples> stored(series, Samples(samples));
+  for (Samples& s : stored) {
+    for (double& value : s) value = 5.0 + noise(random);
+  }
+  std::vector<Samples> filtered(series);
+  const LowPassBank::Taker take = [&](long sample, std::span<const double> values) {
+    for (std::size_t i = 0; i < series; ++i) {
+      ASSERT_EQ(filtered[i].size(), static_cast<std::size_t>(sample));
+      filtered[i].push_back(values[i]);
+    }
+  };
+  LowPassBank bank(series, cut_off, step);
+  for (std::size_t k = 0; k < samples; ++k) {
+    Samples now;
+    for (const Samples& s : stored) now.push_back(s[k]);
+    bank.add(now, take);
+    if (k % 700 != 0) continue;
+    std::vector<double> numbers{42.0};
+    bank.pack(numbers);
+    EXPECT_LE(numbers.size(), 1 + bank.capacity());
+    bank = LowPassBank(series, cut_off, step);
+    std::span<const double> rest = std::span<const double>(numbers).subspan(1);
+    bank.unpack(rest);
+    EXPECT_TRUE(rest.empty());
+  }
+  bank.finish(take);
+  for (std::size_t i = 0; i < series; ++i) {
+    const Samples expected = low_passed(stored[i], cut_off, step);
+    ASSERT_EQ(filtered[i].size(), samples);
+    for (std::size_t k = 0; k < samples; ++k) ASSERT_NEAR(filtered[i][k], expected[k], 1e-12) << i << ", " << k;
+  }
+  std::vector<double> other{3.0, 0.0, 0.0};
+  std::span<const double> wrong(other);
+  EXPECT_THROW(bank.unpack(wrong), InputError);
+}
+
+TEST(RunningExtremes, AreTheFirstOfEqualOnes) {
+  RunningExtremes extremes(2);
+  EXPECT_TRUE(extremes.empty());
+  const std::vector<Samples> samples{{1.0, -2.0}, {3.0, -2.0}, {3.0, 5.0}, {-1.0, 5.0}};
+  for (std::size_t k = 0; k < samples.size(); ++k) extremes.add(static_cast<long>(k), samples[k]);
+  EXPECT_EQ(extremes.smallest(), (Samples{-1.0, -2.0}));
+  EXPECT_EQ(extremes.smallest_at(), (Samples{3.0, 0.0}));
+  EXPECT_EQ(extremes.largest(), (Samples{3.0, 5.0}));
+  EXPECT_EQ(extremes.largest_at(), (Samples{1.0, 2.0}));
+  std::vector<double> numbers;
+  extremes.pack(numbers);
+  RunningExtremes again(2);
+  std::span<const double> rest(numbers);
+  again.unpack(rest);
+  EXPECT_TRUE(rest.empty());
+  EXPECT_EQ(again.largest_at(), extremes.largest_at());
 }
 
 TEST(LowPass, HasItsTransferFunctionWithoutPhase) {

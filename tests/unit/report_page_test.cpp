@@ -152,6 +152,32 @@ TEST(ReportPage, IsOneFileWithEverySection) {
   EXPECT_LT(page.find("Running safety"), page.find("Contact time")) << "figures of the program stand last";
 }
 
+// A run that has followed its whole deck shows that, and its headline is the deck's, not a node's.
+TEST(ReportPage, HasTheWholeDeckOverX) {
+  RunResults run = small_run();
+  EXPECT_EQ(report_page(run).find("whole deck"), std::string::npos);
+  const auto add = [&](const char* quantity, const char* unit, double factor) {
+    run.header.deck.push_back({quantity, unit, {0.0, 4.0, 8.0}, {0.0, 0.0, 0.0}});
+    run.summary.deck.push_back(
+        {{-1.0 * factor, -4.0 * factor, 0.0}, {0.1, 0.2, 0.3}, {2.0 * factor, 0.0, factor}, {0.4, 0.5, 0.6}});
+  };
+  add("displacement", "m", 1e-3);
+  add("acceleration", "m/s^2", 1.0);
+  add("filtered_acceleration", "m/s^2", 0.5);
+  add("twist", "m", 1e-4);
+  const std::string page = report_page(run);
+  for (const char* title :
+       {"Deck displacement, whole deck", "Deck acceleration, whole deck", "Deck twist, whole deck"}) {
+    EXPECT_NE(page.find(title), std::string::npos) << title;
+  }
+  EXPECT_EQ(page.find("Bending moment"), std::string::npos) << "the run has none";
+  const Headline headline = headline_of(run);
+  EXPECT_EQ(headline.deck_acceleration.value, 4.0);
+  EXPECT_EQ(headline.deck_acceleration.time, 0.2);
+  EXPECT_EQ(headline.deck_acceleration.where, "deck, x = 4.0 m");
+  EXPECT_EQ(headline.deck_displacement.value, 4e-3);
+}
+
 // The histories are those of the results, and each channel names its own.
 TEST(ReportPage, ChannelsAreThoseOfTheResults) {
   const RunResults run = long_run(1500, 8);

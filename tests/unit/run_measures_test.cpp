@@ -81,7 +81,80 @@ TEST(RunMeasures, OfARunMadeByHand) {
   EXPECT_NEAR(of(found, "car_body_vertical").value, 0.2, 1e-6);
   EXPECT_NEAR(of(found, "comfort_vertical").value, 0.2 / std::numbers::sqrt2 * 0.958, 2e-3) << "W_b at 5 Hz";
   EXPECT_NEAR(of(found, "running_rms_vertical").value, 0.2 / std::numbers::sqrt2 * 1.039, 4e-3) << "W_k at 5 Hz";
-  EXPECT_TRUE(found.missing.empty());
+  ASSERT_EQ(found.missing.size(), 5U) << "what only the envelope of the deck has";
+  for (const MissingMeasure& missing : found.missing) {
+    EXPECT_EQ(missing.reason, "the run has no envelope of the deck (output.deck_envelope)") << missing.measure;
+  }
+}
+
+/// The extremes of a deck with two edges.
+RunResults with_envelope(double cut_off) {
+  RunResults results = made_run();
+  results.header.deck_cut_off = cut_off;
+  const auto add = [&](const char* quantity, const char* unit, std::vector<double> smallest,
+                       std::vector<double> largest) {
+    DeckPlaces places{quantity, unit};
+    for (std::size_t i = 0; i < smallest.size(); ++i) {
+      places.x.push_back(12.0 + static_cast<double>(i));
+      places.y.push_back(i % 2 == 0 ? -4.0 : 4.0);
+    }
+    results.header.deck.push_back(places);
+    const std::vector<double> early(smallest.size(), 1.25), late(smallest.size(), 2.5);
+    results.summary.deck.push_back({std::move(smallest), early, std::move(largest), late});
+  };
+  add("displacement", "m", {-1e-3, -2e-3}, {5e-3, 6e-3});
+  add("twist", "m", {-1.6e-3}, {1.2e-3});
+  add("end_rotation", "rad", {-3e-4, -1e-4}, {2e-4, 5e-4});
+  add("joint_step", "m", {-1e-4}, {2.5e-3});
+  add("joint_gap", "m", {-9e-3}, {1e-3});
+  add("acceleration", "m/s^2", {-7.0, -6.0}, {6.5, 5.0});
+  add("filtered_acceleration", "m/s^2", {-2.0, -3.75}, {3.0, 3.5});
+  return results;
+}
+
+TEST(RunMeasures, WholeDeckInPlaceOfRecordedNodes) {
+  const RunMeasures found = run_measures(with_envelope(30.0), {-100.0, 30.0, 20.0, 0.3});
+  EXPECT_EQ(of(found, "deck_acceleration").value, 3.75) << "its midspan node has 1.0";
+  EXPECT_EQ(of(found, "deck_acceleration").where, "x = 13.00 m, y = 4.00 m");
+  EXPECT_EQ(of(found, "deck_acceleration").time, 1.25);
+  EXPECT_EQ(of(found, "deck_acceleration_unfiltered").value, 7.0);
+  EXPECT_EQ(of(found, "deck_displacement").value, 6e-3);
+  EXPECT_EQ(of(found, "deck_displacement").time, 2.5);
+  EXPECT_EQ(of(found, "deck_twist").value, 1.6e-3);
+  EXPECT_EQ(of(found, "deck_twist").where, "x = 12.00 m");
+  EXPECT_EQ(of(found, "deck_end_rotation").value, 5e-4);
+  EXPECT_EQ(of(found, "deck_joint_gap").value, 9e-3);
+  ASSERT_EQ(found.missing.size(), 1U);
+  EXPECT_EQ(found.missing[0].measure, "horizontal_rotation") << "a run in the vertical plane has none";
+
+  AssessmentFacts facts{"ballasted", 250.0 / 3.6};
+  const std::vector<Clause> clauses = library_clauses();
+  const std::vector<Verdict> verdicts = judge(clauses, facts, found.values, found.missing);
+  const auto outcome = [&](const char* id) {
+    const auto verdict = std::ranges::find_if(verdicts, [&](const Verdict& v) { return v.clause->id == id; });
+    return verdict == verdicts.end() ? Outcome::not_judged : verdict->outcome;
+  };
+  EXPECT_EQ(outcome("en1990.deck-acceleration.ballasted"), Outcome::fail) << "3.75 of 3.5 m/s², beside midspan";
+  EXPECT_EQ(outcome("en1990.twist.above-200"), Outcome::fail);
+  EXPECT_EQ(outcome("en1990.horizontal-rotation.above-200"), Outcome::not_judged);
+  EXPECT_EQ(outcome("en1991.joint-step.above-160"), Outcome::fail);
+  EXPECT_EQ(outcome("en1991.joint-step.160"), Outcome::not_applicable);
+  EXPECT_EQ(outcome("en1991.joint-gap"), Outcome::fail);
+}
+
+TEST(RunMeasures, EnvelopeOfAnotherCutOffOrOfAKilledRunIsNotTaken) {
+  const RunMeasures other = run_measures(with_envelope(40.0), {-100.0, 30.0, 20.0, 0.3});
+  const auto missing = std::ranges::find(other.missing, "deck_acceleration", &MissingMeasure::measure);
+  ASSERT_NE(missing, other.missing.end());
+  EXPECT_EQ(missing->reason, "output.deck_cut_off is 40 Hz, and the decks ask for 30 Hz");
+  EXPECT_EQ(of(other, "deck_acceleration_unfiltered").value, 7.0);
+  RunResults killed = with_envelope(30.0);
+  killed.summary.deck.clear();
+  const RunMeasures recorded = run_measures(killed, {-100.0, 30.0, 20.0, 0.3});
+  EXPECT_NEAR(of(recorded, "deck_acceleration").value, 1.0, 2e-3) << "that of the recorded node";
+  EXPECT_EQ(std::ranges::count(recorded.missing, "the run was ended before it wrote the envelope of the deck",
+                               &MissingMeasure::reason),
+            5);
 }
 
 TEST(RunMeasures, WhatStandsBeforeTheBeginIsNotJudged) {

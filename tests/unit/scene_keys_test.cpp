@@ -37,6 +37,7 @@ std::string companion(const std::string& key) {
       text += fmt::format("vehicle.{} = \"pair.h5\"\n", file);
     return text;
   }
+  if (key == "output.deck_cut_off") return "output.deck_envelope = true\n";
   if (key.starts_with("span_deviation.")) return "span_deviation.shape = \"bending\"\n";
   const std::string both_waves = key.ends_with("shortest_wave")  ? "irregularity.longest_wave = 500.0\n"
                                  : key.ends_with("longest_wave") ? "irregularity.shortest_wave = 0.1\n"
@@ -90,7 +91,8 @@ bool bounded_below(const std::string& key) {
   return key == "track.rail.height" || key == "irregularity.longest_wave" || key.ends_with("frequency_high");
 }
 bool bounded_above(const std::string& key) {
-  return key == "track.rail.head_height" || key == "irregularity.shortest_wave" || key.ends_with("frequency_low");
+  return key == "track.rail.head_height" || key == "irregularity.shortest_wave" || key.ends_with("frequency_low") ||
+         key == "output.deck_cut_off";
 }
 
 /// What the guide says of a range holds to its ends, through every check that a scene passes before it is built.

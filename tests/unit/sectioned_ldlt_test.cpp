@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
 #include "railtab/runtime/base/dof_indices.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
+#include "substitution_check.hpp"
 
 namespace railtab {
 namespace {
@@ -21,12 +21,6 @@ MirrorPairs both_rails(const StructureModel& s) {
     }
   }
   return pairs;
-}
-
-Sparse effective_matrix(const StructureModel& s) { return 1.6e7 * s.mass + 4e3 * s.damping + s.stiffness; }
-
-double difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
 /// A structure in sections beside the same as a whole.
@@ -91,24 +85,9 @@ TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
   const StructureModel s = track_with({32.0, 32.0});
   const Sectioned sectioned(s, whole(s));
   ASSERT_TRUE(sectioned.layout);
-  const SectionedLdlt factor = sectioned.factor();
-  const SparseLdlt reference(sectioned.effective);
-  const int n = s.dofs(), rail = s.rail[0].dof[40][2];
-  DividedSubstitution solution;
-  for (const std::vector<int>& few :
-       {std::vector<int>{700, 3, 3, 704, 12}, std::vector<int>{rail}, std::vector<int>{}, std::vector<int>{n - 1}}) {
-    const Eigen::VectorXd known = Eigen::VectorXd::Random(n);
-    solution.begin(factor, known, few);
-    Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n), whole_solution;
-    for (const double size : {0.0, 1.0, -7.0}) {
-      for (int unknown : few) extra[unknown] = size * (1.0 + 0.1 * unknown);
-      solution.respond(factor, 0.95, extra, answer);
-      const Eigen::VectorXd expected = reference.solve(known + 0.95 * extra);
-      for (int unknown : few) EXPECT_NEAR(answer[unknown], expected[unknown], 1e-11 * expected.cwiseAbs().maxCoeff());
-    }
-    solution.finish(factor, whole_solution);
-    EXPECT_LT(difference(whole_solution, reference.solve(known + 0.95 * extra)), 1e-11);
-  }
+  const int rail = s.rail[0].dof[40][2];
+  expect_divided_as_whole(sectioned.factor(), SparseLdlt(sectioned.effective),
+                          {{700, 3, 3, 704, 12}, {rail}, {}, {s.dofs() - 1}}, 1e-11);
 }
 
 TEST(SectionedLdlt, RejectsAMatrixThatIsNotPositiveDefinite) {

@@ -4,26 +4,20 @@
 
 #include <Eigen/SparseLU>
 
-#include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
+#include "substitution_check.hpp"
 
 namespace railtab {
 namespace {
 
-// Effective matrix of a short track with a bridge, as a time step has it.
-Eigen::SparseMatrix<double> effective_matrix() {
+Eigen::SparseMatrix<double> short_track() {
   TrackParameters track;
   track.length_before = track.length_after = 12.0;
-  const StructureModel s = build_track_bridge(track, {BridgeParameters{}, BridgeParameters{}});
-  return 1.6e7 * s.mass + 4e3 * s.damping + s.stiffness;
-}
-
-double difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+  return effective_matrix(build_track_bridge(track, {BridgeParameters{}, BridgeParameters{}}));
 }
 
 TEST(SparseLdlt, SolvesAsAFactorisationWithoutSymmetryDoes) {
-  const Eigen::SparseMatrix<double> matrix = effective_matrix();
+  const Eigen::SparseMatrix<double> matrix = short_track();
   const SparseLdlt factor(matrix);
   const Eigen::VectorXd load = Eigen::VectorXd::Random(matrix.rows());
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
@@ -38,23 +32,9 @@ TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {
 }
 
 TEST(DividedSubstitution, AnswersAChangingLoadAndGivesTheWholeSolution) {
-  const Eigen::SparseMatrix<double> matrix = effective_matrix();
+  const Eigen::SparseMatrix<double> matrix = short_track();
   const SparseLdlt factor(matrix);
-  const Eigen::Index n = matrix.rows();
-  DividedSubstitution solution;
-  for (const std::vector<int>& few : {std::vector<int>{700, 3, 3, 704, 12}, std::vector<int>{5}, std::vector<int>{}}) {
-    const Eigen::VectorXd known = Eigen::VectorXd::Random(n);
-    solution.begin(factor, known, few);
-    Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n), whole;
-    for (const double size : {0.0, 1.0, -7.0}) {
-      for (int unknown : few) extra[unknown] = size * (1.0 + 0.1 * unknown);
-      solution.respond(factor, 0.95, extra, answer);
-      const Eigen::VectorXd expected = factor.solve(known + 0.95 * extra);
-      for (int unknown : few) EXPECT_NEAR(answer[unknown], expected[unknown], 1e-12 * expected.cwiseAbs().maxCoeff());
-    }
-    solution.finish(factor, whole);
-    EXPECT_LT(difference(whole, factor.solve(known + 0.95 * extra)), 1e-12);
-  }
+  expect_divided_as_whole(factor, factor, {{700, 3, 3, 704, 12}, {5}, {}}, 1e-12);
 }
 
 }  // namespace

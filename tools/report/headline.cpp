@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "railtab/runtime/base/motion_names.hpp"
 
@@ -11,6 +13,24 @@ namespace {
 
 void raise(Extreme& extreme, double value, double time, const std::string& where) {
   if (!extreme.found() || value > extreme.value) extreme = {value, time, where};
+}
+
+/// Of all nodes and steps, where the run has followed them.
+void add_deck_extremes(const ResultHeader& header, const RunSummary& summary, Headline& headline) {
+  if (summary.deck.empty()) return;
+  for (const auto& [name, which] : {std::pair{"acceleration", &Headline::deck_acceleration},
+                                    std::pair{"displacement", &Headline::deck_displacement}}) {
+    const auto places = std::ranges::find(header.deck, name, &DeckPlaces::quantity);
+    if (places == header.deck.end()) continue;
+    const DeckExtremes& extremes = summary.deck[static_cast<std::size_t>(places - header.deck.begin())];
+    Extreme& extreme = headline.*which;
+    extreme = {};
+    for (std::size_t i = 0; i < places->x.size(); ++i) {
+      const std::string where = fmt::format("deck, x = {:.1f} m", places->x[i]);
+      raise(extreme, std::abs(extremes.smallest[i]), extremes.smallest_time[i], where);
+      raise(extreme, std::abs(extremes.largest[i]), extremes.largest_time[i], where);
+    }
+  }
 }
 
 }  // namespace
@@ -100,6 +120,7 @@ Headline HeadlineCollector::result(const RunSummary& summary) const {
   result.smallest_Q = of_wheels(&WheelExtremes::smallest_Q);
   result.derailment = of_wheels(&WheelExtremes::derailment);
   result.unloading = of_wheels(&WheelExtremes::unloading);
+  add_deck_extremes(header_, summary, result);
   result.distance = last_position_ - first_position_;
   if (sparse_) result.derailment_2m = result.track_shift_2m = {};
   if (summary.contact_queries > 0) {

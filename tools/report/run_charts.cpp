@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "channel_values.hpp"
+#include "deck_charts.hpp"
 #include "headline.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
@@ -305,7 +306,8 @@ std::string RunCharts::structure() {
     add_motions(rail, r, others, moved, name);
   }
   acceleration.marks = displacement.marks = rail.marks = passage();
-  return chart_html(acceleration) + chart_html(displacement) + deck_envelope() + chart_html(rail);
+  return chart_html(acceleration) + chart_html(displacement) + deck_envelope() + deck_charts(runs_, names_, bridge()) +
+         chart_html(rail);
 }
 
 /// Largest and smallest displacement of the deck's recorded nodes over x.
@@ -316,6 +318,7 @@ std::string RunCharts::deck_envelope() const {
   chart.x_label = "position along the track [m]";
   chart.y_label = "z [mm]";
   for (std::size_t r = 0; r < runs_.size(); ++r) {
+    if (has_deck_extremes(runs_[r])) continue;  // deck_charts() shows all nodes
     const ResultHeader& header = runs_[r].header;
     std::map<double, std::pair<double, double>> extremes;
     for (const std::size_t i : indices(header.node_names, is_deck)) {

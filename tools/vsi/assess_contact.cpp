@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "run_pool.hpp"
@@ -57,7 +58,8 @@ void lengthen_track(const AxleTrain& own, ContactPlan& plan) {
   }
 }
 
-/// What is judged, a millisecond apart at most.
+}  // namespace
+
 void record_what_is_judged(SceneParameters& scene) {
   constexpr double longest = 1e-3;  // [s] between records
   const double steps = std::floor(longest / scene.integration.time_step * (1.0 + 1e-9));
@@ -67,14 +69,39 @@ void record_what_is_judged(SceneParameters& scene) {
   scene.output.nodes = {scene.track_kind == TrackKind::flexible ? "deck*" : "*"};
 }
 
+assess::RunWindow judged_window(const SceneParameters& scene) {
+  assess::RunWindow window;
+  window.begin = scene.assessment.begin.value_or(scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0));
+  window.friction = scene.contact.friction;
+  return window;
+}
+
+namespace {
+
+/// All nodes of the deck at every step, where that is possible.
+void follow_deck(ContactPlan& plan) {
+  SceneParameters& scene = plan.scene;
+  const bool fast = samples_fast_enough(plan.window.deck_cut_off, scene.integration.time_step);
+  scene.output.deck_envelope = scene.track_kind == TrackKind::flexible && fast;
+  scene.output.deck_cut_off = plan.window.deck_cut_off;
+  plan.notes.push_back(
+      scene.output.deck_envelope
+          ? fmt::format("Decks are judged at all their nodes and every step (output.deck_envelope), accelerations "
+                        "low-passed at {:.1f} Hz.",
+                        plan.window.deck_cut_off)
+          : fmt::format("Deck acceleration is that of the recorded nodes ({}), low-passed at {:.1f} Hz.",
+                        scene.structure.files.nodes.empty() ? "midspan" : "structure.report",
+                        plan.window.deck_cut_off));
+}
+
 /// Values of a run for the whole assessment.
 void take_up(const SweepRun& run, const RunPool& pool, Assessment& assessment) {
   RunAssessment& entry = assessment.runs.emplace_back();
   entry.name = run.name;
   entry.speed = run.speed;
   if (run.name.find("-s") != std::string::npos) entry.seed = run.seed;
-  entry.results = pool.file(run, ".h5").string();
-  if (!pool.finished(run)) {
+  entry.results = pool.file(run.name, ".h5").string();
+  if (!pool.finished(run.name)) {
     entry.message = "the run is not finished";
     return;
   }
@@ -134,8 +161,7 @@ ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
   lengthen_track(own, plan);
   record_what_is_judged(plan.scene);
   const SceneParameters& made = plan.scene;
-  plan.window.begin = made.assessment.begin.value_or(made.train.start + (made.spectrum ? made.spectrum->fade_in : 0.0));
-  plan.window.friction = made.contact.friction;
+  plan.window = judged_window(made);
   for (const assess::DeckAssessment& deck : decks) {
     plan.window.deck_cut_off = std::max(plan.window.deck_cut_off, deck.cut_off);
   }
@@ -146,12 +172,12 @@ ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
   if (!made.contact.friction_file.empty()) {
     plan.notes.emplace_back("Nadal's limit takes contact.friction, not the coefficients of contact.friction_file.");
   }
-  plan.notes.push_back(fmt::format("Deck acceleration is that of the recorded nodes ({}), low-passed at {:.1f} Hz.",
-                                   made.structure.files.nodes.empty() ? "midspan" : "structure.report",
-                                   plan.window.deck_cut_off));
+  follow_deck(plan);
   plan.scene.text += "\n# vsi assess:";
   plan.scene.text += fmt::format(" train.start = {:.9g}, track.length_before = {:.9g}, track.length_after = {:.9g}",
                                  made.train.start, made.track.length_before, made.track.length_after);
+  if (made.output.deck_envelope)
+    plan.scene.text += fmt::format(", output.deck_cut_off = {:.9g}", made.output.deck_cut_off);
   if (made.spectrum) plan.scene.text += fmt::format(", irregularity.fade_in = {:.9g}", made.spectrum->fade_in);
   plan.runs = sweep_runs(plan.scene, speeds, seeds);
   return plan;
@@ -159,8 +185,10 @@ ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
 
 int run_contact(const ContactPlan& plan, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
                 int processes, const std::function<void(double)>& progress, Assessment& assessment) {
-  RunPool pool(plan.scene, scene_file, folder, {"vsi assess", true, progress});
-  const int code = pool.run(plan.runs, static_cast<std::size_t>(processes));
+  RunPool pool(scene_file, folder, {"vsi assess", true, progress});
+  std::vector<PooledRun> runs;
+  for (const SweepRun& run : plan.runs) runs.push_back(pooled(plan.scene, run));
+  const int code = pool.run(runs, static_cast<std::size_t>(processes));
   assessment.window = plan.window;
   constexpr int wrong_input = 2, interrupted = 130;
   if (code == wrong_input || code == interrupted) return code;

@@ -9,6 +9,12 @@
 
 namespace railtab::vsi {
 
+/// Has the measures of a run recorded, a millisecond apart at most.
+void record_what_is_judged(SceneParameters& scene);
+
+/// Where wheels and car bodies of a scene begin to be judged, and the friction of Nadal's limit.
+[[nodiscard]] assess::RunWindow judged_window(const SceneParameters& scene);
+
 /// Runs with contact of an assessment.
 struct ContactPlan {
   SceneParameters scene;  ///< that of the runs: with room for the fade-in, what is judged recorded, the whole crossing

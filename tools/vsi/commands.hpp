@@ -14,6 +14,7 @@ int critical_speed_command(const Arguments& arguments);
 int creep_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
+int study_command(const Arguments& arguments);
 int assess_command(const Arguments& arguments);
 int moving_load_command(const Arguments& arguments);
 int export_command(const Arguments& arguments);

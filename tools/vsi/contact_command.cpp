@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
-#include <optional>
 #include <vector>
 
 #include "command/command_line.hpp"
@@ -27,8 +25,6 @@ constexpr const char* patch_header =
     "concave,source";
 constexpr const char* loaded_columns = ",normal_force,a,b,pressure";
 constexpr const char* total_header = "query,dz,fy,fz,mx";
-constexpr double rounding = 1e-13;    // m: of the height of first touch
-constexpr double largest_load = 1e7;  // N
 
 struct Counts {
   long queries = 0, patches = 0, table = 0;
@@ -42,20 +38,9 @@ struct Queries {
   bool by_load, online;
 
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose) const {
-    return online ? table.search().patches(pose, rounding) : table.patches(pose, rounding);
+    return online ? table.search().patches(pose, touch_rounding) : table.patches(pose, touch_rounding);
   }
 };
-
-/// The lowering at which the wheel carries a vertical load.
-double lowering_of(const Queries& queries, const WheelsetPose& touch, double load, const std::string& place) {
-  if (!(load > 0.0 && load <= largest_load)) {
-    throw input_error(place, fmt::format("load = {}", load), fmt::format("above 0, at most {} N", largest_load));
-  }
-  const std::optional<double> lowering = lowering_under_load(queries.geometry, touch, load);
-  if (lowering) return *lowering;
-  throw input_error(place, fmt::format("load = {} N, not carried {} m below first touch", load, deepest_lowering),
-                    "a load that the contact carries");
-}
 
 void append_patches(const Queries& queries, const WheelsetPose& pose, std::size_t query, std::string& text,
                     Counts& counts) {
@@ -92,21 +77,9 @@ std::string answer(const Queries& queries, bool total, Counts& counts) {
   std::string text = header(queries, total);
   for (std::size_t i = 0; i < queries.rows.rows.size(); ++i) {
     const std::vector<double>& q = queries.rows.rows[i];
-    const std::string& place = queries.rows.places[i];
-    WheelsetPose pose{q[0], 0.0, q[2], q[1]};
-    if (!queries.by_load && !(q[3] >= 0.0 && q[3] <= deepest_lowering)) {
-      throw input_error(place, fmt::format("dz = {}", q[3]),
-                        fmt::format("0 to {} m below first touch", deepest_lowering));
-    }
-    const double touch = queries.table.search().touch_height(pose.y, pose.roll, pose.yaw);
-    if (!std::isfinite(touch)) {
-      throw input_error(place,
-                        fmt::format("y = {}, yaw = {}, roll = {}, where wheel and rail never meet", q[0], q[1], q[2]),
-                        "a position on the rail");
-    }
-    pose.z = touch;
-    const double dz = queries.by_load ? lowering_of(queries, pose, q[3], place) : q[3];
-    pose.z = touch + dz;
+    const auto [pose, dz] = lowered_pose(queries.table.search(), queries.geometry, {q[0], 0.0, q[2], q[1]},
+                                         queries.by_load ? Lowering::under_load : Lowering::given, q[3],
+                                         [&] { return queries.rows.places[i]; });
     if (total) {
       const Vector3 f = frictionless_force(queries.geometry, pose);
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", i, dz, f[0] + 0.0, f[1] + 0.0, f[2] + 0.0);

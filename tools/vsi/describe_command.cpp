@@ -61,6 +61,7 @@ Description of_array_file(const std::string& file) {
             {fmt::format("tablegen info {}", file), fmt::format("tablegen verify {}", file),
              fmt::format("a scene's contact.creep_table = \"{}\"", file)}};
   }
+  if (type == "railtab-study") return {"results of a study of many runs, one value per run in each array", {}, {}};
   return {fmt::format("a file of the kind {}", type), {}, {fmt::format("tablegen info {}", file)}};
 }
 
@@ -75,6 +76,10 @@ Description of_toml(const std::string& file) {
   } catch (const toml::parse_error& wrong) {
     throw input_error(fmt::format("{}: line {}", file, wrong.source().begin.line), std::string(wrong.description()),
                       "TOML");
+  }
+  if (table.contains("vary")) {
+    return {
+        "a plan of a study", {}, {fmt::format("vsi study {} --count", file), fmt::format("vsi study {} -o DIR", file)}};
   }
   if (has_any(table, {"train", "contact", "track", "bridge", "structure", "integration", "irregularity"})) {
     Description d{"a scene", {}, {}};

@@ -20,6 +20,7 @@ constexpr const char* usage =
     "  creep   --query Q.csv -o R.csv [--law LAW]             normalised creep forces\n"
     "  run     SCENE.toml [-o RESULTS.h5]                     run a train over a track or bridge\n"
     "  sweep   SCENE.toml --speed LO:HI:STEP -o DIR           the same over speeds and random tracks\n"
+    "  study   PLAN.toml -o DIR                               runs over any keys, probabilities, fragility curves\n"
     "  report  RESULTS.h5... -o REPORT.html                   results as one page; several: compared\n"
     "  export  RESULTS.h5 [-o FILE.pvd]                       results as files for ParaView\n"
     "  structure SCENE.toml [--modes N]                       mass, extent and natural frequencies of its bridge\n"
@@ -38,6 +39,7 @@ int dispatch(const Arguments& arguments) {
   if (name == "creep") return creep_command(rest);
   if (name == "run") return run_command(rest);
   if (name == "sweep") return sweep_command(rest);
+  if (name == "study") return study_command(rest);
   if (name == "report") return report_command(rest);
   if (name == "export") return export_command(rest);
   if (name == "structure") return structure_command(rest);

@@ -10,7 +10,9 @@
 #include <csignal>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "command/print.hpp"
 #include "railtab/runtime/base/file_checksum.hpp"
@@ -64,10 +66,10 @@ class SharedShares {
 
 }  // namespace
 
-RunPool::RunPool(const SceneParameters& scene, fs::path scene_file, fs::path folder, RunPoolOptions options)
-    : scene_(scene), scene_file_(std::move(scene_file)), folder_(std::move(folder)), options_(std::move(options)) {}
+RunPool::RunPool(fs::path scene_file, fs::path folder, RunPoolOptions options)
+    : scene_file_(std::move(scene_file)), folder_(std::move(folder)), options_(std::move(options)) {}
 
-int RunPool::run(const std::vector<SweepRun>& runs, std::size_t processes) {
+int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
   if (runs.empty()) return done;
   signal(SIGINT, [](int) { asked = 1; });
   const SharedShares shares(runs.size());
@@ -75,7 +77,7 @@ int RunPool::run(const std::vector<SweepRun>& runs, std::size_t processes) {
   std::size_t next = 0;
   while (next < runs.size() || !going_.empty()) {
     while (asked == 0 && next < runs.size() && going_.size() < processes) {
-      const SweepRun& run = runs[next];
+      const PooledRun& run = runs[next];
       going_.emplace(begin(run, shares.of(next)), &run);
       ++next;
     }
@@ -87,13 +89,13 @@ int RunPool::run(const std::vector<SweepRun>& runs, std::size_t processes) {
   return asked != 0 ? interrupted : code;
 }
 
-bool RunPool::finished(const SweepRun& run) const {
-  return fs::exists(file(run, ".row")) && fs::exists(file(run, ".h5"));
+bool RunPool::finished(const std::string& name) const {
+  return fs::exists(file(name, ".row")) && (!options_.keep_results || fs::exists(file(name, ".h5")));
 }
 
-fs::path RunPool::file(const SweepRun& run, const char* suffix) const { return folder_ / (run.name + suffix); }
+fs::path RunPool::file(const std::string& name, const char* suffix) const { return folder_ / (name + suffix); }
 
-int RunPool::begin(const SweepRun& run, double* share) {
+int RunPool::begin(const PooledRun& run, double* share) {
   std::fflush(nullptr);
   const pid_t process = fork();
   if (process < 0) throw ComputationError(options_.command + ": no more processes can be started");
@@ -102,8 +104,8 @@ int RunPool::begin(const SweepRun& run, double* share) {
 }
 
 /// Another name beside the old one, which nothing is lost by.
-void RunPool::set_aside(const SweepRun& run, const char* suffix, const std::string& why) const {
-  const fs::path old = file(run, suffix);
+void RunPool::set_aside(const std::string& name, const char* suffix, const std::string& why) const {
+  const fs::path old = file(name, suffix);
   fs::path aside = old.string() + "." + why;
   constexpr int most = 10000;
   for (int k = 2; fs::exists(aside); ++k) {
@@ -111,15 +113,15 @@ void RunPool::set_aside(const SweepRun& run, const char* suffix, const std::stri
     aside = fmt::format("{}.{}-{}", old.string(), why, k);
   }
   fs::rename(old, aside);
-  print_message(fmt::format("{}: {}: {} is set aside as {}\n", options_.command, run.name, old.filename().string(),
+  print_message(fmt::format("{}: {}: {} is set aside as {}\n", options_.command, name, old.filename().string(),
                             aside.filename().string()));
 }
 
 /// Whether results there are the run's own, which it can keep or go on from. @throws InputError why they are not
-void RunPool::check_results(const SweepRun& run, const SceneParameters& scene) const {
-  const fs::path results = file(run, ".h5");
+void RunPool::check_results(const std::string& name, const SceneParameters& scene) const {
+  const fs::path results = file(name, ".h5");
   const RunResults before = read_results(results);
-  if (!finished(run)) return check_same_run(before, scene, results);
+  if (!finished(name)) return check_same_run(before, scene, results);
   if (before.header.scene_text != scene.text) {
     throw input_error(results.string(), "results of another scene", "those of this run");
   }
@@ -133,51 +135,62 @@ void RunPool::check_results(const SweepRun& run, const SceneParameters& scene) c
 
 /// Results that cannot be read, cut off by a full disk or a kill, or that are another run's would stand in the way of
 /// their run for good; and a row is only believed beside its results.
-void RunPool::set_others_aside(const SweepRun& run, const SceneParameters& scene) const {
+void RunPool::set_others_aside(const std::string& name, const SceneParameters& scene) const {
   std::string why = "alone";
-  if (fs::exists(file(run, ".h5"))) {
+  if (fs::exists(file(name, ".h5"))) {
     try {
-      check_results(run, scene);
+      check_results(name, scene);
       return;
     } catch (const InputError& wrong) {
-      print_message(fmt::format("{}: {}: {}; the run is repeated\n", options_.command, run.name, wrong.what()));
+      print_message(fmt::format("{}: {}: {}; the run is repeated\n", options_.command, name, wrong.what()));
     }
-    why = is_readable(file(run, ".h5")) ? "other" : "damaged";
-    set_aside(run, ".h5", why);
+    why = is_readable(file(name, ".h5")) ? "other" : "damaged";
+    set_aside(name, ".h5", why);
   }
-  if (fs::exists(file(run, ".row"))) set_aside(run, ".row", why);
+  if (fs::exists(file(name, ".row"))) set_aside(name, ".row", why);
 }
 
-int RunPool::in_own_process(const SweepRun& run, double* share) const {
-  const SceneParameters scene = scene_of(scene_, run);
+int RunPool::in_own_process(const PooledRun& run, double* share) const {
+  std::optional<SceneParameters> scene;
   try {
     signal(SIGINT, SIG_DFL);
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // a parent that is killed leaves no run behind that would hold its file
-    set_others_aside(run, scene);
-    if (finished(run)) {
-      if (share) *share = 1.0;
-      return kept;
-    }
-    std::string row;
-    RunOptions options{file(run, ".h5").string(), false, true, true};
-    options.progress = [share](double done_so_far) {
-      if (share) *share = done_so_far;
-    };
-    options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
-      if (!summary.interrupted) row = summary_row(run, headline, summary);
-    };
-    const int code = run_to_file(scene, options);
-    if (!row.empty()) write_text_file(file(run, ".row"), row);
-    if (share) *share = 1.0;
-    return code;
+    scene = run.scene();
+    return make_row(run, *scene, share);
   } catch (const InputError& wrong) {
-    print_message(
-        fmt::format("{}: {}: {}\n", options_.command, run.name, with_scene_line(wrong, scene, scene_file_).what()));
+    const InputError placed = scene ? with_scene_line(wrong, *scene, scene_file_) : wrong;
+    print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, placed.what()));
     return wrong_input;
   } catch (const std::exception& failure) {
     print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, failure.what()));
   }
   return failed;
+}
+
+/// The run, where it is not finished, and its row.
+int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double* share) const {
+  const fs::path results = file(run.name, ".h5");
+  const auto tidy = [&] {
+    if (share) *share = 1.0;
+    if (!options_.keep_results && finished(run.name)) fs::remove(results);
+  };
+  if (options_.keep_results || !finished(run.name)) set_others_aside(run.name, scene);
+  if (finished(run.name)) {
+    tidy();
+    return kept;
+  }
+  std::optional<std::pair<report::Headline, RunSummary>> end;
+  RunOptions options{results.string(), false, true, true};
+  options.progress = [share](double done_so_far) {
+    if (share) *share = done_so_far;
+  };
+  options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
+    if (!summary.interrupted) end.emplace(headline, summary);
+  };
+  const int code = run_to_file(scene, options);
+  if (end && fs::exists(results)) write_text_file(file(run.name, ".row"), run.row(end->first, end->second, results));
+  tidy();
+  return code;
 }
 
 /// Waits for one of the processes, or a moment where progress is shown; the exit code of what has ended.
@@ -193,14 +206,14 @@ int RunPool::wait() {
 int RunPool::ended(int process, int status) {
   const auto at = going_.find(process);
   if (at == going_.end()) return done;
-  const SweepRun& run = *at->second;
+  const PooledRun& run = *at->second;
   going_.erase(at);
   if (WIFEXITED(status) && WEXITSTATUS(status) == wrong_input && !one_ended_) return wrong_input;
   one_ended_ = true;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kept) return done;
   const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
   if (!options_.quiet)
-    print_formatted("{}: {}\n", run.name, complete ? "done" : finished(run) ? "ended early" : "not finished");
+    print_formatted("{}: {}\n", run.name, complete ? "done" : finished(run.name) ? "ended early" : "not finished");
   std::fflush(stdout);
   return complete ? done : failed;
 }

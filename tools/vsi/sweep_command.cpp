@@ -1,22 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <optional>
-#include <set>
-#include <sstream>
+#include <filesystem>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
-#include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
-#include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
+#include "run_folder.hpp"
 #include "run_pool.hpp"
 #include "sweep_plan.hpp"
 
@@ -27,62 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 using exit_code::done, exit_code::failed;
 
-std::string whole_text(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
+RunRow row_of(const SweepRun& run) { return {run.name, row_begin(run)}; }
 
-struct SweepCount {
-  std::size_t finished = 0, ended_early = 0;
-};
-
-/// Row of a finished run, and whether it came to its end. @throws InputError
-std::pair<std::string, bool> row_of(const RunPool& sweep, const SweepRun& run) {
-  std::string row = whole_text(sweep.file(run, ".row"));
-  const std::optional<bool> complete = complete_of_row(run, row);
-  if (complete) return {std::move(row), *complete};
-  throw input_error(sweep.file(run, ".row").string(), "no row of this run",
-                    "the one that vsi sweep wrote; without the file the run is repeated");
-}
-
-/// Finished runs; `rows` takes theirs where it is not null. @throws InputError
-SweepCount count_runs(const RunPool& sweep, const std::vector<SweepRun>& runs, std::string* rows = nullptr) {
-  SweepCount count;
-  for (const SweepRun& run : runs) {
-    if (!sweep.finished(run)) continue;
-    const auto [row, complete] = row_of(sweep, run);
-    if (rows) *rows += row;
-    ++count.finished;
-    count.ended_early += !complete;
-  }
-  return count;
-}
-
-/// All finished runs of the whole sweep, whichever process or shard made them. @throws InputError
-SweepCount write_summary(const RunPool& sweep, const std::vector<SweepRun>& runs, const fs::path& file) {
-  std::string text = summary_columns();
-  const SweepCount count = count_runs(sweep, runs, &text);
-  write_text_file(file, text);
-  return count;
-}
-
-/// A folder holds the runs of one scene and of the same contents of the files that it names.
-void check_same_scene(const SceneParameters& scene, const fs::path& folder) {
-  const fs::path file = folder / "scene.toml";
-  std::string text = scene.text;
-  for (const fs::path& input : scene.files) text += fmt::format("\n# {}: {}", input.string(), file_checksum(input));
-  text += '\n';
-  try {
-    if (!fs::exists(file)) write_text_file(file, text);
-  } catch (const std::runtime_error&) {
-    if (!fs::exists(file)) throw;  // else another shard was first
-  }
-  if (whole_text(file) != text) {
-    throw input_error(file.string(), "another scene, or other contents of the files that it names",
-                      "the scene of this sweep, or another folder for -o");
-  }
+std::vector<RunRow> rows_of(const std::vector<SweepRun>& runs) {
+  std::vector<RunRow> rows;
+  for (const SweepRun& run : runs) rows.push_back(row_of(run));
+  return rows;
 }
 
 std::vector<double> sweep_speeds(const CommandLine& line) {
@@ -93,15 +38,6 @@ std::vector<double> sweep_speeds(const CommandLine& line) {
   std::vector<double> speeds = values_of_range("--" + option, line.text(option));
   if (kmh) std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double v) { return v / 3.6; });
   return speeds;
-}
-
-/// What processes left that were killed while they wrote: of finished runs too, which nothing is written of any more.
-void remove_abandoned_of(const std::vector<SweepRun>& runs, const fs::path& folder) {
-  std::set<std::string> outputs{"scene.toml", "summary.csv"};
-  for (const SweepRun& run : runs) {
-    for (const char* suffix : {".h5", ".row"}) outputs.insert(run.name + suffix);
-  }
-  remove_abandoned_in(folder, [&](const std::string& output) { return outputs.contains(output); });
 }
 
 po::options_description sweep_options() {
@@ -117,7 +53,7 @@ po::options_description sweep_options() {
 }
 
 /// What the whole sweep has come to, or one of its shards, which writes no summary.
-void print_outcome(const CommandLine& line, const SweepCount& count, std::size_t own, std::size_t all,
+void print_outcome(const CommandLine& line, const RunCount& count, std::size_t own, std::size_t all,
                    const std::string& summary) {
   if (line.json()) {
     nlohmann::ordered_json json{{"runs", own}, {"finished", count.finished}, {"ended_early", count.ended_early}};
@@ -149,21 +85,21 @@ int sweep_command(const Arguments& arguments) {
   const std::vector<SweepRun> all = sweep_runs(scene, sweep_speeds(line), seeds);
   for (const SweepRun& run : all) static_cast<void>(scene_of(scene, run));
   const PartOf shard = line.part("shard");
-  std::vector<SweepRun> own;
-  for (std::size_t i = static_cast<std::size_t>(shard.index - 1); i < all.size();
-       i += static_cast<std::size_t>(shard.count)) {
-    own.push_back(all[i]);
-  }
+  const std::vector<SweepRun> own = own_part(all, shard);
 
   make_output_folder(folder);
-  remove_abandoned_of(all, folder);
-  check_same_scene(scene, folder);
+  remove_abandoned_runs(rows_of(all), {"scene.toml", "summary.csv"}, folder);
+  check_same_scene(scene.text, scene.files, folder);
   const auto processes = static_cast<std::size_t>(line.workers());
-  RunPool sweep(scene, scene_file, folder, {"vsi sweep", line.quiet() || line.json()});
-  const int code = sweep.run(own, processes);
+  RunPool sweep(scene_file, folder, {"vsi sweep", line.quiet() || line.json()});
+  std::vector<PooledRun> runs;
+  for (const SweepRun& run : own) runs.push_back(pooled(scene, run));
+  const int code = sweep.run(runs, processes);
   const bool whole = shard.count == 1;
   const fs::path summary = folder / "summary.csv";
-  const SweepCount count = whole ? write_summary(sweep, all, summary) : count_runs(sweep, own);
+  std::string text = summary_columns();
+  const RunCount count = count_rows(sweep, rows_of(whole ? all : own), summary_columns(), text);
+  if (whole) write_text_file(summary, text);
   print_outcome(line, count, own.size(), all.size(), whole ? summary.string() : "");
   return code == done && count.ended_early > 0 ? failed : code;
 }

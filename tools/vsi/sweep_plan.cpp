@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "run_folder.hpp"
 
 namespace railtab::vsi {
 namespace {
@@ -23,10 +24,6 @@ double number(const std::string& option, const std::string& text, std::string_vi
 }
 
 std::string cell(const report::Extreme& extreme) { return extreme.found() ? fmt::format("{:.8g}", extreme.value) : ""; }
-
-std::string row_begin(const SweepRun& run) {
-  return fmt::format("{},{:.6g},{:.6g},{},", run.name, run.speed, 3.6 * run.speed, run.seed);
-}
 
 }  // namespace
 
@@ -93,6 +90,17 @@ SceneParameters scene_of(const SceneParameters& scene, const SweepRun& run) {
   return result;
 }
 
+PooledRun pooled(const SceneParameters& scene, const SweepRun& run) {
+  return {run.name, [&scene, run] { return scene_of(scene, run); },
+          [run](const report::Headline& headline, const RunSummary& summary, const std::filesystem::path&) {
+            return summary_row(run, headline, summary);
+          }};
+}
+
+std::string row_begin(const SweepRun& run) {
+  return fmt::format("{},{:.6g},{:.6g},{},", run.name, run.speed, 3.6 * run.speed, run.seed);
+}
+
 std::string summary_columns() {
   return "run,speed[m/s],speed[km/h],seed,complete,max_deck_acceleration[m/s2],max_deck_displacement[m],"
          "max_car_body_vertical_acceleration[m/s2],max_car_body_lateral_acceleration[m/s2],"
@@ -102,49 +110,12 @@ std::string summary_columns() {
 }
 
 std::string summary_row(const SweepRun& run, const report::Headline& headline, const RunSummary& summary) {
-  std::string message = summary.message;
-  for (char& letter : message) {
-    if (letter == ',' || letter == '\n' || letter == '"') letter = ';';
-  }
   return fmt::format("{}{},{},{},{},{},{},{},{},{},{},{},{:.6g},{},{},{:.3f},{}\n", row_begin(run),
                      summary.complete ? 1 : 0, cell(headline.deck_acceleration), cell(headline.deck_displacement),
                      cell(headline.car_body_vertical), cell(headline.car_body_lateral), cell(headline.derailment),
                      cell(headline.derailment_2m), cell(headline.track_shift_2m), cell(headline.unloading),
                      cell(headline.largest_Q), cell(headline.smallest_Q), headline.simulated_time, summary.steps,
-                     summary.halved_steps, summary.seconds_total, message);
-}
-
-namespace {
-
-bool is_number_or_empty(const std::string& field) {
-  double value = 0.0;
-  const auto [stop, status] = std::from_chars(field.data(), field.data() + field.size(), value);
-  const bool whole = status == std::errc() && stop == field.data() + field.size();
-  return field.empty() || (whole && std::isfinite(value));
-}
-
-std::vector<std::string> fields_of(std::string row) {
-  if (row.ends_with('\n')) row.pop_back();
-  std::vector<std::string> fields;
-  for (std::size_t begin = 0; begin <= row.size();) {
-    const std::size_t end = std::min(row.find(',', begin), row.size());
-    fields.push_back(row.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return fields;
-}
-
-}  // namespace
-
-std::optional<bool> complete_of_row(const SweepRun& run, const std::string& row) {
-  constexpr std::size_t complete = 4;  // of the columns
-  const std::string before = row_begin(run);
-  const std::vector<std::string> fields = fields_of(row);
-  const bool whole = row.starts_with(before) && row.find('\n') == row.size() - 1 &&
-                     fields.size() == fields_of(summary_columns()).size();
-  if (!whole || !std::all_of(fields.begin() + complete, fields.end() - 1, is_number_or_empty)) return std::nullopt;
-  if (fields[complete] != "0" && fields[complete] != "1") return std::nullopt;
-  return fields[complete] == "1";
+                     summary.halved_steps, summary.seconds_total, message_cell(summary.message));
 }
 
 }  // namespace railtab::vsi

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "headline.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "run_pool.hpp"
 
 namespace railtab::vsi {
 
@@ -29,10 +28,12 @@ struct SweepRun {
 /// The scene of one run; its text says what was changed, so that results tell their own scene.
 [[nodiscard]] SceneParameters scene_of(const SceneParameters& scene, const SweepRun& run);
 
-/// One row of the summary and the names of its columns.
+/// A run with scene_of() and summary_row(). @param scene outlives it
+[[nodiscard]] PooledRun pooled(const SceneParameters& scene, const SweepRun& run);
+
+/// Names of the columns of the summary, and one row, which begins with the cells of row_begin().
 [[nodiscard]] std::string summary_columns();
+[[nodiscard]] std::string row_begin(const SweepRun& run);
 [[nodiscard]] std::string summary_row(const SweepRun& run, const report::Headline& headline, const RunSummary& summary);
-/// Whether a run came to its end, from its row; empty where the text is not that row.
-[[nodiscard]] std::optional<bool> complete_of_row(const SweepRun& run, const std::string& row);
 
 }  // namespace railtab::vsi

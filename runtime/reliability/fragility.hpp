@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "railtab/runtime/reliability/proportion.hpp"
+
+namespace railtab {
+
+/// Runs at one intensity, and how many of them exceeded the limit.
+struct FragilityLevel {
+  double intensity = 0.0;  ///< > 0: wind speed [m/s], peak ground acceleration [m/s²], …
+  std::size_t runs = 0, exceeded = 0;
+};
+
+/// Probability of exceedance Φ(ln(x/median)/deviation) over the intensity x.
+struct FragilityCurve {
+  double median = 0.0;     ///< intensity of probability 0.5, in its unit
+  double deviation = 0.0;  ///< β, of the logarithm
+  [[nodiscard]] double probability(double intensity) const noexcept;
+};
+
+/// The curve of the largest likelihood Σ k·ln p + (n − k)·ln(1 − p) [Baker2015], as a probit regression on
+/// ln x by Fisher scoring. None where the likelihood has no finite maximum: fewer than two intensities, or one
+/// intensity divides levels without exceedance from levels with nothing else, or the probability does not rise with the
+/// intensity.
+/// @pre intensities > 0, exceeded <= runs
+[[nodiscard]] std::optional<FragilityCurve> fit_fragility(const std::vector<FragilityLevel>& levels);
+
+struct BootstrapOptions {
+  std::size_t replicates = 1000;
+  double confidence = 0.95;
+  std::uint64_t seed = 1;
+};
+
+struct FragilityFit {
+  std::optional<FragilityCurve> curve;
+  ConfidenceInterval median, deviation;
+  std::vector<ConfidenceInterval> at_levels;  ///< of the curve, one per level
+  std::vector<ConfidenceInterval> observed;   ///< share of the level's runs, wilson_interval()
+  std::size_t replicates = 0;  ///< those with a curve: intervals are of them alone, and none where there are under half
+};
+
+/// fit_fragility() with percentile intervals of a bootstrap: each replicate draws as many runs per level again from
+/// those of the level.
+[[nodiscard]] FragilityFit fragility_with_bounds(const std::vector<FragilityLevel>& levels,
+                                                 const BootstrapOptions& options);
+
+}  // namespace railtab

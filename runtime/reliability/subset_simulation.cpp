@@ -1,0 +1,192 @@
+#include "railtab/runtime/reliability/subset_simulation.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "railtab/runtime/reliability/counter_random.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr std::uint32_t first_stream = 16;  // of level 0, one for each level
+
+/// Samples of one level: `chains` chains, sample k·chains + c is step k of chain c.
+struct LevelSamples {
+  std::vector<NormalPoint> points;
+  std::vector<double> responses;
+  std::size_t chains = 1;
+};
+
+NormalPoint random_normal_point(const SubsetOptions& options, std::size_t sample, std::size_t level) {
+  NormalPoint point(options.variables);
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    point[j] = normal_random(options.seed,
+                             {sample, static_cast<std::uint32_t>(j), first_stream + static_cast<std::uint32_t>(level)});
+  }
+  return point;
+}
+
+/// Indices of the samples, the largest response first.
+std::vector<std::size_t> by_response(const LevelSamples& samples) {
+  std::vector<std::size_t> order(samples.responses.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return samples.responses[a] > samples.responses[b]; });
+  return order;
+}
+
+std::size_t count_beyond(const LevelSamples& samples, double threshold) {
+  return static_cast<std::size_t>(
+      std::count_if(samples.responses.begin(), samples.responses.end(), [&](double y) { return y >= threshold; }));
+}
+
+/// γ = 2 Σ_k (1 − k/L)·R(k)/R(0) of the indicator y >= threshold, L steps per chain [AuBeck2001].
+double chain_correlation(const LevelSamples& samples, double threshold, double p) {
+  const std::size_t chains = samples.chains, length = samples.responses.size() / chains;
+  const double variance = p * (1.0 - p);
+  if (chains == samples.responses.size() || !(variance > 0.0)) return 0.0;
+  const auto beyond = [&](std::size_t c, std::size_t k) {
+    return samples.responses[k * chains + c] >= threshold ? 1.0 : 0.0;
+  };
+  double sum = 0.0;
+  for (std::size_t lag = 1; lag < length; ++lag) {
+    double covariance = 0.0;
+    for (std::size_t c = 0; c < chains; ++c) {
+      for (std::size_t k = 0; k + lag < length; ++k) covariance += beyond(c, k) * beyond(c, k + lag);
+    }
+    covariance = covariance / static_cast<double>(chains * (length - lag)) - p * p;
+    sum += (1.0 - static_cast<double>(lag) / static_cast<double>(length)) * covariance / variance;
+  }
+  return std::max(0.0, 2.0 * sum);
+}
+
+SubsetLevel level_of(const LevelSamples& samples, double threshold) {
+  SubsetLevel level;
+  const double count = static_cast<double>(samples.responses.size());
+  level.threshold = threshold;
+  level.probability = static_cast<double>(count_beyond(samples, threshold)) / count;
+  level.correlation = chain_correlation(samples, threshold, level.probability);
+  if (level.probability > 0.0) {
+    level.variation = std::sqrt((1.0 - level.probability) / (level.probability * count) * (1.0 + level.correlation));
+  }
+  return level;
+}
+
+/// Spread of the seeds, variable by variable.
+std::vector<double> spread_of(const std::vector<NormalPoint>& seeds) {
+  const double count = static_cast<double>(seeds.size());
+  std::vector<double> spread(seeds.front().size());
+  for (std::size_t j = 0; j < spread.size(); ++j) {
+    double mean = 0.0, square = 0.0;
+    for (const NormalPoint& seed : seeds) mean += seed[j] / count;
+    for (const NormalPoint& seed : seeds) square += (seed[j] - mean) * (seed[j] - mean);
+    spread[j] = std::sqrt(square / (count - 1.0));
+  }
+  return spread;
+}
+
+/// The chains of one level, all a step at a time.
+class Chains {
+ public:
+  Chains(const SubsetOptions& options, const ResponseOfPoints& response) : options_(options), response_(response) {}
+
+  /// From the samples beyond the threshold, `seeds` of them. @return share of the steps that moved
+  double run(std::size_t level, double threshold, const std::vector<std::size_t>& seeds, LevelSamples& samples) {
+    LevelSamples next;
+    next.chains = seeds.size();
+    for (const std::size_t i : seeds) {
+      next.points.push_back(samples.points[i]);
+      next.responses.push_back(samples.responses[i]);
+    }
+    const std::vector<double> spread = spread_of(next.points);
+    double moved = 0.0;
+    for (std::size_t step = 1; next.points.size() < options_.samples; ++step) {
+      moved += advance(level, step, threshold, spread, next);
+    }
+    const std::size_t steps = next.points.size() - next.chains;
+    samples = std::move(next);
+    return moved / static_cast<double>(steps);
+  }
+
+ private:
+  /// One step of every chain. @return how many moved
+  double advance(std::size_t level, std::size_t step, double threshold, const std::vector<double>& spread,
+                 LevelSamples& samples) {
+    const std::size_t last = samples.points.size() - samples.chains;
+    std::vector<NormalPoint> candidates;
+    for (std::size_t c = 0; c < samples.chains; ++c) {
+      candidates.push_back(
+          candidate(samples.points[last + c], random_normal_point(options_, step * samples.chains + c, level), spread));
+    }
+    const std::vector<double> responses = response_(candidates);
+    std::size_t moved = 0;
+    for (std::size_t c = 0; c < samples.chains; ++c) {
+      const bool kept = responses[c] >= threshold;
+      moved += kept;
+      samples.points.push_back(kept ? std::move(candidates[c]) : samples.points[last + c]);
+      samples.responses.push_back(kept ? responses[c] : samples.responses[last + c]);
+    }
+    constexpr double target = 0.44;
+    const double acceptance = static_cast<double>(moved) / static_cast<double>(samples.chains);
+    factor_ *= std::exp((acceptance - target) / std::sqrt(static_cast<double>(step)));
+    return static_cast<double>(moved);
+  }
+
+  [[nodiscard]] NormalPoint candidate(const NormalPoint& from, NormalPoint random,
+                                      const std::vector<double>& spread) const {
+    for (std::size_t j = 0; j < random.size(); ++j) {
+      const double sigma = std::min(1.0, factor_ * spread[j]);
+      random[j] = std::sqrt(1.0 - sigma * sigma) * from[j] + sigma * random[j];
+    }
+    return random;
+  }
+
+  const SubsetOptions& options_;
+  const ResponseOfPoints& response_;
+  double factor_ = 0.6;
+};
+
+}  // namespace
+
+SubsetResult subset_simulation(const SubsetOptions& options, const ResponseOfPoints& response) {
+  const auto seeds =
+      static_cast<std::size_t>(std::llround(options.level_probability * static_cast<double>(options.samples)));
+  assert(seeds >= 2 && options.samples % seeds == 0 && options.variables > 0);
+  LevelSamples samples;
+  for (std::size_t i = 0; i < options.samples; ++i) samples.points.push_back(random_normal_point(options, i, 0));
+  samples.responses = response(samples.points);
+  samples.chains = options.samples;
+  Chains chains(options, response);
+  SubsetResult result;
+  result.probability = 1.0;
+  result.evaluations = options.samples;
+  double square = 0.0, acceptance = 1.0;
+  std::size_t evaluations = options.samples;
+  for (std::size_t number = 1;; ++number) {
+    std::vector<std::size_t> order = by_response(samples);
+    const double quantile = samples.responses[order[seeds - 1]];
+    const bool reached = quantile >= options.limit;
+    SubsetLevel& level = result.levels.emplace_back(level_of(samples, reached ? options.limit : quantile));
+    level.acceptance = acceptance;
+    level.evaluations = evaluations;
+    result.probability *= level.probability;
+    square += level.variation * level.variation;
+    if (reached) break;
+    result.outcome = level.probability < 1.0 ? SubsetOutcome::too_rare : SubsetOutcome::stalled;
+    if (number == options.most_levels || level.probability == 1.0) break;
+    order.resize(seeds);
+    std::sort(order.begin(), order.end());
+    acceptance = chains.run(number, quantile, order, samples);
+    evaluations = options.samples - seeds;
+    result.evaluations += evaluations;
+    result.outcome = SubsetOutcome::found;
+  }
+  result.variation = std::sqrt(square);
+  result.points = std::move(samples.points);
+  result.responses = std::move(samples.responses);
+  return result;
+}
+
+}  // namespace railtab

@@ -1,0 +1,291 @@
+// Studies of many runs by a plan: the same tables from any number of workers, shards and kills, and clear messages.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/reliability/proportion.hpp"
+#include "railtab/runtime/results/result_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "vsi_fixture.hpp"
+
+namespace railtab {
+namespace {
+
+constexpr const char* scene =
+    "[train]\nspeed_kmh = 100\n[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n"
+    "[irregularity]\nspectrum = \"german-low\"\n[integration]\nduration = 0.25\n";
+
+constexpr const char* speeds = "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nrange = \"100:200:50\"\n";
+constexpr const char* friction =
+    "[[vary]]\nkey = \"contact.friction\"\ndistribution = \"lognormal\"\nmean = 0.3\ncov = 0.2\n";
+constexpr const char* seeds =
+    "[[vary]]\nkey = \"irregularity.seed\"\ndistribution = \"uniform\"\nlow = 1\nhigh = 100001\n";
+
+class StudyCommand : public VsiCommand {
+ protected:
+  void SetUp() override {
+    VsiCommand::SetUp();
+    write("scene.toml", scene);
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    std::ostringstream content;
+    content << std::ifstream(folder_ / name).rdbuf();
+    return content.str();
+  }
+  [[nodiscard]] nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(text(name)); }
+  /// Cells of a table, the header first.
+  [[nodiscard]] std::vector<std::vector<std::string>> table(const std::string& name) const {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream stream(text(name));
+    for (std::string line; std::getline(stream, line);) {
+      std::istringstream cells(line + ",");
+      rows.emplace_back();
+      for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+    }
+    return rows;
+  }
+  [[nodiscard]] std::vector<std::string> column(const std::string& file, const std::string& name) const {
+    const auto rows = table(file);
+    const auto at = std::find(rows[0].begin(), rows[0].end(), name);
+    EXPECT_NE(at, rows[0].end()) << name;
+    std::vector<std::string> values;
+    for (std::size_t i = 1; i < rows.size(); ++i) values.push_back(rows[i][std::size_t(at - rows[0].begin())]);
+    return values;
+  }
+  [[nodiscard]] int study(const std::string& arguments) const {
+    const Outcome outcome = vsi("study " + arguments + " --quiet");
+    if (outcome.exit_code != 0) ADD_FAILURE() << arguments << "\n" << outcome.output;
+    return outcome.exit_code;
+  }
+};
+
+// One row per point of the grid and sample, a column with unit per key and measure; the measures are those of vsi run
+// with the same keys, and the HDF5 file holds the same numbers.
+TEST_F(StudyCommand, MakesATableOfAllRuns) {
+  write("plan.toml", std::string(speeds) + friction + "[sampling]\nsamples = 2\nseed = 5\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  const auto rows = table("out/runs.csv");
+  ASSERT_EQ(rows.size(), 7U);
+  EXPECT_EQ(rows[0][1], "train.speed_kmh[km/h]");
+  EXPECT_EQ(rows[0][2], "contact.friction[-]");
+  const std::vector<std::string> speed = column("out/runs.csv", "train.speed_kmh[km/h]");
+  EXPECT_EQ(speed, (std::vector<std::string>{"100", "100", "150", "150", "200", "200"}));
+  EXPECT_EQ(rows[1][2], rows[3][2]) << "each speed has the same samples";
+  EXPECT_NE(rows[1][2], rows[2][2]);
+  for (const std::string& value : column("out/runs.csv", "wheel_unloading[-]")) EXPECT_GT(std::stod(value), 0.0);
+  for (const std::string& value : column("out/runs.csv", "deck_acceleration[m/s2]")) EXPECT_EQ(value, "") << "no deck";
+
+  const ArrayFileReader file(folder_ / "out/study.h5", "railtab-study", 1);
+  const Array stored = file.read("measures/wheel_unloading"), kmh = file.read("variables/train.speed_kmh");
+  EXPECT_EQ(file.text("variables/train.speed_kmh", "unit"), "km/h");
+  const std::vector<std::string> unloading = column("out/runs.csv", "wheel_unloading[-]");
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(stored.values[i], std::stod(unloading[i]));
+    EXPECT_EQ(kmh.values[i], std::stod(speed[i]));
+  }
+  EXPECT_TRUE(std::isnan(file.read("measures/deck_acceleration").values[0]));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / ("out/" + rows[1][0] + ".h5"))) << "keep_results is false";
+}
+
+// A value of the plan is a key of the scene: results that are kept are those of a run with that key.
+TEST_F(StudyCommand, RunsTheSceneWithTheKeysOfThePlan) {
+  write("plan.toml",
+        "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nkey = \"train.speed\"\nvalues = [40]\n"
+        "[[vary]]\nkey = \"train.vehicle\"\nvalues = [\"manchester-coach\", \"ice3-like-coach\"]\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  const auto rows = table("out/runs.csv");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[2][2], "ice3-like-coach");
+  EXPECT_NE(column("out/runs.csv", "wheel_force[N]")[0], column("out/runs.csv", "wheel_force[N]")[1]);
+  const RunResults kept = read_results(folder_ / ("out/" + rows[2][0] + ".h5"));
+  EXPECT_EQ(kept.header.speed, 40.0);
+  EXPECT_NE(kept.header.scene_text.find("train.vehicle = \"ice3-like-coach\""), std::string::npos);
+}
+
+// Bytes are the same from one worker and two, from shards, and after five kills; a longer plan keeps what is there.
+TEST_F(StudyCommand, MakesTheSameTableHoweverItIsMade) {
+  const std::string plan = std::string(speeds) + seeds + "[sampling]\nmethod = \"monte-carlo\"\nseed = 3\nsamples = ";
+  write("plan.toml", plan + "3\n");
+  ASSERT_EQ(study("plan.toml -o one --threads 1"), 0);
+  const std::string rows = text("one/runs.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 10);
+  ASSERT_EQ(study("plan.toml -o two --threads 2"), 0);
+  EXPECT_EQ(text("two/runs.csv"), rows);
+  EXPECT_EQ(text("two/study.json"), text("one/study.json"));
+
+  for (const char* shard : {"1/2", "2/2"}) {
+    ASSERT_EQ(study(std::string("plan.toml -o parts --threads 1 --shard ") + shard), 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "parts/runs.csv"));
+  }
+  ASSERT_EQ(study("plan.toml -o parts"), 0);
+  EXPECT_EQ(text("parts/runs.csv"), rows);
+
+  int killed = 0;
+  for (int k = 0; k < 5; ++k) {
+    killed += run("timeout -s KILL 0.4 '" VSI_COMMAND "' study plan.toml -o killed --threads 2 --quiet").exit_code != 0;
+  }
+  EXPECT_GE(killed, 1) << "the kills came too late to say anything";
+  ASSERT_EQ(study("plan.toml -o killed"), 0);
+  EXPECT_EQ(text("killed/runs.csv"), rows);
+
+  write("plan.toml", plan + "4\n");
+  const auto before = std::filesystem::last_write_time(folder_ / ("one/" + table("one/runs.csv")[1][0] + ".row"));
+  ASSERT_EQ(study("plan.toml -o one"), 0);
+  EXPECT_EQ(table("one/runs.csv").size(), 13U);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / ("one/" + table("one/runs.csv")[1][0] + ".row")), before);
+}
+
+// Shares of runs beyond the limit are those of the table, with the intervals of the library.
+TEST_F(StudyCommand, CountsExceedances) {
+  const std::string plan = std::string(speeds) + seeds + "[sampling]\nsamples = 6\n[probability]\n" +
+                           "measure = \"wheel_unloading_unfiltered\"\nlimit = 0.5\n";
+  write("plan.toml", plan + "method = \"monte-carlo\"\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  const std::vector<std::string> speed = column("out/runs.csv", "train.speed_kmh[km/h]");
+  const std::vector<std::string> unloading = column("out/runs.csv", "wheel_unloading_unfiltered[-]");
+  const auto rows = table("out/probability.csv");
+  ASSERT_EQ(rows.size(), 4U);
+  std::size_t all = 0;
+  for (std::size_t level = 1; level < 4; ++level) {
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < speed.size(); ++i) hits += speed[i] == rows[level][0] && std::stod(unloading[i]) >= 0.5;
+    all += hits;
+    EXPECT_EQ(rows[level][1], "6");
+    EXPECT_EQ(rows[level][2], std::to_string(hits));
+    const ConfidenceInterval interval = wilson_interval(hits, 6, 0.95);
+    EXPECT_NEAR(std::stod(rows[level][5]), interval.low, 1e-7);
+    EXPECT_NEAR(std::stod(rows[level][6]), interval.high, 1e-7);
+  }
+  EXPECT_GT(all, 0U);
+  EXPECT_LT(all, speed.size());
+
+  write("plan.toml", plan + "method = \"fragility\"\nintensity = \"train.speed_kmh\"\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);  // the runs are there
+  const nlohmann::json found = json("out/study.json")["probability"];
+  ASSERT_TRUE(found.contains("median")) << text("out/fragility.csv");
+  EXPECT_GT(found["median"]["value"], 100.0);
+  EXPECT_LT(found["median"]["value"], 200.0);
+  EXPECT_EQ(table("out/fragility.csv")[0].back(), "curve_high[-]");
+}
+
+// Four levels of chains, whose runs are decided by those before them: the same after kills and on one worker.
+TEST_F(StudyCommand, SubsetSimulationIsTheSameAfterKills) {
+  write("plan.toml", std::string("scene = \"scene.toml\"\n") + friction +
+                         "[[vary]]\nkey = \"train.speed_kmh\"\ndistribution = \"normal\"\nmean = 120\nstd = 10\n"
+                         "[probability]\nmethod = \"subset\"\nmeasure = \"wheel_unloading_unfiltered\"\nlimit = 0.51\n"
+                         "samples = 20\nlevel_probability = 0.2\nseed = 2\n");
+  ASSERT_EQ(study("plan.toml -o whole --threads 2"), 0);
+  const nlohmann::json found = json("whole/study.json")["probability"];
+  EXPECT_EQ(found["outcome"], "found");
+  EXPECT_GT(table("whole/subset.csv").size(), 2U) << "one level says nothing of chains";
+  double product = 1.0;
+  for (const std::string& p : column("whole/subset.csv", "probability[-]")) product *= std::stod(p);
+  EXPECT_NEAR(found["probability"]["value"], product, 1e-6 * product);
+  EXPECT_LT(found["probability"]["low"], product);
+  EXPECT_GT(found["probability"]["high"], product);
+  for (int k = 0; k < 4; ++k) {
+    static_cast<void>(run("timeout -s KILL 0.5 '" VSI_COMMAND "' study plan.toml -o killed --threads 1 --quiet"));
+  }
+  ASSERT_EQ(study("plan.toml -o killed --threads 1"), 0);
+  EXPECT_EQ(text("killed/runs.csv"), text("whole/runs.csv"));
+  EXPECT_EQ(text("killed/study.json"), text("whole/study.json"));
+}
+
+TEST_F(StudyCommand, FindsAPeakWithAQuarterOfTheGrid) {
+  write("plan.toml",
+        "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nrange = \"100:199:1\"\n"
+        "[peak]\nmeasure = \"wheel_unloading\"\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  EXPECT_LE(table("out/runs.csv").size() - 1, 25U);
+  const nlohmann::json peak = json("out/study.json")["peak"];
+  double largest = 0.0;
+  for (const std::string& value : column("out/runs.csv", "wheel_unloading[-]"))
+    largest = std::max(largest, std::stod(value));
+  EXPECT_EQ(peak["value"], largest);
+  EXPECT_EQ(peak["grid"], 100);
+}
+
+// A force on a coach that does not act on what is measured has no share of its variance.
+TEST_F(StudyCommand, FindsWhichVariableMatters) {
+  write(
+      "plan.toml",
+      "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\ndistribution = \"uniform\"\nlow = 100\nhigh = 200\n"
+      "[[vary]]\nkey = \"assessment.line_speed_kmh\"\ndistribution = \"uniform\"\nlow = 100\nhigh = 200\n"
+      "[importance]\nmeasure = \"wheel_unloading\"\nsamples = 8\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  EXPECT_EQ(table("out/runs.csv").size(), 33U);
+  const nlohmann::json variables = json("out/study.json")["importance"]["variables"];
+  EXPECT_GT(variables["train.speed_kmh"]["total"]["value"], 0.3);
+  EXPECT_EQ(variables["assessment.line_speed_kmh"]["total"]["value"], 0.0);
+}
+
+// Wind speed drives two forces, by its square.
+TEST_F(StudyCommand, OneVariableSetsSeveralKeys) {
+  write("scene.toml", std::string(scene) + "[[load]]\nbody = \"car-body\"\nFy = 1.0\nFz = 1.0\n");
+  write("plan.toml",
+        "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nname = \"wind_speed\"\nunit = \"m/s\"\nvalues = [10, "
+        "20]\n"
+        "[[vary.set]]\nkey = \"load.1.Fy\"\nfactor = 50\npower = 2\n"
+        "[[vary.set]]\nkey = \"load.1.Fz\"\nfactor = -10\npower = 2\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  const auto rows = table("out/runs.csv");
+  EXPECT_EQ(rows[0][1], "wind_speed[m/s]");
+  const RunResults results = read_results(folder_ / ("out/" + rows[2][0] + ".h5"));
+  EXPECT_NE(results.header.scene_text.find("load.1.Fy = 20000, load.1.Fz = -4000"), std::string::npos)
+      << results.header.scene_text;
+}
+
+TEST_F(StudyCommand, RejectsWrongPlans) {
+  const auto refused = [&](const std::string& plan, const std::string& message) {
+    write("plan.toml", plan);
+    expect_refused("study plan.toml -o out", message);
+  };
+  const std::string begin = "scene = \"scene.toml\"\n[[vary]]\n";
+  refused(begin + "key = \"train.sped\"\nvalues = [1]\n",
+          "plan.toml:2: vary[1].train.sped: scene.toml:1: unknown key 'train.sped'; did you mean 'train.speed'?");
+  refused(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
+          "plan.toml:2: vary[1].train.speed_kmh: scene.toml:2: train.speed_kmh: found 9000, expected");
+  refused(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
+          "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
+  refused(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",
+          "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
+  refused(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n", "plan.toml:4: vary[1].values: found 1 twice");
+  refused(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
+  refused(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",
+          "plan.toml:1: sampling: found nothing");
+  refused(
+      begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n[sampling]\nsamples = 9\n",
+      "contact.friction: found");
+  refused(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\n", "found neither std nor cov");
+  refused("scene = \"none.toml\"\n[[vary]]\nkey = \"contact.friction\"\nvalues = [0.1]\n",
+          "plan.toml:1: scene: found no file none.toml");
+  refused(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
+          "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
+  refused(std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
+          "found a variable with values, expected a distribution for each variable");
+  refused(std::string(speeds) + speeds, "plan.toml:5");
+}
+
+TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {
+  write("plan.toml", std::string("scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [100]\n"));
+  std::filesystem::create_directory(folder_ / "mine");
+  write("mine/runs.csv", "my numbers\n");
+  const Outcome outcome = vsi("study plan.toml -o mine");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.output.find("mine/runs.csv: found a file that begins with 'my numbers'"), std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(text("mine/runs.csv"), "my numbers\n");
+  ASSERT_EQ(study("plan.toml -o one"), 0);
+  write("scene.toml", std::string(scene) + "time_step = 5e-4\n");
+  EXPECT_NE(vsi("study plan.toml -o one").output.find("one/scene.toml: found another scene"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace railtab

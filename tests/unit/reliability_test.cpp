@@ -1,0 +1,393 @@
+// Distributions, samples and estimates of probabilities against closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "railtab/runtime/reliability/counter_random.hpp"
+#include "railtab/runtime/reliability/distribution.hpp"
+#include "railtab/runtime/reliability/fragility.hpp"
+#include "railtab/runtime/reliability/peak_search.hpp"
+#include "railtab/runtime/reliability/proportion.hpp"
+#include "railtab/runtime/reliability/sampling.hpp"
+#include "railtab/runtime/reliability/sobol_indices.hpp"
+#include "railtab/runtime/reliability/standard_normal.hpp"
+#include "railtab/runtime/reliability/subset_simulation.hpp"
+
+namespace railtab {
+namespace {
+
+using std::numbers::pi;
+
+// Random123's known answers (kat_vectors, philox4x32 of ten rounds).
+TEST(CounterRandom, IsPhilox) {
+  using Words = std::array<std::uint32_t, 4>;
+  constexpr std::uint32_t ones = 0xffffffff;
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  EXPECT_EQ(philox({ones, ones, ones, ones}, {ones, ones}), (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
+            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+// Mean 1/2 and variance 1/12 within four standard errors, and each decile within four of its own.
+TEST(CounterRandom, IsUniform) {
+  constexpr int count = 100000;
+  double sum = 0.0, square = 0.0;
+  std::array<int, 10> deciles{};
+  for (int i = 0; i < count; ++i) {
+    const double u = uniform_random(7, {static_cast<std::uint64_t>(i), 3, 5});
+    ASSERT_TRUE(u > 0.0 && u < 1.0);
+    sum += u;
+    square += (u - 0.5) * (u - 0.5);
+    ++deciles[static_cast<std::size_t>(10.0 * u)];
+  }
+  EXPECT_NEAR(sum / count, 0.5, 4.0 / std::sqrt(12.0 * count));
+  EXPECT_NEAR(square / count, 1.0 / 12.0, 4.0 / std::sqrt(180.0 * count));
+  for (const int n : deciles) EXPECT_NEAR(n, 0.1 * count, 4.0 * std::sqrt(0.09 * count));
+}
+
+// Φ(−z), and far out where 1 − Φ is not 1 less a number.
+TEST(StandardNormal, KeepsBothTails) {
+  EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-14);
+  EXPECT_NEAR(normal_probability(3.0).above, 1.349898031630094e-3, 1e-17);
+  for (const double z : {-30.0, -8.0, -1.0, 0.0, 0.5, 4.0, 12.0, 30.0}) {
+    EXPECT_NEAR(normal_quantile(normal_probability(z)), z, 1e-13 * (1.0 + std::abs(z)));
+  }
+}
+
+struct NamedDistribution {
+  const char* name;
+  Distribution distribution;
+  double at_third;  // F^-1(1/3), closed form
+};
+
+class OneDistribution : public ::testing::TestWithParam<NamedDistribution> {};
+
+TEST_P(OneDistribution, HasItsClosedFormQuantile) {
+  const Distribution& d = GetParam().distribution;
+  EXPECT_NEAR(quantile(d, 1.0 / 3.0), GetParam().at_third, 1e-13 * (1.0 + std::abs(GetParam().at_third)));
+}
+
+// F(F⁻¹(p)) = p to full relative precision from 1e-12 below to 1e-12 above, and quantiles rise.
+TEST_P(OneDistribution, InvertsItself) {
+  const Distribution& d = GetParam().distribution;
+  double last = -INFINITY;
+  for (double z = -7.0; z <= 7.0; z += 0.25) {
+    const Probability p = normal_probability(z);
+    const double x = quantile(d, p);
+    EXPECT_GT(x, last);
+    last = x;
+    const Probability back = probability(d, x);
+    EXPECT_NEAR(back.below / p.below, 1.0, 1e-9) << GetParam().name << " z = " << z;
+    if (GetParam().name == std::string("uniform")) continue;  // 1 − F is a difference there
+    EXPECT_NEAR(back.above / p.above, 1.0, 1e-9) << GetParam().name << " z = " << z;
+  }
+}
+
+// Between the quantiles of 0.2 and 0.7, the middle is that of 0.45.
+TEST_P(OneDistribution, StaysWithinItsBounds) {
+  Distribution d = GetParam().distribution;
+  const double low = quantile(d, 0.2), high = quantile(d, 0.7);
+  d.low = low;
+  d.high = high;
+  EXPECT_NEAR(quantile(d, 0.5), quantile(GetParam().distribution, 0.45), 1e-12 * (1.0 + std::abs(high)));
+  EXPECT_NEAR(quantile(d, 1e-15), low, 1e-9 * (1.0 + std::abs(low)));
+  EXPECT_NEAR(quantile(d, {1.0, 1e-15}), high, 1e-9 * (1.0 + std::abs(high)));
+  EXPECT_NEAR(probability(d, quantile(d, 0.3)).below, 0.3, 1e-12);
+  EXPECT_EQ(probability(d, low).below, 0.0);
+  EXPECT_EQ(probability(d, high).above, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, OneDistribution,
+    ::testing::Values(
+        NamedDistribution{"normal", {DistributionKind::normal, 5.0, 2.0}, 5.0 + 2.0 * -0.43072729929545756},
+        NamedDistribution{
+            "lognormal", {DistributionKind::lognormal, 3.0, 0.4}, 3.0 * std::exp(0.4 * -0.43072729929545756)},
+        NamedDistribution{"uniform", {DistributionKind::uniform, 0.0, 5.0}, 5.0 / 3.0},
+        NamedDistribution{"weibull", {DistributionKind::weibull, 2.0, 1.5}, 2.0 * std::pow(std::log(1.5), 1.0 / 1.5)},
+        NamedDistribution{"gumbel", {DistributionKind::gumbel, 20.0, 3.0}, 20.0 - 3.0 * std::log(std::log(3.0))}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
+// Mean and standard deviation by Gauss-like sums over even probabilities: 2e5 midpoints.
+TEST(Distribution, HasTheMomentsAskedFor) {
+  constexpr int count = 200000;
+  for (const Distribution& d : {lognormal_of_moments(0.3, 0.06), gumbel_of_moments(25.0, 4.0)}) {
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < count; ++i) {
+      const double x = quantile(d, (i + 0.5) / count);
+      sum += x;
+      square += x * x;
+    }
+    const double mean = sum / count, deviation = std::sqrt(square / count - mean * mean);
+    const bool gumbel = d.kind == DistributionKind::gumbel;
+    EXPECT_NEAR(mean, gumbel ? 25.0 : 0.3, 1e-4 * mean);
+    EXPECT_NEAR(deviation, gumbel ? 4.0 : 0.06, 1e-3 * deviation);
+  }
+}
+
+TEST(Sampling, LatinHypercubeHasOneValueInEachInterval) {
+  constexpr std::size_t count = 50, variables = 4;
+  const UnitPoints points = latin_hypercube_points(count, variables, 11);
+  for (std::size_t j = 0; j < variables; ++j) {
+    std::set<int> intervals;
+    for (const auto& point : points) intervals.insert(static_cast<int>(point[j] * count));
+    EXPECT_EQ(intervals.size(), count);
+  }
+  EXPECT_NE(points, latin_hypercube_points(count, variables, 12));
+  EXPECT_EQ(points, latin_hypercube_points(count, variables, 11));
+}
+
+// The variance of the mean of an additive function is far below that of independent points, which is Var f/N.
+TEST(Sampling, LatinHypercubeLessensTheVarianceOfAnAdditiveFunction) {
+  constexpr std::size_t count = 40, variables = 3;
+  double random = 0.0, latin = 0.0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto squared_error = [&](const UnitPoints& points) {
+      double sum = 0.0;
+      for (const auto& point : points) sum += point[0] * point[0] + point[1] + std::sqrt(point[2]);
+      const double error = sum / count - (1.0 / 3.0 + 0.5 + 2.0 / 3.0);
+      return error * error / 200.0;
+    };
+    random += squared_error(monte_carlo_points(count, variables, seed));
+    latin += squared_error(latin_hypercube_points(count, variables, seed));
+  }
+  const double variance = (4.0 / 45.0 + 1.0 / 12.0 + 1.0 / 18.0) / count;
+  EXPECT_NEAR(random, variance, 0.4 * variance);
+  EXPECT_LT(latin, 0.01 * variance);
+}
+
+TEST(Sampling, FewerMonteCarloPointsAreTheFirstOfMore) {
+  const UnitPoints few = monte_carlo_points(5, 2, 3), more = monte_carlo_points(9, 2, 3);
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), more.begin()));
+}
+
+// [Wilson1927]: both bounds solve (p̂ − p)² = z²·p(1 − p)/n; with no hits the upper one is z²/(n + z²).
+TEST(Proportion, WilsonBoundsSolveTheirEquation) {
+  const double z = normal_quantile(0.975);
+  for (const std::size_t hits : {1U, 7U, 19U}) {
+    const ConfidenceInterval interval = wilson_interval(hits, 20, 0.95);
+    for (const double p : {interval.low, interval.high}) {
+      EXPECT_NEAR((interval.value - p) * (interval.value - p), z * z * p * (1.0 - p) / 20.0, 1e-15);
+    }
+    EXPECT_TRUE(interval.low < interval.value && interval.value < interval.high);
+  }
+  EXPECT_EQ(wilson_interval(0, 20, 0.95).low, 0.0);
+  EXPECT_NEAR(wilson_interval(0, 20, 0.95).high, z * z / (20.0 + z * z), 1e-15);
+  EXPECT_EQ(wilson_interval(20, 20, 0.95).high, 1.0);
+}
+
+// ln x is probit-linear with known parameters and shares of runs that equal the curve: the fit returns them.
+TEST(Fragility, FindsTheCurveOfExactShares) {
+  constexpr double median = 31.0, deviation = 0.25;
+  std::vector<FragilityLevel> levels;
+  for (const double x : {18.0, 24.0, 30.0, 36.0, 48.0}) {
+    constexpr double runs = 1e9;
+    const double p = normal_probability(std::log(x / median) / deviation).below;
+    levels.push_back({x, static_cast<std::size_t>(runs), static_cast<std::size_t>(std::llround(p * runs))});
+  }
+  const std::optional<FragilityCurve> curve = fit_fragility(levels);
+  ASSERT_TRUE(curve);
+  EXPECT_NEAR(curve->median, median, 1e-5 * median);
+  EXPECT_NEAR(curve->deviation, deviation, 1e-5);
+  EXPECT_NEAR(curve->probability(median), 0.5, 1e-5);
+}
+
+// Two levels: the curve passes through both shares, z1 = Φ⁻¹(0.2), z2 = Φ⁻¹(0.7).
+TEST(Fragility, PassesThroughTwoLevels) {
+  const std::optional<FragilityCurve> curve = fit_fragility({{2.0, 10, 2}, {3.0, 10, 7}});
+  ASSERT_TRUE(curve);
+  const double deviation = std::log(1.5) / (normal_quantile(0.7) - normal_quantile(0.2));
+  EXPECT_NEAR(curve->deviation, deviation, 1e-9);
+  EXPECT_NEAR(curve->median, 2.0 * std::exp(-normal_quantile(0.2) * deviation), 1e-9);
+}
+
+TEST(Fragility, HasNoCurveWhereTheLikelihoodHasNoMaximum) {
+  EXPECT_FALSE(fit_fragility({{2.0, 10, 0}, {3.0, 10, 10}}));                // divided
+  EXPECT_FALSE(fit_fragility({{2.0, 10, 0}, {3.0, 10, 4}, {4.0, 10, 10}}));  // divided at 3
+  EXPECT_FALSE(fit_fragility({{2.0, 10, 8}, {3.0, 10, 2}}));                 // falls
+  EXPECT_FALSE(fit_fragility({{2.0, 10, 10}, {3.0, 10, 0}}));                // falls, divided
+  EXPECT_FALSE(fit_fragility({{2.0, 10, 3}}));
+  EXPECT_FALSE(fit_fragility({{2.0, 10, 0}, {3.0, 10, 0}}));
+}
+
+// 95 % intervals of the median cover the true one in 90 to 99 % of 200 experiments: 95 % within three standard errors.
+TEST(Fragility, BootstrapIntervalsCoverTheTruth) {
+  constexpr double median = 30.0, deviation = 0.3;
+  int covered = 0, fits = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    std::vector<FragilityLevel> levels;
+    std::uint32_t number = 0;
+    for (const double x : {18.0, 22.0, 26.0, 30.0, 34.0, 40.0, 48.0}) {
+      FragilityLevel& level = levels.emplace_back(FragilityLevel{x, 60, 0});
+      for (int run = 0; run < 60; ++run) {
+        level.exceeded += normal_random(seed, {number++, 0, 99}) < std::log(x / median) / deviation;
+      }
+    }
+    const FragilityFit fit = fragility_with_bounds(levels, {200, 0.95, seed});
+    ASSERT_TRUE(fit.curve);
+    ++fits;
+    covered += fit.median.low <= median && median <= fit.median.high;
+    EXPECT_LT(fit.median.low, fit.median.high);
+    EXPECT_EQ(fit.at_levels.size(), levels.size());
+  }
+  EXPECT_GE(covered, 0.90 * fits);
+  EXPECT_LE(covered, 0.99 * fits);
+}
+
+// Ishigami function sin x1 + 7 sin² x2 + 0.1 x3⁴ sin x1 on (−π, π)³ with its closed-form variances [SaltelliEtAl2010].
+TEST(SobolIndices, OfTheIshigamiFunction) {
+  constexpr double a = 7.0, b = 0.1;
+  const double v1 = 0.5 * std::pow(1.0 + b * std::pow(pi, 4) / 5.0, 2), v2 = a * a / 8.0,
+               v13 = b * b * std::pow(pi, 8) * (1.0 / 18.0 - 1.0 / 50.0), v = v1 + v2 + v13;
+  const auto ishigami = [&](const UnitPoints& points) {
+    std::vector<double> values;
+    for (const auto& u : points) {
+      const double x1 = pi * (2.0 * u[0] - 1.0), x2 = pi * (2.0 * u[1] - 1.0), x3 = pi * (2.0 * u[2] - 1.0);
+      values.push_back(std::sin(x1) + a * std::pow(std::sin(x2), 2) + b * std::pow(x3, 4) * std::sin(x1));
+    }
+    return values;
+  };
+  const SobolIndices indices = sobol_indices({.variables = 3, .samples = 20000, .replicates = 50}, ishigami);
+  EXPECT_NEAR(indices.variance / v, 1.0, 0.02);
+  EXPECT_NEAR(indices.mean, 0.5 * a, 0.05);
+  const double first[3] = {v1 / v, v2 / v, 0.0}, total[3] = {(v1 + v13) / v, v2 / v, v13 / v};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(indices.first[i].value, first[i], 0.02) << i;
+    EXPECT_NEAR(indices.total[i].value, total[i], 0.02) << i;
+    EXPECT_LT(indices.first[i].low, indices.first[i].high);
+    EXPECT_LT(indices.total[i].high - indices.total[i].low, 0.1);
+  }
+}
+
+// y = (β-normalised sum of normals); P(y >= β) = Φ(−β).
+double linear_response(const NormalPoint& u) {
+  double sum = 0.0;
+  for (const double x : u) sum += x;
+  return sum / std::sqrt(static_cast<double>(u.size()));
+}
+
+ResponseOfPoints each(double (*response)(const NormalPoint&)) {
+  return [response](const std::vector<NormalPoint>& points) {
+    std::vector<double> values;
+    for (const NormalPoint& point : points) values.push_back(response(point));
+    return values;
+  };
+}
+
+// A few repetitions: within four of their own standard errors. Fifty, over six limit states: subset_study.
+TEST(SubsetSimulation, FindsAProbabilityOfAThousandth) {
+  const double exact = 1e-3, limit = -normal_quantile(exact);
+  double sum = 0.0, variance = 0.0;
+  constexpr int repetitions = 10;
+  for (std::uint64_t seed = 1; seed <= repetitions; ++seed) {
+    const SubsetResult result =
+        subset_simulation({.variables = 10, .limit = limit, .seed = seed}, each(linear_response));
+    ASSERT_EQ(result.outcome, SubsetOutcome::found);
+    EXPECT_LE(result.evaluations, 5000U);
+    EXPECT_GE(result.levels.size(), 3U);
+    EXPECT_LE(result.levels.size(), 4U);  // the third threshold is near the limit, on either side
+    EXPECT_GT(result.levels.back().acceptance, 0.25);
+    EXPECT_LT(result.levels.back().acceptance, 0.65);
+    sum += result.probability / repetitions;
+    variance += std::pow(result.variation * exact / repetitions, 2);
+  }
+  EXPECT_NEAR(sum, exact, 4.0 * std::sqrt(variance));
+  EXPECT_LT(std::sqrt(variance), 0.2 * exact);
+}
+
+// Points of the last level have the conditional distribution: of the linear response, the mean of y − limit beyond the
+// limit is φ(β)/Φ(−β) − β.
+TEST(SubsetSimulation, SamplesTheConditionalDistribution) {
+  const double limit = -normal_quantile(1e-3);
+  double sum = 0.0, count = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const SubsetResult result =
+        subset_simulation({.variables = 3, .limit = limit, .seed = seed}, each(linear_response));
+    for (const double y : result.responses) {
+      if (y < limit) continue;
+      sum += y - limit;
+      count += 1.0;
+    }
+  }
+  const double exact = normal_density(limit) / normal_probability(limit).above - limit;
+  EXPECT_NEAR(sum / count, exact, 0.1 * exact);
+}
+
+TEST(SubsetSimulation, IsTheSameAgain) {
+  const SubsetOptions options{.variables = 2, .limit = 3.5, .samples = 200, .seed = 4};
+  const SubsetResult one = subset_simulation(options, each(linear_response));
+  const SubsetResult two = subset_simulation(options, each(linear_response));
+  EXPECT_EQ(one.probability, two.probability);
+  EXPECT_EQ(one.points, two.points);
+}
+
+TEST(SubsetSimulation, SaysWhereTheLimitIsNotReached) {
+  const SubsetResult rare =
+      subset_simulation({.variables = 2, .limit = 30.0, .samples = 100, .most_levels = 4}, each(linear_response));
+  EXPECT_EQ(rare.outcome, SubsetOutcome::too_rare);
+  double product = 1.0;
+  for (const SubsetLevel& level : rare.levels) {
+    EXPECT_GE(level.probability, 0.1);  // more where samples that did not move share the threshold
+    EXPECT_LE(level.probability, 0.15);
+    product *= level.probability;
+  }
+  EXPECT_EQ(rare.levels.size(), 4U);
+  EXPECT_EQ(rare.probability, product);
+  const SubsetResult alike =
+      subset_simulation({.variables = 2, .limit = 1.0, .samples = 100}, each([](const NormalPoint&) { return 0.5; }));
+  EXPECT_EQ(alike.outcome, SubsetOutcome::stalled);
+  EXPECT_EQ(alike.evaluations, 100U);
+}
+
+// A probability above p0 needs no chains.
+TEST(SubsetSimulation, IsMonteCarloWhereTheLimitIsCommon) {
+  const SubsetResult result = subset_simulation({.variables = 1, .limit = 0.0, .samples = 1000}, each(linear_response));
+  EXPECT_EQ(result.evaluations, 1000U);
+  EXPECT_NEAR(result.probability, 0.5, 4.0 * 0.5 / std::sqrt(1000.0));
+  EXPECT_NEAR(result.variation, std::sqrt((1.0 - result.probability) / (result.probability * 1000.0)), 1e-12);
+}
+
+// Resonance peaks on a slope: the highest point of a grid of 401 with at most a quarter of its points.
+TEST(PeakSearch, FindsTheHighestOfThreePeaksWithAQuarterOfTheGrid) {
+  for (const double place : {37.3, 171.0, 222.2, 345.9}) {
+    const auto curve = [&](std::size_t i) {
+      const double x = static_cast<double>(i);
+      const auto peak = [&](double at, double height) { return height / std::hypot(1.0, (x - at) / 5.0); };
+      return 1e-3 * x + peak(60.0, 2.0) + peak(300.0, 2.2) + peak(place, 3.0);
+    };
+    std::size_t evaluations = 0, best = 0;
+    const PeakSearch search = search_peak({.points = 401}, [&](const std::vector<std::size_t>& points) {
+      evaluations += points.size();
+      std::vector<double> values;
+      for (const std::size_t i : points) values.push_back(curve(i));
+      return values;
+    });
+    for (std::size_t i = 1; i < 401; ++i) {
+      if (curve(i) > curve(best)) best = i;
+    }
+    EXPECT_EQ(search.highest, best) << place;
+    EXPECT_TRUE(search.resolved);
+    EXPECT_LE(evaluations, 401U / 4U);
+  }
+}
+
+TEST(PeakSearch, KeepsToItsEvaluationsAndSaysSo) {
+  std::size_t evaluations = 0;
+  const PeakSearch search = search_peak({.points = 1001, .coarse_step = 100, .share = 0.0, .most_evaluations = 15},
+                                        [&](const std::vector<std::size_t>& points) {
+                                          evaluations += points.size();
+                                          std::vector<double> values;
+                                          for (const std::size_t i : points)
+                                            values.push_back(std::sin(0.1 * double(i)));
+                                          return values;
+                                        });
+  EXPECT_EQ(evaluations, 15U);
+  EXPECT_FALSE(search.resolved);
+  EXPECT_EQ(search_peak({.points = 1}, [](const auto& p) { return std::vector<double>(p.size(), 1.0); }).highest, 0U);
+}
+
+}  // namespace
+}  // namespace railtab

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "railtab/runtime/algebra/divided_substitution.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
+
+namespace railtab {
+
+/// As a time step has it.
+inline Eigen::SparseMatrix<double> effective_matrix(const StructureModel& s) {
+  return 1.6e7 * s.mass + 4e3 * s.damping + s.stiffness;
+}
+
+inline double difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+/// A load that changes on few unknowns, by the factor's parts, against whole solutions by the reference.
+inline void expect_divided_as_whole(const SubstitutionFactor& factor, const SparseLdlt& reference,
+                                    const std::vector<std::vector<int>>& loaded, double tolerance) {
+  const Eigen::Index n = reference.size();
+  DividedSubstitution solution;
+  for (const std::vector<int>& few : loaded) {
+    const Eigen::VectorXd known = Eigen::VectorXd::Random(n);
+    solution.begin(factor, known, few);
+    Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n), whole;
+    for (const double size : {0.0, 1.0, -7.0}) {
+      for (int unknown : few) extra[unknown] = size * (1.0 + 0.1 * unknown);
+      solution.respond(factor, 0.95, extra, answer);
+      const Eigen::VectorXd expected = reference.solve(known + 0.95 * extra);
+      for (int unknown : few) {
+        EXPECT_NEAR(answer[unknown], expected[unknown], tolerance * expected.cwiseAbs().maxCoeff());
+      }
+    }
+    solution.finish(factor, whole);
+    EXPECT_LT(difference(whole, reference.solve(known + 0.95 * extra)), tolerance);
+  }
+}
+
+}  // namespace railtab

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "railtab/runtime/reliability/standard_normal.hpp"
+#include "railtab/runtime/reliability/subset_simulation.hpp"
+
+namespace railtab {
+
+/// A response y of standard normal variables whose probability of y >= limit is known in closed form.
+struct KnownLimitState {
+  std::string name;
+  std::size_t variables;
+  double exact, limit;
+  std::function<double(const NormalPoint&)> response;
+};
+
+/// Linear: y = Σu/√n, P = Φ(−limit). Nonlinear: y = (u1² + u2²)/2 is exponential, P = exp(−limit), a limit state that
+/// encloses the origin. Two-sided: y = |u1|, P = 2Φ(−limit), two regions apart.
+inline std::vector<KnownLimitState> known_limit_states() {
+  const auto linear = [](const NormalPoint& u) {
+    double sum = 0.0;
+    for (const double x : u) sum += x;
+    return sum / std::sqrt(static_cast<double>(u.size()));
+  };
+  const auto radius = [](const NormalPoint& u) { return 0.5 * (u[0] * u[0] + u[1] * u[1]); };
+  const auto two_sided = [](const NormalPoint& u) { return std::abs(u[0]); };
+  std::vector<KnownLimitState> states;
+  for (const double p : {1e-3, 1e-4, 1e-5}) {
+    states.push_back({"linear", 2, p, -normal_quantile(p), linear});
+    states.push_back({"linear", 50, p, -normal_quantile(p), linear});
+    states.push_back({"radius", 2, p, -std::log(p), radius});
+    states.push_back({"two-sided", 3, p, -normal_quantile(0.5 * p), two_sided});
+  }
+  return states;
+}
+
+struct SubsetRepetitions {
+  double mean = 0.0, bias = 0.0, variation = 0.0;  ///< of the probability: bias and deviation over the exact one
+  double own_variation = 0.0;                      ///< mean of the method's own estimates
+  double mean_evaluations = 0.0, least = INFINITY, greatest = 0.0;
+  std::size_t most_evaluations = 0;
+};
+
+/// Seeds 1 … repetitions, with samples per level such that there are at most 5000 evaluations.
+inline SubsetRepetitions repeat_subset(const KnownLimitState& state, int repetitions) {
+  const ResponseOfPoints response = [&](const std::vector<NormalPoint>& points) {
+    std::vector<double> values;
+    for (const NormalPoint& point : points) values.push_back(state.response(point));
+    return values;
+  };
+  SubsetRepetitions result;
+  double square = 0.0;
+  const double count = repetitions;
+  for (int seed = 1; seed <= repetitions; ++seed) {
+    SubsetOptions options;
+    options.variables = state.variables;
+    options.limit = state.limit;
+    options.samples = state.exact < 5e-4 ? (state.exact < 5e-5 ? 850 : 1050) : 1300;
+    options.seed = static_cast<std::uint64_t>(seed);
+    const SubsetResult run = subset_simulation(options, response);
+    result.mean += run.probability / count;
+    square += run.probability * run.probability / count;
+    result.own_variation += run.variation / count;
+    result.mean_evaluations += static_cast<double>(run.evaluations) / count;
+    result.most_evaluations = std::max(result.most_evaluations, run.evaluations);
+    result.least = std::min(result.least, run.probability);
+    result.greatest = std::max(result.greatest, run.probability);
+  }
+  result.bias = result.mean / state.exact - 1.0;
+  result.variation = std::sqrt(std::max(0.0, square - result.mean * result.mean) * count / (count - 1.0)) / state.exact;
+  return result;
+}
+
+}  // namespace railtab

@@ -1,0 +1,371 @@
+#include "study_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
+
+namespace railtab::vsi {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* json_mark = "{\n \"study\"";
+constexpr int study_format_version = 1;
+
+/// Name of the table of a method, and its first line; none of StudyMethod::table and peak.
+struct MethodTable {
+  const char* file;
+  std::string columns, rows;
+};
+
+std::string exceedance_columns(const StudyPlan& plan) {
+  std::string text;
+  for (const StudyVariable& v : plan.variables) {
+    const bool shown = plan.method == StudyMethod::fragility ? &v == &plan.variables[plan.intensity] : !v.random();
+    if (shown) text += fmt::format("{}[{}],", v.name, v.unit);
+  }
+  return text + "runs,exceeded,ended_early,probability[-],probability_low[-],probability_high[-]";
+}
+
+std::string exceedance_cells(const StudyPlan& plan, const ExceedanceCount& e) {
+  std::string text;
+  for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+    const bool shown = plan.method == StudyMethod::fragility ? j == plan.intensity : !plan.variables[j].random();
+    if (shown) text += e.point[j].cell() + ",";
+  }
+  return text + fmt::format("{},{},{},{:.8g},{:.8g},{:.8g}", e.runs, e.exceeded, e.ended_early, e.probability.value,
+                            e.probability.low, e.probability.high);
+}
+
+MethodTable exceedance_table(const StudyPlan& plan, const StudyResult& result) {
+  MethodTable table{"probability.csv", exceedance_columns(plan), ""};
+  const bool curve = plan.method == StudyMethod::fragility;
+  if (curve) {
+    table.file = "fragility.csv";
+    table.columns += ",curve[-],curve_low[-],curve_high[-]";
+  }
+  for (std::size_t i = 0; i < result.exceedance.size(); ++i) {
+    const ExceedanceCount& e = result.exceedance[i];
+    table.rows += exceedance_cells(plan, e);
+    if (curve && result.fragility->curve) {
+      table.rows += fmt::format(",{:.8g}", result.fragility->curve->probability(e.point[plan.intensity].number));
+      const auto& bounds = result.fragility->at_levels;
+      table.rows += bounds.empty() ? ",," : fmt::format(",{:.8g},{:.8g}", bounds[i].low, bounds[i].high);
+    } else if (curve) {
+      table.rows += ",,,";
+    }
+    table.rows += "\n";
+  }
+  return table;
+}
+
+MethodTable method_table(const StudyPlan& plan, const StudyResult& result) {
+  MethodTable table{nullptr, "", ""};
+  switch (plan.method) {
+    case StudyMethod::probability:
+    case StudyMethod::fragility:
+      table = exceedance_table(plan, result);
+      break;
+    case StudyMethod::subset:
+      table = {"subset.csv", "level,threshold,probability[-],variation[-],correlation[-],acceptance[-],runs", ""};
+      if (!result.subset) break;
+      for (std::size_t i = 0; i < result.subset->levels.size(); ++i) {
+        const SubsetLevel& l = result.subset->levels[i];
+        table.rows += fmt::format("{},{:.8g},{:.8g},{:.4g},{:.4g},{:.4g},{}\n", i + 1, l.threshold, l.probability,
+                                  l.variation, l.correlation, l.acceptance, l.evaluations);
+      }
+      break;
+    case StudyMethod::importance:
+      table = {"importance.csv", "variable,first[-],first_low[-],first_high[-],total[-],total_low[-],total_high[-]",
+               ""};
+      if (!result.importance) break;
+      for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+        const ConfidenceInterval &f = result.importance->first[j], &t = result.importance->total[j];
+        table.rows += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", plan.variables[j].name, f.value,
+                                  f.low, f.high, t.value, t.low, t.high);
+      }
+      break;
+    case StudyMethod::table:
+    case StudyMethod::peak:
+      break;
+  }
+  table.columns += "\n";
+  return table;
+}
+
+std::string unit_of_file(const std::string& unit) { return unit == "-" ? "1" : unit; }
+
+void write_variable(const StudyReport& report, std::size_t j, ArrayFileWriter& file) {
+  const StudyVariable& v = report.plan.variables[j];
+  const std::string path = "variables/" + v.name;
+  if (!v.numeric()) {
+    std::vector<std::string> texts;
+    for (const StudyPoint& point : report.points) texts.push_back(point[j].cell());
+    file.write(path, texts, "value of each run");
+    return;
+  }
+  std::vector<double> values;
+  for (const StudyPoint& point : report.points) values.push_back(point[j].number);
+  file.write(path, values, {values.size()}, unit_of_file(v.unit), "value of each run");
+}
+
+void write_arrays(const StudyReport& report, const fs::path& name) {
+  ArrayFileWriter file(name, study_filetype, study_format_version);
+  file.attribute("", "plan", std::string_view(report.plan.text));
+  file.attribute("", "scene", std::string_view(report.scene_text));
+  file.attribute("", "program_version", std::string_view(RAILTAB_VERSION));
+  file.attribute("", "deck_cut_off", report.runs.deck_cut_off());
+  for (std::size_t j = 0; j < report.plan.variables.size(); ++j) write_variable(report, j, file);
+  for (std::size_t k = 0; k < study_measures().size(); ++k) {
+    const MeasureKind& kind = *study_measures()[k];
+    std::vector<double> values;
+    for (const StudyRow& row : report.rows) {
+      values.push_back(row.measures[k].value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    file.write(fmt::format("measures/{}", kind.name), values, {values.size()}, unit_of_file(std::string(kind.unit)),
+               fmt::format("{}; NaN: the run has none", kind.meaning));
+  }
+  std::vector<double> complete, time;
+  std::vector<std::string> messages;
+  for (const StudyRow& row : report.rows) {
+    complete.push_back(row.complete ? 1.0 : 0.0);
+    time.push_back(row.simulated_time);
+    messages.push_back(row.message);
+  }
+  file.write("runs/name", report.names, "of each run");
+  file.write("runs/complete", complete, {complete.size()}, "1", "1: came to its end, 0: ended early");
+  file.write("runs/simulated_time", time, {time.size()}, "s", "time of the last record");
+  file.write("runs/message", messages, "why a run ended early");
+  file.close();
+}
+
+Json interval_json(const ConfidenceInterval& interval) {
+  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
+}
+
+ConfidenceInterval subset_interval(const StudyPlan& plan, const SubsetResult& subset) {
+  return lognormal_interval(subset.probability, subset.variation, plan.confidence);
+}
+
+const char* subset_outcome(SubsetOutcome outcome) {
+  if (outcome == SubsetOutcome::found) return "found";
+  return outcome == SubsetOutcome::stalled ? "stalled" : "too rare";
+}
+
+Json probability_json(const StudyPlan& plan, const StudyResult& result) {
+  Json json{{"measure", plan.measure}, {"limit", plan.limit}, {"confidence", plan.confidence}};
+  if (result.subset) {
+    const SubsetResult& s = *result.subset;
+    json["method"] = "subset";
+    json["outcome"] = subset_outcome(s.outcome);
+    json["probability"] = interval_json(subset_interval(plan, s));
+    json["variation"] = s.variation;
+    json["evaluations"] = s.evaluations;
+    return json;
+  }
+  json["method"] = result.fragility ? "fragility" : "monte-carlo";
+  Json counts = Json::array();
+  for (const ExceedanceCount& e : result.exceedance) {
+    Json entry;
+    for (std::size_t j = 0; j < e.point.size(); ++j) {
+      const bool shown = result.fragility ? j == plan.intensity : !plan.variables[j].random();
+      if (!shown) continue;
+      entry[plan.variables[j].name] = e.point[j].other ? Json(e.point[j].cell()) : Json(e.point[j].number);
+    }
+    entry.update({{"runs", e.runs}, {"exceeded", e.exceeded}, {"ended_early", e.ended_early}});
+    entry["probability"] = interval_json(e.probability);
+    counts.push_back(entry);
+  }
+  json["levels"] = counts;
+  if (!result.fragility) return json;
+  json["intensity"] = plan.variables[plan.intensity].name;
+  const FragilityFit& f = *result.fragility;
+  json["replicates"] = f.replicates;
+  if (f.curve && !f.at_levels.empty()) {
+    json["median"] = interval_json(f.median);
+    json["deviation"] = interval_json(f.deviation);
+  } else if (f.curve) {
+    json["median"] = {{"value", f.curve->median}};
+    json["deviation"] = {{"value", f.curve->deviation}};
+  }
+  return json;
+}
+
+Json importance_json(const StudyPlan& plan, const SobolIndices& indices) {
+  Json json{{"measure", plan.measure}, {"mean", indices.mean}, {"variance", indices.variance}};
+  for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+    json["variables"][plan.variables[j].name] = {{"first", interval_json(indices.first[j])},
+                                                 {"total", interval_json(indices.total[j])}};
+  }
+  return json;
+}
+
+/// Extremes and mean of a measure over the complete runs.
+struct MeasureSpread {
+  std::size_t count = 0, greatest_at = 0;
+  double least = INFINITY, greatest = -INFINITY, mean = 0.0;
+};
+
+MeasureSpread spread_of(const StudyReport& report, std::size_t measure) {
+  MeasureSpread s;
+  for (std::size_t i = 0; i < report.rows.size(); ++i) {
+    const std::optional<double> value = report.rows[i].measures[measure];
+    if (!report.rows[i].complete || !value) continue;
+    ++s.count;
+    s.mean += (*value - s.mean) / static_cast<double>(s.count);
+    s.least = std::min(s.least, *value);
+    if (*value > s.greatest) {
+      s.greatest = *value;
+      s.greatest_at = i;
+    }
+  }
+  return s;
+}
+
+std::string point_text(const StudyPlan& plan, const StudyPoint& point) {
+  std::string text;
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    const std::string cell = point[j].other ? point[j].cell() : fmt::format("{:.6g}", point[j].number);
+    text += fmt::format("{}{} = {}", j == 0 ? "" : ", ", plan.variables[j].name, cell);
+  }
+  return text;
+}
+
+std::string exceedance_text(const StudyPlan& plan, const StudyResult& result) {
+  std::string text = fmt::format("{} >= {}, {:g} % confidence:\n", plan.measure, plan.limit, 100.0 * plan.confidence);
+  for (const ExceedanceCount& e : result.exceedance) {
+    std::string at;
+    for (std::size_t j = 0; j < e.point.size(); ++j) {
+      const bool shown = result.fragility ? j == plan.intensity : !plan.variables[j].random();
+      if (shown) at += fmt::format("{} = {}: ", plan.variables[j].name, e.point[j].cell());
+    }
+    text += fmt::format("  {}{} of {} runs, probability {:.4g} ({:.4g} to {:.4g})\n", at, e.exceeded, e.runs,
+                        e.probability.value, e.probability.low, e.probability.high);
+  }
+  if (!result.fragility) return text;
+  const FragilityFit& f = *result.fragility;
+  const std::string unit = plan.variables[plan.intensity].unit;
+  if (!f.curve) {
+    return text +
+           "  no fragility curve: the likelihood has no finite maximum; runs at intensities between those "
+           "without and those with nothing but exceedances are missing\n";
+  }
+  text += fmt::format("  lognormal curve: median {:.5g} {}, logarithmic deviation {:.4g}\n", f.curve->median, unit,
+                      f.curve->deviation);
+  if (f.at_levels.empty()) return text + "  no bounds: too few replicates of the bootstrap have a curve\n";
+  return text + fmt::format("  bounds: median {:.5g} to {:.5g} {}, deviation {:.4g} to {:.4g} ({} replicates)\n",
+                            f.median.low, f.median.high, unit, f.deviation.low, f.deviation.high, f.replicates);
+}
+
+std::string subset_text(const StudyPlan& plan, const SubsetResult& subset) {
+  const ConfidenceInterval p = subset_interval(plan, subset);
+  std::string text = fmt::format(
+      "{} >= {}: probability {:.4g} ({:.3g} to {:.3g} at {:g} % confidence), coefficient of variation "
+      "{:.3g}, {} levels, {} runs asked for\n",
+      plan.measure, plan.limit, p.value, p.low, p.high, 100.0 * plan.confidence, subset.variation, subset.levels.size(),
+      subset.evaluations);
+  if (subset.outcome == SubsetOutcome::too_rare) {
+    text += "  the limit was not reached: the probability is lower; most_levels allows more\n";
+  }
+  if (subset.outcome == SubsetOutcome::stalled) {
+    text += "  all runs of a level have the same value: no level can follow, the probability is at most this\n";
+  }
+  return text;
+}
+
+std::string importance_text(const StudyPlan& plan, const SobolIndices& indices) {
+  std::string text = fmt::format("{}: mean {:.5g}, variance {:.5g}; shares of the variance, {:g} % confidence:\n",
+                                 plan.measure, indices.mean, indices.variance, 100.0 * plan.confidence);
+  for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+    const ConfidenceInterval &f = indices.first[j], &t = indices.total[j];
+    text += fmt::format("  {}: first {:.3f} ({:.3f} to {:.3f}), total {:.3f} ({:.3f} to {:.3f})\n",
+                        plan.variables[j].name, f.value, f.low, f.high, t.value, t.low, t.high);
+  }
+  return text;
+}
+
+std::string peak_text(const StudyPlan& plan, const PeakSearch& peak) {
+  const StudyVariable& v = plan.variables.front();
+  return fmt::format("largest {}: {:.6g} at {} = {} {}, {} of {} points of the grid{}\n", plan.measure,
+                     peak.values.at(peak.highest), v.name, v.values[peak.highest].cell(), v.unit == "-" ? "" : v.unit,
+                     peak.values.size(), v.values.size(),
+                     peak.resolved ? "" : "; not resolved to one step: a quarter of the grid is used up");
+}
+
+}  // namespace
+
+void require_study_places(const StudyPlan& plan, const StudyRuns& runs, const fs::path& folder) {
+  require_replaceable_text(folder / "runs.csv", runs.columns());
+  require_replaceable_text(folder / "study.json", json_mark);
+  require_replaceable(folder / "study.h5", {study_filetype});
+  const MethodTable table = method_table(plan, {});
+  if (table.file) require_replaceable_text(folder / table.file, table.columns);
+}
+
+void write_study(const StudyReport& report, const std::string& run_rows, const fs::path& folder) {
+  write_text_file(folder / "runs.csv", report.runs.columns() + run_rows, report.runs.columns());
+  write_arrays(report, folder / "study.h5");
+  const MethodTable table = method_table(report.plan, report.result);
+  if (table.file) write_text_file(folder / table.file, table.columns + table.rows, table.columns);
+  write_text_file(folder / "study.json",
+                  study_json(report).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", json_mark);
+}
+
+Json study_json(const StudyReport& report) {
+  Json json{{"study", report.plan.file.filename().string()},
+            {"scene", report.scene_name},
+            {"version", RAILTAB_VERSION},
+            {"runs", report.count.finished},
+            {"ended_early", report.count.ended_early},
+            {"deck_cut_off", report.runs.deck_cut_off()}};
+  Json measures = Json::object();
+  for (std::size_t k = 0; k < study_measures().size(); ++k) {
+    const MeasureSpread s = spread_of(report, k);
+    if (s.count == 0) continue;
+    measures[std::string(study_measures()[k]->name)] = {{"unit", study_measures()[k]->unit},
+                                                        {"runs", s.count},
+                                                        {"least", s.least},
+                                                        {"mean", s.mean},
+                                                        {"greatest", s.greatest},
+                                                        {"greatest_run", report.names[s.greatest_at]}};
+  }
+  json["measures"] = measures;
+  const StudyResult& result = report.result;
+  if (result.subset || !result.exceedance.empty()) json["probability"] = probability_json(report.plan, result);
+  if (result.importance) json["importance"] = importance_json(report.plan, *result.importance);
+  if (result.peak) {
+    const StudyVariable& v = report.plan.variables.front();
+    json["peak"] = {{"measure", report.plan.measure},
+                    {v.name, v.values[result.peak->highest].number},
+                    {"value", result.peak->values.at(result.peak->highest)},
+                    {"points", result.peak->values.size()},
+                    {"grid", v.values.size()},
+                    {"resolved", result.peak->resolved}};
+  }
+  return json;
+}
+
+std::string study_text(const StudyReport& report) {
+  std::string text;
+  for (std::size_t k = 0; k < study_measures().size(); ++k) {
+    const MeasureSpread s = spread_of(report, k);
+    if (s.count == 0) continue;
+    const MeasureKind& kind = *study_measures()[k];
+    text +=
+        fmt::format("{:28} {:>10.4g} to {:>10.4g}, mean {:>10.4g} {}; largest at {}\n", kind.name, s.least, s.greatest,
+                    s.mean, kind.unit == "-" ? "" : kind.unit, point_text(report.plan, report.points[s.greatest_at]));
+  }
+  const StudyResult& result = report.result;
+  if (result.subset) text += subset_text(report.plan, *result.subset);
+  if (!result.exceedance.empty()) text += exceedance_text(report.plan, result);
+  if (result.importance) text += importance_text(report.plan, *result.importance);
+  if (result.peak) text += peak_text(report.plan, *result.peak);
+  return text;
+}
+
+}  // namespace railtab::vsi

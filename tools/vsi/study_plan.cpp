@@ -1,0 +1,328 @@
+#include "study_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "railtab/runtime/assessment/measure_kind.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/vehicle/toml_section.hpp"
+#include "sweep_plan.hpp"
+
+namespace railtab::vsi {
+namespace {
+
+constexpr double any = 1e15, tiny = 1e-12;
+constexpr int most_samples = 1000000;
+
+/// "load.Fy" of "load.2.Fy".
+std::string without_number(const std::string& key) {
+  const std::size_t first = key.find('.'), second = key.find('.', first + 1);
+  if (first == key.npos || second == key.npos) return key;
+  const std::string entry = key.substr(first + 1, second - first - 1);
+  const bool number = !entry.empty() && entry.find_first_not_of("0123456789") == entry.npos;
+  return number ? key.substr(0, first) + key.substr(second) : key;
+}
+
+/// The row of the table of keys; null where there is none, which the scene's reader says better.
+const SceneKey* known_key(const std::string& key) {
+  static const std::vector<SceneKey> keys = scene_keys();
+  const auto found =
+      std::find_if(keys.begin(), keys.end(), [&](const SceneKey& known) { return known.path == without_number(key); });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+StudyKey study_key(const std::string& key, double factor, double power) {
+  const SceneKey* known = known_key(key);
+  return {key, factor, power, known && known->type == "integer"};
+}
+
+std::string unit_of(const StudyKey& key) {
+  const SceneKey* known = known_key(key.key);
+  return !known || known->unit.empty() || known->unit == "1" ? "-" : known->unit;
+}
+
+StudyValue value_of(const toml::node& node, const TomlSection& s) {
+  constexpr const char* expected = "numbers, texts without comma, quote or line break, or truth values";
+  if (const auto* text = node.as_string()) {
+    if (text->get().empty() || text->get().find_first_of(",\"'\\\n\r") != std::string::npos) {
+      throw s.error("values", found_text(node), expected);
+    }
+    return {0.0, fmt::format("\"{}\"", text->get())};
+  }
+  if (const auto* flag = node.as_boolean()) return {0.0, flag->get() ? "true" : "false"};
+  const std::optional<double> number = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!number || !(std::abs(*number) < any)) throw s.error("values", found_text(node), expected);
+  return {*number, std::nullopt};
+}
+
+std::vector<StudyValue> read_values(const toml::table& table, const TomlSection& s) {
+  const toml::array* list = table.get("values")->as_array();
+  if (!list || list->empty()) throw s.error("values", found_text(*table.get("values")), "a list, [0.1, 0.2, 0.3]");
+  std::vector<StudyValue> values;
+  std::set<std::string> cells;
+  for (const toml::node& node : *list) {
+    values.push_back(value_of(node, s));
+    if (values.back().other.has_value() != values.front().other.has_value()) {
+      throw s.error("values", found_text(node) + " among others", "numbers alone, or texts and truth values alone");
+    }
+    if (!cells.insert(values.back().cell()).second) throw s.error("values", found_text(node) + " twice", "each once");
+  }
+  return values;
+}
+
+std::vector<StudyValue> read_range(TomlSection& s) {
+  const std::string text = s.text("range");
+  try {
+    std::vector<StudyValue> values;
+    for (const double number : values_of_range("range", text)) values.push_back({number, std::nullopt});
+    return values;
+  } catch (const InputError&) {
+    throw s.error("range", fmt::format("the text \"{}\"", text),
+                  "\"LO:HI:STEP\", three numbers, LO <= HI and STEP > 0, at most 100000 values");
+  }
+}
+
+/// Mean and `std`, the standard deviation, or `cov`, which is that over the mean.
+std::pair<double, double> moments_of(TomlSection& s, double least_mean) {
+  const double mean = s.number("mean", {"", least_mean, any});
+  if (s.has("std") == s.has("cov"))
+    throw s.error("std", s.has("std") ? "std and cov" : "neither std nor cov", "one of them");
+  if (s.has("std")) return {mean, s.number("std", {"", tiny, any})};
+  return {mean, std::abs(mean) * s.number("cov", {"", tiny, 10.0})};
+}
+
+Distribution read_distribution(TomlSection& s) {
+  using enum DistributionKind;
+  const std::string kind = s.text_of("distribution", {"normal", "lognormal", "uniform", "weibull", "gumbel"});
+  if (kind == "uniform") {
+    const double low = s.number("low", {"", -any, any}), high = s.number("high", {"", -any, any});
+    if (!(low < high)) throw s.error("high", fmt::format("{}", high), fmt::format("more than low = {}", low));
+    return {uniform, low, high};
+  }
+  if (kind == "weibull") return {weibull, s.number("scale", {"", tiny, any}), s.number("shape", {"", 0.05, 1000.0})};
+  if (kind == "gumbel" && s.has("mode"))
+    return {gumbel, s.number("mode", {"", -any, any}), s.number("scale", {"", tiny, any})};
+  if (kind == "lognormal" && s.has("median")) {
+    return {lognormal, s.number("median", {"", tiny, any}), s.number("log_std", {"", tiny, 10.0})};
+  }
+  const auto [mean, deviation] = moments_of(s, kind == "lognormal" ? tiny : -any);
+  if (!(deviation > 0.0)) throw s.error("cov", "a mean of 0", "std");
+  if (kind == "lognormal") return lognormal_of_moments(mean, deviation);
+  return kind == "gumbel" ? gumbel_of_moments(mean, deviation) : Distribution{normal, mean, deviation};
+}
+
+/// at_least and at_most cut a distribution off.
+Distribution read_bounded(TomlSection& s) {
+  Distribution d = read_distribution(s);
+  const Distribution whole = d;
+  if (s.has("at_least")) d.low = s.number("at_least", {"", -any, any});
+  if (s.has("at_most")) d.high = s.number("at_most", {"", -any, any});
+  const double between = probability(whole, d.high).below - probability(whole, d.low).below;
+  constexpr double least = 1e-6;
+  if (!(between > least)) {
+    throw s.error(s.has("at_most") ? "at_most" : "at_least",
+                  fmt::format("a probability of {:.3g} between the bounds", between),
+                  fmt::format("bounds with more than {} between them", least));
+  }
+  return d;
+}
+
+StudyVariable read_variable(TomlSection& s, const toml::table& table) {
+  StudyVariable v;
+  v.place = s.place();
+  const double factor_high = 1e12;
+  if (s.has("key") == s.has("set")) {
+    throw s.error("key", s.has("key") ? "key and set" : "neither key nor set",
+                  "key = \"SECTION.KEY\", or [[vary.set]] with key, factor, power and a name for the variable");
+  }
+  if (s.has("key")) v.keys.push_back(study_key(s.text("key"), 1.0, 1.0));
+  for (TomlSection& set : s.sections("set")) {
+    v.keys.push_back(study_key(set.text("key"), set.number("factor", {"", -factor_high, factor_high}, 1.0),
+                               set.number("power", {"", -10.0, 10.0}, 1.0)));
+    set.reject_others();
+  }
+  v.name = s.has("name") ? s.text("name") : v.keys.front().key;
+  v.unit = s.has("unit") ? s.text("unit") : s.has("key") ? unit_of(v.keys.front()) : "-";
+  if ((v.name + v.unit).find_first_of(",\"'[]\n\r") != std::string::npos || v.name.find('/') != std::string::npos) {
+    throw s.error("name", fmt::format("\"{}\" in \"{}\"", v.name, v.unit),
+                  "name and unit without comma, quote or bracket, a name without slash");
+  }
+  const int ways = s.has("values") + s.has("range") + s.has("distribution");
+  if (ways == 0) s.reject_others();  // a slip in one of them
+  if (ways != 1) throw s.error("values", fmt::format("{} of values, range, distribution", ways), "one of them");
+  if (s.has("values")) v.values = read_values(table, s);
+  if (s.has("range")) v.values = read_range(s);
+  if (s.has("distribution")) v.distribution = read_bounded(s);
+  const bool shaped =
+      std::any_of(v.keys.begin(), v.keys.end(), [](const auto& k) { return k.factor != 1.0 || k.power != 1.0; });
+  if (shaped && !v.numeric()) throw s.error("values", "texts with a factor or power", "numbers");
+  s.reject_others();
+  return v;
+}
+
+std::size_t whole(TomlSection& s, std::string_view key, int low, int high, std::size_t absent) {
+  return static_cast<std::size_t>(s.whole_number(key, low, high, static_cast<int>(absent)));
+}
+
+void read_sampling(TomlSection& s, StudyPlan& plan) {
+  if (s.has("method")) {
+    const bool random = s.text_of("method", {"monte-carlo", "latin-hypercube"}) == "monte-carlo";
+    plan.sampling.method = random ? SamplingMethod::monte_carlo : SamplingMethod::latin_hypercube;
+  }
+  if (!s.has("samples")) throw s.error("samples", "nothing", fmt::format("an integer 1 to {}", most_samples));
+  plan.sampling.samples = whole(s, "samples", 1, most_samples, 1);
+  plan.sampling.seed = whole(s, "seed", 0, 2147483647, 1);
+  s.reject_others();
+}
+
+std::string read_measure(TomlSection& s) {
+  std::vector<std::string> names;
+  for (const MeasureKind& kind : measure_kinds()) {
+    if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) > 0) names.emplace_back(kind.name);
+  }
+  return s.text_of("measure", names);
+}
+
+void read_subset(TomlSection& s, StudyPlan& plan) {
+  plan.sampling.samples = whole(s, "samples", 20, 100000, 1000);
+  plan.sampling.seed = whole(s, "seed", 0, 2147483647, 1);
+  plan.level_probability = s.number("level_probability", {"", 0.05, 0.5}, plan.level_probability);
+  plan.most_levels = whole(s, "most_levels", 1, 20, plan.most_levels);
+  const double seeds = plan.level_probability * static_cast<double>(plan.sampling.samples);
+  const auto chains = static_cast<std::size_t>(std::llround(seeds));
+  if (std::abs(seeds - std::round(seeds)) > 1e-9 * seeds || chains < 2 || plan.sampling.samples % chains != 0) {
+    throw s.error("samples",
+                  fmt::format("{} at a level_probability of {}", plan.sampling.samples, plan.level_probability),
+                  "samples · level_probability chains, at least 2, of one whole length");
+  }
+}
+
+void read_probability(TomlSection& s, StudyPlan& plan) {
+  const std::string method = s.text_of("method", {"monte-carlo", "subset", "fragility"});
+  plan.method = method == "subset"      ? StudyMethod::subset
+                : method == "fragility" ? StudyMethod::fragility
+                                        : StudyMethod::probability;
+  plan.measure = read_measure(s);
+  plan.limit = s.number("limit", {"", -any, any});
+  plan.confidence = s.number("confidence", {"", 0.5, 0.9999}, plan.confidence);
+  if (plan.method == StudyMethod::subset) read_subset(s, plan);
+  if (plan.method == StudyMethod::fragility) {
+    const std::string name = s.text("intensity");
+    std::vector<std::string> names;
+    for (const StudyVariable& v : plan.variables) {
+      if (!v.random() && v.numeric()) names.push_back(v.name);
+    }
+    static_cast<void>(s.text_of("intensity", names));
+    const auto found =
+        std::find_if(plan.variables.begin(), plan.variables.end(), [&](const auto& v) { return v.name == name; });
+    plan.intensity = static_cast<std::size_t>(found - plan.variables.begin());
+    const bool positive =
+        std::all_of(found->values.begin(), found->values.end(), [](const auto& v) { return v.number > 0.0; });
+    if (found->values.size() < 2 || !positive)
+      throw s.error("intensity", "fewer than two values, or one that is not > 0", "at least two values > 0");
+    plan.replicates = whole(s, "replicates", 100, 100000, plan.replicates);
+  }
+  s.reject_others();
+}
+
+void read_peak(TomlSection& s, StudyPlan& plan) {
+  plan.method = StudyMethod::peak;
+  plan.measure = read_measure(s);
+  plan.coarse_step = whole(s, "coarse_step", 2, 1000, plan.coarse_step);
+  s.reject_others();
+}
+
+void read_importance(TomlSection& s, StudyPlan& plan) {
+  plan.method = StudyMethod::importance;
+  plan.measure = read_measure(s);
+  if (!s.has("samples"))
+    throw s.error("samples", "nothing", "an integer 8 to 100000: runs are samples · (variables + 2)");
+  plan.sampling.samples = whole(s, "samples", 8, 100000, 8);
+  plan.sampling.seed = whole(s, "seed", 0, 2147483647, 1);
+  plan.confidence = s.number("confidence", {"", 0.5, 0.9999}, plan.confidence);
+  plan.replicates = whole(s, "replicates", 100, 100000, plan.replicates);
+  s.reject_others();
+}
+
+/// What a method asks of the variables, and who chooses the samples.
+void check_variables(TomlSection& root, const StudyPlan& plan) {
+  const auto random =
+      std::count_if(plan.variables.begin(), plan.variables.end(), [](const auto& v) { return v.random(); });
+  const bool all = random == static_cast<std::ptrdiff_t>(plan.variables.size());
+  const bool samples = plan.method == StudyMethod::subset || plan.method == StudyMethod::importance;
+  const bool sampled = root.has("sampling");
+  if (samples && !all) throw root.error("vary", "a variable with values", "a distribution for each variable");
+  if (samples && sampled) throw root.error("sampling", "a section", "samples and seed in the section of the method");
+  if (plan.method == StudyMethod::peak && (plan.variables.size() != 1 || all || !plan.variables.front().numeric())) {
+    throw root.error("vary", fmt::format("{} variables, {} of them random", plan.variables.size(), random),
+                     "one [[vary]] with numbers as values or a range");
+  }
+  if (!samples && random > 0 && !sampled)
+    throw root.error("sampling", "nothing", "[sampling] with samples, since a variable is random");
+  if (!samples && random == 0 && sampled)
+    throw root.error("sampling", "a section, and no variable is random", "a [[vary]] with a distribution");
+}
+
+void read_variables(TomlSection& root, const toml::table& table, StudyPlan& plan) {
+  std::vector<TomlSection> sections = root.sections("vary");
+  if (sections.empty()) throw root.error("vary", "nothing", "at least one [[vary]]");
+  std::set<std::string> names, keys;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    StudyVariable v = read_variable(sections[i], *table.get("vary")->as_array()->get(i)->as_table());
+    if (!names.insert(v.name).second)
+      throw sections[i].error("name", fmt::format("\"{}\" twice", v.name), "another name");
+    for (const StudyKey& key : v.keys) {
+      const std::string one = key.key == "train.speed_kmh" ? "train.speed" : key.key;
+      if (!keys.insert(one).second) throw sections[i].error("key", fmt::format("{} twice", key.key), "each key once");
+    }
+    plan.variables.push_back(std::move(v));
+  }
+}
+
+}  // namespace
+
+std::string StudyValue::cell() const {
+  if (!other) return fmt::format("{}", number);
+  return other->starts_with('"') ? other->substr(1, other->size() - 2) : *other;
+}
+
+bool StudyVariable::numeric() const noexcept { return random() || !values.front().other; }
+
+StudyPlan read_study_plan(const std::filesystem::path& file) {
+  StudyPlan plan;
+  plan.file = file;
+  plan.text = read_toml_text(file, "a plan in TOML");
+  const toml::table table = parse_toml(plan.text, file);
+  SourcedValues values;
+  TomlSection root(file, "", table, {}, values);
+  plan.scene_file = file.parent_path() / root.text("scene");
+  if (!is_file(plan.scene_file)) {
+    throw root.error("scene", fmt::format("no file {}", plan.scene_file.string()), "a scene, relative to the plan");
+  }
+  plan.keep_results = root.flag("keep_results");
+  if (root.has("deck_cut_off")) plan.deck_cut_off = root.number("deck_cut_off", {"Hz", 1.0, 1000.0});
+  read_variables(root, table, plan);
+  int methods = 0;
+  const auto method = [&](const char* name, void (*read)(TomlSection&, StudyPlan&)) {
+    std::optional<TomlSection> section = root.find_section(name);
+    if (!section) return;
+    if (++methods > 1) throw section->error("", "a second method", "one of [probability], [peak], [importance]");
+    read(*section, plan);
+  };
+  method("probability", read_probability);
+  method("peak", read_peak);
+  method("importance", read_importance);
+  check_variables(root, plan);
+  std::optional<TomlSection> sampling = root.find_section("sampling");
+  if (sampling) read_sampling(*sampling, plan);
+  root.reject_others();
+  return plan;
+}
+
+}  // namespace railtab::vsi

@@ -1,0 +1,286 @@
+#include "study_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+
+#include "assess_contact.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/moving_load/deck_modes.hpp"
+#include "railtab/runtime/reliability/sampling.hpp"
+#include "railtab/runtime/results/result_file.hpp"
+#include "railtab/tables/files/array_file.hpp"
+#include "run_measures.hpp"
+#include "scene_decks.hpp"
+
+namespace railtab::vsi {
+namespace fs = std::filesystem;
+namespace {
+
+StudyValue sampled(const StudyVariable& variable, Probability p) {
+  double value = quantile(*variable.distribution, p);
+  if (std::any_of(variable.keys.begin(), variable.keys.end(), [](const StudyKey& k) { return k.whole; })) {
+    value = std::floor(value);
+  }
+  return {value, std::nullopt};
+}
+
+UnitPoints unit_points(const StudyPlan& plan, std::size_t variables) {
+  const StudySampling& s = plan.sampling;
+  return s.method == SamplingMethod::monte_carlo ? monte_carlo_points(s.samples, variables, s.seed)
+                                                 : latin_hypercube_points(s.samples, variables, s.seed);
+}
+
+/// All values of the grid; random variables have the value 0.
+std::vector<StudyPoint> grid_of(const StudyPlan& plan) {
+  std::vector<StudyPoint> points{StudyPoint(plan.variables.size())};
+  for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+    if (plan.variables[j].random()) continue;
+    std::vector<StudyPoint> longer;
+    for (const StudyPoint& point : points) {
+      for (const StudyValue& value : plan.variables[j].values) longer.emplace_back(point)[j] = value;
+    }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+/// The largest of each measure, whatever limit its values have.
+std::string measure_cells(const assess::RunMeasures& measures) {
+  std::string cells;
+  for (const MeasureKind* kind : study_measures()) {
+    std::optional<double> largest;
+    for (const MeasuredValue& value : measures.values) {
+      if (value.measure == kind->name) largest = std::max(largest.value_or(value.value), value.value);
+    }
+    cells += largest ? fmt::format(",{}", *largest) : ",";
+  }
+  return cells;
+}
+
+double cut_off_of(const SceneParameters& scene) {
+  double cut_off = assess::RunWindow{}.deck_cut_off;
+  if (scene.spans.empty() && scene.structure.files.nodes.empty()) return cut_off;
+  for (const ModalDeck& deck : decks_of_scene(scene, DynamicModes{})) {
+    const double third = deck.frequency(std::min(2, deck.modes() - 1));
+    cut_off = std::max(cut_off, cut_off_frequency(deck.frequency(0), third));
+  }
+  return cut_off;
+}
+
+}  // namespace
+
+std::vector<StudyPoint> planned_points(const StudyPlan& plan) {
+  const std::vector<StudyPoint> grid = grid_of(plan);
+  if (plan.sampling.samples == 0) return grid;
+  std::vector<std::size_t> random;
+  for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+    if (plan.variables[j].random()) random.push_back(j);
+  }
+  const UnitPoints samples = unit_points(plan, random.size());
+  std::vector<StudyPoint> points;
+  for (const StudyPoint& of_grid : grid) {
+    for (const std::vector<double>& sample : samples) {
+      StudyPoint& point = points.emplace_back(of_grid);
+      for (std::size_t k = 0; k < random.size(); ++k) {
+        point[random[k]] = sampled(plan.variables[random[k]], {sample[k], 1.0 - sample[k]});
+      }
+    }
+  }
+  return points;
+}
+
+StudyPoint point_at(const StudyPlan& plan, const std::vector<Probability>& probabilities) {
+  StudyPoint point;
+  for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+    point.push_back(sampled(plan.variables[j], probabilities[j]));
+  }
+  return point;
+}
+
+const std::vector<const MeasureKind*>& study_measures() {
+  static const std::vector<const MeasureKind*> measures = [] {
+    std::vector<const MeasureKind*> list;
+    for (const MeasureKind& kind : measure_kinds()) {
+      if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) > 0) list.push_back(&kind);
+    }
+    return list;
+  }();
+  return measures;
+}
+
+StudyRuns::StudyRuns(const StudyPlan& plan, const SceneParameters& scene, StudyRunsOptions options)
+    : plan_(plan), scene_(scene), options_(std::move(options)) {
+  deck_cut_off_ = plan.deck_cut_off ? *plan.deck_cut_off : cut_off_of(scene);
+}
+
+void StudyRuns::bind_folder() const {
+  std::vector<fs::path> files = scene_.files;
+  for (const StudyVariable& variable : plan_.variables) {  // a vehicle of a file, say
+    for (const StudyValue& value : variable.values) {
+      const fs::path named = value.other ? plan_.scene_file.parent_path() / value.cell() : fs::path();
+      if (value.other && is_file(named)) files.push_back(named);
+    }
+  }
+  check_same_scene(scene_.text + fmt::format("\n# vsi study: deck acceleration low-passed at {} Hz", deck_cut_off_),
+                   files, options_.folder);
+}
+
+std::vector<KeyChange> StudyRuns::changes_of(const StudyPoint& point) const {
+  std::vector<KeyChange> changes;
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    for (const StudyKey& key : plan_.variables[j].keys) {
+      if (key.key == "train.speed") changes.push_back({"train.speed_kmh", ""});
+      if (key.key == "train.speed_kmh") changes.push_back({"train.speed", ""});
+      const StudyValue& value = point[j];
+      const bool as_it_is = key.factor == 1.0 && key.power == 1.0;
+      const double number = as_it_is ? value.number : key.factor * std::pow(value.number, key.power);
+      changes.push_back({key.key, value.other ? *value.other : fmt::format("{}", number)});
+    }
+  }
+  return changes;
+}
+
+RunRow StudyRuns::row_of(const StudyPoint& point) const {
+  std::string cells, content;
+  for (const StudyValue& value : point) cells += value.cell() + ",";
+  for (const KeyChange& change : changes_of(point)) content += fmt::format("{}={}\n", change.key, change.value);
+  content += cells;
+  const std::uint64_t sum = checksum_of_bytes(std::as_bytes(std::span(content)), checksum_seed);
+  const std::string name = fmt::format("r{:016x}", sum);
+  return {name, fmt::format("{},{}", name, cells)};
+}
+
+/// The scene as it was when the study began, with the values of a point, and what is judged recorded.
+SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
+  SceneParameters scene = read_scene(plan_.scene_file, changes_of(point));
+  if (!scene.text.starts_with(scene_.text)) {
+    throw input_error(plan_.scene_file.string(), "another scene than when the study began", "the same scene");
+  }
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    scene.name += fmt::format(", {} = {}", plan_.variables[j].name, point[j].cell());
+  }
+  record_what_is_judged(scene);
+  scene.text += "# vsi study: what is judged is recorded\n";
+  return scene;
+}
+
+void StudyRuns::check(const std::vector<StudyPoint>& points) const {
+  for (const StudyPoint& point : points) {
+    try {
+      static_cast<void>(scene_of(point));
+    } catch (const InputError& wrong) {
+      const std::string message = wrong.what(), found = message.substr(0, message.find("(changed:"));
+      for (const StudyVariable& variable : plan_.variables) {
+        for (const StudyKey& key : variable.keys) {
+          // as the key is written in messages, a number of a [[section]] apart
+          const std::string last = key.key.substr(key.key.rfind('.') + 1);
+          if (found.find(last) == found.npos) continue;
+          throw InputError(fmt::format("{}.{}: {}", variable.place, key.key, message));
+        }
+      }
+      throw InputError(fmt::format("{}: {}", plan_.file.string(), message));
+    }
+  }
+}
+
+void StudyRuns::tidy(const std::vector<StudyPoint>& points) const {
+  std::vector<RunRow> runs;
+  for (const StudyPoint& point : points) runs.push_back(row_of(point));
+  remove_abandoned_runs(runs,
+                        {"scene.toml", "runs.csv", "study.h5", "study.json", "probability.csv", "fragility.csv",
+                         "subset.csv", "importance.csv"},
+                        options_.folder);
+}
+
+RunPool StudyRuns::pool(const std::function<void(double)>& progress) const {
+  return {plan_.scene_file, options_.folder, {"vsi study", options_.quiet, progress, plan_.keep_results}};
+}
+
+PooledRun StudyRuns::pooled_at(const StudyPoint& point) const {
+  const RunRow row = row_of(point);
+  const auto text = [this, row, point](const report::Headline& headline, const RunSummary& summary,
+                                       const fs::path& results) {
+    assess::RunWindow window = judged_window(scene_of(point));
+    window.deck_cut_off = deck_cut_off_;
+    const assess::RunMeasures measures = assess::run_measures(read_results(results), window);
+    return fmt::format("{}{}{},{:.6g},{}\n", row.begin, summary.complete ? 1 : 0, measure_cells(measures),
+                       headline.simulated_time, summary.complete ? "" : message_cell(summary.message));
+  };
+  return {row.name, [this, point] { return scene_of(point); }, text};
+}
+
+int StudyRuns::make(const std::vector<StudyPoint>& points, const std::function<void(double)>& progress) {
+  const double all = static_cast<double>(points.size());
+  double before = 0.0;
+  RunPool runs = pool([&](double share) {
+    if (progress) progress(before + (1.0 - before) * share);
+  });
+  std::vector<PooledRun> missing;
+  std::set<std::string> names;
+  for (const StudyPoint& point : points) {
+    PooledRun run = pooled_at(point);
+    const bool there = !plan_.keep_results && runs.finished(run.name) && !fs::exists(runs.file(run.name, ".h5"));
+    if (!there && names.insert(run.name).second) missing.push_back(std::move(run));
+  }
+  before = all > 0.0 ? 1.0 - static_cast<double>(missing.size()) / all : 0.0;
+  return runs.run(missing, options_.processes);
+}
+
+std::vector<StudyRow> StudyRuns::rows(const std::vector<StudyPoint>& points,
+                                      const std::function<void(double)>& progress) {
+  const int code = make(points, progress);
+  if (code > exit_code::failed) throw StudyStopped{code};
+  std::vector<StudyRow> rows;
+  for (const StudyPoint& point : points) {
+    std::optional<StudyRow> row = find_row(point);
+    if (!row) {
+      throw ComputationError(
+          fmt::format("run {} is not finished, see above; the same command goes on from what is", name_of(point)));
+    }
+    rows.push_back(std::move(*row));
+  }
+  return rows;
+}
+
+std::string StudyRuns::columns() const {
+  std::string text = "run";
+  for (const StudyVariable& variable : plan_.variables) text += fmt::format(",{}[{}]", variable.name, variable.unit);
+  text += ",complete";
+  for (const MeasureKind* kind : study_measures()) text += fmt::format(",{}[{}]", kind->name, kind->unit);
+  return text + ",simulated_time[s],message\n";
+}
+
+RunCount StudyRuns::table(const std::vector<StudyPoint>& points, std::string& rows) const {
+  std::vector<RunRow> runs;
+  std::set<std::string> names;
+  for (const StudyPoint& point : points) {
+    RunRow run = row_of(point);
+    if (names.insert(run.name).second) runs.push_back(std::move(run));
+  }
+  return count_rows(pool({}), runs, columns(), rows);
+}
+
+std::optional<StudyRow> StudyRuns::find_row(const StudyPoint& point) const {
+  const RunRow run = row_of(point);
+  const RunPool runs = pool({});
+  if (!runs.finished(run.name)) return std::nullopt;
+  const std::string text = read_row(runs, run, columns());
+  std::vector<std::string_view> cells;
+  const std::string_view behind = std::string_view(text).substr(run.begin.size());
+  cut(behind.substr(0, behind.size() - 1), ',', cells);
+  StudyRow row;
+  row.complete = cells.front() == "1";
+  for (std::size_t k = 0; k < study_measures().size(); ++k) row.measures.push_back(parse_number(cells[1 + k]));
+  row.simulated_time = parse_number(cells[cells.size() - 2]).value_or(0.0);
+  row.message = std::string(cells.back());
+  return row;
+}
+
+}  // namespace railtab::vsi
