@@ -36,10 +36,10 @@ void backward_column(const LaneColumns& c, int j, const Lanes* inverse_D, const 
 // Far from its load a solution decays until it is a denormal number, on which a processor is a hundred times slower.
 bool vanishes(Lanes& y) noexcept {
   constexpr double nothing = 1e-40;
-  bool any = false;
-  for (int s = 0; s < side_by_side; ++s) any = any || std::abs(y[s]) >= nothing;
-  if (!any) y = Lanes{};
-  return !any;
+  bool all = true;  // false for a NaN, which must reach the solution
+  for (int s = 0; s < side_by_side; ++s) all = all && std::abs(y[s]) < nothing;
+  if (all) y = Lanes{};
+  return all;
 }
 
 }  // namespace

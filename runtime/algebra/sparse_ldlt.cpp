@@ -391,7 +391,7 @@ void SparseLdlt::forward(Vector& y, const Path& path) const {
   for (int b : path.nodes()) {
     const Block& block = blocks_[static_cast<std::size_t>(b)];
     auto own = y.segment(block.first, block.columns);
-    if (own.cwiseAbs().maxCoeff() < nothing) {
+    if ((own.cwiseAbs().array() < nothing).all()) {  // false for a NaN, which must reach the solution
       own.setZero();
     } else {
       forward(y.data(), block, scratch.data());

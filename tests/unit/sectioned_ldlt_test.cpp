@@ -90,6 +90,13 @@ TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
                           {{700, 3, 3, 704, 12}, {rail}, {}, {s.dofs() - 1}}, 1e-11);
 }
 
+TEST(SectionedLdlt, KeepsALoadThatIsNotANumber) {
+  const StructureModel s = track_with({32.0, 32.0});
+  const Sectioned sectioned(s, whole(s));
+  ASSERT_TRUE(sectioned.layout);
+  expect_nan_is_kept(sectioned.factor(), s.dofs(), s.rail[0].dof[40][2]);
+}
+
 TEST(SectionedLdlt, RejectsAMatrixThatIsNotPositiveDefinite) {
   const StructureModel s = track_with({32.0});
   Sectioned sectioned(s, whole(s));

@@ -31,6 +31,11 @@ TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {
   EXPECT_TRUE(factor.solve(Eigen::Vector3d(1.0, 2.0, 3.0)).isApprox(Eigen::Vector3d::Ones(), 1e-15));
 }
 
+TEST(SparseLdlt, KeepsALoadThatIsNotANumber) {
+  const Eigen::SparseMatrix<double> matrix = short_track();
+  expect_nan_is_kept(SparseLdlt(matrix), matrix.rows(), 700);
+}
+
 TEST(DividedSubstitution, AnswersAChangingLoadAndGivesTheWholeSolution) {
   const Eigen::SparseMatrix<double> matrix = short_track();
   const SparseLdlt factor(matrix);

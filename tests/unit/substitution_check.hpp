@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCore>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "railtab/runtime/algebra/divided_substitution.hpp"
@@ -40,6 +42,17 @@ inline void expect_divided_as_whole(const SubstitutionFactor& factor, const Spar
     solution.finish(factor, whole);
     EXPECT_LT(difference(whole, reference.solve(known + 0.95 * extra)), tolerance);
   }
+}
+
+/// A load that is not a number makes a solution that is none, however small the loads beside it.
+inline void expect_nan_is_kept(const SubstitutionFactor& factor, Eigen::Index n, int unknown) {
+  const std::vector<int> few{unknown};
+  DividedSubstitution solution;
+  solution.begin(factor, Eigen::VectorXd::Zero(n), few);
+  Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n);
+  extra[unknown] = std::numeric_limits<double>::quiet_NaN();
+  solution.respond(factor, 1.0, extra, answer);
+  EXPECT_TRUE(std::isnan(answer[unknown]));
 }
 
 }  // namespace railtab
