@@ -33,9 +33,10 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
   constexpr double indices = 1.01;  // of chunks, and their checksums
   size.file *= indices;
   for (const columns::HeaderColumn& column : columns::header) {
-    size.file += number * static_cast<double>((header.*column.values).size());
+    size.file += page + number * static_cast<double>((header.*column.values).size());
   }
   for (const columns::HeaderTexts& list : columns::header_text_lists) {
+    size.file += page;
     for (const std::string& text : header.*list.values) size.file += static_cast<double>(text.size());
   }
   size.file += static_cast<double>(header.scene_text.size());

@@ -7,6 +7,7 @@
 #include "railtab/runtime/results/deck_envelope.hpp"
 #include "railtab/runtime/results/result_size.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
@@ -62,12 +63,15 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
 
   const StructureModel& s = *model.structure;
   const double n = static_cast<double>(s.dofs());
-  const StructureResponse response(s, HhtScheme{.alpha = integration.alpha, .time_step = integration.time_step});
-  const StructureResponse::Memory m = response.memory();
+  const HhtScheme hht{.alpha = integration.alpha, .time_step = integration.time_step};
+  const DofRange active =
+      model.window ? MovingWindow(model, integration.time_step).largest(duration) : DofRange{0, s.dofs()};
+  const StructureResponse response(s, hht, active);
+  const StructureResponse::Memory m = response.memory(), at_rest = StructureResponse(s).memory();
   const double table = StepOperators::largest_table(model, duration, integration.time_step);
   const double one = m.kept + m.low + table;
   const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
-  const double start = number * n * start_vectors + m.kept + m.setup;
+  const double start = number * n * start_vectors + at_rest.kept + at_rest.setup;
   const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
   const double pieces = number * n < small ? std::min(most_pieces, number * n * start_vectors) : 0.0;
   const double common = built + train;
@@ -75,7 +79,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   plan.undivided = allocator * std::max({peak, common + start, undivided});
   plan.most = plan.undivided + allocator * (most_operators - 1) * (operators + one);
   plan.step_reads = 2.0 * static_cast<double>(response.factor().bytes()) + static_cast<double>(response.load_bytes());
-  plan.entries_per_dof = m.low_entries / n;
+  plan.entries_per_dof = m.low_entries / static_cast<double>(active.count);
   return plan;
 }
 

@@ -156,6 +156,19 @@ MovingWindow::Ends MovingWindow::ends(long step) const {
   return ends;
 }
 
+DofRange MovingWindow::largest(double duration) const {
+  constexpr double spacing = 1.0;  // m, between positions of the train: a small part of the stride
+  const double travel = model_.wheelset_x(0, duration) - model_.wheelset_x(0, 0.0);
+  const double positions = std::max(1.0, std::ceil(travel / spacing));
+  DofRange most;
+  for (double k = 0.0; k <= positions; ++k) {
+    const Ends at = ends(std::lround(k / positions * duration / scheme_.time_step));
+    const DofRange range = dofs_between(model_.structure->dof_x, at.from, at.to);
+    if (range.count > most.count) most = range;
+  }
+  return most;
+}
+
 DofRange MovingWindow::move(VsiState& state) {
   const long step = std::lround(state.time / scheme_.time_step);
   const Ends now = ends(step);

@@ -43,6 +43,8 @@ class MovingWindow {
   /// behind continue to vibrate in their own modes, and those that enter bring the vibration that the ground has given
   /// them.
   DofRange move(VsiState& state);
+  /// The most degrees of freedom that are active at once in a run of `duration` [s].
+  [[nodiscard]] DofRange largest(double duration) const;
   /// One time step of the spans behind, and where the ground moves of those ahead; their nodes of interest are written
   /// into the state.
   void step_inactive_spans(VsiState& state) const;

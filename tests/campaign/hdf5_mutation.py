@@ -56,7 +56,7 @@ def numbers_of(values):
 
 
 def geometry_checksum(table):
-    """docs/file_formats/geometry_table.md, without a loaded part."""
+    """docs/file_formats/geometry_table.md."""
     sum = seed
 
     def add(content, count):
@@ -80,12 +80,22 @@ def geometry_checksum(table):
         add(numbers_of([table[f"dimensions/{name}"][()]]), 1)
     for value in statistics_of(table):
         add(numbers_of([value]), 1)
+    if "loaded" in table:
+        loaded = table["loaded"]
+        for name in ("lateral", "roll", "yaw_squared", "cut", "shift", "touch"):
+            values = loaded[name][()].astype("f8") if name in loaded else numpy.zeros(0)
+            add(values.tobytes(), values.size)
+        add(numbers_of([loaded.attrs[name] for name in ("levels", "largest_level", "contact_modulus")]), 3)
+        for value in statistics_of(loaded):
+            add(numbers_of([value]), 1)
+        for name, kind in (("height", "<f4"), ("pressed", "<u4"), ("part", "<f4")):
+            sum = fnv(loaded[name][()].astype(kind).tobytes(), sum)
     return f"{sum:016x}"
 
 
-def statistics_of(table):
-    group = table["statistics"]
-    return [group.attrs[name] for name in group.attrs]
+def statistics_of(group):
+    attributes = group["statistics"].attrs
+    return [attributes[name] for name in attributes]
 
 
 def creep_checksum(table):

@@ -169,6 +169,7 @@ structure_files = [
                                                   "bridge_nodes.inp")],
     *[(name, "calculix.toml") for name in ("bridge.mas", "bridge.sti", "bridge.dof")],
     *[(name, "ansys.toml") for name in ("bridge_m.matrix", "bridge_k.matrix", "bridge_k.mapping", "bridge_nodes.txt")],
+    *[(name, "modes.toml") for name in ("bridge_modes.csv", "bridge_shapes.csv")],
     *[(name, "imported_rails.toml") for name in ("rails_mass.mtx", "rails_damping.mtx", "rails_stiffness.mtx",
                                                  "rails_dofs.csv")]]
 structure_choices = structure_files + [(name, ("vsi", "structure", scene, "--modes", "3", "--json"))
@@ -196,13 +197,15 @@ table_commands = {
     "pair.h5": [("vsi", "contact", "pair.h5", "--query", "poses.csv", "-o", "out.csv"),
                 ("vsi", "run", "table.toml", "--json", "-o", "out.h5"), ("tablegen", "info", "pair.h5", "--json"),
                 ("tablegen", "conicity", "pair.h5", "--json")],
+    "loaded.h5": [("vsi", "contact", "loaded.h5", "--query", "loads.csv", "-o", "out.csv"),
+                  ("vsi", "run", "loaded.toml", "--json", "-o", "out.h5"), ("tablegen", "info", "loaded.h5", "--json")],
     "creep.h5": [("vsi", "creep", "creep.h5", "--query", "creepages.csv", "-o", "out.csv"),
                  ("vsi", "run", "creep.toml", "--json", "-o", "out.h5"), ("tablegen", "info", "creep.h5", "--json")],
     "part1.h5": [("tablegen", "merge", "part1.h5", "part2.h5", "-o", "out.h5", "-q"),
                  ("tablegen", "info", "part1.h5", "--json")],
     "results.h5": [("vsi", "report", "results.h5", "-o", "out.html", "-q"),
                    ("vsi", "run", "online.toml", "--resume", "-q", "-o", "results.h5"),
-                   ("vsi", "results.h5", "--json"),
+                   ("vsi", "results.h5", "--json"), ("vsi", "export", "results.h5", "-q", "-o", "out.pvd"),
                    ("vsi", "report", "results.h5", "results2.h5", "-o", "out.html", "-q")]}
 
 
@@ -212,7 +215,7 @@ def hdf5(base, random, count):
     name = list(table_commands)[count % len(table_commands)]
     commands = table_commands[name]
     program, *words = commands[count // len(table_commands) % len(commands)]
-    reader = {"pair.h5": "geometry_table", "creep.h5": "creep_table", "part1.h5": "table_shard",
+    reader = {"pair.h5": "geometry_table", "loaded.h5": "loaded_table", "creep.h5": "creep_table", "part1.h5": "table_shard",
               "results.h5": "results"}[name]
     if random.random() < 0.25:
         act = random.choice((flip_bytes, flip_bytes, random_bytes, truncate))
@@ -227,6 +230,52 @@ def hdf5(base, random, count):
         files["results2.h5"] = base.bytes["results.h5"]
     return Case(reader, f"{name}: {what}", [getattr(base, program), *words], files,
                 [word for word in words if word.startswith("out")], [name, *words])
+
+
+def runs_of_study(text):
+    """How many runs a study's plan asks for, roughly; 0 where it is no TOML."""
+    try:
+        plan = tomllib.loads(text.decode())
+    except (ValueError, RecursionError):
+        return 0.0
+    runs = 1.0
+    for vary in plan.get("vary", []) if isinstance(plan.get("vary"), list) else []:
+        if not isinstance(vary, dict):
+            continue
+        if isinstance(vary.get("values"), list):
+            runs *= len(vary["values"])
+        try:
+            low, high, step = map(float, str(vary.get("range", "")).split(":"))
+            runs *= max(1.0, abs(high - low) / max(1e-300, abs(step)))
+        except ValueError:
+            pass
+    for name in ("sampling", "probability", "importance"):
+        section = plan.get(name)
+        if isinstance(section, dict):
+            subset = section.get("method") == "subset"
+            runs *= max(1.0, number(section, "samples", 1000.0 if subset or name == "importance" else 1.0))
+            runs *= max(1.0, number(section, "most_levels", 8.0)) if subset else 1.0
+    return runs
+
+
+def study(base, random, count):
+    """A plan of few runs, carried out; of many, counted."""
+    name = list(scenes.studies)[count % len(scenes.studies)]
+    content, what = (mutate_toml if random.random() < 0.75 else mutate_text)(random, base.bytes[name])
+    words = ["--threads", "1", "-q", "-o", "out_study"] if runs_of_study(content) <= 60 else ["--count"]
+    return Case("study", f"{name}: {what}", [base.vsi, "study", name, *words], {name: content}, ["out_study"],
+                [name, "vertical.toml"])
+
+
+def assessment(base, random, count):
+    """A scene whose bridge is assessed without a run, or its deck under moving loads."""
+    command, *words = [("assess", "--stage", "check", "-q", "-o", "out_assess"),
+                       ("moving-load", "--speed", "30:40:10", "--threads", "1", "-q", "-o", "out.csv")][count % 2]
+    text, what = mutate_toml(random, scenes.tiny(("bridge", "spans")[count // 2 % 2], "p.prw", "p.prr").encode())
+    if work_of(text) > most_run:
+        return None
+    return Case("assessment", f"{command}: {what}", [base.vsi, command, "scene.toml", *words], {"scene.toml": text},
+                [words[-1]], ["scene.toml"])
 
 
 def what_is(base, random, count):
@@ -253,6 +302,9 @@ flags = [
     ("vsi", "run", "vertical.toml", "--check-reduction", 0.01, "-o", "out.h5"),
     ("vsi", "sweep", "vertical.toml", "--speed", "10:20:10", "--seeds", 1, "--threads", 1, "-o", "out_sweep"),
     ("vsi", "assess", "bridge.toml", "--stage", "check", "-o", "out_assess"),
+    ("vsi", "study", "grid.toml", "--shard", "1/1", "--threads", 1, "-o", "out_study"),
+    ("vsi", "export", "results.h5", "-o", "out.pvd"),
+    ("tablegen", "loaded", "loaded.h5", *scenes.loaded_options, "--modulus", 210e9, "--poisson", 0.28),
 ]
 flag_values = [*numbers[:20], "", "a", "1:2", "2:1", "0:0:0", "1:2:0", "1:2:1e-9", "1:1e9", "nan:1", "1,2", "1,2,3,4",
                ",,", "-5", "1e6", "0.001", "1000", "a" * 3000, "\x1b[31m", "/dev/null", "fifo", "."]
@@ -277,7 +329,7 @@ def command_line(base, random, count):
     words = [word.replace("\x00", "") for word in words]
     options = [word for word in words if len(word) > 1] + ["tablegen", "vsi"]
     return Case("command_line", " ".join([program, *words])[:200], [getattr(base, program), *words], {},
-                ["out.csv", "out.h5", "out.toml", "out_sweep", "out_assess"], options)
+                ["out.csv", "out.h5", "out.toml", "out.pvd", "out_sweep", "out_assess", "out_study"], options)
 
 
 # Readers with their share of the inputs, in twentieths.
@@ -286,9 +338,8 @@ readers = [(scene_key, 4), (scene_mix, 3), (scene_text, 2), (profile, 1), (file_
            (file_of("vehicle_file", vehicle_choices, lambda random, content: (
                mutate_toml if random.random() < 0.7 else mutate_text)(random, content)), 1),
            (file_of("history", history_choices), 1), (file_of("query", query_choices), 1), (hdf5, 2), (what_is, 1)]
-last_slot = [(file_of("clauses", clause_choices, mutate_toml), 4),
-             (file_of("batch_list", batch_choices, mutate_toml), 4),
-             (command_line, 12)]
+last_slot = [(file_of("clauses", clause_choices, mutate_toml), 2),
+             (file_of("batch_list", batch_choices, mutate_toml), 2), (study, 4), (assessment, 3), (command_line, 9)]
 
 
 def case_of(base, seed, index):

@@ -15,6 +15,7 @@ from pathlib import Path
 import h5py
 from checkpoints import histories
 from outcomes import Case, asked_to_end, save
+from scenes import loaded_options
 
 pair = ["--wheel", "cone-1:20", "--rail", "60E1", "--yaw", "0:0", "--tolerance", "1e-6", "--threads", "1", "-q"]
 rigid_run = ('[train]\nvehicle = "wagon.toml"\nspeed = 30.0\n[contact]\nnormal = "rigid"\n[track]\nkind = "rigid"\n'
@@ -26,6 +27,8 @@ commands = {
     "vsi run": (["vsi", "run", "long.toml", "--resume", "-q", "-o", "out.h5"], ["out.h5"]),
     "vsi run (contact)": (["vsi", "run", "contact.toml", "--resume", "-q", "-o", "out.h5"], ["out.h5"]),
     "vsi sweep": (["vsi", "sweep", "swept.toml", "--speed", "20:40:10", "--threads", "1", "-q", "-o", "out"], ["out"]),
+    "vsi study": (["vsi", "study", "study.toml", "--threads", "1", "-q", "-o", "out"], ["out"]),
+    "vsi export": (["vsi", "export", "long.h5", "-q", "-o", "out.pvd"], ["out.pvd"]),
     "vsi report": (["vsi", "report", "long.h5", "-q", "-o", "out.html"], ["out.html"]),
     "vsi assess": (["vsi", "assess", "assessed.toml", "--stage", "check", "--stage", "moving-load", "--speed-kmh",
                     "100", "--threads", "1", "-q", "-o", "out"], ["out"]),
@@ -42,9 +45,7 @@ commands = {
     "tablegen creep": (["tablegen", "creep", "--nodes", "5,6,6,6", "--elements", "10", "--threads", "1", "-q", "-o",
                         "out.h5"], ["out.h5"]),
     "tablegen merge": (["tablegen", "merge", "part1.h5", "part2.h5", "-q", "-o", "out.h5"], ["out.h5"]),
-    "tablegen loaded": (["tablegen", "loaded", "out.h5", "--lateral", "-0.0002:0.0002", "--yaw", "0", "--roll",
-                         "-0.0005:0.0005", "--levels", "5", "--elements", "8", "--force-error", "0.1",
-                         "--light-error", "0.1", "--threads", "1", "-q"], ["out.h5"]),
+    "tablegen loaded": (["tablegen", "loaded", "out.h5", *loaded_options, "--threads", "1", "-q"], ["out.h5"]),
     "tablegen info": (["tablegen", "info", "pair.h5", "--html", "out.html", "-q"], ["out.html"]),
     "tablegen contact": (["tablegen", "contact", "--wheel", "cone-1:20", "--rail", "60E1", "--pose", "0.001,0,0",
                           "--load", "75000", "--elements", "30", "-q", "-o", "out.csv"], ["out.csv"]),
@@ -56,6 +57,7 @@ def write_inputs(base):
     folder = base.folder
     (folder / "long.toml").write_text(rigid_run.replace("DURATION", "40.0"))
     (folder / "swept.toml").write_text(rigid_run.replace("DURATION", "15.0"))
+    (folder / "study.toml").write_text('scene = "swept.toml"\n[[vary]]\nkey = "train.speed"\nvalues = [20, 30, 40]\n')
     (folder / "contact.toml").write_text(
         rigid_run.replace("DURATION", "4.0").replace('normal = "rigid"', 'mode = "online"\ncreep_law = "linear"'))
     (folder / "assessed.toml").write_text(
@@ -92,7 +94,12 @@ def content(file: Path):
             except (OSError, RuntimeError):
                 return histories(file, live=True)
         with h5py.File(file) as table:
-            return bytes(table.attrs["checksum"])
+            if "checksum" in table.attrs:
+                return bytes(table.attrs["checksum"])
+            numbers = []
+            table.visititems(lambda name, item: numbers.append((name, item[()].tobytes()))
+                             if isinstance(item, h5py.Dataset) else None)
+            return sorted(numbers)
     if file.suffix == ".json":
         return json.dumps(without_times(json.loads(file.read_text())), sort_keys=True)
     text = file.read_text(errors="replace")

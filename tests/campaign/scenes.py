@@ -145,6 +145,8 @@ market = 'mass = "bridge_mass.mtx"\nstiffness = "bridge_stiffness.mtx"\ndofs = "
          'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
 calculix = 'format = "calculix"\nmass = "bridge.mas"\nstiffness = "bridge.sti"\ndofs = "bridge.dof"\n' \
            'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
+modes = 'format = "modes"\nmode_table = "bridge_modes.csv"\nmode_shapes = "bridge_shapes.csv"\n' \
+        'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
 ansys = 'format = "ansys"\nmass = "bridge_m.matrix"\nstiffness = "bridge_k.matrix"\ndofs = "bridge_k.mapping"\n' \
         'nodes = "bridge_nodes.txt"\naxes = "x -y -z"\n'
 
@@ -153,6 +155,7 @@ scenes = {
     "online": wagon + online + "friction = 0.3\n" + rigid,
     "profiles": wagon + '[contact]\nmode = "online"\ncreep_law = "linear"\nwheel = "WHEEL"\nrail = "RAIL"\n' + rigid,
     "table": wagon + '[contact]\nmode = "table"\ntable = "pair.h5"\ncreep_law = "table"\n' + rigid,
+    "loaded": wagon + '[contact]\nmode = "table"\ntable = "loaded.h5"\nelastic = "half-space"\n' + rigid,
     "creep": wagon + '[contact]\nmode = "online"\ncreep_law = "table"\ncreep_table = "creep.h5"\n' + rigid,
     "bridge": wagon + vertical + flexible + span + '[[ground_motion]]\nfile = "ground.csv"\n[output]\nnodes = ["*"]\n',
     "spans": wagon + vertical + flexible + span.replace("4.0", "4.0\ncount = 2\nmass = 9e3\nIy = 0.2\nIz = 0.9")
@@ -179,6 +182,7 @@ scenes = {
     "calculix": imported_bridge % (calculix, deck_set, ends_set),
     "ansys": imported_bridge % (ansys, deck_box, ends_box)
              + '[[support]]\nfrom = [19, -1, -3]\nto = [21, 1, 0]\nholds = ["y", "z", "roll"]\n',
+    "modes": imported_bridge.partition("[[support]]")[0].replace("damping_ratio = 0.01\n", "") % (modes, deck_set),
     "imported_rails": '[train]\nvehicle = "wagon.toml"\nspeed = 5.0\n[contact]\nnormal = "rigid"\n[track]\n'
                       'kind = "imported"\n[structure]\nmass = "rails_mass.mtx"\ndamping = "rails_damping.mtx"\n'
                       'stiffness = "rails_stiffness.mtx"\ndofs = "rails_dofs.csv"\n',
@@ -200,6 +204,23 @@ texts = {
     "pairs.toml": '[defaults]\nrail = "60E1"\nrail-inclination = "1:40"\ntolerance = 1e-8\nlateral = [-0.01, 0.01]\n'
                   '[[pair]]\nwheel = "S1002"\noutput = "a.h5"\n[[pair]]\nwheel = "cone-1:20"\nrail = "CHN60"\n'
                   'roll = [-0.005, 0.005]\noutput = "b.h5"\n',
+}
+
+study_head = 'scene = "vertical.toml"\n'
+speeds = '[[vary]]\nkey = "train.speed"\nrange = "20:30:5"\n'
+random_speed = '[[vary]]\nkey = "train.speed"\ndistribution = "normal"\nmean = 30.0\nstd = 3.0\nat_least = 10.0\n'
+studies = {
+    "grid.toml": study_head + speeds + '[[vary]]\nname = "rough"\nvalues = [1, 2]\n  [[vary.set]]\n'
+                 '  key = "train.start"\n  factor = 0.5\n  power = 2\n',
+    "samples.toml": study_head + random_speed + '[sampling]\nmethod = "latin-hypercube"\nsamples = 4\nseed = 2\n'
+                    '[probability]\nmethod = "monte-carlo"\nmeasure = "wheel_unloading"\nlimit = 0.01\n',
+    "fragility.toml": study_head + speeds + random_speed.replace("train.speed", "train.start")
+                      .replace("30.0", "0.0").replace("10.0", "-1.0")
+                      + '[sampling]\nsamples = 3\n[probability]\nmethod = "fragility"\nintensity = "train.speed"\n'
+                        'measure = "wheel_unloading"\nlimit = 0.01\n',
+    "subset.toml": study_head + random_speed + '[probability]\nmethod = "subset"\nmeasure = "wheel_unloading"\n'
+                   "limit = 0.01\nsamples = 20\nmost_levels = 2\n",
+    "peak.toml": study_head + speeds + '[peak]\nmeasure = "wheel_unloading"\ncoarse_step = 2\n',
 }
 
 
@@ -275,6 +296,11 @@ def thinned(y, z, most=90):
     return list(zip(y, z))[::every]
 
 
+# The least that tablegen loaded makes.
+loaded_options = ["--lateral", "-0.0002:0.0002", "--yaw", "0.001", "--roll", "-0.0005:0.0005", "--levels", "5", "--elements",
+                  "8", "--force-error", "0.1", "--light-error", "0.1"]
+
+
 def write_base(folder: Path, vsi, tablegen, run):
     """All files that scenes name. `run` runs a command in the folder and ends the campaign where it fails."""
     folder.mkdir(parents=True)
@@ -282,6 +308,8 @@ def write_base(folder: Path, vsi, tablegen, run):
         shutil.copy(file, folder / file.name)
     shutil.copy(root / "tests/fuzz/seeds/clauses/client.toml", folder / "clauses.toml")
     for name, text in texts.items():
+        (folder / name).write_text(text)
+    for name, text in studies.items():
         (folder / name).write_text(text)
     for name in scenes:
         (folder / f"{name}.toml").write_text(tiny(name))
@@ -292,6 +320,8 @@ def write_base(folder: Path, vsi, tablegen, run):
     for part in (1, 2):
         run([tablegen, "geometry", *pair, "--lateral", "-0.0002:0.0002", "--shard", f"{part}/2", "-o",
              f"part{part}.h5"])
+    shutil.copy(folder / "pair.h5", folder / "loaded.h5")
+    run([tablegen, "loaded", "loaded.h5", *loaded_options, "-q"])
     run([tablegen, "creep", "--nodes", "5,5,5,5", "--elements", "8", "-q", "-o", "creep.h5"])
     run([vsi, "run", "online.toml", "-q", "-o", "results.h5"])
     import h5py

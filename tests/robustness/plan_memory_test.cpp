@@ -71,11 +71,22 @@ TEST_F(PlanMemory, BoundsATinyRunClosely) {
       0.8);
 }
 
-TEST_F(PlanMemory, BoundsARunOnALongTrackClosely) {
-  expect_bound(
-      "name = \"long\"\n[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 4000.0\nlength_after = 4000.0\n"
-      "[integration]\ntime_step = 1e-3\nduration = 0.02\n",
-      0.6);
+constexpr const char* long_track =
+    "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 4000.0\nlength_after = 4000.0\n"
+    "[integration]\ntime_step = 1e-3\nduration = 0.02\n";
+
+TEST_F(PlanMemory, BoundsARunOnALongTrackClosely) { expect_bound(std::string("name = \"long\"\n") + long_track, 0.6); }
+
+// A step in a window reads the factor of the window, not of the line.
+TEST_F(PlanMemory, CountsTheWindowAndNotTheLine) {
+  const std::string windowed =
+      std::string("name = \"window\"\n") + long_track + "[structure]\nreduction = \"window\"\n";
+  expect_bound(windowed, 0.8);
+  const auto reads = [&](const std::string& scene) {
+    write("scene.toml", scene);
+    return nlohmann::json::parse(vsi("run scene.toml --plan --json").output)["step_reads_bytes"].get<double>();
+  };
+  EXPECT_LT(reads(windowed), 0.1 * reads(long_track));
 }
 
 }  // namespace
