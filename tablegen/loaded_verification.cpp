@@ -78,6 +78,7 @@ LoadedVerification verify_loaded_table(const ContactSearch& search, const Loaded
   std::uniform_real_distribution<double> uniform;
   const auto within = [&](double low, double high) { return low + (high - low) * uniform(random); };
   std::vector<WheelsetPose> poses;
+  std::size_t misses = 0;
   while (poses.size() < static_cast<std::size_t>(options.samples)) {
     constexpr double inner = 1.0 - LoadedTable::border;
     const double yaw = std::sqrt(inner * data.yaw_squared.back());
@@ -87,7 +88,10 @@ LoadedVerification verify_loaded_table(const ContactSearch& search, const Loaded
                       .yaw = within(-yaw, yaw)};
     const TouchPoint touch = search.first_touch(pose.y, pose.roll, pose.yaw);
     const double approach = within(options.approach.low, options.approach.high);
-    if (!std::isfinite(touch.z_touch)) continue;
+    if (!std::isfinite(touch.z_touch)) {
+      if (++misses <= 20 * (poses.size() + 50)) continue;
+      throw ComputationError("verification: the wheel does not meet the rail in more than 95 % of the loaded table");
+    }
     pose.z = touch.z_touch + approach * std::hypot(1.0, touch.z_touch_dy);
     poses.push_back(pose);
   }

@@ -16,18 +16,18 @@ namespace railtab {
 
 namespace {
 
-void require_increasing(const char* name, const std::vector<double>& nodes, std::size_t least, std::size_t most) {
+void require_increasing(const std::string& place, const std::vector<double>& nodes, std::size_t least,
+                        std::size_t most) {
   const bool increasing = std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) == nodes.end();
   if (nodes.size() < least || nodes.size() > most || !increasing) {
-    throw input_error(fmt::format("loaded table: {}", name), fmt::format("{} nodes", nodes.size()),
+    throw input_error(place, fmt::format("{} nodes", nodes.size()),
                       fmt::format("{} to {} increasing nodes", least, most));
   }
 }
 
-void require_size(const char* name, std::size_t found, std::size_t expected) {
+void require_size(const std::string& place, std::size_t found, std::size_t expected) {
   if (found == expected) return;
-  throw input_error(fmt::format("loaded table: {}", name), fmt::format("{} numbers", found),
-                    fmt::format("{}", expected));
+  throw input_error(place, fmt::format("{} numbers", found), fmt::format("{}", expected));
 }
 
 // The polynomials of Lagrange with value 1 at one node, with two derivatives.
@@ -101,34 +101,43 @@ struct LoadedTable::Cell {
   double u = 0.0;
 };
 
-LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
+void require_consistent(const LoadedTableData& table, const std::string& source) {
   constexpr std::size_t many = 100000;
-  require_increasing("lateral", data_.lateral, 2, many);
-  require_increasing("roll", data_.roll, 2, most_nodes);
-  require_increasing("yaw_squared", data_.yaw_squared, 1, most_nodes);
-  if (data_.levels < 3 || data_.levels > 10000 || !(data_.largest_level > 0.0)) {
-    throw input_error("loaded table: levels", fmt::format("{} up to {}", data_.levels, data_.largest_level),
+  const auto place = [&](const char* name) { return fmt::format("{}: {}", source, name); };
+  require_increasing(place("lateral"), table.lateral, 2, many);
+  require_increasing(place("roll"), table.roll, 2, LoadedTable::most_nodes);
+  require_increasing(place("yaw_squared"), table.yaw_squared, 1, LoadedTable::most_nodes);
+  if (table.levels < 3 || table.levels > 10000 || !(table.largest_level > 0.0)) {
+    throw input_error(place("levels"), fmt::format("{} up to {}", table.levels, table.largest_level),
                       "3..10000, up to more than 0");
   }
-  if (data_.parts() > LoadedLookup::capacity) {
-    throw input_error("loaded table: cut", fmt::format("{}", data_.cut.size()),
+  if (table.parts() > LoadedLookup::capacity) {
+    throw input_error(place("cut"), fmt::format("{}", table.cut.size()),
                       fmt::format("at most {}", LoadedLookup::capacity - 1));
   }
-  const std::size_t columns = data_.columns(), nodes = data_.lateral.size() * static_cast<std::size_t>(data_.levels);
-  require_size("shift", data_.shift.size(), 2 * data_.lateral.size() * columns);
-  require_size("touch", data_.touch.size(), data_.lateral.size() * columns);
-  require_size("height", data_.height.size(), 4 * nodes * columns);
-  require_size("pressed", data_.pressed.size(), nodes);
+  const std::size_t columns = table.columns(), nodes = table.lateral.size() * static_cast<std::size_t>(table.levels);
+  require_size(place("shift"), table.shift.size(), 2 * table.lateral.size() * columns);
+  require_size(place("touch"), table.touch.size(), table.lateral.size() * columns);
+  require_size(place("height"), table.height.size(), 4 * nodes * columns);
+  require_size(place("pressed"), table.pressed.size(), nodes);
+  std::size_t part_size = 0;
+  for (const std::uint32_t pressed : table.pressed) {
+    if (pressed >> table.parts() != 0) {
+      throw input_error(place("pressed"), fmt::format("{}", pressed), fmt::format("bits of {} parts", table.parts()));
+    }
+    part_size += static_cast<std::size_t>(std::popcount(pressed)) * columns * LoadedPart::quantities;
+  }
+  require_size(place("part"), table.part.size(), part_size);
+}
+
+LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
+  require_consistent(data_, "loaded table");
+  const std::size_t columns = data_.columns(), nodes = data_.pressed.size();
   std::size_t part_size = 0;
   for (const std::uint32_t pressed : data_.pressed) {
-    if (pressed >> data_.parts() != 0) {
-      throw input_error("loaded table: pressed", fmt::format("{}", pressed),
-                        fmt::format("bits of {} parts", data_.parts()));
-    }
     part_at_.push_back(part_size);
     part_size += static_cast<std::size_t>(std::popcount(pressed)) * columns * LoadedPart::quantities;
   }
-  require_size("part", data_.part.size(), part_size);
   inverse_roll_ = inverse_distances(data_.roll);
   inverse_yaw_ = inverse_distances(data_.yaw_squared);
   level_step_ = data_.largest_level / (data_.levels - 1);

@@ -100,11 +100,14 @@ struct LoadedSlopes {
   std::array<LoadedPartOf<std::array<double, 4>>, LoadedLookup::capacity> part;
 };
 
+/// @throws InputError "source: name" where shapes disagree or nodes are out of order
+void require_consistent(const LoadedTableData& table, const std::string& source);
+
 /// Look-up: const, allocation-free, thread-safe. Energy and forces are continuous; stiffness and the parts' derivatives
 /// jump at the borders of cells.
 class LoadedTable {
  public:
-  /// @throws InputError where shapes disagree or nodes are out of order
+  /// @throws InputError as require_consistent()
   explicit LoadedTable(LoadedTableData data);
 
   static constexpr std::size_t most_nodes = 9;  ///< of roll, and of yaw²

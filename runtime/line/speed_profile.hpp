@@ -14,8 +14,9 @@ class SpeedProfile {
   /// @throws InputError naming the point
   SpeedProfile(std::vector<double> time, std::vector<double> speed);
 
-  [[nodiscard]] double lowest() const noexcept;                          ///< speed of all points [m/s]
-  [[nodiscard]] double begin() const noexcept { return time_.front(); }  ///< first and last point [s]
+  [[nodiscard]] const std::vector<double>& points() const noexcept { return time_; }  ///< [s]
+  [[nodiscard]] double lowest() const noexcept;                                       ///< speed of all points [m/s]
+  [[nodiscard]] double begin() const noexcept { return time_.front(); }               ///< first and last point [s]
   [[nodiscard]] double end() const noexcept { return time_.back(); }
   [[nodiscard]] double speed(double time) const noexcept;         ///< V [m/s]
   [[nodiscard]] double acceleration(double time) const noexcept;  ///< dV/dt, at a jump that after it [m/s²]

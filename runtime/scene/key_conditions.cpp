@@ -82,6 +82,8 @@ const Condition with_automatic_contact_force{
 const Condition with_smooth_search{
     "contact.mode = \"table\" or \"online\"",
     [](At at) { return unless(at.scene.contact.mode != ContactMode::paper, "contact.mode = \"paper\""); }};
+const Condition with_aerodynamics{"load.aerodynamics",
+                                  [](At at) { return unless(at.names("load.aerodynamics"), "no load.aerodynamics"); }};
 const Condition with_spectrum{"irregularity.spectrum",
                               [](At at) { return unless(at.scene.spectrum.has_value(), "no irregularity.spectrum"); }};
 const Condition with_turning_spans{"span_deviation.shape = \"bending\" or \"parallel-shift\"", [](At at) {

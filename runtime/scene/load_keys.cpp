@@ -20,7 +20,12 @@ std::vector<KeyRow> body_load_keys() {
   return {
       {"load.body", "", "name of the body, as bogie-1, wheelset-4", TextKey{of_load<&LoadParameters::body>, nullptr}},
       {"load.coach", "1", "counted from the front; 0: all", IntegerKey{of_load<&LoadParameters::coach>, 0, 100}},
-      {"load.file", "", "history, in place of components", FileKey{of_load<&LoadParameters::file>}, {}, {&load_zero}},
+      {"load.file",
+       "",
+       "history, in place of components or of wind_speed",
+       FileKey{of_load<&LoadParameters::file>},
+       {},
+       {&load_zero}},
       {"load.Fx", "N", "force at the centre of gravity", OptionalNumberKey{load_component<0>, {-1e8, 1e8}}},
       {"load.Fy", "N", "force at the centre of gravity", OptionalNumberKey{load_component<1>, {-1e8, 1e8}}},
       {"load.Fz", "N", "force at the centre of gravity", OptionalNumberKey{load_component<2>, {-1e8, 1e8}}},
@@ -35,10 +40,24 @@ std::vector<KeyRow> body_load_keys() {
        {&load_outside_run}},
       {"load.gust_duration",
        "s",
-       "duration of a gust (1 − cos)/2 with the components as its peak; 0: constant",
+       "duration of a gust (1 − cos)/2 with the components or wind_speed as its peak; 0: constant",
        NumberKey{of_load<&LoadParameters::gust_duration>, {1e-6, 1e5, true}},
        {},
        {&load_shorter_than_steps}},
+  };
+}
+
+std::vector<KeyRow> wind_keys() {
+  return {
+      {"load.wind_speed", "m/s", "speed of the wind over the ground",
+       OptionalNumberKey{of_load<&LoadParameters::wind_speed>, {0.0, 200.0}}},
+      {"load.wind_direction", "deg", "where it comes from: 0 ahead, 90 the left, -90 the right",
+       NumberKey{of_load<&LoadParameters::wind_direction>, {-180.0, 180.0}}},
+      {"load.air_density", "kg/m3", "density of the air", NumberKey{of_load<&LoadParameters::air_density>, {0.1, 2.0}}},
+      {"load.area", "m2", "area that the coefficients refer to",
+       NumberKey{of_load<&LoadParameters::area>, {0.1, 1000.0}}},
+      {"load.length", "m", "length that the coefficients of the moments refer to",
+       NumberKey{of_load<&LoadParameters::length>, {0.1, 1000.0}}},
   };
 }
 
@@ -76,6 +95,12 @@ std::vector<KeyRow> ground_keys() {
 
 }  // namespace
 
-std::vector<KeyRow> load_keys() { return all_of({body_load_keys(), ground_keys()}); }
+std::vector<KeyRow> load_keys() {
+  return all_of({body_load_keys(),
+                 {{"load.aerodynamics", "", "coefficients of a vehicle over the yaw angle: the load of wind",
+                   FileKey{of_load<&LoadParameters::aerodynamics>}}},
+                 applying(with_aerodynamics, wind_keys()),
+                 ground_keys()});
+}
 
 }  // namespace railtab::scene

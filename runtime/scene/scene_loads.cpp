@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/wind_load.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 
@@ -27,7 +29,41 @@ std::vector<int> bodies_of(const VsiModel& model, const std::string& name, int c
   throw input_error(place, fmt::format("load.body = \"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
-LoadHistory load_history(const LoadParameters& load) {
+/// Height of the bodies above the rail-head tops [m]. @throws InputError where they differ
+double height_of(const VsiModel& model, const std::vector<int>& bodies, const std::string& place) {
+  const auto height = [&](int body) { return -model.vehicle.bodies[static_cast<std::size_t>(body)].position[2]; };
+  for (const int body : bodies) {
+    if (height(body) == height(bodies.front())) continue;
+    throw input_error(place,
+                      fmt::format("bodies {:.4g} m and {:.4g} m above the rails", height(bodies.front()), height(body)),
+                      "a [[load]] with load.coach for each kind of vehicle: coefficients are those of one");
+  }
+  return height(bodies.front());
+}
+
+LoadHistory wind_history(const VsiModel& model, const LoadParameters& load, const std::vector<int>& bodies,
+                         const std::string& place) {
+  Aerodynamics vehicle = read_aerodynamics(load.aerodynamics);
+  vehicle.area = load.area;
+  vehicle.length = load.length;
+  const Wind wind{load.wind_direction * std::numbers::pi / 180.0, load.air_density};
+  WindHistory history{LoadArgument::time, {0.0}, {load.wind_speed.value_or(0.0)}};
+  if (!load.file.empty()) {
+    history = read_wind_history(load.file, load.start);
+  } else if (load.gust_duration > 0.0) {
+    history = wind_gust(*load.wind_speed, load.start, load.gust_duration);
+  }
+  if (model.speed_profile && history.argument == LoadArgument::position) {
+    throw input_error(place, "wind over positions, and train.speed_file", "wind over times t[s], or a constant speed");
+  }
+  if (model.speed_profile) history = with_points(std::move(history), model.speed_profile->points());
+  const auto train_speed = [&](double time) { return model.speed_profile ? model.speed(time) : model.contact.speed; };
+  return wind_load_history(vehicle, wind, history, train_speed, height_of(model, bodies, place));
+}
+
+LoadHistory load_history(const VsiModel& model, const LoadParameters& load, const std::vector<int>& bodies,
+                         const std::string& place) {
+  if (!load.aerodynamics.empty()) return wind_history(model, load, bodies, place);
   if (!load.file.empty()) return read_load_history(load.file, load.start);
   ForceAndMoment components;
   for (std::size_t k = 0; k < load.load.size(); ++k)
@@ -58,8 +94,9 @@ void add_body_loads(const SceneParameters& scene, VsiModel& model) {
     const std::string place = fmt::format("scene: [[load]] {} of {}", ++number, scene.loads.size());
     const bool all = load.coach == 0;
     const int coaches = model.vehicle.coaches;
-    BodyLoad acting{all ? BodyLoad::every_vehicle : (load.coach - 1) / coaches,
-                    bodies_of(model, load.body, all ? -1 : (load.coach - 1) % coaches, place), load_history(load)};
+    const std::vector<int> bodies = bodies_of(model, load.body, all ? -1 : (load.coach - 1) % coaches, place);
+    BodyLoad acting{all ? BodyLoad::every_vehicle : (load.coach - 1) / coaches, bodies,
+                    load_history(model, load, bodies, place)};
     check_components(model, acting, place);
     model.loads.push_back(std::move(acting));
   }

@@ -85,6 +85,12 @@ struct LoadParameters {
   std::array<std::optional<double>, 6> load{};
   double start = 0.0;          ///< added to the file's times or positions [s] or [m]; of the gust [s]
   double gust_duration = 0.0;  ///< of a one-minus-cosine gust [s]; 0: the load is constant
+  /// Coefficients of a vehicle in wind; `file` then is a history of the wind's speed. Empty: no wind.
+  std::filesystem::path aerodynamics;
+  std::optional<double> wind_speed;  ///< constant, or the peak of the gust [m/s]
+  double wind_direction = 90.0;      ///< where it comes from, from the direction of travel to the left [°]
+  double air_density = 1.225;        ///< [kg/m³]
+  double area = 10.0, length = 3.0;  ///< that the coefficients refer to [m²], [m]
 };
 
 enum class WheelSides { both, left, right };

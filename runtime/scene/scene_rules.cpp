@@ -134,10 +134,15 @@ Broken of_loads(Scene scene, std::string_view expected, const Found& found) {
 }
 
 Broken one_source_of_a_load(Scene scene) {
-  return of_loads(scene, "load.file, or components Fx to Mz", [](const LoadParameters& load) -> std::string {
+  constexpr const char* expected = "load.file, or components Fx to Mz; of wind load.file or load.wind_speed";
+  return of_loads(scene, expected, [](const LoadParameters& load) -> std::string {
     const bool components =
         std::any_of(load.load.begin(), load.load.end(), [](const auto& f) { return f.has_value(); });
-    if (load.file.empty() == components) return {};
+    const bool file = !load.file.empty(), wind = !load.aerodynamics.empty(), speed = load.wind_speed.has_value();
+    if (wind && components) return "components beside load.aerodynamics";
+    if (wind)
+      return file != speed ? "" : file ? "load.file and load.wind_speed" : "neither load.file nor load.wind_speed";
+    if (file != components) return {};
     return components ? "file and components" : "neither file nor component";
   });
 }

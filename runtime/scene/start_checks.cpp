@@ -77,10 +77,10 @@ std::string no_equilibrium_message(const VsiModel& model, const EquilibriumRepor
         what, alone ? "the acceleration" : "acceleration and loads together", acceleration, time);
   }
   if (loads && has_equilibrium(without_loads(model, time, true), time)) {
-    return fmt::format(
-        "{}; there is one without the loads that act at t = {:.3g} s: reduce them, or let them begin "
-        "later",
-        what, time);
+    const std::string share =
+        rest.load_share > 0.0 ? fmt::format("with {:.0f} % of", 100.0 * rest.load_share) : "without";
+    return fmt::format("{}; there is one {} the loads that act at t = {:.3g} s: reduce them, or let them begin later",
+                       what, share, time);
   }
   if (model.lateral_acceleration != 0.0) {
     VsiModel straight = without_loads(model, time, false);

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -174,6 +175,7 @@ bool off_its_rail(const VsiModel& model, const ContactProblem& problem, const Ei
 // Shares of what rest is sought with, 1 but on the way there.
 struct RestShares {
   double deviation = 1.0;  // of the track's deviations
+  double load = 1.0;       // of vehicle_load()
   double E = 1.0;          // of the Young's modulus of wheel and rail
 };
 
@@ -196,7 +198,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   std::vector<Eigen::VectorXd> load(index(vehicles));  // gravity and the loads that act at this time
   for (int v = 0; v < vehicles; ++v) {
     vehicle_load(model, v, state.time, load[index(v)]);
-    load[index(v)] += model.vehicle.static_load;
+    load[index(v)] = share.load * load[index(v)] + model.vehicle.static_load;
   }
 
   std::optional<TrainElements> elements;
@@ -278,62 +280,56 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   return report;
 }
 
-// Rest on the smooth track, whose deviations grow: for a wheelset far beside its rails, which would have to climb.
-EquilibriumReport by_growing_deviations(const VsiModel& model, const RestOperators& rest,
-                                        const Eigen::VectorXd& structure_load, VsiState& state) {
-  constexpr double first_growth = 0.25, least_growth = 1.0 / 64.0;
+// What grows from where rest is easier to find to its full size, as a share of the way, and by which steps of it.
+struct Growth {
+  std::function<RestShares(double)> at;
+  double first, least;
+};
+
+EquilibriumReport by_growing(const Growth& growth, const VsiModel& model, const RestOperators& rest,
+                             const Eigen::VectorXd& structure_load, VsiState& state, double& share) {
   VsiState reached = state;
-  EquilibriumReport report = equilibrium_at({.deviation = 0.0}, model, rest, structure_load, reached);
+  EquilibriumReport report = equilibrium_at(growth.at(0.0), model, rest, structure_load, reached);
   int iterations = 0;
-  double share = 0.0, growth = first_growth;
+  share = 0.0;
+  double step = growth.first;
   for (int solve = 0; solve < most_solves && report.converged && share < 1.0; ++solve) {
     state = reached;
     iterations += report.iterations;
-    const double next = std::min(1.0, share + growth);
-    report = equilibrium_at({.deviation = next}, model, rest, structure_load, state);
+    const double next = std::min(1.0, share + step);
+    report = equilibrium_at(growth.at(next), model, rest, structure_load, state);
     if (report.converged) {
       reached = state;
       share = next;
-    } else if (growth > least_growth) {
-      growth *= 0.5;
+      step = std::min(growth.first, 2.0 * step);
+    } else if (step > growth.least) {
+      step *= 0.5;
       report.converged = true;  // with the share before
     }
   }
   report.converged = report.converged && share == 1.0;
   report.iterations += iterations;
-  report.deviation_share = share;
   return report;
 }
 
-// Rest on wheels and rails of steel, which grow stiffer: a wheel that sinks in by a tenth of a micrometre is lost to
-// Newton's method when rails and vehicle move first.
-EquilibriumReport by_growing_stiffness(const VsiModel& model, const RestOperators& rest,
-                                       const Eigen::VectorXd& structure_load, VsiState& state) {
-  const double steel = ElasticMaterial{}.E;
+// Wheels and rails of steel that grow stiffer: a wheel that sinks in by a tenth of a micrometre is lost to Newton's
+// method when rails and vehicle move first.
+std::optional<Growth> of_stiffness(const RestOperators& rest) {
   constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
-  const double full = rest.contact.normal.material.E;
-  if (!(full > largest_ratio * steel)) return {};
-  double share = steel / full, ratio = largest_ratio;
-  EquilibriumReport report = equilibrium_at({.E = share}, model, rest, structure_load, state);
-  int iterations = 0;
-  for (int solve = 0; solve < most_solves && report.converged && share < 1.0; ++solve) {
-    iterations += report.iterations;
-    const VsiState reached = state;
-    const double next = std::min(1.0, share * ratio);
-    report = equilibrium_at({.E = next}, model, rest, structure_load, state);
-    if (report.converged) {
-      share = next;
-      ratio = std::min(largest_ratio, ratio * ratio);
-    } else if (ratio > smallest_ratio) {
-      state = reached;
-      ratio = std::sqrt(ratio);
-      report.converged = true;  // with the share before
-    }
+  const double steel_share = ElasticMaterial{}.E / rest.contact.normal.material.E, way = -std::log(steel_share);
+  if (!(way > std::log(largest_ratio))) return std::nullopt;
+  return Growth{[=](double share) { return RestShares{.E = std::pow(steel_share, 1.0 - share)}; },
+                std::log(largest_ratio) / way, std::log(smallest_ratio) / way};
+}
+
+// A train that leans far, as wind presses it, from one that stands upright.
+std::optional<Growth> of_loads(const VsiModel& model, double time) {
+  Eigen::VectorXd load;
+  for (int v = 0; v < static_cast<int>(model.vehicle_x.size()); ++v) {
+    vehicle_load(model, v, time, load);
+    if (!load.isZero(0.0)) return Growth{[](double share) { return RestShares{.load = share}; }, 0.25, 1.0 / 256.0};
   }
-  report.converged = report.converged && share == 1.0;
-  report.iterations += iterations;
-  report.deviation_share = report.converged ? 1.0 : 0.0;
-  return report;
+  return std::nullopt;
 }
 
 // From where the train stands, and if that leads nowhere by a detour.
@@ -341,14 +337,20 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
                               VsiState& state) {
   const VsiState begin = state;
   EquilibriumReport report = equilibrium_at({}, model, rest, structure_load, state);
-  report.deviation_share = 1.0;
-  for (const auto detour : {by_growing_stiffness, by_growing_deviations}) {
-    if (report.converged) break;
+  double deviation_share = 1.0, load_share = 1.0, stiffness_share = 1.0;
+  const auto detour = [&](const std::optional<Growth>& growth, double& share) {
+    if (report.converged || !growth) return;
     state = begin;
     const int iterations = report.iterations;
-    report = detour(model, rest, structure_load, state);
+    report = by_growing(*growth, model, rest, structure_load, state, share);
     report.iterations += iterations;
-  }
+  };
+  detour(of_stiffness(rest), stiffness_share);
+  detour(of_loads(model, state.time), load_share);
+  // a wheelset far beside its rails, which would have to climb
+  detour(Growth{[](double share) { return RestShares{.deviation = share}; }, 0.25, 1.0 / 64.0}, deviation_share);
+  report.deviation_share = report.converged ? 1.0 : deviation_share;
+  report.load_share = report.converged ? 1.0 : load_share;
   return report;
 }
 

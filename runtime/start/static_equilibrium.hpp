@@ -9,6 +9,7 @@ struct EquilibriumReport {
   int iterations = 0;
   double change = 0.0;           ///< of the last iteration [m, rad]
   double deviation_share = 0.0;  ///< of the track's deviations, for which there is a state of rest: 1 where converged
+  double load_share = 0.0;       ///< the same, of the loads besides gravity
   bool steady = true;            ///< of steady_start(): false where the structure does not move
 };
 
@@ -19,7 +20,8 @@ struct EquilibriumReport {
 /// A rigid-body motion that nothing holds is held by a small multiple of the mass, K + eps M, iterated until it carries
 /// no load (proximal iteration), so that the result is the equilibrium of K itself.
 ///
-/// Where Newton fails, the deviations of the track grow from none to their full size.
+/// Where Newton fails, the loads besides gravity, or else the deviations of the track, grow from none to their full
+/// size.
 [[nodiscard]] EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state);
 
 /// The start of a run at constant speed: static equilibrium, with the structure moving as a deflection that travels

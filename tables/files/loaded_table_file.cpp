@@ -89,6 +89,7 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
   for (const std::string& name : file.attribute_names("loaded/statistics")) {
     table.statistics.emplace_back(name, in.number("loaded/statistics", name));
   }
+  require_consistent(table, file.file().string() + ": loaded");
   return table;
 }
 

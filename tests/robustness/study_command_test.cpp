@@ -212,6 +212,48 @@ TEST_F(StudyCommand, FindsAPeakWithAQuarterOfTheGrid) {
   EXPECT_EQ(peak["grid"], 100);
 }
 
+// The wind at which wheels are unloaded by 0.3, at two speeds: what a table of all runs says, with a third of them.
+TEST_F(StudyCommand, FindsWhereALimitIsReached) {
+  write("wind.csv", "yaw[deg],C_Fy[1],C_Mx[1]\n0,0,0\n90,5,3\n");
+  write("scene.toml", std::string(scene) +
+                          "[[load]]\nbody = \"car-body\"\naerodynamics = \"wind.csv\"\n"
+                          "wind_speed = 1.0\n");
+  const std::string grid =
+      "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [100, 160]\n"
+      "[[vary]]\nkey = \"load.1.wind_speed\"\nrange = \"10:48:2\"\n";
+  const std::string begin = "[threshold]\nmeasure = \"wheel_unloading\"\nvariable = \"load.1.wind_speed\"\nlimit = ";
+  write("all.toml", grid);
+  write("plan.toml", grid + begin + "0.3\n");
+  ASSERT_EQ(study("all.toml -o all"), 0);
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  EXPECT_LE(table("out/runs.csv").size() - 1, 10U);
+  const auto speed = column("all/runs.csv", "train.speed_kmh[km/h]"),
+             wind = column("all/runs.csv", "load.1.wind_speed[m/s]"),
+             unloading = column("all/runs.csv", "wheel_unloading[-]");
+  const auto found = table("out/threshold.csv");
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0], (std::vector<std::string>{"train.speed_kmh[km/h]", "load.1.wind_speed[m/s]",
+                                                "load.1.wind_speed_below[m/s]", "load.1.wind_speed_reached[m/s]",
+                                                "wheel_unloading_below[-]", "wheel_unloading_reached[-]"}));
+  for (std::size_t row = 1; row < 3; ++row) {
+    std::size_t i = 0;
+    while (i < speed.size() && (speed[i] != found[row][0] || std::stod(unloading[i]) < 0.3)) ++i;
+    ASSERT_TRUE(i > 0 && i < speed.size());
+    EXPECT_EQ(found[row][3], wind[i]);
+    EXPECT_EQ(found[row][2], wind[i - 1]);
+    EXPECT_NEAR(std::stod(found[row][5]), std::stod(unloading[i]), 1e-7);
+    const double below = std::stod(unloading[i - 1]), share = (0.3 - below) / (std::stod(unloading[i]) - below);
+    EXPECT_NEAR(std::stod(found[row][1]), std::stod(wind[i - 1]) + 2.0 * share, 1e-5);
+  }
+  EXPECT_LT(std::stod(found[2][1]), std::stod(found[1][1])) << "a faster train bears less wind";
+
+  write("plan.toml", grid + begin + "5\n");  // beyond lift-off: no unloading is so large
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  EXPECT_EQ(table("out/threshold.csv")[1][2], "48");
+  EXPECT_EQ(table("out/threshold.csv")[1][3], "");
+  EXPECT_FALSE(json("out/study.json")["threshold"]["thresholds"][0].contains("reached"));
+}
+
 // A force on a coach that does not act on what is measured has no share of its variance.
 TEST_F(StudyCommand, FindsWhichVariableMatters) {
   write(
@@ -268,6 +310,11 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
           "plan.toml:1: scene: found no file none.toml");
   refused(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
           "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
+  refused(
+      begin +
+          "key = \"train.speed_kmh\"\nvalues = [200, 100]\n[threshold]\nmeasure = \"derailment\"\nlimit = 0.8\n"
+          "variable = \"train.speed_kmh\"\n",
+      "plan.toml:8: threshold.variable: found values of train.speed_kmh that do not rise, expected values that rise");
   refused(std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
           "found a variable with values, expected a distribution for each variable");
   refused(std::string(speeds) + speeds, "plan.toml:5");

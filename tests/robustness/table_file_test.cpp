@@ -256,6 +256,36 @@ std::string creep_outcome(const std::filesystem::path& file, const std::string& 
   return "";
 }
 
+// A loaded part is checked as it is read, and the message names the file.
+TEST_F(TableFile, LoadedPartsThatDoNotAgreeAreNamed) {
+  GeometryTableData table = table_;
+  LoadedTableData loaded;
+  loaded.lateral = {0.0, 1e-3};
+  loaded.roll = {-1e-3, 1e-3};
+  loaded.yaw_squared = {0.0};
+  loaded.levels = 3;
+  loaded.largest_level = 1.0;
+  loaded.contact_modulus = 1e11;
+  loaded.statistics.emplace_back("largest", 0.0);
+  loaded.shift.assign(8, 0.0);
+  loaded.touch.assign(4, 0.0);
+  loaded.height.assign(48, 0.0F);
+  loaded.pressed.assign(6, 0U);
+  const auto outcome_of = [&](const LoadedTableData& part) {
+    table.loaded = part;
+    write_geometry_table(file_, table);
+    return outcome();
+  };
+  EXPECT_EQ(outcome_of(loaded), "");
+  LoadedTableData broken = loaded;
+  broken.pressed[2] = 4U;
+  const std::string message = outcome_of(broken);
+  EXPECT_NE(message.find(file_.filename().string() + ": loaded: pressed: found 4"), std::string::npos) << message;
+  broken = loaded;
+  broken.roll = {1e-3, -1e-3};
+  EXPECT_NE(outcome_of(broken).find("loaded/roll: found"), std::string::npos);
+}
+
 TEST_F(TableFile, ArraysOfACreepTableThatDoNotAgreeAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto expect = [](const std::string& message, const std::string& words) {

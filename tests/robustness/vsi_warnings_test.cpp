@@ -193,7 +193,7 @@ TEST_F(VsiCommand, NoStaticEquilibriumNamesTheCause) {
   };
   write("stop.csv", "t[s],V[m/s]\n0,60\n5,20\n");
   expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: -8 m/s² at t = ");
-  expect(output_of("[[load]]\nFy = 3e6\n"), "there is one without the loads that act at t = 0 s");
+  expect(output_of("[[load]]\nFy = 3e6\n"), "% of the loads that act at t = 0 s: reduce them");
   expect(output_of("", "dimensions.flange_back = 1.50\n"), "flange backs 1.5 m apart");
   write("aside.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n-90,0,0,0,0\n0,0.4,0,0.4,0\n90,0,0,0,0\n");
   expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "deviations of the rails under it (0.");

@@ -10,6 +10,7 @@
 
 #include "loaded_table_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/tablegen/loaded_verification.hpp"
 
 namespace railtab {
 namespace {
@@ -200,6 +201,13 @@ TEST(LoadedTable, RejectsArraysThatDoNotFit) {
   broken([](LoadedTableData& d) { d.levels = 2; });
   broken([](LoadedTableData& d) { d.largest_level = std::nan(""); });
   broken([](LoadedTableData& d) { d.cut.assign(20, 0.0); });
+}
+
+// A table of shifts at which the wheel is beside the rail: positions are not drawn for ever.
+TEST(LoadedVerification, EndsWhereTheWheelMissesTheRail) {
+  LoadedTableData data = tread_table();
+  for (std::size_t i = 0; i < data.shift.size(); i += 2) data.shift[i] += 1.0;
+  EXPECT_THROW(static_cast<void>(verify_loaded_table(s1002_on_60e1(), LoadedTable(data), {}, {})), ComputationError);
 }
 
 TEST(LoadedSweep, GoesOnFromTheColumnsItIsGiven) {

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -15,6 +17,7 @@
 #include "railtab/runtime/line/ground_motion.hpp"
 #include "railtab/runtime/line/span_deviation.hpp"
 #include "railtab/runtime/line/speed_profile.hpp"
+#include "railtab/runtime/line/wind_load.hpp"
 
 namespace railtab {
 namespace {
@@ -131,6 +134,96 @@ TEST(GustHistory, IsOneMinusCosine) {
   EXPECT_GT(worst, 1e-6);  // straight lines, not the function
   EXPECT_EQ(gust.at(1.9), ForceAndMoment::Zero());
   EXPECT_EQ(gust.at(10.1), ForceAndMoment::Zero());
+}
+
+constexpr const char* coefficients =
+    "yaw[deg],C_Fy[1],C_Fz[1],C_Mx[1],C_My[1],C_Mz[1]\n0,0,-0.1,0,0,0\n20,1,-0.7,0.6,0.1,0.3\n50,3,-2,1.7,0.3,0.5\n"
+    "90,4,-1.5,2,0.2,0.1\n";
+
+// A train at 40 m/s in wind of 30 m/s from the left meets 50 m/s at the angle of the triangle 3-4-5.
+TEST_F(HistoryFile, WindActsByItsSpeedRelativeToTheTrain) {
+  const Aerodynamics vehicle = read_aerodynamics(file(coefficients));
+  const Wind left{0.5 * pi};
+  const RelativeWind met = relative_wind(left, 40.0, 30.0);
+  EXPECT_DOUBLE_EQ(met.speed, 50.0);
+  EXPECT_DOUBLE_EQ(met.yaw, std::asin(0.6));
+  const double share = (std::asin(0.6) * 180.0 / pi - 20.0) / 30.0, force = 0.5 * 1.225 * 50.0 * 50.0 * 10.0;
+  const double C_Fy = 1.0 + 2.0 * share, C_Mx = 0.6 + 1.1 * share, height = 1.8;
+  const ForceAndMoment load = wind_load(vehicle, left, 40.0, 30.0, height);
+  EXPECT_EQ(load[0], 0.0);
+  EXPECT_NEAR(load[1], force * C_Fy, 1e-9 * force);
+  EXPECT_NEAR(load[2], force * (-0.7 - 1.3 * share), 1e-9 * force);
+  EXPECT_NEAR(load[4], force * 3.0 * (0.1 + 0.2 * share), 1e-9 * force);
+  EXPECT_NEAR(load[5], force * 3.0 * (0.3 + 0.2 * share), 1e-9 * force);
+  // Wind from the left rolls a vehicle to the right, by C_Mx about the rails: about a point above them by less.
+  EXPECT_NEAR(load[3], force * (3.0 * C_Mx - height * C_Fy), 1e-9 * force);
+  EXPECT_NEAR(wind_load(vehicle, left, 40.0, 30.0, 0.0)[3], force * 3.0 * C_Mx, 1e-9 * force);
+
+  const ForceAndMoment right = wind_load(vehicle, {-0.5 * pi}, 40.0, 30.0, height);
+  for (const int k : {1, 3, 5}) EXPECT_EQ(right[k], -load[k]);
+  for (const int k : {0, 2, 4}) EXPECT_EQ(right[k], load[k]);
+  // Wind from behind at the train's speed is calm.
+  EXPECT_NEAR(wind_load(vehicle, {pi}, 40.0, 40.0, height).norm(), 0.0, 1e-9);
+}
+
+// Straight lines between the points of the load, through gusts, braking and the kinks of coefficients.
+TEST_F(HistoryFile, WindBetweenPointsIsOffByATenThousandth) {
+  const Aerodynamics vehicle = read_aerodynamics(file(coefficients));
+  const SpeedProfile profile({0.0, 10.0, 20.0}, {60.0, 60.0, 2.0});
+  const auto train_speed = [&](double time) { return profile.speed(time); };
+  for (const double direction : {0.5 * pi, -0.6, 2.2}) {
+    const Wind wind{direction};
+    for (const WindHistory& plain : {wind_gust(28.0, 5.0, 12.0), WindHistory{LoadArgument::time, {3, 4}, {0, 20}}}) {
+      if (direction == 2.2 && plain.speed.back() > 0.0) continue;  // beyond 90 degrees as the train brakes
+      const WindHistory history = with_points(plain, profile.points());
+      const auto exact = [&](double t) {
+        const auto gust = with_points(plain, {t});
+        const auto at = std::lower_bound(gust.points.begin(), gust.points.end(), t) - gust.points.begin();
+        return wind_load(vehicle, wind, profile.speed(t), gust.speed[static_cast<std::size_t>(at)], 1.8);
+      };
+      const LoadHistory load = wind_load_history(vehicle, wind, history, train_speed, 1.8);
+      double worst = 0.0, largest = 0.0;
+      for (double t = 0.0; t <= 20.0; t += 0.0037) {
+        worst = std::max(worst, (load.at(t) - exact(t)).norm());
+        largest = std::max(largest, exact(t).norm());
+      }
+      EXPECT_GT(largest, 1e4);
+      EXPECT_LT(worst, 1e-4 * largest) << direction;
+    }
+  }
+}
+
+TEST_F(HistoryFile, WindIsReadOverTimeOrPosition) {
+  const WindHistory history = read_wind_history(file("t[s],U[km/h]\n0,36\n2,72\n"), 1.0);
+  EXPECT_EQ(history.points, (std::vector<double>{1.0, 3.0}));
+  EXPECT_DOUBLE_EQ(history.speed[1], 20.0);
+  EXPECT_EQ(read_wind_history(file("x[m],U[m/s]\n0,1\n2,2\n")).argument, LoadArgument::position);
+  const auto read = [](const auto& f) { return read_wind_history(f); };
+  EXPECT_EQ(message("t[s],U[m/s]\n0,1\n1,-2\n", read),
+            "h.csv:3: column U: found -2 m/s, expected a speed of the wind, at least 0; load.wind_direction says from "
+            "where");
+  EXPECT_EQ(message("t[s],V[m/s]\n0,1\n1,2\n", read),
+            "h.csv:1: column t: found columns t, V, expected t[s] or x[m], and U[m/s], the speed of the wind");
+}
+
+TEST_F(HistoryFile, CoefficientsThatDoNotHoldAreNamed) {
+  const auto read = [](const auto& f) { return read_aerodynamics(f); };
+  EXPECT_EQ(message("angle[deg],C_Fy[1]\n0,0\n9,1\n", read),
+            "h.csv:1: column angle: found column 'angle', expected yaw[deg] first");
+  EXPECT_EQ(message("yaw[deg],C_Fy[1]\n5,0\n9,1\n", read),
+            "h.csv:2: column yaw: found 5 deg, expected 0: wind from the left, from ahead to behind");
+  EXPECT_EQ(message("yaw[deg],C_Fy[1]\n0,0\n190,1\n", read),
+            "h.csv:3: column yaw: found 190 deg, expected at most 180°");
+  EXPECT_EQ(message("yaw[deg],C_Fx[1]\n0,0\n90,1\n", read),
+            "h.csv:1: column C_Fx: found column 'C_Fx', expected each of C_Fy, C_Fz, C_Mx, C_My, C_Mz at most once");
+  // A yaw angle that the tunnel did not reach.
+  const Aerodynamics vehicle = read_aerodynamics(file("yaw[deg],C_Fy[1]\n0,0\n30,1\n"));
+  const WindHistory gust = wind_gust(30.0, 0.0, 1.0);
+  const auto slow = [](double) { return 40.0; };
+  EXPECT_TRUE(message("", [&](const auto&) {
+                return wind_load_history(vehicle, {0.5 * pi}, gust, slow, 1.8);
+              }).starts_with("h.csv: found coefficients up to a yaw angle of 30°, expected up to 3"));
+  EXPECT_NO_THROW(static_cast<void>(wind_load_history(vehicle, {0.5 * pi}, wind_gust(20, 0, 1), slow, 1.8)));
 }
 
 // Displacement, velocity and acceleration belong together everywhere, by differences.

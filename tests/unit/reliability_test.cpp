@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -15,6 +16,7 @@
 #include "railtab/runtime/reliability/sobol_indices.hpp"
 #include "railtab/runtime/reliability/standard_normal.hpp"
 #include "railtab/runtime/reliability/subset_simulation.hpp"
+#include "railtab/runtime/reliability/threshold_search.hpp"
 
 namespace railtab {
 namespace {
@@ -387,6 +389,34 @@ TEST(PeakSearch, KeepsToItsEvaluationsAndSaysSo) {
   EXPECT_EQ(evaluations, 15U);
   EXPECT_FALSE(search.resolved);
   EXPECT_EQ(search_peak({.points = 1}, [](const auto& p) { return std::vector<double>(p.size(), 1.0); }).highest, 0U);
+}
+
+// Against a look at all points, for limits that all, none and some of the points reach.
+TEST(ThresholdSearch, FindsTheFirstPointOfEachSearchThatReachesTheLimit) {
+  for (const std::size_t points : {std::size_t{1}, std::size_t{2}, std::size_t{7}, std::size_t{8}, std::size_t{100}}) {
+    const auto value = [&](const SearchPoint& p) {
+      return std::pow(double(p.point) + 0.5, 1.0 + 0.1 * double(p.search));
+    };
+    for (const double limit : {0.0, 0.5, 6.3, 50.0, 1e9}) {
+      std::size_t rounds = 0;
+      const std::vector<ThresholdSearch> found =
+          search_thresholds(4, points, limit, [&](const std::vector<SearchPoint>& asked) {
+            ++rounds;
+            std::vector<double> values;
+            for (const SearchPoint& p : asked) values.push_back(value(p));
+            return values;
+          });
+      EXPECT_LE(rounds, static_cast<std::size_t>(std::bit_width(points)));
+      ASSERT_EQ(found.size(), 4U);
+      for (std::size_t search = 0; search < 4; ++search) {
+        std::size_t expected = 0;
+        while (expected < points && value({search, expected}) < limit) ++expected;
+        EXPECT_EQ(found[search].reached, expected) << points << " points, limit " << limit;
+        EXPECT_TRUE(expected == points || found[search].values.count(expected) == 1U);
+        EXPECT_TRUE(expected == 0 || found[search].values.count(expected - 1) == 1U);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -66,7 +66,12 @@ std::string scene_with(const std::string& key, double value, bool integer) {
     bridge += line(7);
   else if (key.starts_with("load.")) {
     rest = "train.count = 100\n";
-    bridge += key == "load.Fy" ? "[[load]]\n" : "[[load]]\nFy = 1.0\n";
+    const bool wind =
+        key.starts_with("load.wind_") || key == "load.air_density" || key == "load.area" || key == "load.length";
+    bridge += wind               ? "[[load]]\naerodynamics = \"pair.h5\"\n"
+              : key == "load.Fy" ? "[[load]]\n"
+                                 : "[[load]]\nFy = 1.0\n";
+    if (wind && key != "load.wind_speed") bridge += "wind_speed = 1.0\n";
     bridge += (key == "load.start" ? "gust_duration = 1.0\n" : "") + line(5);
   } else if (key.starts_with("support.")) {
     rest = "track.kind = \"imported\"\n";

@@ -271,6 +271,23 @@ TEST(Start, WithOneWheelsetOnItsFlange) {
   }
 }
 
+// Wind that unloads a wheel by nearly all of its load: the state of rest is reached from calm, the wind growing.
+TEST(Start, InWindThatNearlyLiftsAWheel) {
+  SceneParameters scene = read_scene(std::string(RAILTAB_SOURCE_DIR) + "/docs/examples/wind_curve.toml",
+                                     {{"load.1.gust_duration", ""}, {"load.1.start", ""}});
+  for (const double wind : {38.75, 39.0, 39.25}) {
+    scene.loads[0].wind_speed = wind;
+    const VsiModel model = build_model(scene);
+    VsiState state(model);
+    const EquilibriumReport rest = static_equilibrium(model, state);
+    ASSERT_TRUE(rest.converged) << wind << " m/s";
+    EXPECT_EQ(rest.load_share, 1.0);
+    const double lift = -model.loads[0].history.at(0.0)[2];
+    EXPECT_NEAR(carried(state) / (train_weight(model) - lift), 1.0, 1e-3);
+    std::printf("wind of %.2f m/s: %d iterations\n", wind, rest.iterations);
+  }
+}
+
 TEST(Start, SaysThatWheelsDoNotFit) {
   SceneParameters scene = coach_on_rigid_track(20.0);
   scene.contact.dimensions.track_gauge = 1.2;

@@ -5,8 +5,11 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
+#include "../folder_fixture.hpp"
 #include "../imported_vehicle.hpp"
 #include "../measured.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -21,6 +24,7 @@ namespace railtab {
 namespace {
 
 using ImportedCoach = testing::ImportedVehicle;
+using WindOnCoach = testing::InFolder;
 
 constexpr double pi = std::numbers::pi;
 
@@ -106,6 +110,41 @@ TEST(Crosswind, ConstantWindAndTheWeightsMovedAsideUnloadTheWheels) {
   testing::measured("wind.constant_unloading_upright", without);
   // 36 % more moment, that of the weight moved aside
   EXPECT_GT(unloading, 1.25 * without);
+}
+
+// Wind that the scene names by its speed is the load of its coefficients about the rail-head tops, on every coach.
+TEST_F(WindOnCoach, OfCoefficientsIsTheirForceAndMoment) {
+  const std::filesystem::path file = folder_ / "coefficients.csv";
+  std::ofstream(file) << "yaw[deg],C_Fy[1],C_Fz[1],C_Mx[1]\n0,0,0,0\n90,2,-0.4,1.5\n";
+  SceneParameters scene = coach_on_rigid_track();
+  LoadParameters load;
+  load.aerodynamics = file;
+  load.wind_speed = 30.0;
+  load.area = 12.0;
+  load.length = 2.5;
+  scene.loads.push_back(load);
+  const VsiModel model = build_model(scene);
+  const double yaw = std::asin(0.6) / (0.5 * pi), force = 0.5 * 1.225 * 50.0 * 50.0 * 12.0 * yaw;
+
+  SceneParameters by_hand = coach_on_rigid_track();
+  LoadParameters components;
+  components.load[1] = 2.0 * force;
+  components.load[2] = -0.4 * force;
+  components.load[3] = 1.5 * 2.5 * force - car_body_height * 2.0 * force;
+  by_hand.loads.push_back(components);
+  const VsiModel same = build_model(by_hand);
+  ASSERT_EQ(model.loads.size(), 1U);
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_NEAR(model.loads[0].history.at(1.0)[k], same.loads[0].history.at(1.0)[k], 1e-9 * force) << k;
+  }
+  const StepRecord record = at_rest(model);
+  const double aside = record.bodies[0].displacement[1];
+  const double moment = 1.5 * 2.5 * force - 0.4 * force * aside + moment_of_weights(model, record);
+  EXPECT_NEAR(moment_at_rails(model, record), moment, balance * moment);
+
+  scene.loads[0].wind_speed = 80.0;
+  scene.loads[0].wind_direction = 135.0;  // from behind, faster than the train: beyond the table
+  EXPECT_THROW(static_cast<void>(build_model(scene)), InputError);
 }
 
 // A vehicle from matrices: the same moment, carried by the wheelsets alone.

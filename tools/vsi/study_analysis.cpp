@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -141,7 +142,33 @@ void find_peak(const StudyPlan& plan, StudyRuns& runs, const Progress& progress,
   for (const auto& [i, value] : result.peak->values) result.points.push_back({values[i]});
 }
 
+void find_thresholds(const StudyPlan& plan, StudyRuns& runs, const Progress& progress, StudyResult& result) {
+  const std::vector<StudyValue>& values = plan.variables[plan.intensity].values;
+  std::vector<StudyPoint> others = planned_points(plan);
+  std::erase_if(others, [&](const StudyPoint& point) { return point[plan.intensity].number != values[0].number; });
+  const auto evaluate = [&](const std::vector<SearchPoint>& at) {
+    std::vector<StudyPoint> points;
+    for (const SearchPoint& p : at) points.emplace_back(others[p.search])[plan.intensity] = values[p.point];
+    return responses(plan, runs, points, progress, result);
+  };
+  const std::vector<ThresholdSearch> searches = search_thresholds(others.size(), values.size(), plan.limit, evaluate);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const auto place = [&](std::size_t at) -> std::optional<StudyThreshold::Place> {
+      if (at >= values.size()) return std::nullopt;
+      return StudyThreshold::Place{values[at].number, searches[i].values.at(at)};
+    };
+    const std::size_t reached = searches[i].reached;
+    result.thresholds.push_back({others[i], reached > 0 ? place(reached - 1) : std::nullopt, place(reached)});
+  }
+}
+
 }  // namespace
+
+std::optional<double> StudyThreshold::crossing(double limit) const noexcept {
+  if (!below || !reached || !std::isfinite(reached->response)) return std::nullopt;
+  const double share = (limit - below->response) / (reached->response - below->response);
+  return below->value + share * (reached->value - below->value);
+}
 
 std::size_t greatest_run_count(const StudyPlan& plan) {
   const std::size_t samples = plan.sampling.samples;
@@ -156,6 +183,10 @@ std::size_t greatest_run_count(const StudyPlan& plan) {
       return samples * (plan.variables.size() + 2);
     case StudyMethod::peak:
       return std::max(grid / 4, (grid - 1) / plan.coarse_step + 2);
+    case StudyMethod::threshold: {
+      const std::size_t values = plan.variables[plan.intensity].values.size();
+      return grid / values * static_cast<std::size_t>(std::bit_width(values));
+    }
     case StudyMethod::table:
     case StudyMethod::probability:
     case StudyMethod::fragility:
@@ -172,6 +203,8 @@ StudyResult analyse(const StudyPlan& plan, StudyRuns& runs, const Progress& prog
     find_importance(plan, runs, progress, result);
   } else if (plan.method == StudyMethod::peak) {
     find_peak(plan, runs, progress, result);
+  } else if (plan.method == StudyMethod::threshold) {
+    find_thresholds(plan, runs, progress, result);
   } else {
     result.points = planned_points(plan);
     count_exceedance(plan, runs, runs.rows(result.points, progress), result);

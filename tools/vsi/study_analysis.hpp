@@ -4,6 +4,7 @@
 #include "railtab/runtime/reliability/peak_search.hpp"
 #include "railtab/runtime/reliability/sobol_indices.hpp"
 #include "railtab/runtime/reliability/subset_simulation.hpp"
+#include "railtab/runtime/reliability/threshold_search.hpp"
 #include "study_runs.hpp"
 
 namespace railtab::vsi {
@@ -15,6 +16,19 @@ struct ExceedanceCount {
   ConfidenceInterval probability;
 };
 
+/// Where a measure reaches the limit, at one point of the grid of the other variables.
+struct StudyThreshold {
+  struct Place {
+    double value;     ///< of the variable
+    double response;  ///< infinite where the run ended early
+  };
+  StudyPoint point;              ///< values of the other variables
+  std::optional<Place> below;    ///< the value before; none where the first one reaches the limit
+  std::optional<Place> reached;  ///< none where no value does
+  /// Linear between both; none without both, and where the run ended early.
+  [[nodiscard]] std::optional<double> crossing(double limit) const noexcept;
+};
+
 /// What a study has come to; of the analysis what its method gives.
 struct StudyResult {
   std::vector<StudyPoint> points;  ///< of the runs
@@ -23,6 +37,7 @@ struct StudyResult {
   std::optional<SubsetResult> subset;
   std::optional<SobolIndices> importance;
   std::optional<PeakSearch> peak;
+  std::vector<StudyThreshold> thresholds;
 };
 
 /// How many runs a study makes, at most where the method ends by itself.

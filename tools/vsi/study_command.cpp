@@ -29,7 +29,8 @@ po::options_description study_options() {
 }
 
 int print_count(const StudyPlan& plan, bool json) {
-  const bool ends = plan.method == StudyMethod::subset || plan.method == StudyMethod::peak;
+  const bool ends =
+      plan.method == StudyMethod::subset || plan.method == StudyMethod::peak || plan.method == StudyMethod::threshold;
   if (json) {
     print_json_line({{"most_runs", greatest_run_count(plan)}, {"variables", plan.variables.size()}});
     return done;
@@ -43,9 +44,9 @@ int print_count(const StudyPlan& plan, bool json) {
 }
 
 int run_shard(const StudyPlan& plan, StudyRuns& runs, const PartOf& shard, const CommandLine& line) {
-  if (plan.method == StudyMethod::subset || plan.method == StudyMethod::peak ||
+  if (plan.method == StudyMethod::subset || plan.method == StudyMethod::peak || plan.method == StudyMethod::threshold ||
       plan.method == StudyMethod::importance) {
-    throw input_error("--shard", "a plan with [peak], [importance] or method = \"subset\"",
+    throw input_error("--shard", "a plan with [peak], [threshold], [importance] or method = \"subset\"",
                       "one process on one machine, whose --threads share the runs");
   }
   const std::vector<StudyPoint> own = own_part(planned_points(plan), shard);

@@ -64,6 +64,36 @@ MethodTable exceedance_table(const StudyPlan& plan, const StudyResult& result) {
   return table;
 }
 
+std::string_view unit_of_measure(const StudyPlan& plan) {
+  const auto& all = study_measures();
+  return (*std::find_if(all.begin(), all.end(), [&](const auto* kind) { return kind->name == plan.measure; }))->unit;
+}
+
+MethodTable threshold_table(const StudyPlan& plan, const StudyResult& result) {
+  const StudyVariable& along = plan.variables[plan.intensity];
+  MethodTable table{"threshold.csv", "", ""};
+  const auto others = [&](const auto& add) {
+    for (std::size_t j = 0; j < plan.variables.size(); ++j) {
+      if (j != plan.intensity) add(j);
+    }
+  };
+  others(
+      [&](std::size_t j) { table.columns += fmt::format("{}[{}],", plan.variables[j].name, plan.variables[j].unit); });
+  table.columns += fmt::format("{0}[{1}],{0}_below[{1}],{0}_reached[{1}],{2}_below[{3}],{2}_reached[{3}]", along.name,
+                               along.unit, plan.measure, unit_of_measure(plan));
+  const auto cell = [](std::optional<double> value) {
+    return value && std::isfinite(*value) ? fmt::format("{:.8g}", *value) : std::string();
+  };
+  for (const StudyThreshold& t : result.thresholds) {
+    others([&](std::size_t j) { table.rows += t.point[j].cell() + ","; });
+    const auto value = [](const auto& place) { return place ? std::optional(place->value) : std::nullopt; };
+    const auto response = [](const auto& place) { return place ? std::optional(place->response) : std::nullopt; };
+    table.rows += fmt::format("{},{},{},{},{}\n", cell(t.crossing(plan.limit)), cell(value(t.below)),
+                              cell(value(t.reached)), cell(response(t.below)), cell(response(t.reached)));
+  }
+  return table;
+}
+
 MethodTable method_table(const StudyPlan& plan, const StudyResult& result) {
   MethodTable table{nullptr, "", ""};
   switch (plan.method) {
@@ -89,6 +119,9 @@ MethodTable method_table(const StudyPlan& plan, const StudyResult& result) {
         table.rows += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", plan.variables[j].name, f.value,
                                   f.low, f.high, t.value, t.low, t.high);
       }
+      break;
+    case StudyMethod::threshold:
+      table = threshold_table(plan, result);
       break;
     case StudyMethod::table:
     case StudyMethod::peak:
@@ -289,6 +322,53 @@ std::string importance_text(const StudyPlan& plan, const SobolIndices& indices) 
   return text;
 }
 
+/// "train.speed_kmh = 200, " of all variables but that of the threshold.
+std::string others_text(const StudyPlan& plan, const StudyPoint& point) {
+  std::string text;
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    if (j != plan.intensity) text += fmt::format("{} = {}: ", plan.variables[j].name, point[j].cell());
+  }
+  return text;
+}
+
+std::string threshold_text(const StudyPlan& plan, const StudyResult& result) {
+  const StudyVariable& along = plan.variables[plan.intensity];
+  std::string text = fmt::format("{} >= {}:\n", plan.measure, plan.limit);
+  for (const StudyThreshold& t : result.thresholds) {
+    text += "  " + others_text(plan, t.point);
+    if (!t.reached) {
+      text += fmt::format("not reached up to {} = {} {}\n", along.name, t.below->value, along.unit);
+    } else if (!t.below) {
+      text += fmt::format("reached from the first value, {} = {} {}\n", along.name, t.reached->value, along.unit);
+    } else if (const std::optional<double> crossing = t.crossing(plan.limit)) {
+      text += fmt::format("{} = {:.5g} {}\n", along.name, *crossing, along.unit);
+    } else {
+      text += fmt::format("between {} = {} and {} {}, where the run ends early\n", along.name, t.below->value,
+                          t.reached->value, along.unit);
+    }
+  }
+  return text;
+}
+
+Json threshold_json(const StudyPlan& plan, const StudyResult& result) {
+  Json json{{"measure", plan.measure}, {"limit", plan.limit}, {"variable", plan.variables[plan.intensity].name}};
+  Json places = Json::array();
+  for (const StudyThreshold& t : result.thresholds) {
+    Json entry = Json::object();
+    for (std::size_t j = 0; j < t.point.size(); ++j) {
+      if (j != plan.intensity)
+        entry[plan.variables[j].name] = t.point[j].other ? Json(t.point[j].cell()) : Json(t.point[j].number);
+    }
+    if (const std::optional<double> crossing = t.crossing(plan.limit)) entry["value"] = *crossing;
+    if (t.below) entry["below"] = t.below->value;
+    if (t.reached) entry["reached"] = t.reached->value;
+    if (t.reached) entry["ended_early"] = !std::isfinite(t.reached->response);
+    places.push_back(entry);
+  }
+  json["thresholds"] = places;
+  return json;
+}
+
 std::string peak_text(const StudyPlan& plan, const PeakSearch& peak) {
   const StudyVariable& v = plan.variables.front();
   return fmt::format("largest {}: {:.6g} at {} = {} {}, {} of {} points of the grid{}\n", plan.measure,
@@ -337,6 +417,7 @@ Json study_json(const StudyReport& report) {
   json["measures"] = measures;
   const StudyResult& result = report.result;
   if (result.subset || !result.exceedance.empty()) json["probability"] = probability_json(report.plan, result);
+  if (!result.thresholds.empty()) json["threshold"] = threshold_json(report.plan, result);
   if (result.importance) json["importance"] = importance_json(report.plan, *result.importance);
   if (result.peak) {
     const StudyVariable& v = report.plan.variables.front();
@@ -364,6 +445,7 @@ std::string study_text(const StudyReport& report) {
   if (result.subset) text += subset_text(report.plan, *result.subset);
   if (!result.exceedance.empty()) text += exceedance_text(report.plan, result);
   if (result.importance) text += importance_text(report.plan, *result.importance);
+  if (!result.thresholds.empty()) text += threshold_text(report.plan, result);
   if (result.peak) text += peak_text(report.plan, *result.peak);
   return text;
 }

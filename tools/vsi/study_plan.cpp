@@ -189,6 +189,18 @@ std::string read_measure(TomlSection& s) {
   return s.text_of("measure", names);
 }
 
+/// The variable with numbers as values that a key names.
+std::size_t read_gridded(TomlSection& s, std::string_view key, const StudyPlan& plan) {
+  std::vector<std::string> names;
+  for (const StudyVariable& v : plan.variables) {
+    if (!v.random() && v.numeric()) names.push_back(v.name);
+  }
+  const std::string name = s.text_of(key, names);
+  const auto found =
+      std::find_if(plan.variables.begin(), plan.variables.end(), [&](const auto& v) { return v.name == name; });
+  return static_cast<std::size_t>(found - plan.variables.begin());
+}
+
 void read_subset(TomlSection& s, StudyPlan& plan) {
   plan.sampling.samples = whole(s, "samples", 20, 100000, 1000);
   plan.sampling.seed = whole(s, "seed", 0, 2147483647, 1);
@@ -213,18 +225,10 @@ void read_probability(TomlSection& s, StudyPlan& plan) {
   plan.confidence = s.number("confidence", {"", 0.5, 0.9999}, plan.confidence);
   if (plan.method == StudyMethod::subset) read_subset(s, plan);
   if (plan.method == StudyMethod::fragility) {
-    const std::string name = s.text("intensity");
-    std::vector<std::string> names;
-    for (const StudyVariable& v : plan.variables) {
-      if (!v.random() && v.numeric()) names.push_back(v.name);
-    }
-    static_cast<void>(s.text_of("intensity", names));
-    const auto found =
-        std::find_if(plan.variables.begin(), plan.variables.end(), [&](const auto& v) { return v.name == name; });
-    plan.intensity = static_cast<std::size_t>(found - plan.variables.begin());
-    const bool positive =
-        std::all_of(found->values.begin(), found->values.end(), [](const auto& v) { return v.number > 0.0; });
-    if (found->values.size() < 2 || !positive)
+    plan.intensity = read_gridded(s, "intensity", plan);
+    const std::vector<StudyValue>& values = plan.variables[plan.intensity].values;
+    const bool positive = std::all_of(values.begin(), values.end(), [](const auto& v) { return v.number > 0.0; });
+    if (values.size() < 2 || !positive)
       throw s.error("intensity", "fewer than two values, or one that is not > 0", "at least two values > 0");
     plan.replicates = whole(s, "replicates", 100, 100000, plan.replicates);
   }
@@ -235,6 +239,20 @@ void read_peak(TomlSection& s, StudyPlan& plan) {
   plan.method = StudyMethod::peak;
   plan.measure = read_measure(s);
   plan.coarse_step = whole(s, "coarse_step", 2, 1000, plan.coarse_step);
+  s.reject_others();
+}
+
+void read_threshold(TomlSection& s, StudyPlan& plan) {
+  plan.method = StudyMethod::threshold;
+  plan.measure = read_measure(s);
+  plan.limit = s.number("limit", {"", -any, any});
+  plan.intensity = read_gridded(s, "variable", plan);
+  const std::vector<StudyValue>& values = plan.variables[plan.intensity].values;
+  const auto falls = [](const StudyValue& a, const StudyValue& b) { return a.number >= b.number; };
+  if (std::adjacent_find(values.begin(), values.end(), falls) != values.end()) {
+    throw s.error("variable", fmt::format("values of {} that do not rise", plan.variables[plan.intensity].name),
+                  "values that rise, from where the limit is not reached");
+  }
   s.reject_others();
 }
 
@@ -263,6 +281,8 @@ void check_variables(TomlSection& root, const StudyPlan& plan) {
     throw root.error("vary", fmt::format("{} variables, {} of them random", plan.variables.size(), random),
                      "one [[vary]] with numbers as values or a range");
   }
+  if (plan.method == StudyMethod::threshold && random > 0)
+    throw root.error("vary", "a random variable", "variables with values, as [threshold] needs them");
   if (!samples && random > 0 && !sampled)
     throw root.error("sampling", "nothing", "[sampling] with samples, since a variable is random");
   if (!samples && random == 0 && sampled)
@@ -312,11 +332,13 @@ StudyPlan read_study_plan(const std::filesystem::path& file) {
   const auto method = [&](const char* name, void (*read)(TomlSection&, StudyPlan&)) {
     std::optional<TomlSection> section = root.find_section(name);
     if (!section) return;
-    if (++methods > 1) throw section->error("", "a second method", "one of [probability], [peak], [importance]");
+    if (++methods > 1)
+      throw section->error("", "a second method", "one of [probability], [peak], [threshold], [importance]");
     read(*section, plan);
   };
   method("probability", read_probability);
   method("peak", read_peak);
+  method("threshold", read_threshold);
   method("importance", read_importance);
   check_variables(root, plan);
   std::optional<TomlSection> sampling = root.find_section("sampling");

@@ -36,7 +36,7 @@ struct StudyVariable {
   [[nodiscard]] bool numeric() const noexcept;
 };
 
-enum class StudyMethod { table, probability, fragility, subset, peak, importance };
+enum class StudyMethod { table, probability, fragility, subset, peak, threshold, importance };
 enum class SamplingMethod { monte_carlo, latin_hypercube };
 
 /// Random values: the first so many samples of a seed.
@@ -56,10 +56,10 @@ struct StudyPlan {
   StudySampling sampling;
   StudyMethod method = StudyMethod::table;
   std::string measure;  ///< of all methods but `table`
-  double limit = 0.0;   ///< of probability, fragility and subset
+  double limit = 0.0;   ///< of probability, fragility, subset and threshold
   double confidence = 0.95;
   std::size_t replicates = 1000;   ///< of bootstraps
-  std::size_t intensity = 0;       ///< variable of a fragility curve
+  std::size_t intensity = 0;       ///< variable of a fragility curve or a threshold
   double level_probability = 0.1;  ///< of subset simulation; `sampling.samples` per level
   std::size_t most_levels = 8;
   std::size_t coarse_step = 8;  ///< of the search for a peak

@@ -195,7 +195,7 @@ void StudyRuns::tidy(const std::vector<StudyPoint>& points) const {
   for (const StudyPoint& point : points) runs.push_back(row_of(point));
   remove_abandoned_runs(runs,
                         {"scene.toml", "runs.csv", "study.h5", "study.json", "probability.csv", "fragility.csv",
-                         "subset.csv", "importance.csv"},
+                         "subset.csv", "importance.csv", "threshold.csv"},
                         options_.folder);
 }
 
