@@ -191,8 +191,8 @@ TEST_F(VsiCommand, NoStaticEquilibriumNamesTheCause) {
   const auto expect = [](const std::string& output, const std::string& text) {
     EXPECT_NE(output.find(text), std::string::npos) << output;
   };
-  write("stop.csv", "t[s],V[m/s]\n0,60\n5,20\n");
-  expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: -8 m/s² at t = ");
+  write("stop.csv", "t[s],V[m/s]\n0,190\n2,20\n");
+  expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: -85 m/s² at t = ");
   expect(output_of("[[load]]\nFy = 3e6\n"), "% of the loads that act at t = 0 s: reduce them");
   expect(output_of("", "dimensions.flange_back = 1.50\n"), "flange backs 1.5 m apart");
   write("aside.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n-90,0,0,0,0\n0,0.4,0,0.4,0\n90,0,0,0,0\n");
