@@ -16,6 +16,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double strongest = 200.0;  // wind [m/s]
 
+constexpr std::size_t most_points = 5000000;
 constexpr double least_step = 1e-9;  // between the points of a history [s] or [m]
 
 struct Line {
@@ -177,6 +178,10 @@ LoadHistory wind_load_history(const Aerodynamics& vehicle, const Wind& wind, con
                                     train_at, wind_at));
     }
     if (!points.empty() && point - points.back() < least_step) return;
+    if (points.size() == most_points) {
+      throw input_error(vehicle.source, fmt::format("a wind of {} rows that rises and falls", history.points.size()),
+                        fmt::format("a load of at most {} points: fewer rows", most_points));
+    }
     points.push_back(point);
     loads.push_back(wind_load(vehicle, wind, train_at, wind_at, height));
   };

@@ -180,7 +180,8 @@ vehicle_choices = [("wagon.toml", "vertical.toml"), ("wagon.toml", "online.toml"
                    ("coupler.toml", "consist.toml"), ("stops.toml", "consist.toml"), ("coach.toml", "coaches.toml"),
                    *[(name, ("vsi", "vehicle", name, "--json")) for name in ("wagon.toml", "stops.toml", "coach.toml")]]
 history_choices = [("rough.csv", "vertical.toml"), ("ground.csv", "bridge.toml"), ("ground.csv", "loads.toml"),
-                   ("gust.csv", "loads.toml"), ("speed.csv", "speed.toml"), ("friction.csv", "speed.toml"),
+                   ("gust.csv", "loads.toml"), ("wind.csv", "wind.toml"),
+                   ("coefficients.csv", "wind.toml"), ("speed.csv", "speed.toml"), ("friction.csv", "speed.toml"),
                    ("wheel.csv", "loads.toml"), ("ground.csv", "imported_bridge.toml")]
 beam = ("--length", "12", "--mass", "1e4", "--bending-stiffness", "4e9", "--damping", "0.01")
 query_choices = [("poses.csv", ("vsi", "contact", "pair.h5", "--query", "poses.csv", "-o", "out.csv")),

@@ -169,6 +169,10 @@ scenes = {
              'factor = 0.5\nwave_speed = 300.0\n[[wheel]]\ncoach = 1\nwheelset = 1\nside = "right"\n'
              'file = "wheel.csv"\n'
              '[[wheel]]\nflat_length = 0.03\npolygon_amplitude = 1e-5\nrun_out = 1e-4\n',
+    "wind": wagon + online + rigid + '[[load]]\nbody = "car-body"\naerodynamics = "coefficients.csv"\n'
+            'file = "wind.csv"\nwind_direction = 80.0\n[[load]]\nbody = "car-body"\ncoach = 1\n'
+            'aerodynamics = "coefficients.csv"\nwind_speed = 12.0\ngust_duration = 2.0\narea = 12.0\nlength = 2.5\n'
+            'air_density = 1.2\nwind_direction = -90.0\n',
     "speed": '[train]\nvehicle = "stops.toml"\nspeed_file = "speed.csv"\nstart = 0.0\n'
              + online.replace("polach", "fastsim") + 'friction_file = "friction.csv"\n' + rigid,
     "consist": '[train]\nconsist = ["wagon.toml", "-stops.toml"]\njoint = "coupler.toml"\nspeed = 20.0\n'
@@ -194,6 +198,9 @@ texts = {
                  "0,0,1,0,0.5\n6,0,0,0,0\n",
     "ground.csv": "t[s],y[m/s2],z[m/s2]\n0,0,0\n0.1,0.5,-0.2\n0.3,-0.4,0.1\n0.5,0,0\n",
     "gust.csv": "t[s],Fy[kN],Mx[kN m]\n0,0,0\n0.5,20,-10\n1,0,0\n",
+    "wind.csv": "t[s],U[km/h]\n0,36\n0.01,54\n2,0\n",
+    "coefficients.csv": "yaw[deg],C_Fy[1],C_Fz[1],C_Mx[1],C_My[1],C_Mz[1]\n0,0,0,0,0,0\n30,2,-1,1.3,0,0.2\n"
+                        "90,4,-2,2.6,0.1,0.1\n",
     "speed.csv": "t[s],V[km/h]\n0,0\n0.01,1\n4,100\n",
     "friction.csv": "# wet\nx[m],left[1],right[1]\n-50,0.3,0.3\n0,0.3,0.1\n0.5,0.05,0.3\n",
     "wheel.csv": "angle[deg],rise[mm]\n0,0\n90,0.05\n180,0\n270,-0.05\n",
@@ -220,6 +227,8 @@ studies = {
                         'measure = "wheel_unloading"\nlimit = 0.01\n',
     "subset.toml": study_head + random_speed + '[probability]\nmethod = "subset"\nmeasure = "wheel_unloading"\n'
                    "limit = 0.01\nsamples = 20\nmost_levels = 2\n",
+    "threshold.toml": study_head + speeds + '[[vary]]\nkey = "train.start"\nvalues = [0, 1]\n[threshold]\n'
+                      'measure = "wheel_unloading"\nlimit = 0.001\nvariable = "train.speed"\n',
     "peak.toml": study_head + speeds + '[peak]\nmeasure = "wheel_unloading"\ncoarse_step = 2\n',
 }
 

@@ -79,6 +79,8 @@ const std::vector<Reader>& readers() {
       {"clauses", ".toml", read_clause_file},
       {"irregularity", ".csv", read_irregularity_file},
       {"load_history", ".csv", read_load_file},
+      {"aerodynamics", ".csv", read_aerodynamics_file},
+      {"wind_history", ".csv", read_wind_file},
       {"ground_record", ".csv", read_ground_file},
       {"speed_profile", ".csv", read_speed_file},
       {"creep_queries", ".csv",

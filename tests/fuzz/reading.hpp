@@ -21,6 +21,9 @@ inline void require_finite(std::initializer_list<double> values, const char* wha
 // run_files.cpp: what a run reads beside its models
 void read_irregularity_file(const Path& file);
 void read_load_file(const Path& file);
+/// The load of a gust by its coefficients; of a history of wind by given ones.
+void read_aerodynamics_file(const Path& file);
+void read_wind_file(const Path& file);
 void read_ground_file(const Path& file);
 void read_speed_file(const Path& file);
 void read_scene_file(const Path& file);

@@ -9,6 +9,7 @@
 #include "railtab/runtime/line/ground_record.hpp"
 #include "railtab/runtime/line/irregularity.hpp"
 #include "railtab/runtime/line/speed_profile.hpp"
+#include "railtab/runtime/line/wind_load.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -59,6 +60,30 @@ void read_load_file(const Path& file) {
     const ForceAndMoment load = history.at(point);
     require_finite({load[0], load[1], load[2], load[3], load[4], load[5]}, "a load");
   }
+}
+
+void require_finite(const LoadHistory& history) {
+  for (const double point : {-1e6, 0.0, 0.3, 0.7, 1.25, 1e6}) {
+    const ForceAndMoment load = history.at(point);
+    require_finite({load[0], load[1], load[2], load[3], load[4], load[5]}, "a load of wind");
+  }
+}
+
+void read_aerodynamics_file(const Path& file) {
+  const Aerodynamics vehicle = read_aerodynamics(file);
+  for (const double direction : {0.0, 1.5, -2.5}) {
+    require_finite(wind_load_history(
+        vehicle, {direction}, wind_gust(20.0, 0.0, 1.0), [](double) { return 30.0; }, 2.0));
+  }
+}
+
+void read_wind_file(const Path& file) {
+  Aerodynamics vehicle;
+  vehicle.yaw = {0.0, 1.0, 3.2};
+  vehicle.coefficient.assign(3, ForceAndMoment::Constant(2.0));
+  const WindHistory history = with_points(read_wind_history(file, 0.5), {-1.0, 0.7, 1e5});
+  const auto speed = [](double time) { return time < 0.7 ? 40.0 : 20.0; };
+  require_finite(wind_load_history(vehicle, {2.0}, history, speed, 2.0));
 }
 
 void read_ground_file(const Path& file) {
