@@ -11,11 +11,11 @@
 namespace railtab {
 
 void LoadedRollingOptions::validate() const {
-  if (!(friction > 0.0 && friction <= 2.0)) {
-    throw input_error("friction coefficient", fmt::format("{}", friction), "above 0, at most 2");
+  if (!(friction >= 1e-6 && friction <= 2.0)) {
+    throw input_error("friction coefficient", fmt::format("{}", friction), "1e-6 to 2");
   }
-  if (!(speed > 0.0 && speed <= 1e3)) {
-    throw input_error("speed", fmt::format("{} m/s", speed), "above 0, at most 1000 m/s");
+  if (!(speed >= 1e-6 && speed <= 1e3)) {
+    throw input_error("speed", fmt::format("{} m/s", speed), "1e-6 to 1000 m/s");
   }
   solution.validate();
 }

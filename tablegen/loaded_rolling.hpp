@@ -11,8 +11,8 @@ namespace railtab {
 
 /// How a wheel rolls over a loaded contact.
 struct LoadedRollingOptions {
-  double friction = 0.3;           ///< μ, above 0, at most 2
-  double speed = 1.0;              ///< V > 0: what creepages are divided by [m/s]
+  double friction = 0.3;           ///< μ, 1e-6..2
+  double speed = 1.0;              ///< V, what creepages are divided by, 1e-6..1000 [m/s]
   RollingContactOptions solution;  ///< elements and their size are those of the normal contact
   /// Rigid slip of the true kinematics, or that of a plane contact with one set of creepages for all bands, those at
   /// the centre of pressure: w = (υx − φ s, υy + φ x), as programs with a planar contact reference take it.

@@ -106,7 +106,7 @@ std::vector<Clause> library_clauses() {
   std::vector<Clause> clauses;
   for (const LibraryFile* file : files) {
     const std::string place = fmt::format("library/{}.toml", file->name);
-    read_clauses(toml::parse(file->text, place), place, clauses);
+    read_clauses(parse_toml(std::string(file->text), place), place, clauses);
   }
   return clauses;
 }
@@ -114,15 +114,7 @@ std::vector<Clause> library_clauses() {
 std::vector<Clause> clauses_with(const std::vector<std::filesystem::path>& files) {
   std::vector<Clause> clauses = library_clauses();
   for (const std::filesystem::path& file : files) {
-    const std::string text = read_toml_text(file, "a TOML file of clauses");
-    toml::table table;
-    try {
-      table = toml::parse(text, file.string());
-    } catch (const toml::parse_error& wrong) {
-      throw input_error(fmt::format("{}:{}", file.string(), wrong.source().begin.line), wrong.description(),
-                        "a TOML file of clauses");
-    }
-    read_clauses(table, file, clauses);
+    read_clauses(parse_toml(read_toml_text(file, "a TOML file of clauses"), file), file, clauses);
   }
   return clauses;
 }

@@ -63,7 +63,7 @@ LibraryTrain static_load(TomlSection& s) {
 
 void read_family(const LibraryFile& file, std::vector<LibraryTrain>& trains) {
   const std::string place = fmt::format("library/{}.toml", file.name);
-  const toml::table table = toml::parse(file.text, place);
+  const toml::table table = parse_toml(std::string(file.text), place);
   SourcedValues values;
   TomlSection root(place, "", table, {}, values);
   static_cast<void>(root.text("name"));

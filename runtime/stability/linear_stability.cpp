@@ -123,12 +123,16 @@ Eigen::VectorXd lateral_shares(const VehicleModel& vehicle, const Eigen::MatrixX
 
 }  // namespace
 
-LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity) {
+VehicleModel running_vehicle(const VsiModel& model, double speed, std::optional<double> conicity) {
   const VsiModel rigid = on_rigid_rails(model, speed);
   VehicleModel running = rigid.vehicle;
   running.damping = rigid.vehicle_damping(speed);
   add_contacts(rigid, conicity, running);
+  return running;
+}
 
+LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity) {
+  const VehicleModel running = running_vehicle(model, speed, conicity);
   std::vector<int> rows;
   for (int row = 0; row < running.dofs(); ++row) rows.push_back(row);
   const MotionSpectrum spectrum = motion_spectrum(running, rows);

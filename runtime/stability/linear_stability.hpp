@@ -7,6 +7,19 @@
 
 namespace railtab {
 
+/// A vehicle that runs at constant speed about rest in the middle of straight rigid rails: mass, and damping and
+/// stiffness with the contacts,
+///     M ü + (C + V/R0 G − ∂f/∂u̇) u̇ + (K − ∂f/∂u) u,
+/// with the contact forces f of the wheels by central differences of the force that runs have: normal contact, creep
+/// with spin, contact angles. The matrices are not symmetric.
+/// @param model of one vehicle or one train with joints, its force elements by linear stand-ins; structure, deviations
+///        and loads play no part
+/// @param conicity in place of what the contact says of the yaw moment by lateral shift, −2 f₁₁ b γ_e y/R0: the
+///        equivalent conicity of a finite amplitude
+/// @pre model.normal_contact is hertz
+/// @throws ComputationError where the train does not come to rest
+[[nodiscard]] VehicleModel running_vehicle(const VsiModel& model, double speed, std::optional<double> conicity = {});
+
 /// The least stable lateral motion of a train on straight rigid rails: more than half of its kinetic energy is in y,
 /// roll and yaw.
 struct LeastStableMotion {
@@ -17,16 +30,8 @@ struct LeastStableMotion {
   double damping = 0.0;
 };
 
-/// Eigenvalues λ of small motions about rest in the middle of rigid rails while the train runs at constant speed,
-///     M ü + (C + V/R0 G − ∂f/∂u̇) u̇ + (K − ∂f/∂u) u = 0,
-/// with the contact forces f of the wheels by central differences of the force that runs have: normal contact, creep
-/// with spin, contact angles. What the rotations of wheelsets are, which nothing resists, is left out.
-/// @param model of one vehicle or one train with joints, its force elements by linear stand-ins; structure, deviations
-///        and loads play no part
-/// @param conicity in place of what the contact says of the yaw moment by lateral shift, −2 f₁₁ b γ_e y/R0: the
-///        equivalent conicity of a finite amplitude
-/// @pre model.normal_contact is hertz
-/// @throws ComputationError where the train does not come to rest
+/// By the eigenvalues λ of running_vehicle(), without the rotations of wheelsets, which nothing resists.
+/// @pre, @throws as running_vehicle()
 [[nodiscard]] LeastStableMotion least_stable_motion(const VsiModel& model, double speed,
                                                     std::optional<double> conicity = {});
 

@@ -270,6 +270,7 @@ def mutate_hdf5(random, content):
             try:
                 (reseal_results if "records" in file else reseal_table)(file)
                 done.append("resealed")
-            except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError, OSError, RuntimeError):
+            except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError, OSError, RuntimeError,
+                    MemoryError):
                 done.append("seal broken")  # what is left has no place for it
     return stream.getvalue(), "+".join(done)

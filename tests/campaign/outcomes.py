@@ -110,7 +110,8 @@ def verdict(outcome: Outcome, case: Case):
     if re.search(r"[\x00-\x08\x0b-\x1f\x7f]", outcome.err.replace("\r", "")):
         return "raw_bytes"
     if outcome.code == 0:
-        return "not_finite" if re.search(r"(?<![\w-])-?(nan|inf)(?![\w-])", outcome.out) else "done"
+        said = re.sub(r'"(\\.|[^"\\])*"', '""', outcome.out)  # quoted texts are those of the input
+        return "not_finite" if re.search(r"(?<![\w-])-?(nan|inf)(?![\w-])", said) else "done"
     if not outcome.err.strip():
         return "silent"
     if outcome.code == 1:

@@ -147,6 +147,8 @@ TEST(ContactCommand, RefusesALoadedContactThatIsWrong) {
   expect_refused(at + "--load 1e4 --pitch-rate -60", "--friction");
   expect_refused(at + "--load 1e4 --friction 0.3 --motion 1,2", "VY,VZ,ROLL,YAW");
   expect_refused(at + "--load 1e4 --friction 3", "friction");
+  expect_refused(at + "--load 1e4 --friction 5e-324", "expected 1e-6 to 2");
+  expect_refused(at + "--load 1e4 --friction 0.3 --velocity 5e-324", "expected 1e-6 to 1000 m/s");
   expect_refused(at + "--load 1e4 --friction 0.3 --velocity 0", "speed");
   expect_refused(at + "--load 1e4 --elements 2", "elements");
   expect_refused(at + "--load 1e4 --table x.h5", "--wheel");

@@ -17,6 +17,7 @@
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/vehicle/toml_section.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
 namespace railtab::vsi {
@@ -70,13 +71,7 @@ bool has_any(const toml::table& table, std::initializer_list<std::string_view> k
 }
 
 Description of_toml(const std::string& file) {
-  toml::table table;
-  try {
-    table = toml::parse(read_toml_text(file, "a TOML file"));
-  } catch (const toml::parse_error& wrong) {
-    throw input_error(fmt::format("{}: line {}", file, wrong.source().begin.line), std::string(wrong.description()),
-                      "TOML");
-  }
+  const toml::table table = parse_toml(read_toml_text(file, "a TOML file"), file);
   if (table.contains("vary")) {
     return {
         "a plan of a study", {}, {fmt::format("vsi study {} --count", file), fmt::format("vsi study {} -o DIR", file)}};

@@ -1,0 +1,278 @@
+// A metro car on a rough track: the run's spectra against the linear frequency response of the same model.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <numbers>
+#include <random>
+
+#include "../measured.hpp"
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/stability/linear_stability.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+#include "railtab/runtime/vsi/step_record.hpp"
+
+namespace railtab {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double pi = std::numbers::pi;
+constexpr double speed = 60.0 / 3.6;            // m/s
+constexpr double period = 20.0, before = 20.0;  // s: of the deviations, and of what is left to decay
+constexpr double lowest = 0.5, highest = 20.0;  // Hz
+constexpr int columns = 4;                      // y and z of the left rail, of the right one
+
+/// A track of waves that repeat themselves after `period`, with random phases.
+struct Waves {
+  std::vector<double> frequency;                        // at that speed [Hz]
+  std::vector<std::array<Complex, columns>> deviation;  // d(x) = Re Σ D e^{iωx/V}
+
+  [[nodiscard]] Irregularity track(double length) const {
+    constexpr double spacing = 0.04;  // m
+    std::vector<double> x;
+    std::array<std::vector<double>, columns> d;
+    for (double at = -length; at <= length; at += spacing) {
+      x.push_back(at);
+      std::array<double, columns> sum{};
+      for (std::size_t n = 0; n < frequency.size(); ++n) {
+        const Complex wave = std::polar(1.0, 2.0 * pi * frequency[n] * at / speed);
+        for (std::size_t c = 0; c < columns; ++c) sum[c] += (deviation[n][c] * wave).real();
+      }
+      for (std::size_t c = 0; c < columns; ++c) d[c].push_back(sum[c]);
+    }
+    return {x, d[0], d[1], d[2], d[3]};
+  }
+};
+
+/// FRA class 6 by lines, the larger the farther they are apart. @param share of its amplitudes
+Waves class_6(double share) {
+  Waves waves;
+  std::mt19937 random(20261124);
+  std::uniform_real_distribution<double> angle(0.0, 2.0 * pi);
+  constexpr double half_base = 0.75;
+  for (int line = static_cast<int>(lowest * period); line <= highest * period; line += std::max(1, line / 12)) {
+    const double frequency = line / period, omega = 2.0 * pi * frequency / speed;
+    const double width = 2.0 * pi * std::max(1, line / 12) / period / speed;
+    const TrackSpectrum density = track_spectrum("fra-6", omega, half_base);
+    const auto wave = [&](double of) { return std::polar(share * std::sqrt(2.0 * of * width), angle(random)); };
+    const Complex vertical = wave(density.vertical), lateral = wave(density.alignment),
+                  cross = half_base * wave(density.cross_level);
+    waves.frequency.push_back(frequency);
+    waves.deviation.push_back({lateral, vertical - cross, lateral, vertical + cross});
+  }
+  return waves;
+}
+
+/// Derivatives of the force of one wheel by the motion of its rail head.
+struct RailSlopes {
+  Eigen::Matrix<double, 6, 2> on_wheelset[2];  // by (y, z), by their slopes (yaw, slope)
+  Eigen::Matrix<double, 1, 2> Q[2];
+  Eigen::Matrix<double, 1, 6> Q_by_displacement, Q_by_velocity;
+};
+
+RailSlopes rail_slopes(const WheelContactModel& model, WheelSide side, const WheelsetMotion& at) {
+  const auto force = [&](const WheelsetMotion& motion, const RailHeadMotion& rail) {
+    const WheelsetPose pose = relative_pose(model.geometry->pair(), side, motion, rail);
+    return wheel_force(model, side, motion, rail, wheel_contact(*model.geometry, pose));
+  };
+  constexpr double step = 1e-6;
+  RailSlopes slopes;
+  const auto by_rail = [&](int kind, int column, const auto& move) {
+    RailHeadMotion ahead, behind;
+    move(ahead, step);
+    move(behind, -step);
+    const WheelForce a = force(at, ahead), b = force(at, behind);
+    slopes.on_wheelset[kind].col(column) = (a.wheelset - b.wheelset) / (2.0 * step);
+    slopes.Q[kind](column) = (a.rail[1] - b.rail[1]) / (2.0 * step);
+  };
+  by_rail(0, 0, [](RailHeadMotion& rail, double by) { rail.displacement[0] = by; });
+  by_rail(0, 1, [](RailHeadMotion& rail, double by) { rail.displacement[1] = by; });
+  by_rail(1, 0, [](RailHeadMotion& rail, double by) { rail.yaw = by; });
+  by_rail(1, 1, [](RailHeadMotion& rail, double by) { rail.slope = by; });
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const auto by_wheelset = [&](Vector6 WheelsetMotion::*member, double by) {
+      WheelsetMotion ahead = at, behind = at;
+      (ahead.*member)[k] += by;
+      (behind.*member)[k] -= by;
+      return (force(ahead, {}).rail[1] - force(behind, {}).rail[1]) / (2.0 * by);
+    };
+    slopes.Q_by_displacement(k) = by_wheelset(&WheelsetMotion::displacement, step);
+    slopes.Q_by_velocity(k) = by_wheelset(&WheelsetMotion::velocity, step * speed);
+  }
+  return slopes;
+}
+
+/// Quantities that are compared, each with its amplitude by line.
+struct Spectra {
+  std::vector<std::vector<Complex>> of;  // by quantity, then by line
+};
+constexpr std::array<const char*, 7> names{"car body y", "car body z",   "car body roll", "bogie y",
+                                           "bogie z",    "wheelset 1 y", "wheel force"};
+
+std::vector<Complex> quantities(const VsiModel& model, const Eigen::VectorXcd& u, Complex wheel_force) {
+  const auto dof = [&](int body, std::size_t motion) {
+    return u[model.vehicle.dof[static_cast<std::size_t>(body)][motion]];
+  };
+  int bogie = 0;
+  while (model.vehicle.bodies[static_cast<std::size_t>(bogie)].name != "bogie-1") ++bogie;
+  return {dof(0, 1),  dof(0, 2), dof(0, 3), dof(bogie, 1), dof(bogie, 2), dof(model.vehicle.wheelsets[0], 1),
+          wheel_force};
+}
+
+Spectra linear_spectra(const VsiModel& model, const Waves& waves) {
+  VsiState rest(model);
+  EXPECT_TRUE(static_equilibrium(model, rest).converged);
+  const VehicleModel running = running_vehicle(model, speed);
+  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets()), velocity = displacement;
+  gather_wheelsets(model, 0, rest.vehicle[0].displacement, displacement);
+  gather_wheelsets(model, 0, rest.vehicle[0].velocity, velocity);
+  Spectra spectra;
+  spectra.of.resize(names.size());
+  for (std::size_t n = 0; n < waves.frequency.size(); ++n) {
+    const double omega = 2.0 * pi * waves.frequency[n];
+    const Complex i_omega(0.0, omega);
+    Eigen::VectorXcd load = Eigen::VectorXcd::Zero(running.dofs());
+    Complex Q = 0.0;
+    Eigen::Matrix<Complex, 1, 6> Q_by_motion;
+    for (int w = 0; w < model.wheelsets(); ++w) {
+      const WheelsetMotion at{displacement.segment<6>(wheelset_unknowns * w),
+                              velocity.segment<6>(wheelset_unknowns * w)};
+      const Complex there = std::polar(1.0, omega * model.wheelset_x(w, 0.0) / speed);
+      Eigen::Matrix<Complex, 6, 1> force = Eigen::Matrix<Complex, 6, 1>::Zero();
+      for (const WheelSide side : wheel_sides) {
+        const std::size_t first = side == WheelSide::left ? 0 : 2;
+        const Eigen::Vector2cd rail(there * waves.deviation[n][first], there * waves.deviation[n][first + 1]);
+        const RailSlopes slopes = rail_slopes(model.contact, side, at);
+        const auto by_rail = [&](const auto& of) { return (of[0] * rail + of[1] * (i_omega / speed * rail)).eval(); };
+        force += by_rail(slopes.on_wheelset);
+        if (w > 0 || side == WheelSide::right) continue;
+        Q = by_rail(slopes.Q)(0);
+        Q_by_motion = slopes.Q_by_displacement + i_omega * slopes.Q_by_velocity;
+      }
+      const DofIndices& dof = running.dof[static_cast<std::size_t>(running.wheelsets[static_cast<std::size_t>(w)])];
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (dof[k] != held) load[dof[k]] += force[static_cast<Eigen::Index>(k)];
+      }
+    }
+    const Eigen::MatrixXcd dynamic = running.stiffness.cast<Complex>() + i_omega * running.damping.cast<Complex>() -
+                                     omega * omega * running.mass.cast<Complex>();
+    const Eigen::VectorXcd u = dynamic.partialPivLu().solve(load);
+    const DofIndices& dof = running.dof[static_cast<std::size_t>(running.wheelsets[0])];
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (dof[k] != held) Q += Q_by_motion(static_cast<Eigen::Index>(k)) * u[dof[k]];
+    }
+    const std::vector<Complex> found = quantities(model, u, Q);
+    for (std::size_t q = 0; q < names.size(); ++q) spectra.of[q].push_back(found[q]);
+  }
+  return spectra;
+}
+
+Spectra simulated_spectra(VsiModel model, const Waves& waves, double time_step) {
+  model.irregularity = waves.track(speed * (before + period) + 60.0);
+  VsiState state(model);
+  EXPECT_TRUE(static_equilibrium(model, state).converged);
+  IntegrationParameters integration;
+  integration.time_step = time_step;
+  integration.tolerance = 1e-10;
+  Spectra spectra;
+  spectra.of.assign(names.size(), std::vector<Complex>(waves.frequency.size()));
+  long samples = 0;
+  RunObserver observer;
+  observer.record = [&](const StepRecord& record) {
+    if (record.time <= before + 0.5 * time_step) return;
+    ++samples;
+    Eigen::VectorXcd u = Eigen::VectorXcd::Zero(model.vehicle.dofs());
+    for (std::size_t b = 0; b < record.bodies.size(); ++b) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (model.vehicle.dof[b][k] != held)
+          u[model.vehicle.dof[b][k]] = record.bodies[b].displacement[static_cast<Eigen::Index>(k)];
+      }
+    }
+    const std::vector<Complex> now = quantities(model, u, record.wheels[0].Q);
+    for (std::size_t n = 0; n < waves.frequency.size(); ++n) {
+      const Complex wave = std::polar(1.0, -2.0 * pi * waves.frequency[n] * record.time);
+      for (std::size_t q = 0; q < names.size(); ++q) spectra.of[q][n] += now[q] * wave;
+    }
+  };
+  const RunSummary summary = simulate(model, integration, before + period, 1, state, observer);
+  EXPECT_TRUE(summary.complete) << summary.message;
+  for (std::vector<Complex>& of : spectra.of) {
+    for (Complex& amplitude : of) amplitude *= 2.0 / static_cast<double>(samples);
+  }
+  return spectra;
+}
+
+VsiModel metro() {
+  SceneParameters scene;
+  scene.train.vehicle = "metro-gz18";
+  scene.train.speed = speed;
+  scene.train.force_elements = ForceElementChoice::linear;
+  scene.contact.mode = ContactMode::online;
+  scene.contact.dimensions.nominal_radius = 0.42;
+  scene.contact.creep_law = "polach";
+  scene.track_kind = TrackKind::rigid;
+  return build_model(scene);
+}
+
+// Deviations of micrometres, within which the contact geometry is linear; below 20 Hz.
+TEST(FrequencyResponse, OfAMetroCarIsThatOfItsLinearModel) {
+  const VsiModel model = metro();
+  const Waves waves = class_6(0.002);
+  const Spectra linear = linear_spectra(model, waves), run = simulated_spectra(model, waves, 1e-3);
+  double worst_of_all = 0.0;
+  for (std::size_t q = 0; q < names.size(); ++q) {
+    double worst = 0.0, at = 0.0, largest = 0.0;
+    for (const Complex& amplitude : linear.of[q]) largest = std::max(largest, std::abs(amplitude));
+    int lines = 0;
+    for (std::size_t n = 0; n < waves.frequency.size(); ++n) {
+      if (std::abs(linear.of[q][n]) < 1e-3 * largest) continue;
+      ++lines;
+      const double difference = std::abs(run.of[q][n]) / std::abs(linear.of[q][n]) - 1.0;
+      if (std::abs(difference) <= std::abs(worst)) continue;
+      worst = difference;
+      at = waves.frequency[n];
+    }
+    std::printf("%-14s %d lines, largest %.3e, worst %+.2f %% at %.2f Hz\n", names[q], lines, largest, 100.0 * worst,
+                at);
+    EXPECT_GT(lines, 30) << names[q];
+    EXPECT_LT(std::abs(worst), 0.01) << names[q];
+    worst_of_all = std::max(worst_of_all, std::abs(worst));
+  }
+  testing::measured("metro.response_percent", 100.0 * worst_of_all);
+}
+
+// At its full amplitudes the profiles' changing slopes count.
+TEST(FrequencyResponse, OfAMetroCarOnARoughTrackIsNearThatOfItsLinearModel) {
+  const VsiModel model = metro();
+  const Waves waves = class_6(1.0);
+  const Spectra linear = linear_spectra(model, waves), run = simulated_spectra(model, waves, 1e-3);
+  const auto rms = [](const std::vector<Complex>& of) {
+    double sum = 0.0;
+    for (const Complex& amplitude : of) sum += 0.5 * std::norm(amplitude);
+    return std::sqrt(sum);
+  };
+  const auto of_run = [&](std::size_t q) { return rms(run.of[q]); };
+  const auto of_linear = [&](std::size_t q) { return rms(linear.of[q]); };
+  constexpr std::size_t car_body_y = 0, wheelset_y = 5, wheel_load = 6;
+  for (const std::size_t q : {car_body_y, wheelset_y, wheel_load}) {
+    std::printf("%-14s rms %.4g, linear %.4g\n", names[q], of_run(q), of_linear(q));
+  }
+  testing::measured("metro.rough.wheelset_y_mm", 1e3 * of_run(wheelset_y));
+  testing::measured("metro.linear.wheelset_y_mm", 1e3 * of_linear(wheelset_y));
+  testing::measured("metro.rough.Q_kN", 1e-3 * of_run(wheel_load));
+  testing::measured("metro.linear.Q_kN", 1e-3 * of_linear(wheel_load));
+  for (const std::size_t q : {car_body_y, wheelset_y, wheel_load}) {
+    EXPECT_NEAR(of_run(q) / of_linear(q), 1.0, 0.1) << names[q];
+    EXPECT_GT(std::abs(of_run(q) / of_linear(q) - 1.0), 0.01) << names[q];
+  }
+}
+
+}  // namespace
+}  // namespace railtab
