@@ -38,6 +38,9 @@ constexpr double rate = 80.0;  // dv/dq of the tangents [1/s]
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// A table of the fixture.
+std::string table_file(const std::string& name) { return std::string(RAILTAB_C_TABLES) + "/" + name; }
+
 using Handle = std::unique_ptr<railtab_contact, void (*)(railtab_contact*)>;
 
 railtab_contact_parameters parameters() {

@@ -14,9 +14,6 @@ namespace railtab::c_test {
 
 inline constexpr double speed = 20.0;
 
-/// A table of the fixture.
-inline std::string table_file(const std::string& name) { return std::string(RAILTAB_C_TABLES) + "/" + name; }
-
 /// What a C++ program uses in place of the header.
 struct CppContact {
   ContactTable table;
