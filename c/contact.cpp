@@ -209,7 +209,7 @@ railtab_status status_of(const WheelContact& contact) noexcept {
 
 void put_force(const railtab_contact& contact, const Query& query, const WheelContact& at,
                railtab_wheel_force& result) noexcept {
-  const WheelForce force = wheel_force(contact.model, query.side, query.wheelset, query.rail, at);
+  const LoadedWheelForce force = wheel_force(contact.model, query.side, query.wheelset, query.rail, at);
   Eigen::Map<Vector6>(result.wheelset) = force.wheelset;
   Eigen::Map<Vector3>(result.rail) = force.rail;
   result.rail_x = force.rail_x;
