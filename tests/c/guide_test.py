@@ -43,7 +43,7 @@ def main():
             done = subprocess.run(["sh", "-e", "-c", block], cwd=folder, env=environment, capture_output=True, text=True)
             print(block, done.stdout[:1000], done.stderr, sep="\n")
             # every program of the page prints numbers
-            if done.returncode or not re.search(r"\d\.?\d*", done.stdout) or done.stderr:
+            if done.returncode or not re.search(r"\d", done.stdout):
                 return 1
     for compiler in missing:
         print(f"skipped: blocks of {compiler}; Debian's package is {PACKAGES[compiler]}")

@@ -2,15 +2,14 @@
 """The example hunting against the kinematics of a free wheelset: hunting_test.py KINEMATIC_WAVELENGTH
 
 The wheel is a cone of 1:20. At low speed the wheelset follows the wave of Klingel, whose length kinematic_wavelength
-finds from the table without forces. The kinematic wave leaves out spin and gravity, which lengthen it by 0.2 %; without
-the roll of the wheelset it would be shorter by 1.5 %. At higher speed inertia lets the wave grow: the logarithm of the
-ratio of successive amplitudes is in proportion to the square of the speed, as in linear theory of a free wheelset at
-speeds at which inertia is small beside creep forces."""
+finds from the table without forces. The kinematic wave knows neither spin nor gravity nor the elastic approach: the wave
+of the example is longer by 0.2 %. Without the roll of the wheelset the kinematic wave would be shorter by 1.5 %. At
+higher speed inertia lets the wave grow: the logarithm of the ratio of successive amplitudes is in proportion to the
+square of the speed, as in linear theory of a free wheelset at speeds at which inertia is small beside creep forces."""
 import math
 import re
 import sys
 import tempfile
-from pathlib import Path
 
 from environment import TABLES, build, run
 
@@ -34,8 +33,7 @@ def growth(program, speed):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "hunting"
-        build(program, "hunting.c")
+        (program,) = build(folder, "hunting.c")
         kinematic = float(run(sys.argv[1], TABLE, "2.5e-3"))
         slow = waves(program, 10)
         print(f"wavelength {slow[-1][0]} m, kinematic {kinematic:.4f} m")

@@ -2,7 +2,6 @@
 """The example wheel_force against the C++ functions, to the last bit: wheel_force_test.py WHEEL_FORCE_CPP SOURCE..."""
 import sys
 import tempfile
-from pathlib import Path
 
 from environment import TABLES, build, run
 
@@ -24,11 +23,10 @@ def numbers(text, read):
 def main():
     cpp, *sources = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "wheel_force"
-        build(program, *sources)
+        example = build(folder, *sources)
         for table in ("s1002_60e1.h5", "loaded.h5"):
             # 17 significant digits name one double
-            found = numbers(run(program, TABLES / table), float)
+            found = numbers(run(*example, TABLES / table), float)
             expected = numbers(run(cpp, TABLES / table), float.fromhex)
             if found != expected or len(found) < NUMBERS_OF_TWO_WHEELS + 2 * 7:
                 print(f"{table}: {len(found)} numbers, {len(expected)} of C++")
