@@ -103,8 +103,8 @@ void require_valid(const railtab_contact_parameters& p) {
   ElasticMaterial{p.young, p.poisson}.validate();
 }
 
-std::string_view name_of(railtab_creep_law law) {
-  switch (static_cast<int>(law)) {
+std::string_view name_of(int law) {
+  switch (law) {
     case RAILTAB_CREEP_TABLE:
       return "table";
     case RAILTAB_CREEP_POLACH:
@@ -114,7 +114,7 @@ std::string_view name_of(railtab_creep_law law) {
     case RAILTAB_CREEP_LINEAR:
       return "linear";
     default:
-      throw parameter_error("creep_law", fmt::format("{}", static_cast<int>(law)), "a railtab_creep_law, 0 to 3");
+      throw parameter_error("creep_law", fmt::format("{}", law), "a railtab_creep_law, 0 to 3");
   }
 }
 
@@ -166,8 +166,8 @@ struct Query {
   RailHeadMotion rail;
 };
 
-std::optional<WheelSide> known_side(railtab_side side) noexcept {
-  switch (static_cast<int>(side)) {
+std::optional<WheelSide> known_side(int side) noexcept {
+  switch (side) {
     case RAILTAB_LEFT:
       return WheelSide::left;
     case RAILTAB_RIGHT:
@@ -183,7 +183,7 @@ bool is_valid(const RailHeadMotion& rail) noexcept {
 }
 
 /// Nothing where the input is invalid.
-std::optional<Query> query_of(railtab_side side, const railtab_wheelset_motion* wheelset,
+std::optional<Query> query_of(int side, const railtab_wheelset_motion* wheelset,
                               const railtab_rail_motion* rail) noexcept {
   const std::optional<WheelSide> of_side = known_side(side);
   if (!of_side || !wheelset) return std::nullopt;
@@ -242,8 +242,8 @@ railtab_patch patch_of(const ContactPatch& p, const PatchLoading& load) noexcept
 
 extern "C" {
 
-const char* railtab_status_text(railtab_status status) {
-  switch (static_cast<int>(status)) {
+const char* railtab_status_text(int status) {
+  switch (status) {
     case RAILTAB_OK:
       return "no error";
     case RAILTAB_SEARCHED:
@@ -312,9 +312,8 @@ railtab_status railtab_contact_dimensions(const railtab_contact* contact, railta
   return RAILTAB_OK;
 }
 
-railtab_status railtab_contact_force(const railtab_contact* contact, railtab_side side,
-                                     const railtab_wheelset_motion* wheelset, const railtab_rail_motion* rail,
-                                     railtab_wheel_force* force) {
+railtab_status railtab_contact_force(const railtab_contact* contact, int side, const railtab_wheelset_motion* wheelset,
+                                     const railtab_rail_motion* rail, railtab_wheel_force* force) {
   return railtab::guarded([&] {
     const auto query = railtab::query_of(side, wheelset, rail);
     if (!contact || !query || !force) return RAILTAB_INVALID_INPUT;
@@ -324,7 +323,7 @@ railtab_status railtab_contact_force(const railtab_contact* contact, railtab_sid
   });
 }
 
-railtab_status railtab_contact_force_and_tangent(const railtab_contact* contact, railtab_side side,
+railtab_status railtab_contact_force_and_tangent(const railtab_contact* contact, int side,
                                                  const railtab_wheelset_motion* wheelset,
                                                  const railtab_rail_motion* rail, double velocity_rate,
                                                  railtab_wheel_force* force, double* tangent) {
@@ -340,7 +339,7 @@ railtab_status railtab_contact_force_and_tangent(const railtab_contact* contact,
   });
 }
 
-railtab_status railtab_contact_patches(const railtab_contact* contact, railtab_side side,
+railtab_status railtab_contact_patches(const railtab_contact* contact, int side,
                                        const railtab_wheelset_motion* wheelset, const railtab_rail_motion* rail,
                                        railtab_patch* patches, int* count) {
   static_assert(RAILTAB_MAX_PATCHES == railtab::ContactPatches::capacity);
@@ -359,8 +358,8 @@ railtab_status railtab_contact_patches(const railtab_contact* contact, railtab_s
   });
 }
 
-railtab_status railtab_contact_height(const railtab_contact* contact, railtab_side side, double y, double roll,
-                                      double yaw, double load, double* z) {
+railtab_status railtab_contact_height(const railtab_contact* contact, int side, double y, double roll, double yaw,
+                                      double load, double* z) {
   return railtab::guarded([&] {
     const auto of_side = railtab::known_side(side);
     if (!contact || !of_side || !z || !std::isfinite(y) || !std::isfinite(roll) || !std::isfinite(yaw)) {

@@ -30,12 +30,13 @@ typedef enum railtab_status {
   RAILTAB_INTERNAL_ERROR = -3
 } railtab_status;
 
-/* What a status means, in English; "unknown status" for other numbers. The text stays valid. */
-const char* railtab_status_text(railtab_status status);
+/* What a railtab_status means, in English; "unknown status" for other numbers. The text stays valid. */
+const char* railtab_status_text(int status);
 
 /* Version of the library, "0.1.0". A program that was built for 0.1 needs a library 0.1. */
 const char* railtab_version(void);
 
+/* Numbers of enumerations that a caller passes are int, so that any number is defined, and checked. */
 typedef enum railtab_side { RAILTAB_LEFT = 0, RAILTAB_RIGHT = 1 } railtab_side;
 
 typedef enum railtab_creep_law {
@@ -59,7 +60,7 @@ typedef struct railtab_contact_parameters {
   double curvature_floor; /* smallest lateral curvature of the Hertz ellipse [1/m], 1e-6..1e4. 0.05 */
   double k_adhesion;      /* k_A of RAILTAB_CREEP_POLACH [-], 1e-3..1. 1 */
   double k_slip;          /* k_S of RAILTAB_CREEP_POLACH [-], 1e-3..k_A. 1 */
-  railtab_creep_law creep_law; /* RAILTAB_CREEP_TABLE */
+  int creep_law;          /* a railtab_creep_law. RAILTAB_CREEP_TABLE */
 } railtab_contact_parameters;
 
 /* Sets the defaults that the comments of the members end with, and the speed to 0, which a caller must change.
@@ -130,11 +131,11 @@ typedef struct railtab_wheel_force {
                             * not reach there; 0 with the other laws */
 } railtab_wheel_force;
 
-/* Forces of one wheel. The rail may be NULL. Status RAILTAB_SEARCHED where the online search answered;
- * RAILTAB_INVALID_INPUT where a pointer is NULL, the side unknown or a number of the motions not finite. */
-railtab_status railtab_contact_force(const railtab_contact* contact, railtab_side side,
-                                     const railtab_wheelset_motion* wheelset, const railtab_rail_motion* rail,
-                                     railtab_wheel_force* force);
+/* Forces of one wheel, RAILTAB_LEFT or RAILTAB_RIGHT. The rail may be NULL. Status RAILTAB_SEARCHED where the online
+ * search answered; RAILTAB_INVALID_INPUT where a pointer is NULL, the side unknown or a number of the motions not
+ * finite. */
+railtab_status railtab_contact_force(const railtab_contact* contact, int side, const railtab_wheelset_motion* wheelset,
+                                     const railtab_rail_motion* rail, railtab_wheel_force* force);
 
 /* The same with the derivatives of the nine forces (wheelset 6, rail 3) with respect to the nine displacements
  * (wheelset 6, rail 3).
@@ -142,7 +143,7 @@ railtab_status railtab_contact_force(const railtab_contact* contact, railtab_sid
  * velocity_rate  dv/dq of a time step, for example gamma/(beta h) of Newmark's method [1/s]; 0 keeps the velocities
  * tangent        [81], row by row: tangent[9 * i + j] is the derivative of force i with respect to displacement j.
  *                In Fortran, tangent(j, i). */
-railtab_status railtab_contact_force_and_tangent(const railtab_contact* contact, railtab_side side,
+railtab_status railtab_contact_force_and_tangent(const railtab_contact* contact, int side,
                                                  const railtab_wheelset_motion* wheelset,
                                                  const railtab_rail_motion* rail, double velocity_rate,
                                                  railtab_wheel_force* force, double* tangent);
@@ -174,7 +175,7 @@ typedef struct railtab_patch {
  * count    0 where the wheel does not touch
  *
  * Status as of railtab_contact_force(). */
-railtab_status railtab_contact_patches(const railtab_contact* contact, railtab_side side,
+railtab_status railtab_contact_patches(const railtab_contact* contact, int side,
                                        const railtab_wheelset_motion* wheelset, const railtab_rail_motion* rail,
                                        railtab_patch* patches, int* count);
 
@@ -186,8 +187,8 @@ railtab_status railtab_contact_patches(const railtab_contact* contact, railtab_s
  *
  * RAILTAB_INVALID_INPUT also where wheel and rail never meet, or the wheel does not carry the load 10 mm below first
  * touch. */
-railtab_status railtab_contact_height(const railtab_contact* contact, railtab_side side, double y, double roll,
-                                      double yaw, double load, double* z);
+railtab_status railtab_contact_height(const railtab_contact* contact, int side, double y, double roll, double yaw,
+                                      double load, double* z);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,10 @@
-/* A free wheelset on straight track, with forces by railtab/contact.h. Conical wheels steer it to and fro: at low speed
- * on the sinusoid of Klingel, at high speed ever further aside (hunting).
+/* A free wheelset on straight track, with forces by railtab/contact.h. Its wheels steer it to and fro about the track
+ * centre: at low speed on the sinusoid of Klingel, at higher speed further and further aside, up to the flanges
+ * (hunting).
  *
  *   hunting TABLE.h5 [SPEED_IN_M_S [DISTANCE_IN_M]]
  *
- * prints the distance between two passages of the track centre, twice, and how far aside the wheelset went. */
+ * prints, at each passage of the track centre, the wavelength and the amplitude of the last half-wave. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
