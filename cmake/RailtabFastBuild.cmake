@@ -47,7 +47,7 @@ function(railtab_fast_build)
     if(target MATCHES "^railtab_precompiled" OR NOT type MATCHES "EXECUTABLE|STATIC_LIBRARY|SHARED_LIBRARY")
       continue()
     endif()
-    if(RAILTAB_PYTHON AND type STREQUAL "EXECUTABLE")
+    if(CMAKE_POSITION_INDEPENDENT_CODE AND type STREQUAL "EXECUTABLE")
       # reuse headers that were precompiled for libraries, whose code is position-independent in another way
       set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
       target_compile_options(${target} PRIVATE -fPIC)

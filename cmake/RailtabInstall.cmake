@@ -1,6 +1,8 @@
-# Install rules and the CMake package. What is installed is a named list of headers for two audiences; all else may change.
+# Install rules and the CMake package. What is installed is a named list of headers for three audiences; all else may
+# change.
 #   railtab::contact        profiles, tables in memory, look-up, wheel force: for other multibody programs
 #   railtab::contact_files  the same with the reader of table files (HDF5)
+#   railtab::contact_c      the shared library of railtab/contact.h, for C and Fortran
 #   railtab::solver         scenes and their runs
 
 include(CMakePackageConfigHelpers)
@@ -54,6 +56,14 @@ foreach(component contact contact_files solver)
     install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/railtab/${folder})
   endforeach()
 endforeach()
+
+if(TARGET railtab_contact_c)
+  install(TARGETS railtab_contact_c EXPORT railtab_contact_c)
+  install(EXPORT railtab_contact_c NAMESPACE railtab:: DESTINATION ${railtab_package_dir})
+  install(FILES ${PROJECT_SOURCE_DIR}/c/railtab/contact.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/railtab)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/examples/contact
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab/examples)
+endif()
 
 install(FILES ${PROJECT_SOURCE_DIR}/tables/data/creep_table_nu028.h5 DESTINATION ${CMAKE_INSTALL_DATADIR}/railtab)
 # also compiled in; these are for users to read and to start their own from

@@ -16,7 +16,4 @@ if(RAILTAB_PYTHON)
     message(FATAL_ERROR "RAILTAB_PYTHON: found no pybind11, NumPy or headers of Python; expected Debian's packages, "
       "which tools/install_dependencies --python installs; or -D RAILTAB_PYTHON=OFF")
   endif()
-  # A module is a shared library. What a function's callers inline stays the same as without: nobody replaces functions.
-  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-  add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fno-semantic-interposition>)
 endif()

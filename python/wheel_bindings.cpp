@@ -126,7 +126,7 @@ Wheel make_wheel(const Geometry& geometry, double speed, const std::variant<std:
   require(std::isfinite(damping) && damping >= 0.0, "damping", damping, "0 s/m or more");
   if (const LoadedTable* const loaded = geometry.contact().loaded()) {
     const double modulus = loaded->data().contact_modulus;
-    if (std::abs(modulus / material.contact_modulus() - 1.0) > 1e-6) {
+    if (!material.has_contact_modulus(modulus)) {
       throw input_error("WheelContact",
                         fmt::format("steel of the contact modulus {:.6g} Pa", material.contact_modulus()),
                         fmt::format("{:.6g} Pa, that of the table's loaded part", modulus));

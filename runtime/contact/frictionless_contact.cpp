@@ -74,12 +74,13 @@ LoweredPose lowered_pose(const ContactSearch& search, const ContactGeometry& geo
 
 std::array<PatchLoading, ContactPatches::capacity> patch_loadings(const ContactGeometry& geometry,
                                                                   const WheelsetPose& pose,
-                                                                  const ContactPatches& patches) noexcept {
+                                                                  const ContactPatches& patches,
+                                                                  const NormalContactModel& normal) noexcept {
   std::array<PatchLoading, ContactPatches::capacity> result;
   LoadedLookup loaded;
   if (geometry.loaded()) loaded = geometry.loaded()->lookup(pose.y, pose.z, pose.roll, pose.yaw);
   if (loaded.table_share < 1.0) {
-    const PatchLoads loads = patch_loads({}, geometry, pose, patches);
+    const PatchLoads loads = patch_loads(normal, geometry, pose, patches);
     for (std::size_t i = 0; i < loads.size(); ++i) {
       const double N = loads[i].elastic_force, a = loads[i].hertz.a1 * std::cbrt(N),
                    b = loads[i].hertz.b1 * std::cbrt(N);

@@ -52,9 +52,9 @@ struct PatchLoading {
 };
 
 /// Of the patches at a pose: parts of the loaded contact count to the nearest patch along the rail; without a loaded
-/// part, Hertz's ellipse of patch_loads() for steel.
-[[nodiscard]] std::array<PatchLoading, ContactPatches::capacity> patch_loadings(const ContactGeometry& geometry,
-                                                                                const WheelsetPose& pose,
-                                                                                const ContactPatches& patches) noexcept;
+/// part, Hertz's ellipse of patch_loads().
+[[nodiscard]] std::array<PatchLoading, ContactPatches::capacity> patch_loadings(
+    const ContactGeometry& geometry, const WheelsetPose& pose, const ContactPatches& patches,
+    const NormalContactModel& normal = {}) noexcept;
 
 }  // namespace railtab

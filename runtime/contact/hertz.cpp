@@ -56,6 +56,10 @@ HertzContact contact_of(const HertzEllipse& e, double A, double B, const Elastic
 
 }  // namespace
 
+bool ElasticMaterial::has_contact_modulus(double modulus) const noexcept {
+  return std::abs(modulus / contact_modulus() - 1.0) <= 1e-6;
+}
+
 void ElasticMaterial::validate() const {
   if (!(E > 0.0 && std::isfinite(E))) {
     throw input_error("material.E", fmt::format("{} Pa", E), "Young's modulus above 0");

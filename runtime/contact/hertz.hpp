@@ -10,6 +10,8 @@ struct ElasticMaterial {
   [[nodiscard]] constexpr double shear_modulus() const noexcept { return E / (2.0 * (1.0 + nu)); }
   /// Contact modulus E* of two equal bodies: E / (2(1 - nu²)) [Pa].
   [[nodiscard]] constexpr double contact_modulus() const noexcept { return E / (2.0 * (1.0 - nu * nu)); }
+  /// Whether a table that was made for this contact modulus [Pa] is one for this material: to 1e-6.
+  [[nodiscard]] bool has_contact_modulus(double modulus) const noexcept;
   void validate() const;  ///< @throws InputError naming the member out of range
 };
 

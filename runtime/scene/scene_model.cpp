@@ -46,9 +46,9 @@ std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& co
     throw input_error("scene: contact.elastic", fmt::format("\"half-space\" with {}", contact.table.string()),
                       "a table with a loaded part (tablegen loaded adds it), or \"patches\"");
   }
-  const double modulus = contact.material.contact_modulus();
-  if (std::abs(loaded->contact_modulus / modulus - 1.0) > 1e-6) {
-    throw input_error("scene: contact.material", fmt::format("steel of the contact modulus E* = {:.6g} Pa", modulus),
+  if (!contact.material.has_contact_modulus(loaded->contact_modulus)) {
+    throw input_error("scene: contact.material",
+                      fmt::format("steel of the contact modulus E* = {:.6g} Pa", contact.material.contact_modulus()),
                       fmt::format("{:.6g} Pa, that of the loaded part of {}, or contact.elastic = \"patches\"",
                                   loaded->contact_modulus, contact.table.string()));
   }

@@ -1,6 +1,6 @@
 # Install into a temporary prefix, build each consumer against it, run it.
-# Variables: BUILD_DIR (of railtab), CONSUMERS (folder of the three projects), WORK_DIR (emptied), CXX_COMPILER, CXX_FLAGS,
-# VERSION
+# Variables: BUILD_DIR (of railtab), CONSUMERS (folder of the projects), NAMES (of the projects), WORK_DIR (emptied),
+# CXX_COMPILER, CXX_FLAGS, VERSION
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -15,7 +15,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
 
-foreach(consumer contact contact_files solver)
+foreach(consumer IN LISTS NAMES)
   run(${CMAKE_COMMAND} -S ${CONSUMERS}/${consumer} -B ${WORK_DIR}/${consumer} -G Ninja
     -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_COMPILER=${CXX_COMPILER} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
     -D RAILTAB_VERSION=${VERSION})
@@ -35,6 +35,9 @@ function(require_no_symbol consumer pattern)
 endfunction()
 require_no_symbol(contact "H5[A-Z]|toml::|StructureModel|VehicleModel|VsiModel|SceneParameters")
 require_no_symbol(contact_files "toml::|StructureModel|VehicleModel|VsiModel|SceneParameters")
+if("contact_c" IN_LIST NAMES)
+  require_no_symbol(contact_c "railtab::|std::|H5[A-Z]")
+endif()
 
 # Another minor version and an unknown component are rejected.
 foreach(wrong -DRAILTAB_VERSION=0.0.9 "-DRAILTAB_VERSION=${VERSION};-DRAILTAB_COMPONENTS=wheels")
