@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "railtab/runtime/algebra/inverse_side_by_side.hpp"
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/element_forces.hpp"
@@ -75,22 +77,58 @@ Eigen::MatrixXd with_elements(const ContactProblem& problem, int vehicle, const 
   return result;
 }
 
-// (I − C T)⁻¹ of the wheelsets of one group.
-void invert(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
-  const Eigen::MatrixXd& compliance = ws.compliance[index(group)];
-  Eigen::MatrixXd& inverse = ws.inverse[index(group)];
-  const int first = group * problem.wheelsets_per_group;
-  if (problem.wheelsets_per_group == 1) {
-    const Matrix12 jacobian = Matrix12::Identity() - Matrix12(compliance) * ws.tangent[index(first)];
-    inverse = jacobian.partialPivLu().inverse();
+// (I − C T)⁻¹ of a group of several wheelsets.
+void invert_group(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
+  const Eigen::MatrixXd stiffened = with_elements(problem, group, ws.compliance[index(group)]);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(stiffened.rows(), stiffened.cols());
+  for (int j = 0; j < problem.wheelsets_per_group; ++j) {
+    jacobian.middleCols<12>(12 * j) -=
+        stiffened.middleCols<12>(12 * j) * ws.tangent[index(group * problem.wheelsets_per_group + j)];
+  }
+  ws.inverse[index(group)] = jacobian.partialPivLu().inverse();
+}
+
+// (I − C T)⁻¹ of up to eight wheelsets side by side. C couples the motions of the wheelset with each other, and those
+// of its rails.
+void invert_wheelsets(std::span<const int> wheelsets, NewtonWorkspace& ws) {
+  constexpr int n = wheelset_unknowns, half = 6;
+  MatricesSideBySide<n> compliance{}, tangent, jacobian;  // rows of C: their six columns that are not zero
+  const auto wheelset = [&](int s) { return index(wheelsets[std::min(index(s), wheelsets.size() - 1)]); };
+  for (int s = 0; s < MatricesSideBySide<n>::count; ++s) {
+    const Eigen::Map<const Matrix12> C(ws.compliance[wheelset(s)].data());
+    const Matrix12& T = ws.tangent[wheelset(s)];
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < half; ++k) compliance.at(i, k)[s] = C(i, i < half ? k : half + k);
+      for (int j = 0; j < n; ++j) tangent.at(i, j)[s] = T(i, j);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      Lanes sum = Lanes{} + (i == j ? 1.0 : 0.0);
+      for (int k = 0; k < half; ++k) sum -= compliance.at(i, k) * tangent.at(i < half ? k : half + k, j);
+      jacobian.at(i, j) = sum;
+    }
+  }
+  invert_side_by_side(jacobian);
+  for (int s = 0; s < static_cast<int>(wheelsets.size()); ++s) {
+    Eigen::MatrixXd& inverse = ws.inverse[wheelset(s)];
+    inverse.resize(n, n);
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) inverse(i, j) = jacobian.at(i, j)[s];
+    }
+  }
+}
+
+// (I − C T)⁻¹ of groups.
+void invert(const ContactProblem& problem, std::span<const int> groups, NewtonWorkspace& ws) {
+  if (problem.wheelsets_per_group > 1) {
+    for (int g : groups) invert_group(problem, g, ws);
     return;
   }
-  const Eigen::MatrixXd stiffened = with_elements(problem, group, compliance);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(compliance.rows(), compliance.cols());
-  for (int j = 0; j < problem.wheelsets_per_group; ++j) {
-    jacobian.middleCols<12>(12 * j) -= stiffened.middleCols<12>(12 * j) * ws.tangent[index(first + j)];
+  constexpr std::size_t count = MatricesSideBySide<wheelset_unknowns>::count;
+  for (std::size_t first = 0; first < groups.size(); first += count) {
+    invert_wheelsets(groups.subspan(first, std::min(count, groups.size() - first)), ws);
   }
-  inverse = jacobian.partialPivLu().inverse();
 }
 
 // Holds every wheelset with its rails to the largest move, in its own proportions. Pitch turns no profile; where its
@@ -144,11 +182,13 @@ class TrainNewton {
     ws.group.resize(index(groups));
     const bool known = forces == InitialForces::known;
     if (!known) assemble_compliances(problem, ws);
+    ws.to_invert.clear();
     for (int g = 0; g < groups; ++g) {
       GroupNewton& n = ws.group[index(g)];
       n = {.moved = !known, .new_tangent = fresh || n.new_tangent};
-      if (!n.new_tangent && !known) invert(problem, g, ws);
+      if (!n.new_tangent && !known) ws.to_invert.push_back(g);
     }
+    invert(problem, ws.to_invert, ws);
   }
 
   NewtonReport solve() {
@@ -179,7 +219,9 @@ class TrainNewton {
   bool correct() {
     residual(problem_, s_, ws_.residual);
     if (!ws_.residual.allFinite()) return false;
+    ws_.to_invert.clear();
     for (int g = 0; g < groups(); ++g) examine(g);
+    invert(problem_, ws_.to_invert, ws_);
     report_.correction = 0.0;
     report_.converged = true;
     for (int g = 0; g < groups(); ++g) {
@@ -218,7 +260,7 @@ class TrainNewton {
     inverse += z * row;
   }
 
-  // What a group's residual asks for, and where that is a correction, its tangent.
+  // What a group's residual asks for, and where that is a correction, its tangent, whose inverse is still to be made.
   void examine(int g) {
     constexpr double fast_enough = 0.5;           // of the residual, per iteration with a kept tangent
     constexpr double shortest_part = 1.0 / 32.0;  // of a correction that makes the residual worse
@@ -230,7 +272,7 @@ class TrainNewton {
     if (n.turn == Turn::goes_back) return;
     if (n.new_tangent || (n.moved && size > fast_enough * n.previous)) {
       differentiate(model_, problem_, wheelsets(g), s_, ws_);
-      invert(problem_, g, ws_);
+      ws_.to_invert.push_back(g);
       n.new_tangent = false;
     } else if (n.moved && n.previous < std::numeric_limits<double>::infinity()) {
       learn(g);

@@ -116,6 +116,7 @@ struct NewtonWorkspace {
   std::vector<Eigen::MatrixXd> compliance;  ///< per group, C
   std::vector<Eigen::MatrixXd> inverse;     ///< per group, of I − C df/dq
   std::vector<GroupNewton> group;
+  std::vector<int> to_invert;  ///< groups whose inverse is to be made
   Eigen::VectorXd residual, correction;
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
   std::vector<ContactPatches> found;   ///< per wheel, by the last search, and where: of the published method only

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
 #include "railtab/runtime/algebra/sectioned_ldlt.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
+#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
 
@@ -379,22 +381,50 @@ void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j,
   }
 }
 
+namespace {
+
+// Displacements y, z, roll, pitch and yaw of a node: the first four side by side.
+struct NodeMotion {
+  Pack four{};
+  double yaw = 0.0;
+
+  void add(double weight, const double* column) noexcept {
+    Pack moved;
+    std::memcpy(&moved, column + 1, sizeof moved);
+    four += weight * moved;
+    yaw += weight * column[5];
+  }
+};
+
+}  // namespace
+
 Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
   // Of the rows y, z and roll only these entries are not zero (rail_interpolation): y has the node's y, roll and yaw, z
   // its z and pitch, roll its roll.
   constexpr std::size_t y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  NodeMotion node[2][3];  // of i, under unit loads y, z and roll on rail head j
   visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {
     const RailInterpolation& c = j.rows;
-    Eigen::Matrix<double, 6, 3> moved;  // the node of i under a unit load on rail head j
-    moved.col(0) = c.y[q + y] * block.col(y) + c.y[q + roll] * block.col(roll) + c.y[q + yaw] * block.col(yaw);
-    moved.col(1) = c.z[q + z] * block.col(z) + c.z[q + pitch] * block.col(pitch);
-    moved.col(2) = c.roll[q + roll] * block.col(roll);
-    const RailInterpolation& r = i.rows;
-    result.row(0) += r.y[p + y] * moved.row(y) + r.y[p + roll] * moved.row(roll) + r.y[p + yaw] * moved.row(yaw);
-    result.row(1) += r.z[p + z] * moved.row(z) + r.z[p + pitch] * moved.row(pitch);
-    result.row(2) += r.roll[p + roll] * moved.row(roll);
+    const auto column = [&](std::size_t k) { return block.data() + 6 * k; };
+    auto& [of_y, of_z, of_roll] = node[p / 6];
+    of_y.add(c.y[q + y], column(y));
+    of_y.add(c.y[q + roll], column(roll));
+    of_y.add(c.y[q + yaw], column(yaw));
+    of_z.add(c.z[q + z], column(z));
+    of_z.add(c.z[q + pitch], column(pitch));
+    of_roll.add(c.roll[q + roll], column(roll));
   });
+  const RailInterpolation& r = i.rows;
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  for (std::size_t p = 0; p < 2; ++p) {
+    const std::size_t first = 6 * p;
+    for (Eigen::Index load = 0; load < 3; ++load) {
+      const NodeMotion& m = node[p][load];
+      result(0, load) += r.y[first + y] * m.four[0] + r.y[first + roll] * m.four[2] + r.y[first + yaw] * m.yaw;
+      result(1, load) += r.z[first + z] * m.four[1] + r.z[first + pitch] * m.four[3];
+      result(2, load) += r.roll[first + roll] * m.four[2];
+    }
+  }
   return result;
 }
 

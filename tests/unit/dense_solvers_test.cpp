@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <complex>
+#include <random>
+
+#include "railtab/runtime/algebra/inverse_side_by_side.hpp"
 
 namespace railtab {
 namespace {
@@ -71,6 +74,67 @@ TEST(DenseSolvers, CholeskyFactor) {
   EXPECT_LT((LT.transpose() * LT - M).norm(), rounding);
   EXPECT_LT((LT.transpose() * factor.solve_L(A) - A).norm(), rounding);
   EXPECT_LT((LT * factor.solve_LT(b) - b).norm(), rounding);
+}
+
+constexpr int size = 5;
+using Square = Eigen::Matrix<double, size, size>;
+using SquaresSideBySide = MatricesSideBySide<size>;
+
+// Seven matrices near to identity, and one that has zeros on its diagonal: a cyclic exchange of rows, times two.
+std::array<Square, 8> squares() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-0.3, 0.3);
+  std::array<Square, 8> result;
+  for (Square& matrix : result) matrix = Square::Identity() + Square::NullaryExpr([&] { return number(random); });
+  result[3] = 2.0 * Square::NullaryExpr([](Eigen::Index i, Eigen::Index j) { return (i + 1) % size == j ? 1.0 : 0.0; });
+  return result;
+}
+
+SquaresSideBySide side_by_side(const std::array<Square, 8>& matrices) {
+  SquaresSideBySide result;
+  for (int s = 0; s < 8; ++s) {
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j) result.at(i, j)[s] = matrices[static_cast<std::size_t>(s)](i, j);
+    }
+  }
+  return result;
+}
+
+Square one_of(const SquaresSideBySide& matrices, int s) {
+  return Square::NullaryExpr(
+      [&](Eigen::Index i, Eigen::Index j) { return matrices.at(static_cast<int>(i), static_cast<int>(j))[s]; });
+}
+
+TEST(InverseSideBySide, OfEveryMatrixAlsoWithoutPivotsOnTheDiagonal) {
+  const std::array<Square, 8> matrices = squares();
+  SquaresSideBySide inverses = side_by_side(matrices);
+  invert_side_by_side(inverses);
+  for (int s = 0; s < 8; ++s) {
+    const Square product = one_of(inverses, s) * matrices[static_cast<std::size_t>(s)];
+    EXPECT_LT((product - Square::Identity()).norm(), rounding) << s;
+  }
+}
+
+TEST(InverseSideBySide, DoesNotDependOnTheMatricesBeside) {
+  const std::array<Square, 8> matrices = squares();
+  SquaresSideBySide together = side_by_side(matrices);
+  invert_side_by_side(together);
+  for (int s = 0; s < 8; ++s) {
+    std::array<Square, 8> alone;
+    alone.fill(matrices[static_cast<std::size_t>(s)]);
+    SquaresSideBySide inverses = side_by_side(alone);
+    invert_side_by_side(inverses);
+    EXPECT_EQ(one_of(inverses, 0), one_of(together, s)) << s;
+  }
+}
+
+TEST(InverseSideBySide, OfASingularMatrixIsNotFinite) {
+  std::array<Square, 8> matrices = squares();
+  matrices[5].row(1) = 3.0 * matrices[5].row(0);
+  SquaresSideBySide inverses = side_by_side(matrices);
+  invert_side_by_side(inverses);
+  EXPECT_FALSE(one_of(inverses, 5).allFinite() && one_of(inverses, 5).norm() < 1e12);
+  EXPECT_LT((one_of(inverses, 4) * matrices[4] - Square::Identity()).norm(), rounding);
 }
 
 }  // namespace
