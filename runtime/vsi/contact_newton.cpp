@@ -22,24 +22,6 @@ constexpr int paper_searches = 4;
 // K_h of F_n = K_h d^{3/2}, rounded up [N/m^{3/2}]: a wheel's on a rail is 1e11 at most.
 constexpr double stiffest_contact = 1e11;
 
-// q_free + C f − q
-void residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
-  r = problem.free - s.displacement;
-  const int wheelsets = static_cast<int>(r.size()) / wheelset_unknowns;
-  const int per_vehicle = problem.wheelsets_per_vehicle;
-  for (int w = 0; w < wheelsets; ++w) {
-    const int first = w - w % per_vehicle;
-    for (int v = first; v < first + per_vehicle; ++v) {
-      r.segment<6>(wheelset_unknowns * w) += problem.vehicle_compliance.block<6, 6>(6 * (w - first), 6 * (v - first)) *
-                                             s.force.segment<6>(wheelset_unknowns * v);
-    }
-  }
-  for (const RailCoupling& c : problem.rail) {
-    r.segment<3>(rail_unknown(c.i)) += c.compliance * s.force.segment<3>(rail_unknown(c.j));
-  }
-  if (problem.elements) problem.elements->respond(s.force, r);
-}
-
 // C of every group.
 void assemble_compliances(const ContactProblem& problem, NewtonWorkspace& ws) {
   const int wheelsets = problem.wheelsets_per_group;
@@ -217,7 +199,7 @@ class TrainNewton {
 
   // A correction of every group that asks for one. False where a number is not finite.
   bool correct() {
-    residual(problem_, s_, ws_.residual);
+    contact_residual(problem_, s_, ws_.residual);
     if (!ws_.residual.allFinite()) return false;
     ws_.to_invert.clear();
     for (int g = 0; g < groups(); ++g) examine(g);
@@ -323,6 +305,23 @@ class TrainNewton {
 };
 
 }  // namespace
+
+void contact_residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
+  r = problem.free - s.displacement;
+  const int wheelsets = static_cast<int>(r.size()) / wheelset_unknowns;
+  const int per_vehicle = problem.wheelsets_per_vehicle;
+  for (int w = 0; w < wheelsets; ++w) {
+    const int first = w - w % per_vehicle;
+    for (int v = first; v < first + per_vehicle; ++v) {
+      r.segment<6>(wheelset_unknowns * w) += problem.vehicle_compliance.block<6, 6>(6 * (w - first), 6 * (v - first)) *
+                                             s.force.segment<6>(wheelset_unknowns * v);
+    }
+  }
+  for (const RailCoupling& c : problem.rail) {
+    r.segment<3>(rail_unknown(c.i)) += c.compliance * s.force.segment<3>(rail_unknown(c.j));
+  }
+  if (problem.elements) problem.elements->respond(s.force, r);
+}
 
 NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
                            ContactSolution& solution, NewtonWorkspace& workspace, InitialForces forces) {

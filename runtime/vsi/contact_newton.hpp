@@ -128,6 +128,10 @@ struct NewtonWorkspace {
 [[nodiscard]] RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd& q, int wheelset,
                                          int side) noexcept;
 
+/// q_free + C f − q: how far the linear rest of train and structure is, under the solution's forces, from its
+/// displacement [m, rad].
+void contact_residual(const ContactProblem& problem, const ContactSolution& solution, Eigen::VectorXd& residual);
+
 /// Forces at solution.displacement, written into the solution.
 NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
 

@@ -52,14 +52,13 @@ class HertzContacts : public ContactLaw {
       vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
       free_[index(v)] = step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht,
                                                               ws.vehicle_load, motion, p);
-      // predictor, its velocity, the motion without contact forces, and where Newton starts (constant acceleration)
+      // predictor, its velocity, and the motion without contact forces
       const Eigen::VectorXd free = p.displacement + free_[index(v)];
-      const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
       gather_wheelsets(step.model, v, p.displacement, problem_.predicted);
       gather_wheelsets(step.model, v, p.velocity, problem_.predicted_velocity);
       gather_wheelsets(step.model, v, free, problem_.free);
-      gather_wheelsets(step.model, v, start, ws.solution.displacement);
       if (!elements_) continue;
+      const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
       elements_->free[index(v)].noalias() = step.model.vehicle.elements.rows * free;
       elements_->vehicle[index(v)].begin(element_step(hht), motion, state.friction[index(v)], p, start);
     }
@@ -90,6 +89,11 @@ class HertzContacts : public ContactLaw {
     const bool energy = step.hht.contact_force == ContactForceRule::energy;
     problem_.start = energy ? &state.contact : nullptr;
     problem_.mean_weight = energy ? 1.0 / (step.hht.gamma() * step.hht.load_weight()) : 1.0;
+    // Newton starts from the motion under contact forces that stay what they are.
+    ws.solution.force = energy ? 0.5 * problem_.mean_weight * state.contact.end_force : state.contact.end_force;
+    ws.solution.displacement.setZero();
+    contact_residual(problem_, ws.solution, start_);
+    ws.solution.displacement.swap(start_);
   }
 
   ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {
@@ -158,13 +162,9 @@ class HertzContacts : public ContactLaw {
     gather_rails(step.contacts, p.displacement, problem_.predicted);
     gather_rails(step.contacts, p.velocity, problem_.predicted_velocity);
     gather_rails(step.contacts, ws.structure_free, problem_.free);
-    gather_rails(step.contacts, state.structure.acceleration, ws.solution.displacement);
     for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
       const int k = rail_unknown(wheel);
-      const Vector3 predicted = problem_.predicted.segment<3>(k);
-      problem_.free.segment<3>(k) += predicted + state.far_field.segment<3>(3 * wheel);
-      ws.solution.displacement.segment<3>(k) =
-          predicted + ws.solution.displacement.segment<3>(k) / step.hht.acceleration_rate();
+      problem_.free.segment<3>(k) += problem_.predicted.segment<3>(k) + state.far_field.segment<3>(3 * wheel);
     }
   }
 
@@ -174,6 +174,7 @@ class HertzContacts : public ContactLaw {
   std::optional<TrainElements> elements_;  // where vehicles have force elements
   std::vector<Prediction> prediction_;     // per vehicle
   std::vector<Eigen::VectorXd> free_;      // per vehicle: increment without contact forces
+  Eigen::VectorXd start_;                  // of Newton's iteration
   NewtonWorkspace newton_;                 // tangents and loads are kept from step to step, until reinitialise()
 };
 

@@ -123,6 +123,7 @@ void unpack(std::span<const double> numbers, VsiState& state) {
     std::copy_n(numbers.begin(), n, data);
     numbers = numbers.subspan(n);
   });
+  state.contact.end_force = state.contact.force;  // but under ContactForceRule::energy: evaluate_contact_at()
 }
 
 std::vector<RailContact> place_wheels(const VsiModel& model, double time) {
