@@ -114,8 +114,8 @@ std::string table_of(const WorkFigure& figure) {
 int run(const std::vector<std::string>& arguments) {
   const Options options = parse(arguments);
   std::filesystem::create_directories(options.folder);
-  const std::string origin = fmt::format("railtab {}, commit {}; {}{}", version(), source_commit(),
-                                         machine_kind(), options.quick ? "; --quick" : "");
+  const std::string origin = fmt::format("railtab {}, commit {}; {}{}", version(), source_commit(), machine_kind(),
+                                         options.quick ? "; --quick" : "");
   std::string body = "<p>" + report::escaped(origin) + "</p>\n";
   for (const Group& group : groups) {
     if (!options.figures.empty() && std::none_of(options.figures.begin(), options.figures.end(),
