@@ -52,7 +52,7 @@ TEST_F(FirstMinute, WhatIsNoFileOfRailtabIsSaid) {
   write("empty", "");
   expect_refused("empty", "found an empty file");
   write("broken.toml", "[train\n");
-  expect_refused("broken.toml", "broken.toml: line 1");
+  expect_refused("broken.toml", "broken.toml:1: ");
   expect_refused("absent.toml", "unknown command 'absent.toml'");
 }
 
