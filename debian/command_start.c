@@ -3,12 +3,13 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#define BUILD(level) "/usr/libexec/railtab/" level "/" COMMAND
+
 int main(int argc, char** argv) {
   (void)argc;
-  const char* const program = __builtin_cpu_supports("x86-64-v4")   ? "/usr/libexec/railtab/x86-64-v4/" COMMAND
-                              : __builtin_cpu_supports("x86-64-v3") ? "/usr/libexec/railtab/x86-64-v3/" COMMAND
-                                                                    : "/usr/libexec/railtab/x86-64-v2/" COMMAND;
-  execv(program, argv);
-  perror(program);
+  if (__builtin_cpu_supports("x86-64-v4")) execv(BUILD("x86-64-v4"), argv);
+  if (__builtin_cpu_supports("x86-64-v3")) execv(BUILD("x86-64-v3"), argv);
+  execv(BUILD("x86-64-v2"), argv);
+  perror(BUILD("x86-64-v2"));
   return 1;
 }
