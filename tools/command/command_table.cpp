@@ -1,7 +1,6 @@
 #include "command/command_table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -14,22 +13,24 @@ namespace railtab {
 
 namespace {
 
-std::string call_of(const Subcommand& command) { return fmt::format("{} {}", command.name, command.arguments); }
-
 std::string usage(const CommandTable& table) {
   const std::string_view program = table.program;
   std::string text =
       fmt::format("Usage: {} COMMAND [OPTIONS]; {} COMMAND --help lists the options\n", program, program);
   if (!table.file_form.empty()) text += fmt::format("       {} FILE: {}\n", program, table.file_form);
-  std::size_t width = 0;
-  for (const Subcommand& command : table.subcommands) width = std::max(width, call_of(command).size());
+  std::size_t name_width = 0, arguments_width = 0;
+  for (const Subcommand& command : table.subcommands) {
+    name_width = std::max(name_width, command.name.size());
+    arguments_width = std::max(arguments_width, command.arguments.size());
+  }
   text += "\n";
   for (const Subcommand& command : table.subcommands) {
-    text += fmt::format("  {:<{}}  {}\n", call_of(command), width, command.summary);
+    text += fmt::format("  {:<{}}  {:<{}}  {}\n", command.name, name_width, command.arguments, arguments_width,
+                        command.summary);
   }
-  std::vector<std::string> codes;
-  for (const ExitCode& exit : table.exit_codes) codes.push_back(fmt::format("{} {}", exit.code, exit.meaning));
-  return text + fmt::format("\nExit code: {}.\n", fmt::join(codes, ", "));
+  text += "\nExit code:\n";
+  for (const ExitCode& exit : table.exit_codes) text += fmt::format("  {:>3}  {}\n", exit.code, exit.meaning);
+  return text;
 }
 
 std::string quoted(std::string_view text) { return nlohmann::json(text).dump(); }
