@@ -15,6 +15,7 @@
 #include <variant>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/contact/frictionless_contact.hpp"
 #include "railtab/runtime/contact_files/contact_table_file.hpp"
@@ -259,7 +260,7 @@ const char* railtab_status_text(int status) {
   }
 }
 
-const char* railtab_version(void) { return RAILTAB_VERSION; }
+const char* railtab_version(void) { return railtab::version(); }
 
 railtab_status railtab_contact_default_parameters(railtab_contact_parameters* parameters) {
   if (!parameters) return RAILTAB_INVALID_INPUT;

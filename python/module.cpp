@@ -1,5 +1,6 @@
 #include "bindings.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/version.hpp"
 
 namespace railtab::python {
 namespace {
@@ -17,7 +18,7 @@ void bind_error(pybind11::module_& module, const char* name, PyObject* base, con
 PYBIND11_MODULE(_railtab, module) {
   using namespace railtab::python;
   module.doc() = "The compiled part of railtab; import railtab instead.";
-  module.attr("__version__") = RAILTAB_VERSION;
+  module.attr("__version__") = railtab::version();
   bind_error<railtab::InputError>(module, "InputError", PyExc_ValueError,
                                   "The input is wrong: where, what was found, what is allowed.");
   bind_error<railtab::ComputationError>(module, "ComputationError", PyExc_RuntimeError,

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
 
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
@@ -95,9 +97,9 @@ void check_same_run(const RunResults& before, const SceneParameters& scene, cons
     throw input_error(place, fmt::format("results made with other contents of {}", scene.files[i].string()),
                       "the file as it was when the run began, or another -o");
   }
-  if (before.header.program_version != RAILTAB_VERSION) {
+  if (before.header.program_version != version()) {
     throw input_error(place, "results of railtab " + before.header.program_version,
-                      "results of railtab " RAILTAB_VERSION);
+                      std::string("results of railtab ") + version());
   }
   const std::string& mode = before.summary.contact_mode;
   if (!mode.empty() && mode != contact_mode_name(scene.contact)) {

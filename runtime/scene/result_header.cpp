@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/file_checksum.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
@@ -67,7 +68,7 @@ ResultHeader result_header(const SceneParameters& scene, const VsiModel& model) 
     header.input_files.push_back(file.string());
     header.input_checksums.push_back(file_checksum(file));
   }
-  header.program_version = RAILTAB_VERSION;
+  header.program_version = version();
   header.contact_mode = contact_mode_name(scene.contact);
   ModelParts parts = model_parts(scene, model);
   header.built = std::move(parts.built);

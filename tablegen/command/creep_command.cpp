@@ -25,8 +25,8 @@ po::options_description creep_options() {
   own.add_options()("poisson", text_value("0.28")->value_name("NU"),
                     "Poisson's ratio that the table serves, 0..0.5")  //
       ("elements", text_value("40")->value_name("N"),
-       "of the exact solution along each axis, even; extrapolated from N/2 and N")  //
-      ("layout", text_value("default")->value_name("NAME"), "default or paper")     //
+       "of the exact solution along each axis, even; extrapolated from N/2 and N")           //
+      ("layout", text_value("default")->value_name("default|paper"), "layout of the nodes")  //
       ("nodes", po::value<std::string>()->value_name("R,T,A,B"),
        "of the default layout along a/b, radius, polar angle, azimuth; 5..200 each")                           //
       ("tolerance", text_value("1e-6")->value_name("T"), "on the residual of each solution")                   //

@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "command/output_place.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
@@ -32,7 +33,7 @@ TableShard TableCommandLine::shard(const std::string& name) const {
 
 TableProvenance provenance(const std::string& command, const std::vector<std::string>& arguments) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return {RAILTAB_VERSION, fmt::format("tablegen {} {}", command, fmt::join(arguments, " ")),
+  return {version(), fmt::format("tablegen {} {}", command, fmt::join(arguments, " ")),
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
 }
 

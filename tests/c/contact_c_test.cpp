@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "cpp_contact.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/tables/files/creep_table_file.hpp"
 
 namespace {
@@ -600,7 +601,7 @@ TEST(ContactInC, StatusesHaveTexts) {
   }
   EXPECT_STREQ(railtab_status_text(2), "unknown status");
   EXPECT_STREQ(railtab_status_text(-4), "unknown status");
-  EXPECT_STREQ(railtab_version(), RAILTAB_VERSION);
+  EXPECT_STREQ(railtab_version(), railtab::version());
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
 
 TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused("", "no command");
-  expect_refused("geomtry", "\"geomtry\"");
+  expect_refused("geomtry", "unknown command 'geomtry'");
   expect_refused("geometry --wheel S1002 --rail 60E1", "output is missing");
   expect_refused("geometry --rail 60E1 -o out.h5", "wheel is missing");
   expect_refused(std::string(small) + "--tollerance 1e-8", "--tollerance");

@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 #include <thread>
 
+#include "command/json_text.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/base/version.hpp"
 
 namespace railtab {
 
@@ -38,6 +41,27 @@ InputError missing(const po::options_description& options, const std::string& na
                                 options.find(name, false).format_parameter(), name, usage));
 }
 
+/// "o" of "-o [ --output ]", which is all that Boost says of it; none of "--plan".
+std::string short_name(const po::option_description& option) {
+  const std::string names = option.format_name();
+  return names[1] == '-' ? "" : names.substr(1, 1);
+}
+
+/// Boost writes a default behind the value's name: "N (=40)".
+nlohmann::ordered_json option_json(const po::option_description& option) {
+  nlohmann::ordered_json json{{"name", option.long_name()}};
+  if (const std::string letter = short_name(option); !letter.empty()) json["short"] = letter;
+  if (option.semantic()->max_tokens() > 0) {
+    const std::string parameter = option.format_parameter();
+    json["value"] = parameter.substr(0, parameter.find(" (="));
+  }
+  if (boost::any standard; option.semantic()->apply_default(standard)) {
+    json["default"] = boost::any_cast<std::string>(standard);
+  }
+  json["description"] = option.description();
+  return json;
+}
+
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
@@ -47,13 +71,14 @@ std::optional<double> parse_number(std::string_view text) {
 
 CommandLine::CommandLine(std::string usage, const po::options_description& own,
                          const std::vector<std::string>& positional, const std::vector<std::string>& arguments)
-    : usage_(std::move(usage)) {
+    : usage_(std::move(usage)), positional_(positional), own_options_(own.options().size()) {
   po::options_description shared("All commands");
   shared.add_options()("help,h", "print this help")                                       //
       ("version", "print the version")                                                    //
       ("threads", text_value("0")->value_name("N"), "threads to use, 0: all processors")  //
       ("quiet,q", "no progress bar and no text, errors apart")                            //
-      ("json", "print one JSON object on stdout");
+      ("json", "print one JSON object on stdout")                                         //
+      ("json-usage", "print this help as JSON");
   all_.add(own).add(shared);
   po::positional_options_description places;
   for (const std::string& name : positional) {
@@ -77,8 +102,20 @@ bool CommandLine::help_printed() const {
     print_text(fmt::format("Usage: {}\n{}", usage_, text.str()));
     return true;
   }
-  if (given("version")) print_text("railtab " RAILTAB_VERSION "\n");
-  return given("version");
+  if (given("version")) print_text(fmt::format("railtab {}\n", version()));
+  if (given("json-usage")) print_interface();
+  return given("version") || given("json-usage");
+}
+
+void CommandLine::print_interface() const {
+  nlohmann::ordered_json json{{"usage", usage_},
+                              {"positional", positional_},
+                              {"options", nlohmann::json::array()},
+                              {"shared_options", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < all_.options().size(); ++i) {
+    json[i < own_options_ ? "options" : "shared_options"].push_back(option_json(*all_.options()[i]));
+  }
+  print_json(json);
 }
 
 std::string CommandLine::required(const std::string& name) const {

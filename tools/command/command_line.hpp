@@ -18,7 +18,8 @@ struct PartOf {
 };
 
 /// One subcommand's arguments, parsed: its own options and those that all commands have: --help, --version, --threads,
-/// --quiet and --json. Flags must be written out in full, so that a new flag never changes what a script means.
+/// --quiet, --json and --json-usage. Flags must be written out in full, so that a new flag never changes what a script
+/// means.
 ///
 /// Options take texts; the functions below say what a text must be. Where one is wrong they throw InputError, which
 /// names the option, what was found and what was expected.
@@ -31,7 +32,8 @@ class CommandLine {
   CommandLine(std::string usage, const boost::program_options::options_description& own,
               const std::vector<std::string>& positional, const std::vector<std::string>& arguments);
 
-  /// Prints the help if --help was given, the version for --version. Call before required().
+  /// Prints the help if --help was given, the version for --version, the options as JSON for --json-usage. Call before
+  /// required().
   [[nodiscard]] bool help_printed() const;
 
   [[nodiscard]] bool given(const std::string& name) const { return values_.count(name) > 0; }
@@ -55,8 +57,13 @@ class CommandLine {
   [[nodiscard]] bool quiet() const { return given("quiet"); }
 
  private:
+  /// Usage, places without a flag and options as one JSON object.
+  void print_interface() const;
+
   std::string usage_;
+  std::vector<std::string> positional_;
   boost::program_options::options_description all_;
+  std::size_t own_options_ = 0;  ///< the first of all_; those of all commands follow
   boost::program_options::variables_map values_;
   std::optional<int> threads_;
 };

@@ -20,6 +20,7 @@
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "run_pool.hpp"
@@ -40,8 +41,8 @@ constexpr const char* assess_usage =
 po::options_description assess_options() {
   po::options_description own("Options");
   own.add_options()("scene", text_value()->value_name("SCENE.toml"), "a scene with a bridge")  //
-      ("stage", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
-       "check, moving-load or contact alone; may be given twice; default all")  //
+      ("stage", po::value<std::vector<std::string>>()->composing()->value_name("check|moving-load|contact"),
+       "this stage alone; may be given twice; default all")  //
       ("speed", text_value()->value_name("LO:HI:STEP"),
        "speeds of the runs with contact in m/s; default: the line's, and the critical one of the scene's train")  //
       ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "the same in km/h")                                   //
@@ -116,7 +117,7 @@ Assessment begin(const SceneParameters& scene, const Request& request, const Com
   assessment.scene_name = scene.name;
   assessment.scene_file = request.scene_file.string();
   assessment.scene_text = scene.text;
-  assessment.version = RAILTAB_VERSION;
+  assessment.version = version();
   const double line_speed = scene.assessment.line_speed_kmh / 3.6;
   assessment.facts.line_speed = line_speed > 0.0 ? line_speed : scene.train.speed;
   assessment.facts.track = scene.assessment.track == DeckTrack::ballasted ? "ballasted" : "direct";

@@ -75,7 +75,7 @@ int creep_command(const Arguments& arguments) {
   own.add_options()("table", text_value()->value_name("TABLE.h5"), "a creep table; the shipped one without it")  //
       ("query", text_value()->value_name("Q.csv"), "columns ratio,ux,uy,phi: a/b and normalised creepages")      //
       ("output,o", text_value()->value_name("R.csv"), "columns fx,fy,mz,source")                                 //
-      ("law", text_value("table")->value_name("LAW"), "table, polach, fastsim or linear")                        //
+      ("law", text_value("table")->value_name("table|polach|fastsim|linear"), "the creep law")                   //
       ("poisson", text_value()->value_name("NU"),
        "Poisson's ratio of wheel and rail (0.28, or the table's where one is named)");
   const CommandLine line("vsi creep [TABLE.h5] --query Q.csv -o R.csv [--law table|polach|fastsim|linear]", own,

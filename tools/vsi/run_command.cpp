@@ -247,9 +247,9 @@ po::options_description run_options() {
       ("output,o", text_value()->value_name("RESULTS.h5"),
        "results; default: <scene>.results.h5 in the current folder")  //
       ("resume",
-       "continue from the last checkpoint in RESULTS.h5; a complete run is left as it is")             //
-      ("plan", "print the model, its steps and its memory, without a run")                             //
-      ("contact", text_value()->value_name("MODE"), "table, online or paper, instead of the scene's")  //
+       "continue from the last checkpoint in RESULTS.h5; a complete run is left as it is")   //
+      ("plan", "print the model, its steps and its memory, without a run")                   //
+      ("contact", text_value()->value_name("table|online|paper"), "instead of the scene's")  //
       ("check-reduction", text_value()->value_name("SECONDS"),
        "error of structure.reduction over the first SECONDS, against a run without; no further run");
   return own;

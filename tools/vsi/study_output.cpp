@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
 namespace railtab::vsi {
@@ -151,7 +152,7 @@ void write_arrays(const StudyReport& report, const fs::path& name) {
   ArrayFileWriter file(name, study_filetype, study_format_version);
   file.attribute("", "plan", std::string_view(report.plan.text));
   file.attribute("", "scene", std::string_view(report.scene_text));
-  file.attribute("", "program_version", std::string_view(RAILTAB_VERSION));
+  file.attribute("", "program_version", std::string_view(version()));
   file.attribute("", "deck_cut_off", report.runs.deck_cut_off());
   for (std::size_t j = 0; j < report.plan.variables.size(); ++j) write_variable(report, j, file);
   for (std::size_t k = 0; k < study_measures().size(); ++k) {
@@ -399,7 +400,7 @@ void write_study(const StudyReport& report, const std::string& run_rows, const f
 Json study_json(const StudyReport& report) {
   Json json{{"study", report.plan.file.filename().string()},
             {"scene", report.scene_name},
-            {"version", RAILTAB_VERSION},
+            {"version", version()},
             {"runs", report.count.finished},
             {"ended_early", report.count.ended_early},
             {"deck_cut_off", report.runs.deck_cut_off()}};

@@ -18,6 +18,7 @@
 #include "machine.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/contact/creep_law.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"
@@ -113,8 +114,8 @@ std::string table_of(const WorkFigure& figure) {
 int run(const std::vector<std::string>& arguments) {
   const Options options = parse(arguments);
   std::filesystem::create_directories(options.folder);
-  const std::string origin = fmt::format("railtab {}, commit {}; {}{}", RAILTAB_VERSION, source_commit(),
-                                         machine_kind(), options.quick ? "; --quick" : "");
+  const std::string origin = fmt::format("railtab {}, commit {}; {}{}", version(), source_commit(), machine_kind(),
+                                         options.quick ? "; --quick" : "");
   std::string body = "<p>" + report::escaped(origin) + "</p>\n";
   for (const Group& group : groups) {
     if (!options.figures.empty() && std::none_of(options.figures.begin(), options.figures.end(),
@@ -133,7 +134,7 @@ int run(const std::vector<std::string>& arguments) {
     }
   }
   write_text_file(options.folder / "index.html",
-                  report::html_page("error against run time", "Error against run time", body, RAILTAB_VERSION));
+                  report::html_page("error against run time", "Error against run time", body, version()));
   fmt::print("{}\n", (options.folder / "index.html").string());
   return 0;
 }

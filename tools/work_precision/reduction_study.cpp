@@ -14,6 +14,7 @@
 #include "machine.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/scene/reduction_check.hpp"
 
 namespace railtab::work_precision {
@@ -67,7 +68,7 @@ std::vector<Setting> settings(bool quick) {
 
 // What made the numbers, the first line of a CSV.
 std::string origin() {
-  return fmt::format("# railtab {}, commit {}; {}\n", RAILTAB_VERSION, source_commit(), machine_kind());
+  return fmt::format("# railtab {}, commit {}; {}\n", version(), source_commit(), machine_kind());
 }
 
 // Processor time of a step [ms].
