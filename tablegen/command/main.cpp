@@ -19,7 +19,7 @@ constexpr const char* usage = R"(Usage: tablegen COMMAND [options]
   creep      make a table of creep forces by exact rolling contact, or one shard of it
   merge      combine the shards of a table
   contact    solve one contact of a wheel on its rail, or one exact rolling contact of an ellipse
-  conicity   rolling radius difference and equivalent conicity (EN 15302) from a geometry table
+  conicity   rolling radius difference and equivalent conicity (EN 15302)
   loaded     add the loaded contact (half-space solutions over all poses) to a geometry table
   info       print the contents of a table
   verify     compare a table with the online search: errors, share of fallback, time per query

@@ -1,7 +1,6 @@
-// Equivalent conicity of the reference profiles of EN 15302 against the standard's reference curves and bands
+// `tablegen conicity` on the reference profiles of EN 15302 against the standard's reference curves and bands
 // [EN15302]. RAILTAB_EXTERNAL_DATA names a folder with facts/en15302: wheels RUIC519*.dat and rail SUIC519A.dat (mm, z
-// upwards, y = 0 at 750 mm from the track centre), rolling radius differences dr_*.dat, conicities with their bands
-// ben_*.dat.
+// upwards, origins at 750 mm from the track centre), conicities of the edition of 2008 with their bands, ben_*.dat.
 
 #include <gtest/gtest.h>
 
@@ -10,29 +9,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "../measured.hpp"
-#include "railtab/runtime/contact/contact_search.hpp"
-#include "railtab/runtime/contact/equivalent_conicity.hpp"
-#include "railtab/runtime/profile/profile_file.hpp"
+#include "../robustness/tablegen_fixture.hpp"
 
 namespace railtab {
 namespace {
 
 constexpr double mm = 1e-3;
-constexpr double half_spacing = 0.750;  // of the profiles' origins [m]
-
-std::vector<std::vector<double>> read_columns(const std::filesystem::path& file, std::size_t columns) {
-  std::ifstream in(file);
-  std::vector<std::vector<double>> column(columns);
-  for (std::size_t i = 0;; ++i) {
-    double value = 0;
-    if (!(in >> value)) return column;
-    column[i % columns].push_back(value);
-  }
-}
 
 struct Case {
   const char* name;
@@ -40,82 +26,66 @@ struct Case {
   double diameter_difference;  // right minus left [m]
 };
 
-class En15302 : public ::testing::TestWithParam<Case> {
+class En15302Fixture : public TablegenFixture {
  protected:
   void SetUp() override {
     const char* const folder = std::getenv("RAILTAB_EXTERNAL_DATA");
     if (folder == nullptr) GTEST_SKIP() << "RAILTAB_EXTERNAL_DATA is not set";
-    folder_ = std::filesystem::path(folder) / "facts" / "en15302";
-    if (!std::filesystem::exists(folder_ / "SUIC519A.dat")) GTEST_SKIP() << "no EN 15302 files in " << folder_;
+    data_ = std::filesystem::absolute(folder) / "facts" / "en15302";
+    if (!std::filesystem::exists(data_ / "SUIC519A.dat")) GTEST_SKIP() << "no EN 15302 files in " << data_;
+    TablegenFixture::SetUp();
   }
 
-  [[nodiscard]] ProfileKnots profile(ProfileKind kind, const std::string& file) const {
-    auto column = read_columns(folder_ / file, 2);
-    for (double& y : column[0]) y *= mm;
-    for (double& z : column[1]) z *= -mm;
-    return spline_through_points(kind, file, column[0], column[1]);
+  [[nodiscard]] std::string profiles(const std::string& wheel) const {
+    return "--wheel '" + (data_ / ("RUIC519" + wheel + ".dat")).string() + "' --rail '" +
+           (data_ / "SUIC519A.dat").string() + "' --half-spacing 0.750 --lateral -0.009:0.009 ";
+  }
+  [[nodiscard]] std::string reference(const std::string& name) const {
+    return "--reference '" + (data_ / ("ben_" + name + ".dat")).string() + "' ";
+  }
+  [[nodiscard]] nlohmann::json conicity(const std::string& arguments) const {
+    const Outcome outcome = tablegen("conicity " + arguments + " --quiet --json");
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+    return nlohmann::json::parse(outcome.out);
   }
 
-  // The pair in the standard's set-up: both profiles' origins at 750 mm.
-  [[nodiscard]] ContactSearch search() const {
-    ProfileCurve wheel(profile(ProfileKind::wheel, std::string("RUIC519") + GetParam().wheel + ".dat"));
-    ProfileCurve rail(profile(ProfileKind::rail, "SUIC519A.dat"));
-    PairDimensions dimensions;
-    dimensions.flange_back = 2.0 * (half_spacing - PairDimensions::tape_circle_to_flange_back);
-    // The rail keeps the file's frame here, so that its origin has to come to lie at half_spacing.
-    const WheelRailPair trial(wheel, rail, dimensions);
-    dimensions.track_gauge += 2.0 * (half_spacing - trial.rail_offset());
-    return ContactSearch(WheelRailPair(std::move(wheel), std::move(rail), dimensions));
-  }
-
-  std::filesystem::path folder_;
+  std::filesystem::path data_;
 };
 
-std::vector<WheelsetContact> contacts(const ContactSearch& search, WheelsetRoll roll, double difference) {
-  WheelsetContactOptions options;
-  options.y_low = -9.0 * mm;
-  options.y_high = 9.0 * mm;
-  options.roll = roll;
-  options.diameter_difference = difference;
-  return wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-                           search.pair(), options);
+class En15302 : public En15302Fixture, public ::testing::WithParamInterface<Case> {
+ protected:
+  [[nodiscard]] nlohmann::json curve(const std::string& options) const {
+    const Case& c = GetParam();
+    return conicity(profiles(c.wheel) + reference(c.name) + "--diameter-difference " +
+                    std::to_string(c.diameter_difference) + " " + options);
+  }
+};
+
+void measured_position(const std::string& name, const nlohmann::json& summary) {
+  testing::measured(name + ".position", summary["farthest"].get<double>());
+  testing::measured(name + ".amplitude_mm", summary["farthest_amplitude"].get<double>() / mm);
 }
 
-TEST_P(En15302, ConicityInsideTheBandAtEveryAmplitude) {
-  const ContactSearch s = search();
-  EXPECT_NEAR(s.pair().rail_offset(), half_spacing, 1e-12);
-  const auto wheelset = contacts(s, WheelsetRoll::off, GetParam().diameter_difference);
-  const RadiusDifferenceCurve curve(wheelset);
-  const auto band = read_columns(folder_ / (std::string("ben_") + GetParam().name + ".dat"), 6);
-  ASSERT_EQ(band[0].size(), 66u);
-  double worst = 0.0, worst_at = 0.0, largest = 0.0;  // position in the band, -1 lower to 1 upper limit
-  double worst_narrow = 0.0;
-  int outside_narrow = 0;
-  for (std::size_t i = 0; i < band[0].size(); ++i) {
-    const EquivalentConicity wave = conicity_of_wave(curve, band[0][i] * mm);
-    ASSERT_EQ(wave.status, ConicityStatus::found) << band[0][i];
-    const auto position = [&](double tan_gamma, std::size_t upper) {
-      const double reference = band[1][i];
-      const double high = band[upper][i], low = band[upper + 1][i];
-      return tan_gamma >= reference ? (tan_gamma - reference) / (high - reference)
-                                    : (tan_gamma - reference) / (reference - low);
-    };
-    EXPECT_LE(wave.tan_gamma, band[4][i]) << band[0][i];
-    EXPECT_GE(wave.tan_gamma, band[5][i]) << band[0][i];
-    if (const double p = position(wave.tan_gamma, 4); std::abs(p) > std::abs(worst)) {
-      worst = p;
-      worst_at = band[0][i];
-    }
-    if (const double p = position(wave.tan_gamma, 2); std::abs(p) > std::abs(worst_narrow)) worst_narrow = p;
-    if (std::abs(position(wave.tan_gamma, 2)) > 1.0) ++outside_narrow;
-    largest = std::max(largest, std::abs(wave.tan_gamma - band[1][i]));
-  }
-  const std::string name = std::string("en15302.") + GetParam().name;
-  testing::measured(name + ".position", worst);
-  testing::measured(name + ".amplitude_mm", worst_at);
-  testing::measured(name + ".difference", largest);
-  testing::measured(name + ".narrow_outside", outside_narrow);
-  testing::measured(name + ".narrow_position", worst_narrow);
+// The reference curves come from Δr at shifts 0.1 mm apart.
+TEST_P(En15302, InsideTheNarrowBandAtEveryAmplitudeWithEvenShifts) {
+  const nlohmann::json found = curve("--sampling even --step 1e-4");
+  const nlohmann::json& reference = found["reference"];
+  EXPECT_NEAR(found["pair"]["right"]["rail_offset"], 0.750, 1e-12);
+  EXPECT_NEAR(found["pair"]["left"]["tape_circle_offset"], 0.750, 1e-12);
+  ASSERT_EQ(reference["narrow_position"].size(), 66u);
+  EXPECT_EQ(reference["narrow"]["outside"], 0) << reference["narrow"];
+  EXPECT_EQ(reference["wide"]["outside"], 0) << reference["wide"];
+  measured_position(std::string("en15302.even.") + GetParam().name, reference["narrow"]);
+}
+
+// With the jumps of Δr at their places.
+TEST_P(En15302, InsideTheWideBandAtEveryAmplitudeWithRefinedShifts) {
+  const nlohmann::json reference = curve("--sampling refined")["reference"];
+  ASSERT_EQ(reference["wide_position"].size(), 66u);
+  EXPECT_EQ(reference["wide"]["outside"], 0) << reference["wide"];
+  const std::string name = std::string("en15302.refined.") + GetParam().name;
+  measured_position(name, reference["narrow"]);
+  testing::measured(name + ".narrow_outside", reference["narrow"]["outside"].get<int>());
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, En15302,
@@ -123,6 +93,112 @@ INSTANTIATE_TEST_SUITE_P(Cases, En15302,
                                            Case{"E5", "A", 2.0 * mm}, Case{"E6", "B", 2.0 * mm},
                                            Case{"E8", "I", 2.0 * mm}),
                          [](const auto& c) { return std::string(c.param.name); });
+
+// Next to jumps of Δr, where refined shifts leave the narrow band of 2008, the edition of 2021 has another reference
+// (Annex K, numbers as quoted by the public package github.com/rohrbecka/EN15302): 0.058 became 0.030, 0.075 became
+// 0.110.
+struct Jump {
+  const char* name;
+  const char* wheel;
+  double amplitude_mm, low, high;  // narrow band of 2021
+};
+constexpr Jump jumps[] = {{"E2", "B", 3.0, 0.015, 0.045},
+                          {"E2", "B", 3.2, 0.063, 0.163},
+                          {"E3", "H", 2.6, 0.060, 0.160},
+                          {"E3", "H", 2.8, 0.156, 0.256}};
+
+void expect_inside(const Jump& jump, const std::string& route, double tan_gamma) {
+  EXPECT_GE(tan_gamma, jump.low) << jump.name << " " << jump.amplitude_mm;
+  EXPECT_LE(tan_gamma, jump.high) << jump.name << " " << jump.amplitude_mm;
+  const std::string amplitude = std::to_string(static_cast<int>(std::lround(10.0 * jump.amplitude_mm)));
+  testing::measured("en15302." + route + "." + jump.name + ".at_" + amplitude, tan_gamma);
+}
+
+class En15302Jumps : public En15302Fixture {};
+
+TEST_F(En15302Jumps, PointsOf2008WithRefinedShiftsAreInsideTheNarrowBandOf2021) {
+  for (const Jump& jump : jumps) {
+    const nlohmann::json found =
+        conicity(profiles(jump.wheel) + "--amplitude " + std::to_string(jump.amplitude_mm * mm));
+    expect_inside(jump, "refined", found["wave"]["conicity"]);
+  }
+}
+
+// Profiles by the formulas of the edition of 2021 (Annex I, from the same package) [mm], z downwards, as far as they
+// come into contact.
+double arc(double y, double centre_y, double centre_z, double radius) {
+  return centre_z - std::sqrt(radius * radius - (y - centre_y) * (y - centre_y));
+}
+double wheel_b(double y) {
+  if (y < -29.3505) return arc(y, -25.6322, 17.7814, 14.0);
+  return y < -0.4787 ? arc(y, 2.5204, 119.9745, 120.0) : -0.025 * y;
+}
+double wheel_h(double y) {
+  if (y < -28.3119) return arc(y, -25.5663, 17.6003, 14.0);
+  return y < -10.2297 ? -1.7902 - 0.2 * y : -0.025 * y;
+}
+double rail_a(double y) {
+  if (y < -23.2401) return arc(y, -19.63949, 15.899044, 13.0);
+  if (y < -7.8749) return arc(y, -1.0825, 80.277908, 80.0);
+  if (y < 13.0989) return arc(y, 17.5966, 299.48349, 300.0);
+  return y < 28.6709 ? arc(y, 14.29829, 79.508225, 80.0) : arc(y, 26.33535, 13.598369, 13.0);
+}
+
+class En15302Formulas : public TablegenFixture {
+ protected:
+  void write(const std::string& name, double (*profile)(double), double y_low, double y_high) const {
+    std::ofstream file(folder_ / name);
+    file.precision(12);
+    file << "# units: mm\n";
+    constexpr int intervals = 1500;
+    for (int i = 0; i <= intervals; ++i) {
+      const double y = y_low + (y_high - y_low) * i / intervals;
+      file << y << ' ' << profile(y) << '\n';
+    }
+  }
+};
+
+TEST_F(En15302Formulas, RefinedShiftsAreInsideTheNarrowBandOf2021) {
+  write("B.dat", wheel_b, -38.7, 30.0);
+  write("H.dat", wheel_h, -38.7, 30.0);
+  write("rail.dat", rail_a, -32.6, 39.2);
+  for (const Jump& jump : jumps) {
+    const Outcome outcome = tablegen("conicity --wheel " + std::string(jump.wheel) +
+                                     ".dat --rail rail.dat --half-spacing 0.750 --lateral -0.005:0.005 --amplitude " +
+                                     std::to_string(jump.amplitude_mm * mm) + " --quiet --json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_inside(jump, "formulas", nlohmann::json::parse(outcome.out)["wave"]["conicity"]);
+  }
+}
+
+// Step 2 of [EN15302, 6.2]: 20 runs each with random errors and a grid, at wheels, rails and both.
+class En15302Errors : public En15302Fixture {};
+
+TEST_F(En15302Errors, MeanOfRunsInsideTheWideBand) {
+  const struct {
+    const char *name, *options;
+  } errors[] = {{"random", "--random-error 10e-6 --smoothing 10e-6"},
+                {"grid", "--grid 20e-6 --smoothing 6e-6"},
+                {"spacing", "--spacing 0.5e-3"}};
+  for (const auto& [name, options] : errors) {
+    const nlohmann::json found =
+        conicity(profiles("A") + reference("E1") + "--sampling even --runs 20 --seed 1 " + options);
+    for (const char* bearer : {"wheels", "rails", "both"}) {
+      const nlohmann::json& study = found["errors"][bearer];
+      double largest_deviation = 0.0;
+      int outside = 0;
+      for (std::size_t i = 0; i < 66; ++i) {
+        ASSERT_EQ(study["found"][i], 20) << name << " " << bearer << " " << i;
+        largest_deviation = std::max(largest_deviation, study["standard_deviation"][i].get<double>());
+        outside += 20 - study["inside_wide"][i].get<int>();
+      }
+      const std::string key = std::string("en15302.errors.") + name + "." + bearer;
+      testing::measured(key + ".standard_deviation", largest_deviation);
+      testing::measured(key + ".outside", outside);
+      EXPECT_GT(largest_deviation, 0.0);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace railtab
