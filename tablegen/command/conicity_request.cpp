@@ -23,7 +23,7 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr std::array errors = {"random-error", "grid", "spacing"};
+constexpr std::array error_sizes = {"random-error", "grid", "spacing"};
 
 void refuse(const TableCommandLine& line, std::initializer_list<const char*> options, const char* expected) {
   for (const char* option : options) {
@@ -32,7 +32,7 @@ void refuse(const TableCommandLine& line, std::initializer_list<const char*> opt
 }
 
 bool errors_chosen(const TableCommandLine& line) {
-  return std::any_of(errors.begin(), errors.end(), [&](const char* option) { return line.chosen(option); });
+  return std::any_of(error_sizes.begin(), error_sizes.end(), [&](const char* option) { return line.chosen(option); });
 }
 
 /// The text of an option that has one of a few words.
