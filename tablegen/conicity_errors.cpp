@@ -47,11 +47,13 @@ std::vector<WheelsetContact> searched_contacts(const WheelsetPair& pair, const W
   return wheelset_contacts(searched_side(right), searched_side(left), options);
 }
 
-ConicityRuns conicity_with_errors(const WheelsetPair& exact, ErrorBearer bearer, const ConicityErrorOptions& options) {
+ConicityRuns conicity_with_errors(const WheelsetPair& exact, ErrorBearer bearer, const ConicityErrorOptions& options,
+                                  const Progress& progress) {
   assert(options.runs >= 1);
   options.errors.validate();
   ConicityRuns runs(static_cast<std::size_t>(options.runs));
   ParallelFailure failure;
+  int done = 0;
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t run = 0; run < runs.size(); ++run) {
     failure.guard([&] {
@@ -61,6 +63,8 @@ ConicityRuns conicity_with_errors(const WheelsetPair& exact, ErrorBearer bearer,
       WheelRailPair right = with_errors(exact.right, bearer, options, generator);
       WheelRailPair left = with_errors(exact.left, bearer, options, generator);
       runs[run] = conicities({std::move(right), std::move(left)}, options);
+#pragma omp critical(conicity_errors_progress)
+      if (progress) progress(static_cast<double>(++done) / options.runs);
     });
   }
   failure.rethrow();

@@ -6,6 +6,7 @@
 
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/equivalent_conicity.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tablegen/profile_errors.hpp"
 
 namespace railtab {
@@ -40,7 +41,7 @@ using ConicityRuns = std::vector<std::vector<double>>;
 /// run depends on the seed, its number and the bearer alone.
 /// @throws InputError naming the profile that the errors spoil
 [[nodiscard]] ConicityRuns conicity_with_errors(const WheelsetPair& exact, ErrorBearer bearer,
-                                                const ConicityErrorOptions& options);
+                                                const ConicityErrorOptions& options, const Progress& progress = {});
 
 /// Of the runs that have a wave of one amplitude. NaN without any; the standard deviation with fewer than two.
 struct RunStatistics {

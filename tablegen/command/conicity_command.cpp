@@ -5,6 +5,7 @@
 
 #include "command/json_text.hpp"
 #include "command/print.hpp"
+#include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "conicity_output.hpp"
 #include "conicity_request.hpp"
@@ -30,11 +31,13 @@ WheelsetFunctions computed_functions(const ConicityRequest& request) {
   throw ComputationError(request.name + ": the centred wheelset does not touch both rails in the lateral range");
 }
 
-std::array<ConicityRuns, 3> computed_runs(const ConicityRequest& request) {
+std::array<ConicityRuns, 3> computed_runs(const ConicityRequest& request, bool quiet) {
   if (!request.errors) return {};
-  return {conicity_with_errors(*request.exact, ErrorBearer::wheels, *request.errors),
-          conicity_with_errors(*request.exact, ErrorBearer::rails, *request.errors),
-          conicity_with_errors(*request.exact, ErrorBearer::both, *request.errors)};
+  ProgressBar bar("errors", !quiet);
+  const auto runs = [&](ErrorBearer bearer) {
+    return conicity_with_errors(*request.exact, bearer, *request.errors, [&](double share) { bar.show(share); });
+  };
+  return {runs(ErrorBearer::wheels), runs(ErrorBearer::rails), runs(ErrorBearer::both)};
 }
 
 nlohmann::ordered_json pair_json(const WheelsetPair& pair) {
@@ -93,7 +96,7 @@ void conicity_command(const std::vector<std::string>& arguments) {
   const WheelsetFunctions functions = computed_functions(request);
   if (request.amplitudes.empty()) request.amplitudes = conicity_amplitudes(functions.radius_difference);
   if (request.errors) request.errors->amplitudes = request.amplitudes;
-  const std::vector<ConicityPoint> points = conicity_points(request, functions, computed_runs(request));
+  const std::vector<ConicityPoint> points = conicity_points(request, functions, computed_runs(request, line.quiet()));
   if (!request.output.empty()) {
     write_text_file(request.output, points_csv(request, points), conicity_csv_mark);
   }

@@ -110,13 +110,17 @@ nlohmann::ordered_json errors_json(const ConicityRequest& request, const std::ve
   return j;
 }
 
+std::string decimals(double value, int count) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, count) : "-";
+}
+
 std::string reference_text(const ConicityRequest& request, const std::vector<ConicityPoint>& points) {
   std::string text = fmt::format("\n{:>14}{:>11}{:>12}{:>17}{:>15}\n", "amplitude [mm]", "reference", "conicity",
                                  "narrow position", "wide position");
   for (std::size_t i = 0; i < points.size(); ++i) {
     text +=
-        fmt::format("{:14.1f}{:11.3f}{:>12}{:17.2f}{:15.2f}\n", points[i].amplitude / mm,
-                    request.reference[i].reference, conicity_text(points[i].wave), points[i].narrow, points[i].wide);
+        fmt::format("{:14.1f}{:11.3f}{:>12}{:>17}{:>15}\n", points[i].amplitude / mm, request.reference[i].reference,
+                    conicity_text(points[i].wave), decimals(points[i].narrow, 2), decimals(points[i].wide, 2));
   }
   for (const auto& [name, position] : {std::pair{"narrow", &ConicityPoint::narrow}, {"wide", &ConicityPoint::wide}}) {
     const BandSummary summary = band_summary(points, position);
@@ -133,8 +137,8 @@ std::string errors_text(const ConicityRequest& request, const std::vector<Conici
                         request.errors->runs, "amplitude [mm]", "found", "mean", "st. dev.", "min", "max");
     for (const ConicityPoint& point : points) {
       const RunStatistics& s = point.errors[bearer];
-      text += fmt::format("{:14.1f}{:8d}{:9.4f}{:9.4f}{:9.4f}{:9.4f}\n", point.amplitude / mm, s.found, s.mean,
-                          s.standard_deviation, s.least, s.greatest);
+      text += fmt::format("{:14.1f}{:8d}{:>9}{:>9}{:>9}{:>9}\n", point.amplitude / mm, s.found, decimals(s.mean, 4),
+                          decimals(s.standard_deviation, 4), decimals(s.least, 4), decimals(s.greatest, 4));
     }
   }
   return text;

@@ -16,7 +16,7 @@ struct ConicityPoint {
   EquivalentConicity wave, regression;
   double narrow = 0.0, wide = 0.0;        ///< position in the bands, NaN without a reference or a wave
   std::array<RunStatistics, 3> errors;    ///< by ErrorBearer
-  std::array<int, 3> inside_narrow = {};  /// of the runs, likewise
+  std::array<int, 3> inside_narrow = {};  ///< number of runs inside, likewise
   std::array<int, 3> inside_wide = {};
 };
 
