@@ -12,26 +12,25 @@ namespace railtab {
 namespace {
 
 constexpr double closest_samples = 1e-6;  // [m]
-constexpr double widest_samples = 1e-4;   // [m]
 
 /// d z_touch / d roll of a touching wheel: rolling by dφ moves the contact point by (−c, a) dφ, (a, c) its position
 /// from the wheelset centre, and z_touch rises by tan(contact angle) per lateral shift.
-double height_by_roll(const ContactPatch& patch, const WheelRailPair& pair, double y) {
-  const double a = patch.y_rail + pair.rail_offset() - y;
+double height_by_roll(const ContactPatch& patch, double rail_offset, double y) {
+  const double a = patch.y_rail + rail_offset - y;
   return -a - patch.rolling_radius * std::tan(patch.angle);
 }
 
 /// Both wheels at one lateral shift and roll. A wheel whose radius is larger by δ stands as the nominal one shifted
 /// along its own vertical: centre at (y − δ sin φ, z + δ cos φ).
 struct TwoWheels {
-  const PatchQuery& patches;
-  const WheelRailPair& pair;
+  const WheelOnRail& right_side;
+  const WheelOnRail& left_side;
   double radius_excess;  ///< of the right wheel over nominal [m]; of the left wheel the negative
 
   [[nodiscard]] std::optional<WheelsetContact> at(double y, double roll, const WheelsetContact& start) const {
     const double shift = radius_excess * std::sin(roll);
-    const auto right = first_contact(patches, y - shift, roll, start.z_right);
-    const auto left = first_contact(patches, -y - shift, -roll, start.z_left);
+    const auto right = first_contact(right_side.patches, y - shift, roll, start.z_right);
+    const auto left = first_contact(left_side.patches, -y - shift, -roll, start.z_left);
     if (!right || !left) return std::nullopt;
     const double difference = right->patch.rolling_radius - left->patch.rolling_radius + 2.0 * radius_excess;
     return WheelsetContact{y, roll, right->patch, left->patch, difference, right->z, left->z};
@@ -58,7 +57,8 @@ std::optional<WheelsetContact> free_roll(const TwoWheels& wheels, double y, cons
     const double f = wheels.height_difference(*c);
     if (std::abs(f) < tolerance || above - below < 1e-14) return c;
     (f > 0.0 ? below : above) = roll;
-    const double slope = height_by_roll(c->right, wheels.pair, y) + height_by_roll(c->left, wheels.pair, -y);
+    const double slope = height_by_roll(c->right, wheels.right_side.rail_offset, y) +
+                         height_by_roll(c->left, wheels.left_side.rail_offset, -y);
     const double newton = roll - f / slope;
     from = *c;
     roll = newton > below && newton < above ? newton : 0.5 * (below + above);
@@ -68,11 +68,10 @@ std::optional<WheelsetContact> free_roll(const TwoWheels& wheels, double y, cons
 
 struct Sampler {
   TwoWheels wheels;
-  WheelsetRoll roll;
-  double tolerance;
+  const WheelsetContactOptions& options;
 
   [[nodiscard]] std::optional<WheelsetContact> at(double y, const WheelsetContact& start) const {
-    return roll == WheelsetRoll::off ? wheels.at(y, 0.0, start) : free_roll(wheels, y, start);
+    return options.roll == WheelsetRoll::off ? wheels.at(y, 0.0, start) : free_roll(wheels, y, start);
   }
 
   /// Samples between a and b (both excluded) until lines between neighbours suffice. Two inner points are looked at:
@@ -84,26 +83,40 @@ struct Sampler {
     const auto quarter = middle ? at(a.y + 0.25 * width, a) : std::nullopt;
     if (!middle || !quarter) return;
     const double rise = b.radius_difference - a.radius_difference;
-    const bool straight = std::abs(middle->radius_difference - a.radius_difference - 0.5 * rise) <= tolerance &&
-                          std::abs(quarter->radius_difference - a.radius_difference - 0.25 * rise) <= tolerance;
-    if (straight) return;
+    const double middle_error = std::abs(middle->radius_difference - a.radius_difference - 0.5 * rise);
+    const double quarter_error = std::abs(quarter->radius_difference - a.radius_difference - 0.25 * rise);
+    if (middle_error <= options.tolerance && quarter_error <= options.tolerance) return;
     refine(a, *middle, samples);
     samples.push_back(*middle);
     refine(*middle, b, samples);
   }
 
-  /// From `start` to y_end in steps of widest_samples, refined, start excluded; ends where a wheel loses its rail.
-  [[nodiscard]] std::vector<WheelsetContact> outward(const WheelsetContact& start, double y_end) const {
+  /// Lateral shifts from the centre, excluded, to y_end: multiples of the step, or parts of the range of at most a
+  /// step.
+  [[nodiscard]] std::vector<double> shifts_to(double y_end) const {
+    const bool even = options.sampling == ShiftSampling::even;
+    constexpr double rounding = 1e-9;
+    const double steps = std::abs(y_end) / options.step;
+    const int count = static_cast<int>(even ? std::floor(steps + rounding) : std::ceil(steps));
+    std::vector<double> shifts;
+    for (int k = 1; k <= count; ++k) {
+      shifts.push_back(even ? std::copysign(k * options.step, y_end) : y_end * k / count);
+    }
+    return shifts;
+  }
+
+  /// From the centre, excluded, to y_end; ends where a wheel loses its rail.
+  [[nodiscard]] std::vector<WheelsetContact> outward(const WheelsetContact& centre, double y_end) const {
     std::vector<WheelsetContact> samples;
-    const int steps = static_cast<int>(std::ceil(std::abs(y_end - start.y) / widest_samples));
-    WheelsetContact last = start;
-    for (int k = 1; k <= steps; ++k) {
-      const double y = start.y + (y_end - start.y) * k / steps;
+    WheelsetContact last = centre;
+    for (const double y : shifts_to(y_end)) {
       const auto next = at(y, last);
       if (!next) break;
       std::vector<WheelsetContact> inner;
-      y_end > start.y ? refine(last, *next, inner) : refine(*next, last, inner);
-      if (y_end < start.y) std::reverse(inner.begin(), inner.end());
+      if (options.sampling == ShiftSampling::refined) {
+        y_end > 0.0 ? refine(last, *next, inner) : refine(*next, last, inner);
+        if (y_end < 0.0) std::reverse(inner.begin(), inner.end());
+      }
       samples.insert(samples.end(), inner.begin(), inner.end());
       samples.push_back(*next);
       last = *next;
@@ -120,6 +133,9 @@ void WheelsetContactOptions::validate() const {
   }
   if (!(std::abs(diameter_difference) <= 0.02)) {
     throw input_error("diameter difference", fmt::format("{} m", diameter_difference), "at most 0.02 m either way");
+  }
+  if (!(step >= 1e-6 && step <= 1e-3)) {
+    throw input_error("step of the lateral shift", fmt::format("{} m", step), "a number in 1e-6..1e-3 m");
   }
   if (!(tolerance >= 1e-12 && tolerance <= 1e-3)) {
     throw input_error("tolerance", fmt::format("{} m", tolerance), "a number in 1e-12..1e-3 m");
@@ -157,10 +173,10 @@ std::optional<FirstContact> first_contact(const PatchQuery& patches, double y, d
   return std::nullopt;
 }
 
-std::vector<WheelsetContact> wheelset_contacts(const PatchQuery& patches, const WheelRailPair& pair,
+std::vector<WheelsetContact> wheelset_contacts(const WheelOnRail& right_side, const WheelOnRail& left_side,
                                                const WheelsetContactOptions& options) {
   options.validate();
-  const Sampler sampler{{patches, pair, 0.25 * options.diameter_difference}, options.roll, options.tolerance};
+  const Sampler sampler{{right_side, left_side, 0.25 * options.diameter_difference}, options};
   const auto centre = sampler.at(0.0, WheelsetContact{});
   if (!centre) return {};
   std::vector<WheelsetContact> all = sampler.outward(*centre, options.y_low);
@@ -169,6 +185,12 @@ std::vector<WheelsetContact> wheelset_contacts(const PatchQuery& patches, const 
   const std::vector<WheelsetContact> right = sampler.outward(*centre, options.y_high);
   all.insert(all.end(), right.begin(), right.end());
   return all;
+}
+
+std::vector<WheelsetContact> wheelset_contacts(const PatchQuery& patches, const WheelRailPair& pair,
+                                               const WheelsetContactOptions& options) {
+  const WheelOnRail side{patches, pair.rail_offset()};
+  return wheelset_contacts(side, side, options);
 }
 
 }  // namespace railtab

@@ -18,6 +18,18 @@ enum class WheelsetRoll {
   free,  ///< rigid wheelset, both wheels in contact
 };
 
+/// The wheel and the rail of one side, both as on the right side of the track: a left side is seen in the mirror.
+struct WheelOnRail {
+  PatchQuery patches;
+  double rail_offset = 0.0;  ///< WheelRailPair::rail_offset() [m]
+};
+
+/// How the lateral shifts of the samples are chosen.
+enum class ShiftSampling {
+  refined,  ///< samples are added until straight lines between them suffice: a jump of the contact stands at its place
+  even,     ///< multiples of the step alone, as in [EN15302, Annex B]: a jump is spread over one step
+};
+
 /// A wheelset without yaw that just touches both rails.
 struct WheelsetContact {
   double y = 0.0;                      ///< lateral shift, to the right [m]
@@ -32,15 +44,21 @@ struct WheelsetContactOptions {
   double y_low = -0.010, y_high = 0.010;  ///< range of the lateral shift [m], y_low < 0 < y_high
   WheelsetRoll roll = WheelsetRoll::off;
   double diameter_difference = 0.0;  ///< right wheel's diameter minus left wheel's [m], |.| <= 0.02
-  double tolerance = 1e-7;  ///< a straight line between two samples is within this of the radius difference [m]
+  ShiftSampling sampling = ShiftSampling::refined;
+  double step = 1e-4;       ///< distance of even samples, the widest one of refined samples [m], in 1e-6..1e-3
+  double tolerance = 1e-7;  ///< refined: a straight line between samples is within this of the radius difference [m]
   /// @throws InputError naming the member out of range
   void validate() const;
 };
 
-/// Contact of both wheels over the lateral shift, in increasing y. Samples are added until the rolling radius
+/// Contact of both wheels over the lateral shift, in increasing y. Refined samples are added until the rolling radius
 /// difference is within `tolerance` of a straight line between neighbours, or these are 1 µm apart or less: a jump of
 /// the contact stands as a steep line. The range ends early where a wheel no longer meets its rail.
-/// @param pair gives nominal radius and offsets of the pair that `patches` is asked about
+[[nodiscard]] std::vector<WheelsetContact> wheelset_contacts(const WheelOnRail& right, const WheelOnRail& left,
+                                                             const WheelsetContactOptions& options);
+
+/// The same where both sides are alike.
+/// @param pair gives the offsets of the pair that `patches` is asked about
 [[nodiscard]] std::vector<WheelsetContact> wheelset_contacts(const PatchQuery& patches, const WheelRailPair& pair,
                                                              const WheelsetContactOptions& options);
 

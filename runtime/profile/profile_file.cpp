@@ -56,7 +56,7 @@ ProfilePoints read_points(std::istream& in, const std::filesystem::path& file, P
 
 }  // namespace
 
-ProfileKnots read_profile_file(const std::filesystem::path& file, ProfileKind kind, double noise) {
+ProfileKnots read_profile_file(const std::filesystem::path& file, ProfileKind kind, double noise, RailOrigin origin) {
   const std::string name = file.string();
   std::ifstream in(file);
   if (!in || std::filesystem::is_directory(file)) throw input_error(name, "no readable file", "a profile file");
@@ -79,17 +79,18 @@ ProfileKnots read_profile_file(const std::filesystem::path& file, ProfileKind ki
   } else {
     knots = spline_through_points(kind, title, y, z);
   }
-  if (kind == ProfileKind::rail) centre_rail(name, knots);
+  if (kind == ProfileKind::rail && origin == RailOrigin::highest_point) centre_rail(name, knots);
   knots.notes = std::move(outline.notes);
   return knots;
 }
 
-ProfileKnots load_profile(const std::string& name_or_file, ProfileKind kind, double rail_inclination, double noise) {
+ProfileKnots load_profile(const std::string& name_or_file, ProfileKind kind, double rail_inclination, double noise,
+                          RailOrigin origin) {
   const std::vector<std::string> names = standard_profile_names(kind);
   const bool known = std::any_of(names.begin(), names.end(),
                                  [&](const std::string& n) { return lower_case(n) == lower_case(name_or_file); });
   if (known) return standard_profile(kind, name_or_file, rail_inclination);
-  if (is_file(name_or_file)) return read_profile_file(name_or_file, kind, noise);
+  if (is_file(name_or_file)) return read_profile_file(name_or_file, kind, noise, origin);
   throw input_error(kind == ProfileKind::wheel ? "wheel profile" : "rail profile",
                     fmt::format("\"{}\", neither a built-in name nor a file", name_or_file),
                     fmt::format("one of {}, or a profile file", fmt::join(names, ", ")));

@@ -75,6 +75,10 @@ void PairDimensions::validate() const {
   require(nominal_radius >= 0.1 && nominal_radius <= 1.0, "nominal radius", nominal_radius, "0.1 to 1");
 }
 
+double track_gauge(const ProfileCurve& rail, double rail_offset, double gauge_height) {
+  return 2.0 * (rail_offset + gauge_point(rail, gauge_height));
+}
+
 WheelRailPair::WheelRailPair(ProfileCurve wheel, ProfileCurve rail, PairDimensions dimensions)
     : wheel_(std::move(wheel)), rail_(std::move(rail)), dimensions_(dimensions) {
   dimensions_.validate();

@@ -18,6 +18,10 @@ struct PairDimensions {
   void validate() const;
 };
 
+/// Track gauge at which the origin of the rail profile lies at rail_offset from the track centre [m].
+/// @throws InputError where the rail has no gauge point at the gauge height
+[[nodiscard]] double track_gauge(const ProfileCurve& rail, double rail_offset, double gauge_height);
+
 /// A right wheel on a right rail: the pair of contact search and tables. The left side is its mirror image.
 class WheelRailPair {
  public:

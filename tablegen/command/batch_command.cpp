@@ -128,7 +128,7 @@ std::vector<Job> read_jobs(const TableCommandLine& line) {
 void make(Job& job, const std::string& title, const TableCommandLine& line) {
   try {
     const GeometryRequest request = request_of(job.pair);
-    if (!line.quiet()) print_notes(request);
+    if (!line.quiet()) print_notes("geometry", request.search.pair());
     ProgressBar bar(title, !line.quiet());
     generate_geometry_table_file(request.search, request.options, provenance("geometry", job.pair.arguments),
                                  request.file, [&](double share) { bar.show(share); });

@@ -15,7 +15,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
                               arguments);
   if (line.help_printed()) return;
   const GeometryRequest request = geometry_request(line);
-  if (!line.quiet()) print_notes(request);
+  if (!line.quiet()) print_notes("geometry", request.search.pair());
   ProgressBar bar("geometry table", !line.quiet());
   generate_geometry_table_file(request.search, request.options, provenance("geometry", arguments), request.file,
                                [&](double share) { bar.show(share); });

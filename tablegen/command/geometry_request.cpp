@@ -12,9 +12,7 @@
 
 namespace railtab {
 
-namespace {
-
-PairDimensions dimensions(const TableCommandLine& line) {
+PairDimensions requested_dimensions(const TableCommandLine& line) {
   PairDimensions d;
   d.track_gauge = line.number("gauge");
   d.gauge_height = line.number("gauge-height");
@@ -23,15 +21,18 @@ PairDimensions dimensions(const TableCommandLine& line) {
   return d;
 }
 
-}  // namespace
+double requested_noise(const TableCommandLine& line) {
+  const double noise = line.number("smoothing");
+  if (!(noise >= 0.0)) throw input_error("--smoothing", line.text("smoothing"), "a length, 0 or above");
+  return noise;
+}
 
 WheelRailPair requested_pair(const TableCommandLine& line) {
   const double inclination = line.slope("rail-inclination");
-  const double noise = line.number("smoothing");
-  if (!(noise >= 0.0)) throw input_error("--smoothing", line.text("smoothing"), "a length, 0 or above");
+  const double noise = requested_noise(line);
   ProfileCurve wheel(load_profile(line.required("wheel"), ProfileKind::wheel, inclination, noise));
   ProfileCurve rail(load_profile(line.required("rail"), ProfileKind::rail, inclination, noise));
-  return WheelRailPair(std::move(wheel), std::move(rail), dimensions(line));
+  return WheelRailPair(std::move(wheel), std::move(rail), requested_dimensions(line));
 }
 
 GeometryRequest geometry_request(const TableCommandLine& line) {
@@ -55,11 +56,10 @@ GeometryRequest geometry_request(const TableCommandLine& line) {
   return {file, options, ContactSearch(requested_pair(line))};
 }
 
-void print_notes(const GeometryRequest& request) {
-  const WheelRailPair& pair = request.search.pair();
+void print_notes(const std::string& command, const WheelRailPair& pair) {
   for (const ProfileCurve* profile : {&pair.wheel(), &pair.rail()}) {
     for (const std::string& note : profile->knots().notes)
-      print_message(fmt::format("tablegen geometry: note: {}\n", note));
+      print_message(fmt::format("tablegen {}: note: {}\n", command, note));
   }
 }
 

@@ -17,13 +17,17 @@ struct GeometryRequest {
   ContactSearch search;
 };
 
+/// Of pair_options(): dimensions, and the noise of the profiles' points. @throws InputError
+[[nodiscard]] PairDimensions requested_dimensions(const TableCommandLine& line);
+[[nodiscard]] double requested_noise(const TableCommandLine& line);
+
 /// The pair that pair_options() ask for, its profiles loaded. @throws InputError
 [[nodiscard]] WheelRailPair requested_pair(const TableCommandLine& line);
 
 /// @throws InputError
 [[nodiscard]] GeometryRequest geometry_request(const TableCommandLine& line);
 
-/// To stderr, before the table is made: what was repaired in profile files should be looked at.
-void print_notes(const GeometryRequest& request);
+/// To stderr, before anything is computed: what was repaired in profile files should be looked at.
+void print_notes(const std::string& command, const WheelRailPair& pair);
 
 }  // namespace railtab

@@ -163,18 +163,20 @@ void geometry_info(const TableCommandLine& line, const std::string& file) {
     return line.json() ? print_json(description) : print_text(text);
   }
   const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(data)); });
-  const std::optional<WheelsetFunctions> functions =
-      in_file(file, [&] { return wheelset_functions(table, WheelsetRoll::off, 0.0); });
+  const std::optional<WheelsetFunctions> functions = in_file(file, [&] { return wheelset_functions(table); });
   if (line.given("html")) {
     if (!functions)
       throw ComputationError(file + ": the centred wheelset does not touch both rails in the table's range");
     write_text_file(line.text("html"), table_page(table.search().pair(), data, *functions, text));
   }
   if (line.json()) {
-    if (functions) description["wheelset"] = functions_json(*functions);
+    if (functions) {
+      description["wheelset"] = functions_json(*functions, conicity_amplitudes(functions->radius_difference));
+    }
     print_json(description);
   } else {
-    print_formatted("{}{}", text, functions ? functions_text(*functions) : "");
+    print_text(text);
+    if (functions) print_text(functions_text(*functions, conicity_amplitudes(functions->radius_difference)));
   }
 }
 

@@ -12,18 +12,6 @@ namespace railtab {
 
 namespace {
 
-const char* status_word(ConicityStatus status) {
-  switch (status) {
-    case ConicityStatus::found:
-      return "found";
-    case ConicityStatus::outside:
-      return "outside the range";
-    case ConicityStatus::no_wave:
-      break;
-  }
-  return "no wave";
-}
-
 /// Whole multiples of `step` inside the curve.
 std::vector<double> shifts(const RadiusDifferenceCurve& curve, double step) {
   std::vector<double> y;
@@ -34,26 +22,38 @@ std::vector<double> shifts(const RadiusDifferenceCurve& curve, double step) {
   return y;
 }
 
+}  // namespace
+
+std::optional<WheelsetFunctions> wheelset_functions(std::vector<WheelsetContact> contacts,
+                                                    const WheelsetContactOptions& options) {
+  if (contacts.size() < 2) return std::nullopt;
+  RadiusDifferenceCurve curve(contacts);
+  return WheelsetFunctions{options.roll, options.diameter_difference, std::move(contacts), std::move(curve)};
+}
+
+std::optional<WheelsetFunctions> wheelset_functions(const TableContact& table, WheelsetContactOptions options) {
+  const GeometryTableData& data = table.table().data();
+  if (!(data.lateral.low < 0.0 && data.lateral.high > 0.0)) return std::nullopt;
+  options.y_low = data.lateral.low;
+  options.y_high = data.lateral.high;
+  const auto query = [&](const WheelsetPose& pose, double near_miss) { return table.patches(pose, near_miss); };
+  return wheelset_functions(wheelset_contacts(query, table.search().pair(), options), options);
+}
+
 nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
-}  // namespace
-
-std::optional<WheelsetFunctions> wheelset_functions(const TableContact& table, WheelsetRoll roll,
-                                                    double diameter_difference) {
-  const GeometryTableData& data = table.table().data();
-  if (!(data.lateral.low < 0.0 && data.lateral.high > 0.0)) return std::nullopt;
-  WheelsetContactOptions options;
-  options.y_low = data.lateral.low;
-  options.y_high = data.lateral.high;
-  options.roll = roll;
-  options.diameter_difference = diameter_difference;
-  const auto query = [&](const WheelsetPose& pose, double near_miss) { return table.patches(pose, near_miss); };
-  std::vector<WheelsetContact> contacts = wheelset_contacts(query, table.search().pair(), options);
-  if (contacts.size() < 2) return std::nullopt;
-  RadiusDifferenceCurve curve(contacts);
-  return WheelsetFunctions{roll, diameter_difference, std::move(contacts), std::move(curve)};
+const char* status_word(ConicityStatus status) {
+  switch (status) {
+    case ConicityStatus::found:
+      return "found";
+    case ConicityStatus::outside:
+      return "outside the range";
+    case ConicityStatus::no_wave:
+      break;
+  }
+  return "no wave";
 }
 
 std::vector<double> conicity_amplitudes(const RadiusDifferenceCurve& curve) {
@@ -80,7 +80,7 @@ nlohmann::ordered_json conicity_json(const EquivalentConicity& conicity) {
           {"status", status_word(conicity.status)}};
 }
 
-nlohmann::ordered_json functions_json(const WheelsetFunctions& functions) {
+nlohmann::ordered_json functions_json(const WheelsetFunctions& functions, const std::vector<double>& amplitudes) {
   nlohmann::ordered_json j;
   j["roll"] = functions.roll == WheelsetRoll::free ? "on" : "off";
   j["diameter_difference"] = functions.diameter_difference;
@@ -91,7 +91,7 @@ nlohmann::ordered_json functions_json(const WheelsetFunctions& functions) {
     difference.push_back(curve.at(shift));
   }
   j["radius_difference"] = {{"y", y}, {"value", difference}};
-  for (const double a : conicity_amplitudes(curve)) {
+  for (const double a : amplitudes) {
     amplitude.push_back(a);
     wave.push_back(number_or_null(conicity_of_wave(curve, a).tan_gamma));
     regression.push_back(number_or_null(conicity_of_regression(curve, a).tan_gamma));
@@ -100,7 +100,7 @@ nlohmann::ordered_json functions_json(const WheelsetFunctions& functions) {
   return j;
 }
 
-std::string functions_text(const WheelsetFunctions& functions) {
+std::string functions_text(const WheelsetFunctions& functions, const std::vector<double>& amplitudes) {
   const RadiusDifferenceCurve& curve = functions.radius_difference;
   std::string text = fmt::format("\n{:>8}{:>12}{:>16}{:>16}{:>14}{:>14}\n", "y", "delta r", "angle left", "angle right",
                                  "radius left", "radius right");
@@ -113,7 +113,7 @@ std::string functions_text(const WheelsetFunctions& functions) {
                         (c.left.rolling_radius - excess) / mm, (c.right.rolling_radius + excess) / mm);
   }
   text += fmt::format("\n{:>14}{:>22}{:>14}\n", "amplitude [mm]", "equivalent conicity", "regression");
-  for (const double a : conicity_amplitudes(curve)) {
+  for (const double a : amplitudes) {
     text += fmt::format("{:14.1f}{:>22}{:>14}\n", a / mm, conicity_text(conicity_of_wave(curve, a)),
                         conicity_text(conicity_of_regression(curve, a)));
   }

@@ -205,6 +205,64 @@ TEST(RollingRadiusDifference, FreeRollIsThatOfTheRigidPosition) {
   }
 }
 
+/// Both searches must outlive the result.
+std::vector<WheelsetContact> contacts_of_sides(const ContactSearch& right, const ContactSearch& left,
+                                               const WheelsetContactOptions& options) {
+  const auto side = [](const ContactSearch& search) {
+    return WheelOnRail{
+        [&search](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
+        search.pair().rail_offset()};
+  };
+  return wheelset_contacts(side(right), side(left), options);
+}
+
+ContactSearch cone_search(const char* cone) {
+  return ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, cone, 0.0)),
+                                     ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 0.0)), PairDimensions{}));
+}
+
+// Unlike cones touch fixed points of their rails: Δr grows by the sum of their slopes. The mirror image of the wheelset
+// has Δr(−y) and the roll −φ(−y).
+TEST(RollingRadiusDifference, UnlikeWheelsCountEachOnItsSide) {
+  const ContactSearch steep = cone_search("cone-1:20");
+  const ContactSearch flat = cone_search("cone-1:40");
+  WheelsetContactOptions options;
+  options.y_low = -4.0 * mm;
+  options.y_high = 4.0 * mm;
+  const RadiusDifferenceCurve curve(contacts_of_sides(steep, flat, options));
+  EXPECT_NEAR(curve.at(3.0 * mm) - curve.at(-3.0 * mm), (1.0 / 20.0 + 1.0 / 40.0) * 6.0 * mm, 1e-9);
+  const RadiusDifferenceCurve mirrored(contacts_of_sides(flat, steep, options));
+  for (const double y : {-3.0 * mm, 0.0, 1.3 * mm}) EXPECT_NEAR(mirrored.at(y), -curve.at(-y), 1e-11) << y;
+  options.roll = WheelsetRoll::free;
+  options.sampling = ShiftSampling::even;
+  options.step = 1.0 * mm;
+  const auto free = contacts_of_sides(steep, flat, options);
+  const auto free_mirrored = contacts_of_sides(flat, steep, options);
+  ASSERT_EQ(free.size(), 9u);
+  ASSERT_EQ(free_mirrored.size(), 9u);
+  EXPECT_GT(std::abs(free[7].roll), 1e-5);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(free_mirrored[i].roll, -free[8 - i].roll, 1e-11) << i;
+}
+
+// Even samples are the multiples of the step and lie on the refined curve.
+TEST(RollingRadiusDifference, EvenSamplesAreMultiplesOfTheStep) {
+  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
+                                           PairDimensions{}));
+  const RadiusDifferenceCurve refined(contacts(search, WheelsetRoll::off));
+  WheelsetContactOptions options;
+  options.y_low = -2.25 * mm;
+  options.y_high = 6.0 * mm;
+  options.sampling = ShiftSampling::even;
+  options.step = 0.5 * mm;
+  const auto even = contacts_of_sides(search, search, options);
+  ASSERT_EQ(even.size(), 17u);
+  for (std::size_t i = 0; i < even.size(); ++i) {
+    EXPECT_NEAR(even[i].y, (static_cast<double>(i) - 4.0) * 0.5 * mm, 1e-15);
+    EXPECT_NEAR(even[i].radius_difference, refined.at(even[i].y), 2e-7) << even[i].y;
+  }
+}
+
 TEST(RollingRadiusDifference, RefusesOptionsOutOfRange) {
   WheelsetContactOptions options;
   options.y_low = 1e-3;
@@ -214,6 +272,9 @@ TEST(RollingRadiusDifference, RefusesOptionsOutOfRange) {
   EXPECT_THROW(options.validate(), InputError);
   options = {};
   options.tolerance = 0.0;
+  EXPECT_THROW(options.validate(), InputError);
+  options = {};
+  options.step = 2e-3;
   EXPECT_THROW(options.validate(), InputError);
 }
 

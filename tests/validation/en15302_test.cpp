@@ -1,7 +1,8 @@
-// Equivalent conicity of the reference profiles of EN 15302 against the standard's reference curves and bands
+// `tablegen conicity` on the reference profiles of EN 15302 against the standard's reference curves and bands
 // [EN15302]. RAILTAB_EXTERNAL_DATA names a folder with facts/en15302: wheels RUIC519*.dat and rail SUIC519A.dat (mm, z
-// upwards, y = 0 at 750 mm from the track centre), rolling radius differences dr_*.dat, conicities with their bands
-// ben_*.dat.
+// upwards, origins at 750 mm from the track centre), conicities of the edition of 2008 with their bands, ben_*.dat.
+// Profiles by formulas and conicities of the edition of 2021 (Annexes I and K) are here, as quoted by the public
+// package github.com/rohrbecka/EN15302.
 
 #include <gtest/gtest.h>
 
@@ -10,28 +11,89 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "../measured.hpp"
-#include "railtab/runtime/contact/contact_search.hpp"
-#include "railtab/runtime/contact/equivalent_conicity.hpp"
-#include "railtab/runtime/profile/profile_file.hpp"
+#include "../robustness/tablegen_fixture.hpp"
+#include "railtab/tablegen/conicity_bands.hpp"
 
 namespace railtab {
 namespace {
 
 constexpr double mm = 1e-3;
-constexpr double half_spacing = 0.750;  // of the profiles' origins [m]
 
-std::vector<std::vector<double>> read_columns(const std::filesystem::path& file, std::size_t columns) {
-  std::ifstream in(file);
-  std::vector<std::vector<double>> column(columns);
-  for (std::size_t i = 0;; ++i) {
-    double value = 0;
-    if (!(in >> value)) return column;
-    column[i % columns].push_back(value);
+/// A stretch of a profile [mm], z downwards: z = a + b y, or an arc about (a, b) of the radius r, above its centre
+/// where r > 0, below it where r < 0.
+struct Zone {
+  double end;  // of y
+  double a, b, r;
+
+  [[nodiscard]] double z(double y) const {
+    if (r == 0.0) return a + b * y;
+    return b - std::copysign(std::sqrt(r * r - (y - a) * (y - a)), r);
   }
+};
+using Zones = std::vector<Zone>;
+
+// Flange from y = -49 mm, root, tread up to 60 mm.
+const std::map<std::string, Zones> wheel_formulas = {{"A",
+                                                      {{-39.7645, -58.5583, 8.83556, -20.0},
+                                                       {-38.7372, -93.57685, -2.7475, 0.0},
+                                                       {-29.4591, -25.5816, 17.64215, 14.0},
+                                                       {-10.8749, -2.6594, 97.16493, 96.76055},
+                                                       {18.4173, 18.4173, 344.50806, 345.0},
+                                                       {30.0, -0.49194, 0.0, 0.0},
+                                                       {60.0, 1.50804, -0.066666, 0.0}}},
+                                                     {"B",
+                                                      {{-39.7640, -58.5583, 8.8349, -20.0},
+                                                       {-38.7879, -93.5767, -2.7475, 0.0},
+                                                       {-29.3505, -25.6322, 17.7814, 14.0},
+                                                       {-0.4787, 2.5204, 119.9745, 120.0},
+                                                       {30.0, 0.0, -0.025, 0.0},
+                                                       {60.0, 0.75, -0.05, 0.0}}},
+                                                     {"H",
+                                                      {{-39.7645, -58.5583, 8.8349, -20.0},
+                                                       {-38.7220, -93.5767, -2.7475, 0.0},
+                                                       {-28.3119, -25.5663, 17.6003, 14.0},
+                                                       {-10.2297, -1.7902, -0.2, 0.0},
+                                                       {30.0, 0.0, -0.025, 0.0},
+                                                       {60.0, 1.251, -0.0667, 0.0}}},
+                                                     {"I",
+                                                      {{-39.7640, -58.5583, 8.83545, -20.0},
+                                                       {-39.0486, -93.5767, -2.7475, 0.0},
+                                                       {-29.9231, -25.8929, 18.49733, 14.0},
+                                                       {5.0, 5.0, std::sqrt(14375.0), 120.0},
+                                                       {30.0, std::sqrt(14375.0) - 120.0, 0.0, 0.0},
+                                                       {60.0, 1.89679, -0.0667, 0.0}}}};
+const Zones rail_formula = {{-23.2401, -19.63949, 15.899044, 13.0},
+                            {-7.8749, -1.0825, 80.277908, 80.0},
+                            {13.0989, 17.5966, 299.48349, 300.0},
+                            {28.6709, 14.29829, 79.508225, 80.0},
+                            {39.2, 26.33535, 13.598369, 13.0}};
+
+void write_profile(const std::filesystem::path& file, const Zones& zones, double y_low) {
+  std::ofstream out(file);
+  out.precision(12);
+  out << "# units: mm\n";
+  constexpr int intervals = 2000;
+  const double y_high = zones.back().end;
+  for (int i = 0; i <= intervals; ++i) {
+    const double y = y_low + (y_high - y_low) * i / intervals;
+    const auto zone = std::find_if(zones.begin(), zones.end() - 1, [&](const Zone& z) { return y < z.end; });
+    out << y << ' ' << zone->z(y) << '\n';
+  }
+}
+
+constexpr const char* placed = "--half-spacing 0.750 --lateral -0.009:0.009 ";
+
+/// The wheel and the rail by formulas, as files of the folder.
+std::string formula_profiles(const std::filesystem::path& folder, const std::string& wheel) {
+  write_profile(folder / (wheel + ".dat"), wheel_formulas.at(wheel), -49.0);
+  write_profile(folder / "rail.dat", rail_formula, -32.6);
+  return "--wheel " + wheel + ".dat --rail rail.dat " + placed;
 }
 
 struct Case {
@@ -40,82 +102,74 @@ struct Case {
   double diameter_difference;  // right minus left [m]
 };
 
-class En15302 : public ::testing::TestWithParam<Case> {
+class En15302Fixture : public TablegenFixture {
  protected:
   void SetUp() override {
     const char* const folder = std::getenv("RAILTAB_EXTERNAL_DATA");
     if (folder == nullptr) GTEST_SKIP() << "RAILTAB_EXTERNAL_DATA is not set";
-    folder_ = std::filesystem::path(folder) / "facts" / "en15302";
-    if (!std::filesystem::exists(folder_ / "SUIC519A.dat")) GTEST_SKIP() << "no EN 15302 files in " << folder_;
+    data_ = std::filesystem::absolute(folder) / "facts" / "en15302";
+    if (!std::filesystem::exists(data_ / "SUIC519A.dat")) GTEST_SKIP() << "no EN 15302 files in " << data_;
+    TablegenFixture::SetUp();
   }
 
-  [[nodiscard]] ProfileKnots profile(ProfileKind kind, const std::string& file) const {
-    auto column = read_columns(folder_ / file, 2);
-    for (double& y : column[0]) y *= mm;
-    for (double& z : column[1]) z *= -mm;
-    return spline_through_points(kind, file, column[0], column[1]);
+  [[nodiscard]] std::string profiles(const std::string& wheel) const {
+    return "--wheel '" + (data_ / ("RUIC519" + wheel + ".dat")).string() + "' --rail '" +
+           (data_ / "SUIC519A.dat").string() + "' " + placed;
+  }
+  [[nodiscard]] std::string reference(const std::string& name) const {
+    return "--reference '" + (data_ / ("ben_" + name + ".dat")).string() + "' ";
+  }
+  [[nodiscard]] nlohmann::json conicity(const std::string& arguments) const {
+    const Outcome outcome = tablegen("conicity " + arguments + " --quiet --json");
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+    return nlohmann::json::parse(outcome.out);
   }
 
-  // The pair in the standard's set-up: both profiles' origins at 750 mm.
-  [[nodiscard]] ContactSearch search() const {
-    ProfileCurve wheel(profile(ProfileKind::wheel, std::string("RUIC519") + GetParam().wheel + ".dat"));
-    ProfileCurve rail(profile(ProfileKind::rail, "SUIC519A.dat"));
-    PairDimensions dimensions;
-    dimensions.flange_back = 2.0 * (half_spacing - PairDimensions::tape_circle_to_flange_back);
-    // The rail keeps the file's frame here, so that its origin has to come to lie at half_spacing.
-    const WheelRailPair trial(wheel, rail, dimensions);
-    dimensions.track_gauge += 2.0 * (half_spacing - trial.rail_offset());
-    return ContactSearch(WheelRailPair(std::move(wheel), std::move(rail), dimensions));
-  }
-
-  std::filesystem::path folder_;
+  std::filesystem::path data_;
 };
 
-std::vector<WheelsetContact> contacts(const ContactSearch& search, WheelsetRoll roll, double difference) {
-  WheelsetContactOptions options;
-  options.y_low = -9.0 * mm;
-  options.y_high = 9.0 * mm;
-  options.roll = roll;
-  options.diameter_difference = difference;
-  return wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-                           search.pair(), options);
+class En15302 : public En15302Fixture, public ::testing::WithParamInterface<Case> {
+ protected:
+  /// The comparison with the bands, measured under `route`.
+  [[nodiscard]] nlohmann::json bands(const std::string& route, const std::string& arguments) const {
+    const Case& c = GetParam();
+    const nlohmann::json reference = conicity(arguments + reference_option() + "--diameter-difference " +
+                                              std::to_string(c.diameter_difference))["reference"];
+    EXPECT_EQ(reference["narrow_position"].size(), 66u);
+    const std::string name = "en15302." + route + "." + c.name;
+    testing::measured(name + ".position", reference["narrow"]["farthest"].get<double>());
+    testing::measured(name + ".amplitude_mm", reference["narrow"]["farthest_amplitude"].get<double>() / mm);
+    testing::measured(name + ".narrow_outside", reference["narrow"]["outside"].get<int>());
+    return reference;
+  }
+
+ private:
+  [[nodiscard]] std::string reference_option() const { return reference(GetParam().name); }
+};
+
+// The reference curves come from the formulas, with Δr at shifts 0.1 mm apart. Δr of the standard has three decimals.
+TEST_P(En15302, FormulasWithEvenShiftsAreInsideTheNarrowBandAtEveryAmplitude) {
+  const nlohmann::json found =
+      bands("formulas_even", formula_profiles(folder_, GetParam().wheel) + "--sampling even --step 1e-4 ");
+  EXPECT_EQ(found["narrow"]["outside"], 0) << found["narrow"];
+  EXPECT_EQ(found["wide"]["outside"], 0) << found["wide"];
 }
 
-TEST_P(En15302, ConicityInsideTheBandAtEveryAmplitude) {
-  const ContactSearch s = search();
-  EXPECT_NEAR(s.pair().rail_offset(), half_spacing, 1e-12);
-  const auto wheelset = contacts(s, WheelsetRoll::off, GetParam().diameter_difference);
-  const RadiusDifferenceCurve curve(wheelset);
-  const auto band = read_columns(folder_ / (std::string("ben_") + GetParam().name + ".dat"), 6);
-  ASSERT_EQ(band[0].size(), 66u);
-  double worst = 0.0, worst_at = 0.0, largest = 0.0;  // position in the band, -1 lower to 1 upper limit
-  double worst_narrow = 0.0;
-  int outside_narrow = 0;
-  for (std::size_t i = 0; i < band[0].size(); ++i) {
-    const EquivalentConicity wave = conicity_of_wave(curve, band[0][i] * mm);
-    ASSERT_EQ(wave.status, ConicityStatus::found) << band[0][i];
-    const auto position = [&](double tan_gamma, std::size_t upper) {
-      const double reference = band[1][i];
-      const double high = band[upper][i], low = band[upper + 1][i];
-      return tan_gamma >= reference ? (tan_gamma - reference) / (high - reference)
-                                    : (tan_gamma - reference) / (reference - low);
-    };
-    EXPECT_LE(wave.tan_gamma, band[4][i]) << band[0][i];
-    EXPECT_GE(wave.tan_gamma, band[5][i]) << band[0][i];
-    if (const double p = position(wave.tan_gamma, 4); std::abs(p) > std::abs(worst)) {
-      worst = p;
-      worst_at = band[0][i];
-    }
-    if (const double p = position(wave.tan_gamma, 2); std::abs(p) > std::abs(worst_narrow)) worst_narrow = p;
-    if (std::abs(position(wave.tan_gamma, 2)) > 1.0) ++outside_narrow;
-    largest = std::max(largest, std::abs(wave.tan_gamma - band[1][i]));
+// Points of the standard, rounded to 1 µm, move jumps of Δr by some micrometres.
+TEST_P(En15302, PointsAreInsideTheWideBandAtEveryAmplitude) {
+  const nlohmann::json even = bands("even", profiles(GetParam().wheel) + "--sampling even --step 1e-4 ");
+  EXPECT_EQ(even["wide"]["outside"], 0) << even["wide"];
+  const nlohmann::json refined = bands("refined", profiles(GetParam().wheel));
+  EXPECT_EQ(refined["wide"]["outside"], 0) << refined["wide"];
+}
+
+TEST_P(En15302, OriginsLieAtTheHalfSpacing) {
+  const nlohmann::json pair = conicity(profiles(GetParam().wheel))["pair"];
+  for (const char* side : {"right", "left"}) {
+    EXPECT_NEAR(pair[side]["rail_offset"], 0.750, 1e-12);
+    EXPECT_NEAR(pair[side]["tape_circle_offset"], 0.750, 1e-12);
+    EXPECT_NEAR(pair[side]["gauge"], 1.43516, 0.05 * mm);  // the standard's gauge
   }
-  const std::string name = std::string("en15302.") + GetParam().name;
-  testing::measured(name + ".position", worst);
-  testing::measured(name + ".amplitude_mm", worst_at);
-  testing::measured(name + ".difference", largest);
-  testing::measured(name + ".narrow_outside", outside_narrow);
-  testing::measured(name + ".narrow_position", worst_narrow);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, En15302,
@@ -123,6 +177,79 @@ INSTANTIATE_TEST_SUITE_P(Cases, En15302,
                                            Case{"E5", "A", 2.0 * mm}, Case{"E6", "B", 2.0 * mm},
                                            Case{"E8", "I", 2.0 * mm}),
                          [](const auto& c) { return std::string(c.param.name); });
+
+// Next to jumps of Δr, where refined shifts leave the narrow band of 2008, the edition of 2021 has another reference:
+// 0.058 became 0.030, 0.075 became 0.110.
+struct Jump {
+  const char* name;
+  const char* wheel;
+  double amplitude_mm, low, high;  // narrow band of 2021
+};
+constexpr Jump jumps[] = {{"E2", "B", 3.0, 0.015, 0.045},
+                          {"E2", "B", 3.2, 0.063, 0.163},
+                          {"E3", "H", 2.6, 0.060, 0.160},
+                          {"E3", "H", 2.8, 0.156, 0.256}};
+
+void expect_inside(const Jump& jump, const std::string& route, double tan_gamma) {
+  EXPECT_GE(tan_gamma, jump.low) << jump.name << " " << jump.amplitude_mm;
+  EXPECT_LE(tan_gamma, jump.high) << jump.name << " " << jump.amplitude_mm;
+  const std::string amplitude = std::to_string(static_cast<int>(std::lround(10.0 * jump.amplitude_mm)));
+  testing::measured("en15302." + route + "." + jump.name + ".at_" + amplitude, tan_gamma);
+}
+
+class En15302Jumps : public En15302Fixture {};
+
+TEST_F(En15302Jumps, PointsOf2008WithRefinedShiftsAreInsideTheNarrowBandOf2021) {
+  for (const Jump& jump : jumps) {
+    const nlohmann::json found =
+        conicity(profiles(jump.wheel) + "--amplitude " + std::to_string(jump.amplitude_mm * mm));
+    expect_inside(jump, "refined", found["wave"]["conicity"]);
+  }
+}
+
+class En15302Formulas : public TablegenFixture {};
+
+TEST_F(En15302Formulas, RefinedShiftsAreInsideTheNarrowBandOf2021) {
+  for (const Jump& jump : jumps) {
+    const Outcome outcome = tablegen("conicity " + formula_profiles(folder_, jump.wheel) +
+                                     "--quiet --json --amplitude " + std::to_string(jump.amplitude_mm * mm));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_inside(jump, "formulas", nlohmann::json::parse(outcome.out)["wave"]["conicity"]);
+  }
+}
+
+// Step 2 of [EN15302, 6.2]: 20 runs each with random errors and a grid, at wheels, rails and both.
+class En15302Errors : public En15302Fixture {};
+
+TEST_F(En15302Errors, MeanOfRunsInsideTheWideBand) {
+  const struct {
+    const char *name, *options;
+  } errors[] = {{"random", "--random-error 10e-6 --smoothing 10e-6"},
+                {"grid", "--grid 20e-6 --smoothing 6e-6"},
+                {"spacing", "--spacing 0.5e-3"}};
+  const std::vector<ConicityBand> band = read_conicity_bands(data_ / "ben_E1.dat");
+  ASSERT_EQ(band.size(), 66u);
+  for (const auto& [name, options] : errors) {
+    const nlohmann::json found =
+        conicity(profiles("A") + reference("E1") + "--sampling even --runs 20 --seed 1 " + options);
+    for (const char* bearer : {"wheels", "rails", "both"}) {
+      const nlohmann::json& study = found["errors"][bearer];
+      double largest_deviation = 0.0;
+      int outside = 0;
+      for (std::size_t i = 0; i < 66; ++i) {
+        ASSERT_EQ(study["found"][i], 20) << name << " " << bearer << " " << i;
+        EXPECT_LE(study["mean"][i], band[i].wide.upper) << name << " " << bearer << " " << i;
+        EXPECT_GE(study["mean"][i], band[i].wide.lower) << name << " " << bearer << " " << i;
+        largest_deviation = std::max(largest_deviation, study["standard_deviation"][i].get<double>());
+        outside += 20 - study["inside_wide"][i].get<int>();
+      }
+      const std::string key = std::string("en15302.errors.") + name + "." + bearer;
+      testing::measured(key + ".standard_deviation", largest_deviation);
+      testing::measured(key + ".outside", outside);
+      EXPECT_GT(largest_deviation, 0.0);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace railtab
