@@ -1,5 +1,7 @@
 #include "railtab/runtime/stability/contact_slopes.hpp"
 
+#include <algorithm>
+
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
 
@@ -10,6 +12,7 @@ namespace {
 // Well below penetration and creepage of sliding, well above the rounding of the contact search.
 constexpr double move = 1e-6;  // m, rad
 constexpr double creepage_step = 1e-6;
+constexpr Eigen::Index y_dof = 1;
 
 // Forces of both wheels on a wheelset.
 Vector6 wheelset_force(const WheelContactModel& model, const WheelsetMotion& motion) {
@@ -24,7 +27,7 @@ Vector6 wheelset_force(const WheelContactModel& model, const WheelsetMotion& mot
 
 }  // namespace
 
-ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotion& at) {
+ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotion& at, double travel) {
   ContactSlopes slopes;
   const auto difference = [&](Vector6 WheelsetMotion::*member, Eigen::Index dof, double step) {
     WheelsetMotion ahead = at, behind = at;
@@ -34,7 +37,8 @@ ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotio
   };
   const double radius = model.geometry->pair().nominal_radius();
   for (Eigen::Index dof = 0; dof < 6; ++dof) {
-    slopes.by_displacement.col(dof) = difference(&WheelsetMotion::displacement, dof, move);
+    slopes.by_displacement.col(dof) =
+        difference(&WheelsetMotion::displacement, dof, dof == y_dof ? std::max(move, 0.5 * travel) : move);
     const double arm = dof < 3 ? 1.0 : radius;
     slopes.by_velocity.col(dof) = difference(&WheelsetMotion::velocity, dof, creepage_step * model.speed / arm);
   }

@@ -9,7 +9,10 @@ namespace railtab {
 struct ContactSlopes {
   Eigen::Matrix<double, 6, 6> by_displacement, by_velocity;
 };
-[[nodiscard]] ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotion& motion);
+/// @param travel lateral way over which the slope by y is a mean [m]: that of a time step, within which contact points
+///        may jump; 0: the slope at the motion
+[[nodiscard]] ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotion& motion,
+                                           double travel = 0.0);
 
 /// The motion of each wheelset of the first vehicle.
 [[nodiscard]] std::vector<WheelsetMotion> wheelset_motions(const VsiModel& model, const LinearMotion& motion);

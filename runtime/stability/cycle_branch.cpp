@@ -122,8 +122,8 @@ std::optional<BranchCycle> fold_near(const Flow& flow, const CycleSection& secti
   Shooting shooting(flow, section, search.shooting);
   constexpr int most_parabolas = 12;
   for (int i = 0; i < most_parabolas; ++i) {
-    const auto height = extremum({around[0].motion.point(section), around[1].motion.point(section),
-                                  around[2].motion.point(section)});
+    const auto height =
+        extremum({around[0].motion.point(section), around[1].motion.point(section), around[2].motion.point(section)});
     if (!height) return around[1];
     PeriodicMotion guess = around[1].motion;
     const double slope = around[1].tangent.start[section.coordinate];

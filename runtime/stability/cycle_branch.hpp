@@ -20,7 +20,7 @@ struct BranchCycle {
 
 /// How a branch is followed: by steps along its tangent in the plane of height and parameter.
 struct BranchSearch {
-  BranchPoint unit{1.0, 1.0};  ///< what counts as one along either axis
+  BranchPoint unit{1.0, 1.0};                                          ///< what counts as one along either axis
   double first_step = 0.05, smallest_step = 1e-3, largest_step = 0.5;  ///< in these units
   double lowest_parameter = 0.0, highest_parameter = 1.0;
   double lowest_height = 0.0, highest_height = 1.0;
@@ -47,7 +47,7 @@ struct CycleBranch {
 /// The steps that a period takes.
 [[nodiscard]] SteppedTime stepped_time(double duration, double longest_step);
 
-/// Follows the branch of a periodic motion by pseudo-arclength continuation [Keller1977; Seydel2010, section 4.5].
+/// Follows the branch of a periodic motion by pseudo-arclength continuation [Keller1977].
 /// @param guess    near the first motion  @param line  on which that is sought
 /// @param forward  direction in which the branch is followed: its height, or its parameter, grows or falls
 /// @param listener called with every motion found; false ends the search
@@ -55,8 +55,8 @@ struct CycleBranch {
                                         const BranchLine& line, const BranchPoint& forward, const BranchSearch& search,
                                         const std::function<bool(const BranchCycle&)>& listener);
 
-/// The fold of the parameter, a minimum or a maximum, between the neighbours of a cycle of the branch: by parabolas over
-/// the height. None where they do not converge.
+/// The fold of the parameter, a minimum or a maximum, between the neighbours of a cycle of the branch: by parabolas
+/// over the height. None where they do not converge.
 [[nodiscard]] std::optional<BranchCycle> fold_near(const Flow& flow, const CycleSection& section,
                                                    const CycleBranch& branch, std::size_t cycle,
                                                    const BranchSearch& search);

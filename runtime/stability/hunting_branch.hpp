@@ -23,13 +23,24 @@ struct LimitCycle {
   [[nodiscard]] bool is_stable() const { return std::abs(multiplier) < 1.0; }
 };
 
+/// A time simulation that settles on a limit cycle.
+struct SettledStart {
+  double speed = 80.0;     ///< [m/s]
+  double shift = 5e-3;     ///< of the train to the right when it begins [m]
+  double duration = 30.0;  ///< [s]
+};
+
 struct HuntingSearch {
-  SpeedSearch speed;  ///< of the linear critical speed, and the range of the branch
+  SpeedSearch speed;        ///< of the linear critical speed, and the range of the branch
   double time_step = 5e-4;  ///< longest [s]
   double alpha = 0.0;       ///< of HHT
-  double first_amplitude = 1e-4, largest_amplitude = 20e-3;  ///< of the wheelset with the largest in the linear motion [m]
-  double largest_step = 0.5;                                 ///< along the branch, in 1 mm and 2 m/s
+  double first_amplitude = 1e-4,
+         largest_amplitude = 20e-3;  ///< of the wheelset with the largest in the linear motion [m]
+  double largest_step = 0.5;         ///< along the branch, in 1 mm and 2 m/s
   int max_cycles = 300;
+  /// The branch through the cycle that a simulation settles on, followed to both sides; none: from the linear critical
+  /// speed.
+  std::optional<SettledStart> start{};
 };
 
 /// Which way the branch leaves the linear critical speed.
@@ -40,21 +51,23 @@ enum class Bifurcation {
 
 struct HuntingBranch {
   LinearCriticalSpeed linear;
-  Bifurcation bifurcation = Bifurcation::supercritical;
-  int section_wheelset = 0;  ///< whose lateral displacement is largest when a cycle begins
+  std::optional<Bifurcation> bifurcation;  ///< of a branch that begins at the linear critical speed
+  int section_wheelset = 0;                ///< whose lateral displacement is largest when a cycle begins
   std::vector<LimitCycle> cycles;
   std::vector<LimitCycle> folds;  ///< where cycles of two amplitudes meet, in the order of the branch
   BranchEnd end = BranchEnd::no_convergence;
 
-  /// Lowest speed at which there is a limit cycle or rest is unstable [m/s]; none where there is no linear critical
-  /// speed. An upper bound where the branch leaves the range of speeds downwards.
+  /// Lowest speed at which there is a limit cycle or rest is unstable [m/s]; none where there is neither. An upper
+  /// bound where the branch leaves the range of speeds downwards.
   [[nodiscard]] std::optional<double> nonlinear_critical_speed() const;
 };
 
-/// The branch of limit cycles that begins at the linear critical speed.
+/// The branch of limit cycles that begins at the linear critical speed, or with HuntingSearch::start.
+/// @param linear   the vehicle with its force elements by linear stand-ins  @param model  the vehicle as it runs, with
+///                 the same degrees of freedom
 /// @param listener called with every cycle; false ends the search
-/// @throws InputError as VehicleFlow  @throws ComputationError where no cycle is found near the linear critical speed
-[[nodiscard]] HuntingBranch hunting_branch(const VsiModel& model, const HuntingSearch& search,
+/// @throws InputError as VehicleFlow  @throws ComputationError where no first cycle is found
+[[nodiscard]] HuntingBranch hunting_branch(const VsiModel& linear, const VsiModel& model, const HuntingSearch& search,
                                            const std::function<bool(const LimitCycle&)>& listener);
 
 }  // namespace railtab

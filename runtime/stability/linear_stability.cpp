@@ -94,8 +94,7 @@ std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std
   return shapes;
 }
 
-LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity,
-                                      int motion) {
+LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity, int motion) {
   const std::vector<LinearShape> shapes = lateral_shapes(model, speed, conicity);
   if (index(motion) > shapes.size()) return {.speed = speed, .growth = -std::numeric_limits<double>::infinity()};
   const std::complex<double> value = shapes[index(motion - 1)].value;

@@ -58,7 +58,8 @@ struct LinearCriticalSpeed {
   std::vector<LeastStableMotion> searched;    ///< at the speeds of the search
 };
 
-/// The lowest speed from which on a small motion (SpeedSearch::motion: so many) grows, by bisection between two steps of the search.
+/// The lowest speed from which on a small motion (SpeedSearch::motion: so many) grows, by bisection between two steps
+/// of the search.
 [[nodiscard]] LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSearch& search = {},
                                                         std::optional<double> conicity = {});
 

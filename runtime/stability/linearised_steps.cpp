@@ -1,6 +1,7 @@
 #include "railtab/runtime/stability/linearised_steps.hpp"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/index.hpp"
@@ -45,7 +46,7 @@ LinearisedSteps::LinearisedSteps(const VsiModel& model, const HhtScheme& hht, co
   const auto tied = static_cast<Eigen::Index>(displacements.size());
   displacement_.setZero(dofs, tied + dofs);
   velocity_.setZero(dofs, tied + dofs);
-  for (Eigen::Index k = 0; k < tied; ++k) displacement_(displacements[index(k)], k) = 1.0;
+  for (Eigen::Index k = 0; k < tied; ++k) displacement_(displacements[static_cast<std::size_t>(k)], k) = 1.0;
   velocity_.rightCols(dofs).setIdentity();
   take_slopes(start);
   acceleration_ = first_acceleration(model.vehicle.mass, -damping_ * velocity_ - stiffness_ * displacement_);
@@ -56,7 +57,10 @@ void LinearisedSteps::take_slopes(const LinearMotion& at) {
   damping_ = linear_damping_;
   const std::vector<WheelsetMotion> motions = wheelset_motions(model_, at);
   for (int w = 0; w < model_.wheelsets(); ++w) {
-    subtract_contact_slopes(model_.vehicle, w, contact_slopes(model_.contact, motions[index(w)]), stiffness_, damping_);
+    // Where contact points jump within a step, the mean over its way has the jump's share in the motion.
+    const WheelsetMotion& motion = motions[index(w)];
+    const double travel = std::abs(motion.velocity[1]) * hht_.time_step;
+    subtract_contact_slopes(model_.vehicle, w, contact_slopes(model_.contact, motion, travel), stiffness_, damping_);
   }
   add_element_slopes(model_.vehicle.elements, at, stiffness_, damping_);
 }

@@ -30,7 +30,7 @@ class LinearisedSteps {
   const VsiModel& model_;
   HhtScheme hht_;
   Eigen::MatrixXd linear_damping_;
-  Eigen::MatrixXd stiffness_, damping_;                    // K*, C* of the last motion
+  Eigen::MatrixXd stiffness_, damping_;                     // K*, C* of the last motion
   Eigen::MatrixXd displacement_, velocity_, acceleration_;  // δu, δu̇, δü by x(0)
 };
 

@@ -81,8 +81,8 @@ class Shooting {
 
   /// The periodic motion on a line, from a guess near it. None: no convergence; failure() says where it ended.
   [[nodiscard]] std::optional<PeriodicMotion> solve(const PeriodicMotion& guess, const BranchLine& line);
-  /// Makes the derivatives at a motion, for floquet_multipliers(), tangent() and the next solve(). False where the steps
-  /// do not converge.
+  /// Makes the derivatives at a motion, for floquet_multipliers(), tangent() and the next solve(). False where the
+  /// steps do not converge.
   [[nodiscard]] bool differentiate(const PeriodicMotion& motion);
 
   /// Of the motion of the last differentiate(): eigenvalues of the linearised Poincaré map of the section, largest

@@ -47,7 +47,8 @@ std::vector<int> tied_rows(const VehicleModel& vehicle) {
 void reject_dry_friction(const VehicleModel& vehicle) {
   for (const ForceElement& element : vehicle.elements.element) {
     if (element.kind != ForceElementKind::friction) continue;
-    throw input_error("scene: train.force_elements", fmt::format("\"nonlinear\", with dry friction in {}", element.name),
+    throw input_error("scene: train.force_elements",
+                      fmt::format("\"nonlinear\", with dry friction in {}", element.name),
                       "\"linear\": a limit cycle needs forces that are functions of the motion");
   }
 }
