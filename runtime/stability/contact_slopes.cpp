@@ -12,7 +12,7 @@ namespace {
 // Well below penetration and creepage of sliding, well above the rounding of the contact search.
 constexpr double move = 1e-6;  // m, rad
 constexpr double creepage_step = 1e-6;
-constexpr Eigen::Index y_dof = 1;
+constexpr Eigen::Index lateral_dof = 1;
 
 // Forces of both wheels on a wheelset.
 Vector6 wheelset_force(const WheelContactModel& model, const WheelsetMotion& motion) {
@@ -38,7 +38,7 @@ ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotio
   const double radius = model.geometry->pair().nominal_radius();
   for (Eigen::Index dof = 0; dof < 6; ++dof) {
     slopes.by_displacement.col(dof) =
-        difference(&WheelsetMotion::displacement, dof, dof == y_dof ? std::max(move, 0.5 * travel) : move);
+        difference(&WheelsetMotion::displacement, dof, dof == lateral_dof ? std::max(move, 0.5 * travel) : move);
     const double arm = dof < 3 ? 1.0 : radius;
     slopes.by_velocity.col(dof) = difference(&WheelsetMotion::velocity, dof, creepage_step * model.speed / arm);
   }

@@ -123,9 +123,13 @@ std::optional<PeriodicMotion> last_cycle(const SettledMotion& motion, Eigen::Ind
   return PeriodicMotion{motion.state[farthest], stepped_time(period, time_step), speed};
 }
 
+// Whether the speed has an extremum at a cycle. Of small cycles, residuals leave it uncertain by some mm/s.
 bool is_fold(const CycleBranch& branch, std::size_t i) {
+  if (i == 0 || i + 1 >= branch.cycles.size()) return false;
+  constexpr double certain = 1e-2;  // m/s
   const auto speed = [&](std::size_t k) { return branch.cycles[k].motion.parameter; };
-  return i > 0 && i + 1 < branch.cycles.size() && (speed(i) - speed(i - 1)) * (speed(i + 1) - speed(i)) < 0.0;
+  const double before = speed(i) - speed(i - 1), after = speed(i + 1) - speed(i);
+  return before * after < 0.0 && std::max(std::abs(before), std::abs(after)) > certain;
 }
 
 }  // namespace
@@ -215,7 +219,8 @@ HuntingBranch hunting_branch(const VsiModel& linear, const VsiModel& model, cons
   const auto follow = [&](const BranchPoint& forward) {
     return follow_branch(flow, section, start.guess, start.line, forward, along, tell);
   };
-  const CycleBranch branch = search.start ? joined(follow({0.0, 1.0}), follow({0.0, -1.0})) : follow({1.0, 0.0});
+  CycleBranch branch = follow(search.start ? BranchPoint{0.0, 1.0} : BranchPoint{1.0, 0.0});
+  if (search.start) branch = joined(std::move(branch), follow({0.0, -1.0}));
   result.end = branch.end;
   if (branch.cycles.empty()) {
     throw ComputationError(

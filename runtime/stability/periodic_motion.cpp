@@ -23,6 +23,11 @@ constexpr double lost = 1e3;
 Shooting::Shooting(const Flow& flow, const CycleSection& section, const ShootingLimits& limits)
     : flow_(flow), section_(section), limits_(limits) {}
 
+double Shooting::tolerance(const PeriodicMotion& motion) const {
+  const double height = std::abs(motion.start[section_.coordinate]) / flow_.unit()[section_.coordinate];
+  return std::max(limits_.tolerance, limits_.relative_tolerance * height);
+}
+
 // In units of the flow; the line's equation in that of its coordinate.
 std::optional<Eigen::VectorXd> Shooting::equations(const PeriodicMotion& motion, const BranchLine& line) const {
   const std::optional<Eigen::VectorXd> end = flow_.end(motion.start, motion.period, motion.parameter);
@@ -61,9 +66,9 @@ std::optional<PeriodicMotion> Shooting::solve(const PeriodicMotion& guess, const
   std::optional<Eigen::VectorXd> residual = equations(motion, line);
   iterations_ = 0;
   residual_ = residual ? residual->cwiseAbs().maxCoeff() : std::numeric_limits<double>::infinity();
-  const double farthest = lost * std::max(residual_, limits_.tolerance);
+  const double farthest = lost * std::max(residual_, tolerance(guess));
   bool is_new = false;  // the matrix is that of this iterate
-  while (residual && residual_ > limits_.tolerance && residual_ < farthest && iterations_ < limits_.max_iterations) {
+  while (residual && residual_ > tolerance(motion) && residual_ < farthest && iterations_ < limits_.max_iterations) {
     if (matrix_.size() == 0) {
       if (!differentiate(motion)) return {};
       is_new = true;
@@ -90,7 +95,7 @@ std::optional<PeriodicMotion> Shooting::solve(const PeriodicMotion& guess, const
     residual = std::move(change);
     residual_ = remains;
   }
-  if (!(residual_ <= limits_.tolerance)) return {};
+  if (!(residual_ <= tolerance(motion))) return {};
   return motion;
 }
 

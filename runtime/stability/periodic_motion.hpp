@@ -63,7 +63,8 @@ struct BranchLine {
 };
 
 struct ShootingLimits {
-  double tolerance = 1e-6;  ///< of x(T) − x(0), largest component in units of Flow::unit()
+  double tolerance = 1e-6;           ///< of x(T) − x(0), largest component in units of Flow::unit()
+  double relative_tolerance = 2e-5;  ///< the same, per the section's coordinate in its unit; the larger one counts
   int max_iterations = 25;
 };
 
@@ -100,6 +101,7 @@ class Shooting {
 
  private:
   [[nodiscard]] Eigen::Index size() const { return flow_.unit().size(); }
+  [[nodiscard]] double tolerance(const PeriodicMotion& motion) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> equations(const PeriodicMotion& motion, const BranchLine& line) const;
   void set_line(const BranchPoint& normal, Eigen::MatrixXd& matrix) const;
 

@@ -76,7 +76,7 @@ BranchSearch search_of(double time_step) {
           .time_step = time_step,
           .max_cycles = 200,
           .parameter_tolerance = 1e-8,
-          .shooting = {.tolerance = 1e-10}};
+          .shooting = {.tolerance = 1e-10, .relative_tolerance = 0.0}};
 }
 
 TEST(CycleBranch, IsThatOfTheNormalForm) {
