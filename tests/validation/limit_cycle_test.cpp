@@ -18,9 +18,17 @@ namespace {
 
 constexpr double free_travel = 0.5e-3, stop_stiffness = 2e6;  // m, N/m
 
-// Model B of hunting_test.cpp with a stop between frame and wheelset.
-VsiModel wheelset_with_stop(double speed) {
+// Model B of hunting_test.cpp under a load with which no wheel lifts: its roll is held, so that a shift of 1 mm raises
+// a wheel by a third of its penetration.
+VsiModel loaded_wheelset(double speed) {
   VsiModel model = wheelset({}, speed);
+  model.vehicle.static_load[model.vehicle.dof[1][2]] = 2.0 * 50e3;
+  return model;
+}
+
+// The same with a stop between frame and wheelset.
+VsiModel wheelset_with_stop(double speed) {
+  VsiModel model = loaded_wheelset(speed);
   ForceElements& elements = model.vehicle.elements;
   elements.rows = Eigen::RowVectorXd::Unit(model.vehicle.dofs(), model.vehicle.dof[1][1]);
   ForceElement stop;
@@ -79,11 +87,13 @@ HuntingSearch search_to(double kmh) {
   HuntingSearch search;
   search.speed = {.low = 40.0, .high = kmh / 3.6, .step = 5.0};
   search.time_step = 2e-3;
+  search.largest_step = 1.0;
   return search;
 }
 
 const HuntingBranch& branch() {
-  static const HuntingBranch found = hunting_branch(wheelset({}, 60.0), wheelset_with_stop(60.0), search_to(300.0), {});
+  static const HuntingBranch found =
+      hunting_branch(loaded_wheelset(60.0), wheelset_with_stop(60.0), search_to(280.0), {});
   return found;
 }
 
@@ -101,7 +111,7 @@ Steady on_branch(double speed) {
 
 TEST(LimitCycle, OfAWheelsetBetweenStopsIsThatOfTheEquationsOfMotion) {
   double amplitude = 0.0, frequency = 0.0;
-  for (const double kmh : {245.0, 260.0, 290.0}) {
+  for (const double kmh : {245.0, 260.0, 275.0}) {
     const Steady found = on_branch(kmh / 3.6), expected = settled(kmh / 3.6);
     std::printf("%3.0f km/h: amplitude %.5f mm, equations %.5f mm; %.5f Hz, equations %.5f Hz\n", kmh,
                 1e3 * found.amplitude, 1e3 * expected.amplitude, found.frequency, expected.frequency);
@@ -110,7 +120,7 @@ TEST(LimitCycle, OfAWheelsetBetweenStopsIsThatOfTheEquationsOfMotion) {
   }
   testing::measured("limit_cycle.stop_amplitude_percent", 100 * amplitude);
   testing::measured("limit_cycle.stop_frequency_percent", 100 * frequency);
-  EXPECT_LT(amplitude, 1e-2);
+  EXPECT_LT(amplitude, 2e-3);
   EXPECT_LT(frequency, 1e-3);
 }
 
@@ -150,7 +160,7 @@ TEST(LimitCycle, LinearisedStepsAreTheDerivativesOfTheSteps) {
     error = std::max(error, (column - (unit[k] * end->by_state.col(k)).cwiseQuotient(unit)).cwiseAbs().maxCoeff());
   }
   std::printf("largest derivative %.4f, error %.2e\n", largest, error);
-  EXPECT_LT(error, 2e-3 * largest);
+  EXPECT_LT(error, 5e-3 * largest);
 }
 
 // Newmark's scheme: the speed of a cycle of given amplitude has an error of second order.
