@@ -224,6 +224,12 @@ VsiModel stability_model(const SceneParameters& scene) {
   return stability_model(scene, contacts);
 }
 
+VsiModel limit_cycle_model(const SceneParameters& scene) {
+  VsiModel model = stability_model(scene);
+  model.vehicle = scene_vehicle(scene);
+  return model;
+}
+
 VsiModel build_model(const SceneParameters& scene) {
   scene.validate();
   VsiModel model;

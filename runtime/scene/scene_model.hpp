@@ -12,6 +12,8 @@ namespace railtab {
 [[nodiscard]] VsiModel stability_model(const SceneParameters& scene);
 /// The same with the contacts of a model of the scene.
 [[nodiscard]] VsiModel stability_model(const SceneParameters& scene, const VsiModel& model);
+/// The same with the force elements that its runs have: what hunting_branch.hpp takes. @throws InputError
+[[nodiscard]] VsiModel limit_cycle_model(const SceneParameters& scene);
 /// Time until the scene's run is over: its duration, or until the last wheelset has left the last span [s].
 /// @throws InputError where a scene without a span names no duration.
 [[nodiscard]] double run_duration(const SceneParameters& scene, const VsiModel& model);

@@ -10,8 +10,9 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/contact/equivalent_conicity.hpp"
+#include "railtab/runtime/stability/contact_slopes.hpp"
+#include "railtab/runtime/stability/rigid_rails.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
 
@@ -19,58 +20,7 @@ namespace railtab {
 
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-constexpr Eigen::Index y_dof = 1, pitch_dof = 4, yaw_dof = 5;
-
-// Well below penetration and creepage of sliding, well above the rounding of the contact search.
-constexpr double move = 1e-6;  // m, rad
-constexpr double creepage_step = 1e-6;
-
-// Forces of both wheels on a wheelset.
-Vector6 wheelset_force(const WheelContactModel& model, const WheelsetMotion& motion) {
-  Vector6 sum = Vector6::Zero();
-  const RailHeadMotion rail;
-  for (const WheelSide side : {WheelSide::left, WheelSide::right}) {
-    const WheelsetPose pose = relative_pose(model.geometry->pair(), side, motion, rail);
-    sum += wheel_force(model, side, motion, rail, wheel_contact(*model.geometry, pose)).wheelset;
-  }
-  return sum;
-}
-
-struct ForceSlopes {
-  Matrix6 by_displacement, by_velocity;
-};
-
-ForceSlopes force_slopes(const WheelContactModel& model, const WheelsetMotion& at) {
-  ForceSlopes slopes;
-  const auto difference = [&](Vector6 WheelsetMotion::*member, Eigen::Index dof, double step) {
-    WheelsetMotion ahead = at, behind = at;
-    (ahead.*member)[dof] += step;
-    (behind.*member)[dof] -= step;
-    return Vector6((wheelset_force(model, ahead) - wheelset_force(model, behind)) / (2.0 * step));
-  };
-  const double radius = model.geometry->pair().nominal_radius();
-  for (Eigen::Index dof = 0; dof < 6; ++dof) {
-    slopes.by_displacement.col(dof) = difference(&WheelsetMotion::displacement, dof, move);
-    const double arm = dof < 3 ? 1.0 : radius;
-    slopes.by_velocity.col(dof) = difference(&WheelsetMotion::velocity, dof, creepage_step * model.speed / arm);
-  }
-  return slopes;
-}
-
-// The train alone on rigid rails, at rest in the middle.
-VsiModel on_rigid_rails(const VsiModel& model, double speed) {
-  VsiModel rigid;
-  rigid.vehicle = model.vehicle;
-  rigid.vehicle_x = {0.0};
-  rigid.geometry = model.geometry;
-  rigid.contact = model.contact;
-  rigid.contact.speed = speed;
-  rigid.contact.damping = 0.0;
-  rigid.gyroscopic_moments = model.gyroscopic_moments;
-  return rigid;
-}
+constexpr Eigen::Index y_dof = 1, yaw_dof = 5;
 
 // Adds what the contacts do to the matrices of the running vehicle.
 void add_contacts(const VsiModel& model, std::optional<double> conicity, VehicleModel& running) {
@@ -79,25 +29,15 @@ void add_contacts(const VsiModel& model, std::optional<double> conicity, Vehicle
     throw ComputationError(fmt::format("{} does not come to rest on straight rails at {:.6g} m/s", model.vehicle.name,
                                        model.contact.speed));
   }
-  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets()), velocity = displacement;
-  gather_wheelsets(model, 0, state.vehicle[0].displacement, displacement);
-  gather_wheelsets(model, 0, state.vehicle[0].velocity, velocity);
   const WheelRailPair& pair = model.geometry->pair();
+  const std::vector<WheelsetMotion> motions = wheelset_motions(model, state.vehicle[0]);
   for (int w = 0; w < model.wheelsets(); ++w) {
-    const int first = wheelset_unknowns * w;
-    ForceSlopes slopes = force_slopes(model.contact, {displacement.segment<6>(first), velocity.segment<6>(first)});
+    ContactSlopes slopes = contact_slopes(model.contact, motions[index(w)]);
     if (conicity) {
       slopes.by_displacement(yaw_dof, y_dof) = pair.tape_circle_offset() * slopes.by_velocity(0, 0) *
                                                model.contact.speed * *conicity / pair.nominal_radius();
     }
-    const DofIndices& dof = running.dof[index(running.wheelsets[index(w)])];
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j) {
-        if (dof[index(i)] == held || dof[index(j)] == held) continue;
-        running.stiffness(dof[index(i)], dof[index(j)]) -= slopes.by_displacement(i, j);
-        running.damping(dof[index(i)], dof[index(j)]) -= slopes.by_velocity(i, j);
-      }
-    }
+    subtract_contact_slopes(running, w, slopes, running.stiffness, running.damping);
   }
 }
 
@@ -124,28 +64,41 @@ Eigen::VectorXd lateral_shares(const VehicleModel& vehicle, const Eigen::MatrixX
 }  // namespace
 
 VehicleModel running_vehicle(const VsiModel& model, double speed, std::optional<double> conicity) {
-  const VsiModel rigid = on_rigid_rails(model, speed);
+  VsiModel rigid = on_rigid_rails(model, speed);
+  rigid.contact.damping = 0.0;
   VehicleModel running = rigid.vehicle;
   running.damping = rigid.vehicle_damping(speed);
   add_contacts(rigid, conicity, running);
   return running;
 }
 
-LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity) {
+std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std::optional<double> conicity) {
   const VehicleModel running = running_vehicle(model, speed, conicity);
-  std::vector<int> rows;
-  for (int row = 0; row < running.dofs(); ++row) rows.push_back(row);
+  std::vector<int> rows, massive;
+  for (int row = 0; row < running.dofs(); ++row) {
+    rows.push_back(row);
+    if (running.mass(row, row) > 0.0) massive.push_back(row);
+  }
   const MotionSpectrum spectrum = motion_spectrum(running, rows);
   const Eigen::VectorXd lateral = lateral_shares(running, spectrum.shapes);
   constexpr double slowest = 0.05;  // rad/s: the angles of the wheelsets' rotations are free
-  LeastStableMotion least{.speed = speed, .growth = -std::numeric_limits<double>::infinity()};
+  std::vector<LinearShape> shapes;
   for (Eigen::Index k = 0; k < spectrum.values.size(); ++k) {
     const std::complex<double> value = spectrum.values[k];
-    const double size = std::abs(value);
-    if (size < slowest || lateral[k] < 0.5 || value.real() <= least.growth) continue;
-    least = {speed, value.real(), std::abs(value.imag()) / (2.0 * std::numbers::pi), -value.real() / size};
+    if (std::abs(value) < slowest || lateral[k] < 0.5 || value.imag() < 0.0) continue;
+    shapes.push_back({value, Eigen::VectorXcd::Zero(running.dofs())});
+    shapes.back().displacement(massive) = spectrum.shapes.col(k);
   }
-  return least;
+  std::stable_sort(shapes.begin(), shapes.end(),
+                   [](const LinearShape& a, const LinearShape& b) { return a.value.real() > b.value.real(); });
+  return shapes;
+}
+
+LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity, int motion) {
+  const std::vector<LinearShape> shapes = lateral_shapes(model, speed, conicity);
+  if (index(motion) > shapes.size()) return {.speed = speed, .growth = -std::numeric_limits<double>::infinity()};
+  const std::complex<double> value = shapes[index(motion - 1)].value;
+  return {speed, value.real(), value.imag() / (2.0 * std::numbers::pi), -value.real() / std::abs(value)};
 }
 
 LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSearch& search,
@@ -154,14 +107,15 @@ LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSear
   double stable = 0.0;
   for (int i = 0;; ++i) {
     const double speed = std::min(search.low + i * search.step, search.high);
-    result.searched.push_back(least_stable_motion(model, speed, conicity));
+    result.searched.push_back(least_stable_motion(model, speed, conicity, search.motion));
     if (result.searched.back().growth > 0.0) break;
     if (speed >= search.high) return result;
     stable = speed;
   }
   LeastStableMotion unstable = result.searched.back();
   while (stable > 0.0 && unstable.speed - stable > search.tolerance) {
-    const LeastStableMotion middle = least_stable_motion(model, 0.5 * (stable + unstable.speed), conicity);
+    const LeastStableMotion middle =
+        least_stable_motion(model, 0.5 * (stable + unstable.speed), conicity, search.motion);
     if (middle.growth > 0.0) {
       unstable = middle;
     } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <optional>
 #include <vector>
 
@@ -31,13 +32,25 @@ struct LeastStableMotion {
 };
 
 /// By the eigenvalues λ of running_vehicle(), without the rotations of wheelsets, which nothing resists.
+/// @param motion 1 for the least stable, 2 for the next
 /// @pre, @throws as running_vehicle()
 [[nodiscard]] LeastStableMotion least_stable_motion(const VsiModel& model, double speed,
-                                                    std::optional<double> conicity = {});
+                                                    std::optional<double> conicity = {}, int motion = 1);
+
+/// An eigenvalue λ [1/s] of running_vehicle() and its shape.
+struct LinearShape {
+  std::complex<double> value;
+  Eigen::VectorXcd displacement;  ///< dofs; 0 in rows without mass
+};
+/// The lateral motions in the order of their growth, the least stable first, of each pair of eigenvalues one.
+/// @pre, @throws as running_vehicle()
+[[nodiscard]] std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed,
+                                                      std::optional<double> conicity = {});
 
 struct SpeedSearch {
   double low = 5.0, high = 150.0, step = 2.5;  ///< [m/s]
   double tolerance = 1e-4;                     ///< of the critical speed [m/s]
+  int motion = 1;  ///< how many motions shall grow there: the bogies of a vehicle may hunt in several ways
 };
 
 struct LinearCriticalSpeed {
@@ -45,7 +58,8 @@ struct LinearCriticalSpeed {
   std::vector<LeastStableMotion> searched;    ///< at the speeds of the search
 };
 
-/// The lowest speed from which on a small motion grows, by bisection between two steps of the search.
+/// The lowest speed from which on a small motion (SpeedSearch::motion: so many) grows, by bisection between two steps
+/// of the search.
 [[nodiscard]] LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSearch& search = {},
                                                         std::optional<double> conicity = {});
 

@@ -30,7 +30,7 @@ const CommandTable& commands() {
        {"contact", "[--wheel P --rail P] [options]",
         "solve one contact of a wheel on its rail, or one exact rolling contact of an ellipse",
         done_after(contact_command)},
-       {"conicity", "FILE.h5", "rolling radius difference and equivalent conicity (EN 15302)",
+       {"conicity", "FILE.h5 | --wheel P --rail P", "rolling radius difference and equivalent conicity (EN 15302)",
         done_after(conicity_command)},
        {"loaded", "FILE.h5", "add the loaded contact (half-space solutions over all poses) to a geometry table",
         done_after(loaded_command)},

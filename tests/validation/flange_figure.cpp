@@ -17,7 +17,7 @@
 #include "flange_model.hpp"
 #include "profile_drawing.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "svg_figure.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 namespace railtab::hunting {
 namespace {

@@ -16,8 +16,8 @@
 #include "../reference_table.hpp"
 #include "hunting_model.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 #include "runge_kutta.hpp"
-#include "svg_figure.hpp"
 
 namespace railtab::hunting {
 namespace {

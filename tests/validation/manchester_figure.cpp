@@ -13,7 +13,7 @@
 #include "../reference_table.hpp"
 #include "manchester_wheelset.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "svg_figure.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 namespace railtab {
 namespace {

@@ -19,7 +19,7 @@
 #include "manchester_run.hpp"
 #include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "svg_figure.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 namespace railtab {
 namespace {

@@ -14,7 +14,7 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/line/span_deviation.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
-#include "svg_figure.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 namespace railtab {
 namespace {

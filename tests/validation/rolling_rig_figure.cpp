@@ -18,10 +18,10 @@
 
 #include "flange_model.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
-#include "svg_figure.hpp"
 
 namespace railtab {
 namespace {

@@ -16,12 +16,12 @@
 
 #include "railtab/runtime/line/wind_load.hpp"
 #include "railtab/runtime/reliability/threshold_search.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
-#include "svg_figure.hpp"
 
 namespace {
 

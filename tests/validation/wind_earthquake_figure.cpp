@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/report/svg_figure.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
-#include "svg_figure.hpp"
 
 namespace {
 

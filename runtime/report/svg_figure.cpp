@@ -1,4 +1,4 @@
-#include "svg_figure.hpp"
+#include "railtab/runtime/report/svg_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -76,6 +76,11 @@ std::string axes(const SvgPanel& panel, const Frame& frame, double title_y) {
   return svg;
 }
 
+// The attribute that draws line k.
+const char* dashes(const SvgPanel& panel, std::size_t k) {
+  return k < panel.styles.size() && panel.styles[k] == LineStyle::dashed ? " stroke-dasharray=\"5 4\"" : "";
+}
+
 std::string curves(const SvgPanel& panel, const Frame& frame) {
   std::string svg;
   for (std::size_t k = 0; k < panel.lines.size(); ++k) {
@@ -90,8 +95,8 @@ std::string curves(const SvgPanel& panel, const Frame& frame) {
       }
       pen_down = drawn;
     }
-    fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" stroke-width=\"1.5\" d=\"{}\"/>",
-                   colours[k % colours.size()], data);
+    fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" stroke-width=\"1.5\"{} d=\"{}\"/>",
+                   colours[k % colours.size()], dashes(panel, k), data);
   }
   for (std::size_t k = 0; k < panel.dots.size(); ++k) {
     const Series& series = panel.dots[k];
@@ -113,8 +118,8 @@ std::string legend(const SvgPanel& panel, double x0, double y) {
     x += 24.0 + 5.9 * static_cast<double>(label.size());
   };
   for (std::size_t k = 0; k < panel.lines.size(); ++k) {
-    fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" stroke-width=\"2\" d=\"M{:.1f} {:.1f}h16\"/>",
-                   colours[k % colours.size()], x, y);
+    fmt::format_to(std::back_inserter(svg), "<path stroke=\"{}\" stroke-width=\"2\"{} d=\"M{:.1f} {:.1f}h16\"/>",
+                   colours[k % colours.size()], dashes(panel, k), x, y);
     x += 22;
     name(panel.lines[k].label);
   }
