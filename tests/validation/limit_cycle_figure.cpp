@@ -22,7 +22,6 @@ namespace {
 
 using namespace railtab;
 
-constexpr int motions = 2;            // ways of hunting that are followed
 constexpr std::size_t simulated = 6;  // cycles of a branch
 constexpr double disturbance = 1.02;  // of all displacements and velocities with which a simulation begins
 constexpr double duration = 30.0, counted_from = 25.0;  // s
@@ -77,28 +76,28 @@ struct Files {
         simulations(folder + "/limit_cycle_simulations.csv") {
     const std::string made = ", Manchester coach on S1002 and 60E1 1:40, made by tests/validation/limit_cycle_figure\n";
     cycles << "# Limit cycles" << made
-           << "motion,cycle,speed_kmh,amplitude_mm,frequency_Hz,stable,multiplier,residual,error_along_motion\n";
-    folds << "# Folds of the branches" << made << "motion,fold,speed_kmh,amplitude_mm,frequency_Hz\n";
+           << "branch,cycle,speed_kmh,amplitude_mm,frequency_Hz,stable,multiplier,residual,error_along_motion\n";
+    folds << "# Folds of the branches" << made << "branch,fold,speed_kmh,amplitude_mm,frequency_Hz\n";
     simulations << "# Stable limit cycles and time simulations that begin near them" << made
-                << "motion,speed_kmh,amplitude_mm,simulated_amplitude_mm,frequency_Hz,simulated_frequency_Hz\n";
+                << "branch,speed_kmh,amplitude_mm,simulated_amplitude_mm,frequency_Hz,simulated_frequency_Hz\n";
   }
 };
 
-void write_branch(const HuntingBranch& branch, int motion, Files& files) {
+void write_branch(const HuntingBranch& branch, int number, Files& files) {
   for (std::size_t i = 0; i < branch.cycles.size(); ++i) {
     const LimitCycle& c = branch.cycles[i];
-    files.cycles << fmt::format("{},{},{:.4f},{:.5f},{:.5f},{},{:.5f},{:.1e},{:.1e}\n", motion, i, 3.6 * c.speed,
+    files.cycles << fmt::format("{},{},{:.4f},{:.5f},{:.5f},{},{:.5f},{:.1e},{:.1e}\n", number, i, 3.6 * c.speed,
                                 1e3 * c.amplitude(), c.frequency, c.is_stable() ? 1 : 0, std::abs(c.multiplier),
                                 c.residual, c.error_along_motion);
   }
   for (std::size_t i = 0; i < branch.folds.size(); ++i) {
     const LimitCycle& c = branch.folds[i];
-    files.folds << fmt::format("{},{},{:.4f},{:.5f},{:.5f}\n", motion, i, 3.6 * c.speed, 1e3 * c.amplitude(),
+    files.folds << fmt::format("{},{},{:.4f},{:.5f},{:.5f}\n", number, i, 3.6 * c.speed, 1e3 * c.amplitude(),
                                c.frequency);
   }
 }
 
-void compare(const HuntingBranch& branch, int motion, const VehicleFlow& flow, double time_step, Files& files,
+void compare(const HuntingBranch& branch, int number, const VehicleFlow& flow, double time_step, Files& files,
              report::Series& dots) {
   std::vector<const LimitCycle*> stable;
   for (const LimitCycle& cycle : branch.cycles) {
@@ -110,7 +109,7 @@ void compare(const HuntingBranch& branch, int motion, const VehicleFlow& flow, d
     const auto wheelset = static_cast<std::size_t>(branch.section_wheelset);
     const std::optional<Simulated> run = simulation(flow, c, branch.section_wheelset, time_step);
     if (!run) continue;
-    files.simulations << fmt::format("{},{:.4f},{:.5f},{:.5f},{:.5f},{:.5f}\n", motion, 3.6 * c.speed,
+    files.simulations << fmt::format("{},{:.4f},{:.5f},{:.5f},{:.5f},{:.5f}\n", number, 3.6 * c.speed,
                                      1e3 * c.amplitudes[wheelset], 1e3 * run->amplitude, c.frequency, run->frequency);
     dots.x.push_back(3.6 * c.speed);
     dots.y.push_back(1e3 * run->amplitude);
@@ -136,20 +135,24 @@ void compute(const std::string& folder, const std::string& table) {
   panel.x_label = "speed [km/h]";
   panel.y_label = "lateral amplitude of a wheelset [mm]";
   report::Series dots{"time simulation", {}, {}};
-  for (int motion = 1; motion <= motions; ++motion) {
+  // From the linear critical speed on, and through what the coach settles on after a large shift.
+  const std::optional<SettledStart> starts[] = {std::nullopt, SettledStart{.speed = 270.0 / 3.6}};
+  int number = 0;
+  for (const std::optional<SettledStart>& start : starts) {
+    ++number;
     HuntingSearch search;
-    search.speed.motion = motion;
+    search.start = start;
     search.speed.high = 400.0 / 3.6;
     search.time_step = scene.integration.time_step;
     const HuntingBranch branch = hunting_branch(linear, model, search, [&](const LimitCycle& c) {
-      std::fprintf(stderr, "motion %d: %8.3f km/h %8.4f mm, multiplier %.4f\n", motion, 3.6 * c.speed,
+      std::fprintf(stderr, "branch %d: %8.3f km/h %8.4f mm, multiplier %.4f\n", number, 3.6 * c.speed,
                    1e3 * c.amplitude(), std::abs(c.multiplier));
       return true;
     });
-    write_branch(branch, motion, files);
-    compare(branch, motion, flow, search.time_step, files, dots);
-    panel.lines.push_back(part(branch, true, fmt::format("motion {}, stable", motion)));
-    panel.lines.push_back(part(branch, false, fmt::format("motion {}, unstable", motion)));
+    write_branch(branch, number, files);
+    compare(branch, number, flow, search.time_step, files, dots);
+    panel.lines.push_back(part(branch, true, fmt::format("branch {}, stable", number)));
+    panel.lines.push_back(part(branch, false, fmt::format("branch {}, unstable", number)));
     panel.styles.insert(panel.styles.end(), {report::LineStyle::solid, report::LineStyle::dashed});
   }
   panel.dots = {dots};

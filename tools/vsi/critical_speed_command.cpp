@@ -158,9 +158,9 @@ HuntingBranch followed_branch(const CommandLine& line, const SceneParameters& sc
     }
   }
   ProgressBar bar("limit cycles", !line.quiet() && !line.json());
-  int done = 0;
+  int computed = 0;
   return hunting_branch(s.model, limit_cycle_model(scene), search, [&](const LimitCycle&) {
-    bar.show(static_cast<double>(++done) / search.max_cycles);
+    bar.show(static_cast<double>(++computed) / search.max_cycles);
     return true;
   });
 }

@@ -13,8 +13,8 @@ namespace railtab::vsi {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double to_kmh = 3.6, to_mm = 1e3;
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+constexpr double kmh_per_ms = 3.6, mm_per_m = 1e3;
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 const char* stability_of(const LimitCycle& cycle) { return cycle.is_stable() ? "stable" : "unstable"; }
 
@@ -44,14 +44,14 @@ Json as_json(const std::vector<LimitCycle>& cycles) {
 report::Series part(const HuntingBranch& branch, bool stable, const char* label) {
   report::Series series{label, {}, {}};
   const auto add = [&](double speed, double amplitude) {
-    series.x.push_back(to_kmh * speed);
-    series.y.push_back(to_mm * amplitude);
+    series.x.push_back(kmh_per_ms * speed);
+    series.y.push_back(mm_per_m * amplitude);
   };
   for (std::size_t i = 0; i < branch.cycles.size(); ++i) {
     const LimitCycle& cycle = branch.cycles[i];
     const bool begins = i > 0 && branch.cycles[i - 1].is_stable() != stable;
     if (cycle.is_stable() != stable) {
-      add(cycle.speed, gap);
+      add(cycle.speed, missing);
       continue;
     }
     if (begins) add(branch.cycles[i - 1].speed, branch.cycles[i - 1].amplitude());
@@ -85,11 +85,12 @@ std::string branch_text(const HuntingBranch& branch) {
       "  the branch {}\n"
       "  {:>8} {:>12} {:>8} {:>9} {:>12}\n",
       branch.bifurcation ? fmt::format("{} bifurcation; ", name_of(*branch.bifurcation)) : "",
-      to_kmh * branch.nonlinear_critical_speed().value_or(gap), end_text(branch.end), "km/h", "amplitude mm", "Hz", "",
-      "multiplier");
+      kmh_per_ms * branch.nonlinear_critical_speed().value_or(missing), end_text(branch.end), "km/h", "amplitude mm",
+      "Hz", "", "multiplier");
   const auto row = [&](const LimitCycle& cycle, const char* note) {
-    fmt::format_to(std::back_inserter(text), "  {:8.2f} {:12.4f} {:8.4f} {:>9} {:12.4f}{}\n", to_kmh * cycle.speed,
-                   to_mm * cycle.amplitude(), cycle.frequency, stability_of(cycle), std::abs(cycle.multiplier), note);
+    fmt::format_to(std::back_inserter(text), "  {:8.2f} {:12.4f} {:8.4f} {:>9} {:12.4f}{}\n", kmh_per_ms * cycle.speed,
+                   mm_per_m * cycle.amplitude(), cycle.frequency, stability_of(cycle), std::abs(cycle.multiplier),
+                   note);
   };
   for (const LimitCycle& cycle : branch.cycles) row(cycle, "");
   for (const LimitCycle& fold : branch.folds) row(fold, "  fold");
@@ -128,12 +129,12 @@ std::string branch_svg(const HuntingBranch& branch, const std::string& heading) 
   panel.styles = {report::LineStyle::solid, report::LineStyle::dashed};
   report::Series critical{"linear critical speed", {}, {}}, folds{"fold", {}, {}};
   if (branch.linear.critical) {
-    critical.x.push_back(to_kmh * branch.linear.critical->speed);
+    critical.x.push_back(kmh_per_ms * branch.linear.critical->speed);
     critical.y.push_back(0.0);
   }
   for (const LimitCycle& fold : branch.folds) {
-    folds.x.push_back(to_kmh * fold.speed);
-    folds.y.push_back(to_mm * fold.amplitude());
+    folds.x.push_back(kmh_per_ms * fold.speed);
+    folds.y.push_back(mm_per_m * fold.amplitude());
   }
   panel.dots = {critical, folds};
   return report::svg_figure(heading, {panel}, 1);
