@@ -5,8 +5,8 @@ find_package(Python3 QUIET COMPONENTS Interpreter)
 function(railtab_command_pages target program)
   set(pages ${PROJECT_BINARY_DIR}/command_pages/${program})
   add_custom_command(OUTPUT ${pages}.json
-    COMMAND ${target} --json-usage >${pages}.json
-    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/command_pages ${pages} <${pages}.json
+    COMMAND ${target} --json-usage > ${pages}.json
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/command_pages ${pages} < ${pages}.json
     DEPENDS ${target} ${PROJECT_SOURCE_DIR}/tools/command_pages
     COMMENT "Man pages and completions of ${program}"
     VERBATIM)
