@@ -36,4 +36,10 @@ void return_large_pieces() noexcept {
 #endif
 }
 
+void return_freed_memory() noexcept {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 }  // namespace railtab

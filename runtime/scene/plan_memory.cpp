@@ -39,6 +39,7 @@ double train_bytes(const VsiModel& model) {
 }  // namespace
 
 PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration) {
+  return_freed_memory();
   const double built = resident_memory() + program, peak = peak_resident_memory() + program;
   PlannedMemory plan;
   const IntegrationParameters& integration = scene.integration;
