@@ -38,10 +38,12 @@ PeriodicMotion moved(const PeriodicMotion& from, const BranchTangent& tangent, d
   return to;
 }
 
+// Rest is a periodic motion too, of any period and at any parameter, which Newton's method may fall to: no cycle below
+// the lowest height counts.
 std::optional<BranchCycle> cycle_at(Shooting& shooting, const CycleSection& section, const PeriodicMotion& guess,
-                                    const BranchLine& line, const BranchPoint& unit) {
+                                    const BranchLine& line, const BranchPoint& unit, double lowest_height) {
   const std::optional<PeriodicMotion> motion = shooting.solve(guess, line);
-  if (!motion || !shooting.differentiate(*motion)) return {};
+  if (!motion || motion->point(section).height < lowest_height || !shooting.differentiate(*motion)) return {};
   return BranchCycle{*motion, shooting.floquet_multipliers(), unit_tangent(shooting, section, line.normal, unit),
                      shooting.residual(), shooting.error_along_motion()};
 }
@@ -50,8 +52,14 @@ std::optional<BranchEnd> end_at(const BranchPoint& point, const BranchSearch& se
   if (point.parameter < search.lowest_parameter || point.parameter > search.highest_parameter) {
     return BranchEnd::parameter_range;
   }
-  if (point.height < search.lowest_height || point.height > search.highest_height) return BranchEnd::height_range;
+  if (point.height > search.highest_height) return BranchEnd::height_range;
   return {};
+}
+
+// Why no cycle was found near a guess.
+BranchEnd end_before(const PeriodicMotion& guess, const CycleSection& section, const BranchSearch& search) {
+  const bool low = guess.point(section).height < search.lowest_height + search.smallest_step * search.unit.height;
+  return low ? BranchEnd::height_range : BranchEnd::no_convergence;
 }
 
 // Where the parabola through three points has its extremum; none where they lie on a line.
@@ -75,7 +83,7 @@ CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const P
                           const std::function<bool(const BranchCycle&)>& listener) {
   CycleBranch branch;
   Shooting shooting(flow, section, search.shooting);
-  std::optional<BranchCycle> cycle = cycle_at(shooting, section, guess, line, search.unit);
+  std::optional<BranchCycle> cycle = cycle_at(shooting, section, guess, line, search.unit, search.lowest_height);
   if (!cycle) return branch;
   const BranchPoint first = direction_of(cycle->tangent, section, search.unit);
   double length = search.first_step;
@@ -95,7 +103,7 @@ CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const P
       const PeriodicMotion next = moved(last.motion, last.tangent, length, search.time_step);
       const BranchLine across{next.point(section),
                               {along.height / search.unit.height, along.parameter / search.unit.parameter}};
-      cycle = cycle_at(shooting, section, next, across, search.unit);
+      cycle = cycle_at(shooting, section, next, across, search.unit, search.lowest_height);
       sense = 1.0;
       if (cycle) {
         const BranchPoint turned = direction_of(cycle->tangent, section, search.unit);
@@ -108,7 +116,7 @@ CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const P
         if (shooting.iterations() <= few_iterations) length = std::min(1.5 * length, search.largest_step);
         if (shooting.iterations() >= many_iterations) length = std::max(0.5 * length, search.smallest_step);
       } else {
-        if (length <= search.smallest_step) return branch.end = BranchEnd::no_convergence, branch;
+        if (length <= search.smallest_step) return branch.end = end_before(next, section, search), branch;
         length = std::max(0.5 * length, search.smallest_step);
         if (!shooting.differentiate(last.motion)) return branch.end = BranchEnd::no_convergence, branch;
       }
@@ -130,7 +138,7 @@ std::optional<BranchCycle> fold_near(const Flow& flow, const CycleSection& secti
     const double length = slope != 0.0 ? (*height - guess.point(section).height) / slope : 0.0;
     guess = moved(guess, around[1].tangent, length, search.time_step);
     const BranchLine level{{*height, guess.parameter}, {1.0 / search.unit.height, 0.0}};
-    const auto found = cycle_at(shooting, section, guess, level, search.unit);
+    const auto found = cycle_at(shooting, section, guess, level, search.unit, search.lowest_height);
     if (!found) return {};
     const double change = std::abs(found->motion.parameter - around[1].motion.parameter);
     const auto height_of = [&](std::size_t k) { return around[k].motion.point(section).height; };

@@ -118,8 +118,18 @@ TEST(CycleBranch, CanBeFollowedBothWays) {
   const CycleBranch branch = follow_branch(flow, section, guess, {{r, 1.2}, {0.0, 1.0}}, {0.0, -1.0}, search, {});
   ASSERT_GT(branch.cycles.size(), 20u);
   EXPECT_EQ(branch.end, BranchEnd::height_range);
-  EXPECT_LT(branch.cycles.back().motion.point(section).height, 0.05);
+  EXPECT_GE(branch.cycles.back().motion.point(section).height, search.lowest_height);
+  EXPECT_LT(branch.cycles.back().motion.point(section).height, search.lowest_height + 0.01);
   EXPECT_NEAR(branch.cycles.front().motion.parameter, 1.2, 1e-9);
+}
+
+// Rest solves the equations of a cycle, too: below the fold nothing else does.
+TEST(CycleBranch, RestIsNoCycle) {
+  const NormalForm flow;
+  const BranchSearch search = search_of(0.01);
+  const PeriodicMotion guess{Eigen::Vector3d(0.1, 0.0, 0.0), stepped_time(3.0, search.time_step), 0.7};
+  const CycleBranch branch = follow_branch(flow, section, guess, {{0.1, 0.7}, {0.0, 1.0}}, {0.0, 1.0}, search, {});
+  EXPECT_TRUE(branch.cycles.empty());
 }
 
 TEST(CycleBranch, SaysWhereItEnds) {
