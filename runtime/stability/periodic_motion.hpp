@@ -80,7 +80,7 @@ class Shooting {
  public:
   Shooting(const Flow& flow, const CycleSection& section, const ShootingLimits& limits = {});
 
-  /// The periodic motion on a line, from a guess near it. None: no convergence; failure() says where it ended.
+  /// The periodic motion on a line, from a guess near it. None: no convergence.
   [[nodiscard]] std::optional<PeriodicMotion> solve(const PeriodicMotion& guess, const BranchLine& line);
   /// Makes the derivatives at a motion, for floquet_multipliers(), tangent() and the next solve(). False where the
   /// steps do not converge.
