@@ -166,7 +166,7 @@ py::array_t<T> view(const py::object& record, const std::vector<T>& rows) {
 
 void bind_record(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(WheelRecord, Q, Y, X, patches, from_table, y_rail, y_wheel, angle, rolling_radius, normal_force,
-                       penetration, second_y_rail, second_normal_force);
+                       penetration, second_y_rail, second_normal_force, wear_number, pressure);
   PYBIND11_NUMPY_DTYPE(MotionRecord, displacement, velocity, acceleration);
   py::class_<Record> record(module, "StepRecord",
                             "One instant of a run, as the results file records it; the arrays may be kept.");

@@ -22,6 +22,8 @@ LoadedWheelForce wheel_force(const WheelContactModel& model, WheelSide side, con
   force.wheelset = (1.0 - share) * force.wheelset + share * loaded.wheelset;
   force.rail = (1.0 - share) * force.rail + share * loaded.rail;
   force.rail_x = -force.wheelset[0];
+  force.creep_power = (1.0 - share) * force.creep_power + share * loaded.creep_power;
+  force.pressure = (1.0 - share) * force.pressure + share * loaded.pressure;
   for (int i = 0; i < contact.patches.count; ++i) force.patch[static_cast<std::size_t>(i)] *= 1.0 - share;
   return {force, loaded.memory};
 }

@@ -135,6 +135,7 @@ class LoadedContactForce {
   }
   [[nodiscard]] const std::array<double, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
   [[nodiscard]] int outside_creep_table() const { return outside_; }
+  [[nodiscard]] double creep_power() const { return creep_power_; }  ///< WheelForce::creep_power, of numbers only
 
   /// Elastic forces on the wheel. The moment of the normal forces about the axle is zero.
   [[nodiscard]] Wrench<T> wrench(const std::array<T, 4>& on_rail) const {
@@ -327,6 +328,8 @@ class LoadedContactForce {
       creep.jet.force = creep_force(model_.creep_law, ratio, at);
       const auto* table = std::get_if<TableCreep>(&model_.creep_law);
       if (table && table->share(ratio, at) < 1.0) ++outside_;
+      creep_power_ -= weight * bound / scale *
+                      (creep.jet.force.x * at.x + creep.jet.force.y * at.y + creep.jet.force.moment * at.spin);
     }
     const std::array<T, 3> f = creep.of(ratio, creepage);
     const T across = f[1] * bound, spin = f[2] * bound * root;
@@ -390,6 +393,7 @@ class LoadedContactForce {
   std::array<MotionRow, LoadedLookup::capacity> damped_;  ///< of the parts' normal forces
   std::array<double, LoadedLookup::capacity> part_normal_{};
   int outside_ = 0;
+  double creep_power_ = 0.0;
 };
 
 WheelKinematics right_wheel(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
@@ -539,6 +543,8 @@ LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide si
   result.rail_x = -result.wheelset[0];
   std::copy_n(force.part_normal().begin(), lookup.parts, result.normal.begin());
   result.outside_creep_table = force.outside_creep_table();
+  result.creep_power = force.creep_power();
+  result.pressure = lookup.largest_pressure();
   const Generalised<double> rest = force.generalised(force.rest());
   result.memory = {.weight = lookup.table_share,
                    .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "railtab/runtime/contact/creepage.hpp"
@@ -31,8 +32,10 @@ WheelsetPose pose_on_right(const WheelRailPair& pair, const WheelsetMotion& w, c
 }
 
 struct PatchForce {
-  Vector3 force, moment;  // on the wheel, in rail-head axes, moment about the wheelset centre
-  double normal;          // [N]
+  Vector3 force, moment;     // on the wheel, in rail-head axes, moment about the wheelset centre
+  double normal;             // [N]
+  double creep_power = 0.0;  // [W]
+  double pressure = 0.0;     // [Pa]
   bool outside_creep_table = false;
 };
 
@@ -52,12 +55,13 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
 
   Vector3 force = -N * axes.normal;
   if (model.gravitational_stiffness == GravitationalStiffness::neglected) force[1] = 0.0;
-  Vector3 moment = Vector3::Zero();
-  bool outside = false;
+  PatchForce result{force, Vector3::Zero(), N};
+  const auto [a, b] =
+      model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
+  result.pressure = 1.5 * N / (std::numbers::pi * a * b);
   if (friction * N > 0.0) {
-    const auto [a, b] =
-        model.constant_ellipse.value_or(PatchEllipse{load.hertz.a1 * std::cbrt(N), load.hertz.b1 * std::cbrt(N)});
     PatchCreepage slip = patch_creepage({velocity, rotation}, arm, axes, model.creepage_speed());
+    const PatchCreepage rigid = slip;
     double bound = friction * N;
     if (model.friction_law.falls()) {
       bound *= model.friction_law.share(std::hypot(slip.x, slip.y) * model.creepage_speed());
@@ -66,12 +70,14 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
     slip = {slope * slip.x, slope * slip.y, slope * slip.spin};
     const Creepage creepage = normalised_creepage(slip, a, b, model.normal.material.shear_modulus(), bound);
     const PatchCreepForce creep = dimensional_creep_force(creep_force(model.creep_law, a / b, creepage), a, b, bound);
-    force += creep.x * Vector3::UnitX() + creep.y * axes.tangent;
-    moment = creep.moment * axes.normal;
+    result.force += creep.x * Vector3::UnitX() + creep.y * axes.tangent;
+    result.moment = creep.moment * axes.normal;
+    result.creep_power = -model.creepage_speed() * (creep.x * rigid.x + creep.y * rigid.y + creep.moment * rigid.spin);
     const auto* table = std::get_if<TableCreep>(&model.creep_law);
-    outside = table && table->share(a / b, creepage) < 1.0;
+    result.outside_creep_table = table && table->share(a / b, creepage) < 1.0;
   }
-  return {force, moment + arm.cross(force), N, outside};
+  result.moment += arm.cross(result.force);
+  return result;
 }
 
 }  // namespace
@@ -115,6 +121,8 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
         patch_force(model, loads[i], axes, arm,
                     {velocity + centre_shift - surface_velocity, rotation, model.friction * rail.friction});
     result.normal[i] = p.normal;
+    result.creep_power += p.creep_power;
+    result.pressure = std::max(result.pressure, p.pressure);
     result.outside_creep_table += p.outside_creep_table;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
     const double rail_moment = patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];

@@ -69,6 +69,8 @@ struct WheelForce {
   Vector3 rail = Vector3::Zero();      ///< on the rail head: y, z [N], moment about x through the head's origin [N m]
   double rail_x = 0.0;                 ///< on the rail, longitudinal [N]
   std::array<double, ContactPatches::capacity> normal{};  ///< normal force of each patch [N]
+  double creep_power = 0.0;     ///< that the creep forces take from the motion, >= 0 for a law that resists slip [W]
+  double pressure = 0.0;        ///< largest normal pressure of the patches [Pa]
   int outside_creep_table = 0;  ///< patches whose creep force the creep table left to Polach, wholly or in part
   /// Share of each patch in (wheelset 6, rail 3); as many as there are patches.
   std::array<Vector9, ContactPatches::capacity> patch;

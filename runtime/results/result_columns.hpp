@@ -15,6 +15,7 @@ struct Column {
   const char* unit;
   const char* description;
   Value Owner::*value;
+  bool in_all_files = true;  ///< else absent in older files, whose values then are NaN
 };
 
 using WheelColumn = Column<WheelRecord, double>;
@@ -32,7 +33,10 @@ inline constexpr std::array wheel{
     WheelColumn{"wheels/second_y_rail", "m", "contact point on the rail, of the next patch; 0 where there is none",
                 &WheelRecord::second_y_rail},
     WheelColumn{"wheels/second_normal_force", "N", "normal force of the next patch; 0 where there is none",
-                &WheelRecord::second_normal_force}};
+                &WheelRecord::second_normal_force},
+    WheelColumn{"wheels/wear_number", "J/m", "energy that creep takes per way of the train, all patches",
+                &WheelRecord::wear_number, false},
+    WheelColumn{"wheels/pressure", "Pa", "largest normal pressure of all patches", &WheelRecord::pressure, false}};
 /// Stored as floating-point numbers like all that grows.
 using WheelCount = Column<WheelRecord, int>;
 inline constexpr WheelCount patches{"wheels/patches", "1", "patches in contact", &WheelRecord::patches};
@@ -113,6 +117,8 @@ inline constexpr std::array header{
                  &ResultHeader::span_from, false},
     HeaderColumn{"header/span_to", "spans", "m", "its end", &ResultHeader::span_to, false},
     HeaderColumn{"header/node_x", "nodes", "m", "position of the nodes along the track", &ResultHeader::node_x},
+    HeaderColumn{"header/wheel_outline", "wheels", "1", "1 where a wheel has the outline below, 0 where it has another",
+                 &ResultHeader::wheel_outline, false},
     HeaderColumn{"header/wheel_y", "wheel points", "m", "outline of the wheel, lateral, to the field side",
                  &ResultHeader::wheel_y},
     HeaderColumn{"header/wheel_z", "wheel points", "m", "outline of the wheel, down", &ResultHeader::wheel_z},

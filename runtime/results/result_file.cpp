@@ -473,8 +473,11 @@ void read_wheels(const ArrayFileReader& in, FieldReader& fields, std::size_t cou
   for (std::size_t i = 0; i < patches.size(); ++i) {
     steps[i / count].wheels[i % count].from_table = has_source ? static_cast<int>(source[i]) : -1;
   }
+  constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
   for (const columns::WheelColumn& column : columns::wheel) {
-    const std::vector<double> values = fields.numbers(field_of(column));
+    const bool absent = !column.in_all_files && !in.contains(column.path);
+    const std::vector<double> values =
+        absent ? std::vector<double>(patches.size(), not_known) : fields.numbers(field_of(column));
     for (std::size_t i = 0; i < values.size(); ++i) steps[i / count].wheels[i % count].*column.value = values[i];
   }
 }

@@ -91,7 +91,29 @@ std::vector<KeyRow> force_keys() {
   };
 }
 
+template <auto member>
+auto& of_profiles(SceneDraft& draft) {
+  return draft.profiles.*member;
+}
+
 }  // namespace
+
+std::vector<KeyRow> profile_keys() {
+  return applying(with_hertz_contact, {{"profiles.coach", "1", "counted from the front; 0: all",
+                                        IntegerKey{of_profiles<&ProfileParameters::coach>, 0, 100}},
+                                       {"profiles.vehicle", "", "vehicle as the train names it; absent: any",
+                                        VehicleKey{of_profiles<&ProfileParameters::vehicle>}},
+                                       {"profiles.table",
+                                        "",
+                                        "geometry table of these wheels",
+                                        FileKey{of_profiles<&ProfileParameters::table>},
+                                        {&with_contact_table}},
+                                       {"profiles.wheel",
+                                        "",
+                                        "wheel profile of these wheels; absent: contact.wheel",
+                                        ProfileKey{of_profiles<&ProfileParameters::wheel>, ProfileKind::wheel},
+                                        {&without_contact_table}}});
+}
 
 std::vector<KeyRow> contact_keys() {
   std::vector<KeyRow> rows{{"contact.normal",

@@ -77,6 +77,10 @@ void require_ranges(const SceneParameters& scene) {
     draft.load = load;
     require_section("load.", draft);
   }
+  for (const ProfileParameters& profiles : scene.profiles) {
+    draft.profiles = profiles;
+    require_section("profiles.", draft);
+  }
   for (const WheelParameters& wheel : scene.wheels) {
     draft.wheel = wheel;
     require_section("wheel.", draft);

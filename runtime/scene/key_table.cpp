@@ -87,9 +87,10 @@ std::vector<KeyRow> all_of(std::initializer_list<std::vector<KeyRow>> parts) {
 
 const std::vector<KeyRow>& all_keys() {
   // the guide goes from the train down to the bridge, then to the numerics
-  static const std::vector<KeyRow> keys = all_of(
-      {train_keys(), vehicle_keys(), contact_keys(), track_keys(), bridge_keys(), import_keys(), reduction_keys(),
-       held_node_keys(), irregularity_keys(), wheel_keys(), load_keys(), integration_keys(), assessment_keys()});
+  static const std::vector<KeyRow> keys =
+      all_of({train_keys(), vehicle_keys(), contact_keys(), profile_keys(), track_keys(), bridge_keys(), import_keys(),
+              reduction_keys(), held_node_keys(), irregularity_keys(), wheel_keys(), load_keys(), integration_keys(),
+              assessment_keys()});
   return keys;
 }
 

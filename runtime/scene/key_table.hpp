@@ -32,6 +32,7 @@ struct SceneDraft {
   FeSupport support;              ///< the [[support]] being read
   LoadParameters load;            ///< the [[load]] being read
   WheelParameters wheel;          ///< the [[wheel]] being read
+  ProfileParameters profiles;     ///< the [[profiles]] being read
   GroundMotionParameters ground;  ///< the [[ground_motion]] being read
 };
 
@@ -147,6 +148,7 @@ struct KeyRow {
 [[nodiscard]] std::vector<KeyRow> train_keys();  // and the top of the scene
 [[nodiscard]] std::vector<KeyRow> vehicle_keys();
 [[nodiscard]] std::vector<KeyRow> contact_keys();
+[[nodiscard]] std::vector<KeyRow> profile_keys();  // [[profiles]]
 [[nodiscard]] std::vector<KeyRow> track_keys();
 [[nodiscard]] std::vector<KeyRow> bridge_keys();
 [[nodiscard]] std::vector<KeyRow> import_keys();        // of [structure]

@@ -51,6 +51,11 @@ ResultHeader model_header(const VsiModel& model) {
   }
   if (!model.geometry) return header;
   const WheelRailPair& pair = model.geometry->pair();
+  if (!model.wheelset_geometry.empty()) {
+    for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel) {
+      header.wheel_outline.push_back(&model.geometry_of(wheel / 2) == model.geometry.get() ? 1.0 : 0.0);
+    }
+  }
   header.wheel_profile = pair.wheel().knots().name;
   header.rail_profile = pair.rail().knots().name;
   header.wheel_y = pair.wheel().knots().y;

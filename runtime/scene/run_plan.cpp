@@ -7,6 +7,7 @@
 #include "railtab/runtime/scene/plan_memory.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
+#include "railtab/runtime/scene/scene_contact.hpp"
 #include "railtab/runtime/scene/scene_loads.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -68,12 +69,16 @@ void describe_vehicle(const SceneParameters& scene, const VsiModel& model, Model
 
 void describe_contact(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   if (model.geometry) {
-    plan.built.push_back(fmt::format("contact geometry: {}, {} on {}", contact_mode_name(scene.contact),
-                                     model.geometry->pair().wheel().knots().name,
-                                     model.geometry->pair().rail().knots().name));
-    plan.built.push_back(model.geometry->loaded()
-                             ? "elastic contact forces: half-space solutions, from the loaded part of the table"
-                             : "elastic contact forces: an ellipse per patch");
+    for (const auto& geometry : contact_geometries(model)) {
+      const WheelRailPair& pair = geometry->pair();
+      const std::string coaches = model.wheelset_geometry.empty() ? "" : "coach " + coaches_on(model, *geometry) + ": ";
+      plan.built.push_back(fmt::format("{}contact geometry: {}, {} on {}", coaches, contact_mode_name(scene.contact),
+                                       pair.wheel().knots().name, pair.rail().knots().name));
+      plan.built.push_back(coaches +
+                           (geometry->loaded()
+                                ? "elastic contact forces: half-space solutions, from the loaded part of the table"
+                                : "elastic contact forces: an ellipse per patch"));
+    }
     plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
     if (!scene.contact.friction_file.empty()) {
       plan.built.push_back(fmt::format("friction of {}", scene.contact.friction_file.filename().string()));

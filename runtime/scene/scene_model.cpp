@@ -3,73 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/contact_files/creep_law_file.hpp"
-#include "railtab/runtime/profile/profile_file.hpp"
+#include "railtab/runtime/scene/scene_contact.hpp"
 #include "railtab/runtime/scene/scene_loads.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/scene/scene_wheels.hpp"
+#include "railtab/runtime/stability/rigid_rails.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/vehicle/consist.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/support_motion.hpp"
-#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 
 namespace {
-
-constexpr int paper_points = 1000;              // of the published method's discretised profiles
-constexpr double paper_curvature_floor = 1e-6;  // 1/m [MontenegroCalcada2023, section 2.2]
-
-WheelRailPair scene_pair(const ContactParameters& contact) {
-  if (!contact.table.empty()) {
-    return in_file(contact.table.string(),
-                   [&] { return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair(); });
-  }
-  ProfileCurve wheel(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination));
-  ProfileCurve rail(load_profile(contact.rail, ProfileKind::rail, contact.rail_inclination));
-  return in_file("scene: contact",
-                 [&] { return WheelRailPair(std::move(wheel), std::move(rail), contact.dimensions); });
-}
-
-/// The loaded contact of a table, where the scene's forces are to come from it; it leaves the table.
-std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& contact, GeometryTableData& table) {
-  std::optional<LoadedTableData> loaded = std::move(table.loaded);
-  table.loaded.reset();
-  if (contact.elastic == ElasticContact::patches) return nullptr;
-  if (!loaded) {
-    if (contact.elastic == ElasticContact::automatic) return nullptr;
-    throw input_error("scene: contact.elastic", fmt::format("\"half-space\" with {}", contact.table.string()),
-                      "a table with a loaded part (tablegen loaded adds it), or \"patches\"");
-  }
-  if (!contact.material.has_contact_modulus(loaded->contact_modulus)) {
-    throw input_error("scene: contact.material",
-                      fmt::format("steel of the contact modulus E* = {:.6g} Pa", contact.material.contact_modulus()),
-                      fmt::format("{:.6g} Pa, that of the loaded part of {}, or contact.elastic = \"patches\"",
-                                  loaded->contact_modulus, contact.table.string()));
-  }
-  return std::make_shared<const LoadedTable>(std::move(*loaded));
-}
-
-ContactGeometry scene_geometry(const ContactParameters& contact) {
-  switch (contact.mode) {
-    case ContactMode::table: {
-      GeometryTableData table = read_geometry_table(contact.table);
-      std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
-      return in_file(contact.table.string(),
-                     [&] { return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded)); });
-    }
-    case ContactMode::online:
-      return ContactGeometry(ContactSearch(scene_pair(contact)));
-    case ContactMode::paper:
-      return ContactGeometry(PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline));
-  }
-  throw InputError("contact.mode: unknown");
-}
 
 double spans_length(const SceneParameters& scene) {
   double length = 0.0;
@@ -150,29 +99,6 @@ void check_on_track(const SceneParameters& scene, const VsiModel& model) {
   }
 }
 
-// Contact geometry and contact forces; a scene whose wheels follow the rails needs neither.
-void add_contact(const ContactParameters& contact, VsiModel& model) {
-  model.geometry = std::make_shared<const ContactGeometry>(scene_geometry(contact));
-  model.contact.geometry = model.geometry.get();
-  model.contact.normal.material = contact.material;
-  model.contact.normal.curvature_floor =
-      contact.mode == ContactMode::paper ? paper_curvature_floor : contact.curvature_floor;
-  model.contact.creep_law = creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
-  if (auto* polach = std::get_if<PolachCreep>(&model.contact.creep_law)) {
-    polach->k_adhesion = contact.k_adhesion;
-    polach->k_slip = contact.k_slip;
-  }
-  model.contact.friction = contact.friction;
-  model.contact.friction_law = contact.friction_law;
-  model.contact.damping = contact.damping;
-  const double radius = model.geometry->pair().nominal_radius();
-  if (std::abs(radius - model.vehicle.nominal_radius) > 1e-9) {
-    throw input_error(contact.table.empty() ? "scene: contact.dimensions.nominal_radius" : "scene: contact.table",
-                      fmt::format("{} m{}", radius, contact.table.empty() ? "" : " as the wheels' nominal radius"),
-                      fmt::format("{} m, the wheels of {}", model.vehicle.nominal_radius, model.vehicle.name));
-  }
-}
-
 // A random track as far as the train runs, its pre-roll included.
 Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
   constexpr double margin = 50.0;  // m
@@ -206,11 +132,8 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 VsiModel stability_model(const SceneParameters& scene, const VsiModel& model) {
   SceneParameters linear = scene;
   linear.train.force_elements = ForceElementChoice::linear;
-  VsiModel result;
+  VsiModel result = on_rigid_rails(model, model.contact.speed);
   result.vehicle = scene_vehicle(linear);
-  result.vehicle_x = {0.0};
-  result.geometry = model.geometry;
-  result.contact = model.contact;
   return result;
 }
 
@@ -220,7 +143,8 @@ VsiModel stability_model(const SceneParameters& scene) {
   }
   VsiModel contacts;
   contacts.vehicle = scene_vehicle(scene);
-  add_contact(scene.contact, contacts);
+  contacts.vehicle_x = {0.0};
+  add_contact(scene, contacts);
   return stability_model(scene, contacts);
 }
 
@@ -238,7 +162,7 @@ VsiModel build_model(const SceneParameters& scene) {
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
-  if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);
+  if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model);
   if (scene.track_kind != TrackKind::rigid) {
     model.structure = build_structure(scene);
     model.structure_warnings = model.structure->warnings;

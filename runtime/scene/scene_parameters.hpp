@@ -93,6 +93,14 @@ struct LoadParameters {
   double area = 10.0, length = 3.0;  ///< that the coefficients refer to [m²], [m]
 };
 
+/// Profiles of some wheels where they are not those of [contact].
+struct ProfileParameters {
+  int coach = 0;                ///< counted from the front; 0: every one
+  std::string vehicle;          ///< as the train names it; empty: any
+  std::filesystem::path table;  ///< geometry table, with contact.mode = "table"
+  std::string wheel;            ///< without tables; empty: that of [contact]
+};
+
 enum class WheelSides { both, left, right };
 
 /// What is not round about some wheels.
@@ -142,7 +150,8 @@ struct SceneParameters {
   std::optional<SpectrumParameters> spectrum;  ///< in place of a file: a random track
   std::optional<SpanDeviationParameters> span_deviation;
   std::vector<LoadParameters> loads;
-  std::vector<WheelParameters> wheels;  ///< that are not round
+  std::vector<ProfileParameters> profiles;  ///< that some coaches have in place of those of `contact`
+  std::vector<WheelParameters> wheels;      ///< that are not round
   std::vector<GroundMotionParameters> ground_motion;
   IntegrationParameters integration;
   OutputParameters output;

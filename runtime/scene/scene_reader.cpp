@@ -207,11 +207,11 @@ InputError unknown_key(const std::filesystem::path& file, const Leaf& leaf) {
   const std::string place = fmt::format("{}:{}", file.string(), leaf.line);
   const std::string nearest = nearest_key(leaf.path);
   if (nearest.empty()) {
-    return InputError(
-        fmt::format("{}: unknown key '{}'; the sections are train, vehicle, contact, track, bridge, structure, "
-                    "support, irregularity, span_deviation, wheel, load, ground_motion, integration, output and "
-                    "assessment",
-                    place, leaf.path));
+    return InputError(fmt::format(
+        "{}: unknown key '{}'; the sections are train, vehicle, contact, profiles, track, bridge, structure, "
+        "support, irregularity, span_deviation, wheel, load, ground_motion, integration, output and "
+        "assessment",
+        place, leaf.path));
   }
   return InputError(fmt::format("{}: unknown key '{}'; did you mean '{}'?", place, leaf.path, nearest));
 }
@@ -222,8 +222,8 @@ bool is_section(std::string_view path) {
                      [&](const KeyRow& key) { return key.path.starts_with(prefix); });
 }
 
-/// What was just read of a [[bridge]], [[support]], [[wheel]], [[load]] or [[ground_motion]] goes into the scene; its
-/// end is the next such heading or the end of the file.
+/// What was just read of a [[bridge]], [[support]], [[profiles]], [[wheel]], [[load]] or [[ground_motion]] goes into
+/// the scene; its end is the next such heading or the end of the file.
 void finish_entry(SceneDraft& draft, std::string_view section) {
   if (section == "bridge") {
     if (!draft.span_damping_type.empty()) {
@@ -237,6 +237,8 @@ void finish_entry(SceneDraft& draft, std::string_view section) {
     draft.parameters.structure.supports.push_back(std::exchange(draft.support, {}));
   } else if (section == "load") {
     draft.parameters.loads.push_back(std::exchange(draft.load, {}));
+  } else if (section == "profiles") {
+    draft.parameters.profiles.push_back(std::exchange(draft.profiles, {}));
   } else if (section == "wheel") {
     draft.parameters.wheels.push_back(std::exchange(draft.wheel, {}));
   } else if (section == "ground_motion") {

@@ -178,6 +178,15 @@ Broken vertical_loads(Scene scene) {
                   });
 }
 
+Broken table_of_profiles(Scene scene) {
+  for (std::size_t i = 0; i < scene.profiles.size(); ++i) {
+    if (scene.contact.table.empty() || !scene.profiles[i].table.empty()) continue;
+    return Violation{entry("profiles", i, scene.profiles.size()), "no profiles.table beside contact.table",
+                     "the geometry table of these wheels (tablegen geometry)"};
+  }
+  return {};
+}
+
 /// The first [[wheel]] for which `found` says something.
 template <class Found>
 Broken of_wheels(Scene scene, std::string_view expected, const Found& found) {
@@ -290,6 +299,7 @@ const std::vector<SceneRule>& scene_rules() {
       {"a load acts on a coach of the train", coach_of_a_load},
       {"a vertical scene has vertical loads", vertical_loads},
       {"a vertical scene has vertical deviations", vertical_deviation_of_spans},
+      {"[[profiles]] have a table where contact has one", table_of_profiles},
       {"a [[wheel]] is not round", deviation_of_a_wheel},
       {"wheels that follow the rails have no kinks", edges_of_a_flat},
       {"ground motion has a record", file_of_a_record},

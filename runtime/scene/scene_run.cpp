@@ -7,6 +7,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/results/deck_envelope.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/scene/scene_contact.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
@@ -40,7 +41,11 @@ long pre_roll_steps(const SceneParameters& scene, const VsiModel& model) {
 std::optional<VsiModel> other_model_at_rest(const SceneParameters& scene, const VsiModel& model) {
   if (!model.geometry || !model.geometry->is_paper()) return std::nullopt;
   VsiModel rest = model;
-  rest.geometry = std::make_shared<const ContactGeometry>(ContactSearch(model.geometry->pair()));
+  for (const std::shared_ptr<const ContactGeometry>& geometry : contact_geometries(model)) {
+    const auto searched = std::make_shared<const ContactGeometry>(ContactSearch(geometry->pair()));
+    if (geometry == model.geometry) rest.geometry = searched;
+    std::replace(rest.wheelset_geometry.begin(), rest.wheelset_geometry.end(), geometry, searched);
+  }
   rest.contact.geometry = rest.geometry.get();
   rest.contact.normal.curvature_floor = scene.contact.curvature_floor;
   return rest;
@@ -94,10 +99,11 @@ void displace(const SceneParameters& scene, const VsiModel& model, VsiState& sta
 // What was done to the points of measured profiles.
 void note_repairs(const VsiModel& model, const RunObserver& observer) {
   if (!model.geometry) return;
-  const WheelRailPair& pair = model.geometry->pair();
-  for (const ProfileKnots* profile : {&pair.wheel().knots(), &pair.rail().knots()}) {
-    for (const std::string& note : profile->notes) observer.note(note);
-  }
+  const auto note = [&](const ProfileKnots& profile) {
+    for (const std::string& text : profile.notes) observer.note(text);
+  };
+  note(model.geometry->pair().rail().knots());
+  for (const auto& geometry : contact_geometries(model)) note(geometry->pair().wheel().knots());
 }
 
 // What the scene asks to know of the whole deck, and its places for the header.

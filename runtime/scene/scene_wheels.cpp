@@ -10,24 +10,6 @@ namespace railtab {
 
 namespace {
 
-// Coach and number within it, both from 1, of each wheelset of the train.
-struct PlaceInTrain {
-  int coach, wheelset;
-};
-
-std::vector<PlaceInTrain> places(const VsiModel& model) {
-  const VehicleModel& vehicle = model.vehicle;
-  const int per_vehicle = model.wheelsets_per_vehicle();
-  std::vector<int> count(model.vehicle_x.size() * static_cast<std::size_t>(vehicle.coaches), 0);
-  std::vector<PlaceInTrain> result;
-  for (int w = 0; w < model.wheelsets(); ++w) {
-    const auto body = static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(w % per_vehicle)]);
-    const int coach = w / per_vehicle * vehicle.coaches + vehicle.bodies[body].coach;
-    result.push_back({coach + 1, ++count[static_cast<std::size_t>(coach)]});
-  }
-  return result;
-}
-
 bool meets(const WheelParameters& entry, const PlaceInTrain& place, int side) {
   if (entry.coach != 0 && entry.coach != place.coach) return false;
   if (entry.wheelset != 0 && entry.wheelset != place.wheelset) return false;
@@ -55,9 +37,22 @@ void add(const WheelParameters& entry, const WheelContour& contour, const std::s
 
 }  // namespace
 
+std::vector<PlaceInTrain> wheelset_places(const VsiModel& model) {
+  const VehicleModel& vehicle = model.vehicle;
+  const int per_vehicle = model.wheelsets_per_vehicle();
+  std::vector<int> count(model.vehicle_x.size() * static_cast<std::size_t>(vehicle.coaches), 0);
+  std::vector<PlaceInTrain> result;
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const auto body = static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(w % per_vehicle)]);
+    const int coach = w / per_vehicle * vehicle.coaches + vehicle.bodies[body].coach;
+    result.push_back({coach + 1, ++count[static_cast<std::size_t>(coach)]});
+  }
+  return result;
+}
+
 void add_wheel_deviations(const SceneParameters& scene, VsiModel& model) {
   if (scene.wheels.empty()) return;
-  const std::vector<PlaceInTrain> where = places(model);
+  const std::vector<PlaceInTrain> where = wheelset_places(model);
   std::vector<Deviations> wheels(2 * where.size());
   for (std::size_t i = 0; i < scene.wheels.size(); ++i) {
     const WheelParameters& entry = scene.wheels[i];
@@ -75,9 +70,10 @@ void add_wheel_deviations(const SceneParameters& scene, VsiModel& model) {
     throw input_error(place, fmt::format("coach {}, wheelset {}", entry.coach, entry.wheelset),
                       fmt::format("a wheelset of one of the {} coaches", last->coach));
   }
-  for (Deviations& wheel : wheels) {
-    model.wheel_deviation.emplace_back(model.vehicle.nominal_radius, std::move(wheel.flats), std::move(wheel.harmonics),
-                                       std::move(wheel.contour));
+  for (std::size_t wheel = 0; wheel < wheels.size(); ++wheel) {
+    Deviations& d = wheels[wheel];
+    model.wheel_deviation.emplace_back(model.wheel_radius(static_cast<int>(wheel / 2)), std::move(d.flats),
+                                       std::move(d.harmonics), std::move(d.contour));
   }
 }
 

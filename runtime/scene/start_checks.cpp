@@ -117,18 +117,18 @@ std::string displacement_warning(const SceneParameters& scene, const VsiModel& m
   const bool displaced = scene.train.initial_lateral_shift != 0.0 || scene.train.initial_yaw != 0.0;
   if (!displaced || !model.geometry) return {};
   const ContactProblem present = present_contact(model, state);
-  const WheelContactModel contact = contact_at_rest(model.contact);
-  const double b = model.geometry->pair().tape_circle_offset();
+  const TrainContact contact = contact_at_rest(model);
   double largest = 0.0, load = 0.0, lift = 0.0;
   for (int w = 0; w < model.wheelsets(); ++w) {
+    const ContactGeometry& geometry = *contact[w].geometry;
+    const double b = geometry.pair().tape_circle_offset();
     load = std::max(load, static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
     for (const WheelSide side : {WheelSide::left, WheelSide::right}) {
       const bool left = side == WheelSide::left;
       const WheelsetMotion motion = wheelset_motion(present, present.predicted, w);
       const RailHeadMotion rail = rail_motion(present, present.predicted, w, left ? 0 : 1);
-      const WheelContact found =
-          wheel_contact(*model.geometry, relative_pose(model.geometry->pair(), side, motion, rail));
-      const double lateral = wheel_force(contact, side, motion, rail, found).wheelset[1];
+      const WheelContact found = wheel_contact(geometry, relative_pose(geometry.pair(), side, motion, rail));
+      const double lateral = wheel_force(contact[w], side, motion, rail, found).wheelset[1];
       largest = std::max(largest, std::abs(lateral));
       const double below = motion.displacement[2] + (left ? -b : b) * motion.displacement[3];
       lift = std::max(lift, rail.displacement[1] - below);

@@ -40,7 +40,8 @@ void collect_list(const Leaf& heading, const std::filesystem::path& file, std::v
 }  // namespace
 
 bool is_list_section(std::string_view name) noexcept {
-  return name == "bridge" || name == "support" || name == "load" || name == "wheel" || name == "ground_motion";
+  return name == "bridge" || name == "support" || name == "load" || name == "wheel" || name == "profiles" ||
+         name == "ground_motion";
 }
 
 std::vector<Leaf> leaves_of(const toml::table& root, const std::filesystem::path& file) {

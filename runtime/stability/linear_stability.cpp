@@ -29,11 +29,12 @@ void add_contacts(const VsiModel& model, std::optional<double> conicity, Vehicle
     throw ComputationError(fmt::format("{} does not come to rest on straight rails at {:.6g} m/s", model.vehicle.name,
                                        model.contact.speed));
   }
-  const WheelRailPair& pair = model.geometry->pair();
+  const TrainContact train = model.train_contact();
   const std::vector<WheelsetMotion> motions = wheelset_motions(model, state.vehicle[0]);
   for (int w = 0; w < model.wheelsets(); ++w) {
-    ContactSlopes slopes = contact_slopes(model.contact, motions[index(w)]);
+    ContactSlopes slopes = contact_slopes(train[w], motions[index(w)]);
     if (conicity) {
+      const WheelRailPair& pair = train[w].geometry->pair();
       slopes.by_displacement(yaw_dof, y_dof) = pair.tape_circle_offset() * slopes.by_velocity(0, 0) *
                                                model.contact.speed * *conicity / pair.nominal_radius();
     }

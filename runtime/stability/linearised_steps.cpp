@@ -41,7 +41,10 @@ void add_element_slopes(const ForceElements& elements, const LinearMotion& at, E
 
 LinearisedSteps::LinearisedSteps(const VsiModel& model, const HhtScheme& hht, const std::vector<int>& displacements,
                                  const LinearMotion& start)
-    : model_(model), hht_(hht), linear_damping_(model.vehicle_damping(model.contact.speed)) {
+    : model_(model),
+      contact_(model.train_contact()),
+      hht_(hht),
+      linear_damping_(model.vehicle_damping(model.contact.speed)) {
   const int dofs = model.vehicle.dofs();
   const auto tied = static_cast<Eigen::Index>(displacements.size());
   displacement_.setZero(dofs, tied + dofs);
@@ -60,7 +63,7 @@ void LinearisedSteps::take_slopes(const LinearMotion& at) {
     // Where contact points jump within a step, the mean over its way has the jump's share in the motion.
     const WheelsetMotion& motion = motions[index(w)];
     const double travel = std::abs(motion.velocity[1]) * hht_.time_step;
-    subtract_contact_slopes(model_.vehicle, w, contact_slopes(model_.contact, motion, travel), stiffness_, damping_);
+    subtract_contact_slopes(model_.vehicle, w, contact_slopes(contact_[w], motion, travel), stiffness_, damping_);
   }
   add_element_slopes(model_.vehicle.elements, at, stiffness_, damping_);
 }

@@ -28,6 +28,7 @@ class LinearisedSteps {
   void take_slopes(const LinearMotion& at);
 
   const VsiModel& model_;
+  TrainContact contact_;
   HhtScheme hht_;
   Eigen::MatrixXd linear_damping_;
   Eigen::MatrixXd stiffness_, damping_;                     // K*, C* of the last motion

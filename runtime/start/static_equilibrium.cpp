@@ -41,13 +41,13 @@ constexpr int pitch = 4;
 
 // The linear parts at rest, made once.
 struct RestOperators {
-  WheelContactModel contact;
+  TrainContact contact;
   VehicleResponse vehicle;
   std::optional<ElementCompliance> elements;
   std::unique_ptr<StructureResponse> structure;
 
   explicit RestOperators(const VsiModel& model)
-      : contact(contact_at_rest(model.contact)), vehicle(model.vehicle, regularisation) {
+      : contact(contact_at_rest(model)), vehicle(model.vehicle, regularisation) {
     if (!model.vehicle.elements.empty()) {
       elements.emplace(model.vehicle, vehicle.inverse(), 1.0);
       elements->leave_out_pitch();
@@ -161,8 +161,8 @@ double largest_static_load(const VsiModel& model) {
 bool off_its_rail(const VsiModel& model, const ContactProblem& problem, const Eigen::VectorXd& displacement) {
   if (model.normal_contact != NormalContact::hertz) return false;
   constexpr double farthest = 15e-3;  // m: flanks lift a wheel by less, the tips of flanges by twice as much
-  const double b = model.geometry->pair().tape_circle_offset();
   for (int w = 0; w < model.wheelsets(); ++w) {
+    const double b = model.geometry_of(w).pair().tape_circle_offset();
     const double z = displacement[wheelset_unknowns * w + 2], roll = displacement[wheelset_unknowns * w + 3];
     for (int side = 0; side < 2; ++side) {
       const double below = rail_motion(problem, displacement, w, side).displacement[1] - z;
@@ -188,8 +188,8 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   ContactProblem problem = rest_problem(model, rest, contacts);
   if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
-  WheelContactModel contact = rest.contact;
-  contact.normal.material.E *= share.E;
+  TrainContact contact = rest.contact;
+  for (WheelContactModel& wheelset : contact.model) wheelset.normal.material.E *= share.E;
   const WheelsetConstraint constraint(model, vehicle);
   const double balanced = out_of_balance * largest_static_load(model);
   NewtonWorkspace workspace;
@@ -316,7 +316,8 @@ EquilibriumReport by_growing(const Growth& growth, const VsiModel& model, const 
 // method when rails and vehicle move first.
 std::optional<Growth> of_stiffness(const RestOperators& rest) {
   constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
-  const double steel_share = ElasticMaterial{}.E / rest.contact.normal.material.E, way = -std::log(steel_share);
+  const double steel_share = ElasticMaterial{}.E / rest.contact.shared().normal.material.E,
+               way = -std::log(steel_share);
   if (!(way > std::log(largest_ratio))) return std::nullopt;
   return Growth{[=](double share) { return RestShares{.E = std::pow(steel_share, 1.0 - share)}; },
                 std::log(largest_ratio) / way, std::log(smallest_ratio) / way};

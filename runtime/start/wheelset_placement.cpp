@@ -18,13 +18,14 @@ constexpr double first_look = 2e-3;       // m: less deep, no contact goes unnot
 constexpr double level_accuracy = 1e-12;  // m: a few newtons on contacts a thousand times as stiff as steel
 
 // Vertical force of one rail on wheelset w, down [N].
-double vertical_force(const VsiModel& model, const WheelContactModel& contact, const ContactProblem& problem,
-                      const Eigen::VectorXd& displacement, int w, int side) {
+double vertical_force(const TrainContact& train, const ContactProblem& problem, const Eigen::VectorXd& displacement,
+                      int w, int side) {
+  const WheelContactModel& contact = train[w];
   const WheelSide wheel_side = side == 0 ? WheelSide::left : WheelSide::right;
   const WheelsetMotion motion = wheelset_motion(problem, displacement, w);
   const RailHeadMotion rail = rail_motion(problem, displacement, w, side);
   const WheelContact found =
-      wheel_contact(*model.geometry, relative_pose(model.geometry->pair(), wheel_side, motion, rail));
+      wheel_contact(*contact.geometry, relative_pose(contact.geometry->pair(), wheel_side, motion, rail));
   return -wheel_force(contact, wheel_side, motion, rail, found).wheelset[2];
 }
 
@@ -35,14 +36,13 @@ const DofIndices& wheelset_dof(const VsiModel& model, int w) {
 // A wheelset that stands on its rails with given loads on its two wheels [N].
 class WheelsetPlacement {
  public:
-  WheelsetPlacement(const VsiModel& model, const WheelContactModel& contact, const ContactProblem& problem, int w,
+  WheelsetPlacement(const TrainContact& contact, const ContactProblem& problem, int w,
                     const std::array<double, 2>& load, Eigen::VectorXd& displacement)
-      : model_(model),
-        contact_(contact),
+      : contact_(contact),
         problem_(problem),
         w_(w),
         load_(load),
-        half_distance_(model.geometry->pair().tape_circle_offset()),
+        half_distance_(contact[w].geometry->pair().tape_circle_offset()),
         z_(displacement[wheelset_unknowns * w + 2]),
         roll_(displacement[wheelset_unknowns * w + 3]),
         displacement_(displacement) {}
@@ -53,7 +53,7 @@ class WheelsetPlacement {
     const double rail = rail_motion(problem_, displacement_, w_, side).displacement[1];
     const double on_rail = rail - (side == 0 ? -half_distance_ : half_distance_) * roll_;
     const auto carries = [&] {
-      return vertical_force(model_, contact_, problem_, displacement_, w_, side) > load_[index(side)];
+      return vertical_force(contact_, problem_, displacement_, w_, side) > load_[index(side)];
     };
     double high = on_rail - highest, low = high;
     // Counted: where rails are displaced by 1e20 m, a look farther down is the same height again.
@@ -123,8 +123,7 @@ class WheelsetPlacement {
   [[nodiscard]] bool near_rails() const { return near_rails_; }
 
  private:
-  const VsiModel& model_;
-  const WheelContactModel& contact_;
+  const TrainContact& contact_;
   const ContactProblem& problem_;
   int w_;
   std::array<double, 2> load_;
@@ -147,36 +146,36 @@ void load_rails(const VsiModel& model, const ContactProblem& problem, Eigen::Vec
 
 }  // namespace
 
-WheelContactModel contact_at_rest(const WheelContactModel& contact) {
-  WheelContactModel rest = contact;
-  rest.damping = 0.0;
+TrainContact contact_at_rest(const VsiModel& model) {
+  TrainContact rest = model.train_contact();
+  for (WheelContactModel& contact : rest.model) contact.damping = 0.0;
   return rest;
 }
 
-void set_down(const VsiModel& model, const WheelContactModel& contact, const ContactProblem& problem,
+void set_down(const VsiModel& model, const TrainContact& contact, const ContactProblem& problem,
               Eigen::VectorXd& displacement) {
   load_rails(model, problem, displacement);
   for (int w = 0; w < model.wheelsets(); ++w) {
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
     const double load = static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle());
-    WheelsetPlacement placement(model, contact, problem, w, {load, load}, displacement);
+    WheelsetPlacement placement(contact, problem, w, {load, load}, displacement);
     const double difference = placement.settle();
     if (dof[3] == held) continue;
-    displacement[wheelset_unknowns * w + 3] = difference / (2.0 * model.geometry->pair().tape_circle_offset());
+    displacement[wheelset_unknowns * w + 3] = difference / (2.0 * contact[w].geometry->pair().tape_circle_offset());
   }
 }
 
 bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& state) {
   if (shift == 0.0 && yaw == 0.0) return true;
   const bool on_profiles = model.normal_contact == NormalContact::hertz;
-  const WheelContactModel contact = contact_at_rest(model.contact);
+  const TrainContact contact = contact_at_rest(model);
   std::vector<std::array<double, 2>> load(index(model.wheelsets()));
   if (on_profiles) {
     const ContactProblem before = present_contact(model, state);
     for (int w = 0; w < model.wheelsets(); ++w) {
       for (int side = 0; side < 2; ++side) {
-        load[index(w)][index(side)] = vertical_force(model, contact, before, before.predicted, w, side);
+        load[index(w)][index(side)] = vertical_force(contact, before, before.predicted, w, side);
       }
     }
   }
@@ -193,7 +192,7 @@ bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& s
   for (int w = 0; w < model.wheelsets(); ++w) {
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
-    WheelsetPlacement placement(model, contact, displaced, w, load[index(w)], displacement);
+    WheelsetPlacement placement(contact, displaced, w, load[index(w)], displacement);
     if (dof[3] == held) {
       placement.settle();
       if (!placement.near_rails()) return false;

@@ -82,20 +82,6 @@ void add_joint(ConsistVehicle& ahead, const ConsistVehicle& behind, const std::f
   ahead.joint_reversed = !rear.empty() ? ahead.reversed : !front.empty() && behind.reversed;
 }
 
-void check_radius(const std::vector<ConsistVehicle>& train) {
-  const VehicleData& first = train.front().data;
-  const auto check = [&](const VehicleData& other) {
-    if (std::abs(other.parts.nominal_radius - first.parts.nominal_radius) <= 1e-9) return;
-    throw input_error(fmt::format("{}: nominal_radius", other.place), fmt::format("{} m", other.parts.nominal_radius),
-                      fmt::format("{} m, that of {}: wheels of a train have one pair of profiles",
-                                  first.parts.nominal_radius, first.name));
-  };
-  for (const ConsistVehicle& vehicle : train) {
-    check(vehicle.data);
-    if (vehicle.joint && !vehicle.joint->parts.wheelsets.empty()) check(*vehicle.joint);
-  }
-}
-
 // Collects bodies and force elements of a train.
 class TrainParts {
  public:
@@ -129,10 +115,13 @@ class TrainParts {
   }
 
   void finish() {
-    std::stable_sort(train.wheelsets.begin(), train.wheelsets.end(), [&](int a, int b) {
-      return train.bodies[static_cast<std::size_t>(a)].position.x() >
-             train.bodies[static_cast<std::size_t>(b)].position.x();
-    });
+    const auto x = [&](const Wheelset& w) { return train.bodies[static_cast<std::size_t>(w.body)].position.x(); };
+    std::stable_sort(wheelset_.begin(), wheelset_.end(),
+                     [&](const Wheelset& a, const Wheelset& b) { return x(a) > x(b); });
+    for (const Wheelset& w : wheelset_) {
+      train.wheelsets.push_back(w.body);
+      train.wheel_radius.push_back(w.radius);
+    }
   }
 
   VehicleDescription train;
@@ -159,7 +148,9 @@ class TrainParts {
       train.bodies.back().position += shift;
       train.bodies.back().coach = coach;
     }
-    for (const int wheelset : parts.wheelsets) train.wheelsets.push_back(number(wheelset));
+    for (const int wheelset : parts.wheelsets) {
+      wheelset_.push_back({number(wheelset), parts.nominal_radius});
+    }
     for (const Suspension& unit : parts.suspension) {
       train.suspension.push_back(unit);
       Suspension& added = train.suspension.back();
@@ -169,7 +160,12 @@ class TrainParts {
     }
   }
 
+  struct Wheelset {
+    int body;
+    double radius;
+  };
   std::vector<int> first_body_;  // of each vehicle
+  std::vector<Wheelset> wheelset_;
 };
 
 void check_plane(const std::vector<ConsistVehicle>& train, MotionPlane plane) {
@@ -276,7 +272,6 @@ VehicleDescription describe_consist(const std::vector<ConsistVehicle>& train) {
 VehicleModel build_consist(const std::vector<ConsistVehicle>& train, MotionPlane plane, const VehicleWeight& weight,
                            ForceElementChoice choice) {
   check_plane(train, plane);
-  if (plane == MotionPlane::spatial) check_radius(train);
   VehicleDescription parts = describe_consist(train);
   parts.weight = weight;
   parts.force_elements = choice;

@@ -41,7 +41,7 @@ struct ConsistVehicle {
 
 /// All vehicles and joints as one system of bodies, the first vehicle's centre at x = 0. Bodies know their coach by
 /// RigidBody::coach; those of a joint belong to the coach ahead of it and are named "joint-…".
-/// @throws InputError where a joint names a body that its neighbours have not, and where wheels differ in radius
+/// @throws InputError where a joint names a body that its neighbours have not
 [[nodiscard]] VehicleDescription describe_consist(const std::vector<ConsistVehicle>& train);
 
 /// describe_consist() as a model. Its top speed is the lowest of those stated.

@@ -209,7 +209,8 @@ VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, cons
   vehicle.bodies = named_bodies(free);
   vehicle.coaches = static_cast<int>(car_bodies(free).size());
   vehicle.wheelsets = free.wheelsets;
-  vehicle.nominal_radius = -free.wheelset(0).position.z();
+  for (std::size_t w = 0; w < free.wheelsets.size(); ++w)
+    vehicle.wheel_radius.push_back(-free.wheelset(w).position.z());
   vehicle.length = length_over_couplers(free);
 
   const std::vector<bool> is_held = held_rows(free, plane);
@@ -231,8 +232,8 @@ VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, cons
   const Matrix inertia = free.mass * free.rigid;
   vehicle.acceleration_load = -inertia.col(x_dof)(kept);
   vehicle.lateral_shift = free.rigid.col(y_dof)(kept);
-  for (const int w : vehicle.wheelsets) {
-    const int row = free.bodies[static_cast<std::size_t>(w)].row[pitch_dof];
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+    const int row = free.wheelset(w).row[pitch_dof];
     add_rolling(vehicle, w, free.mass(row, row));
   }
   vehicle.lateral_load = inertia.col(y_dof)(kept);

@@ -122,13 +122,14 @@ void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndi
 /// ω × r = (-ΩR, 0, 0) against the vehicle. The axle direction is e_y + θ × e_y = (-yaw, 1, roll), hence the angular
 /// momentum -J_y·Ω·(-yaw, 1, roll), and its rate enters the left-hand side of the moment balance:
 /// about x: +J_y·Ω·d(yaw)/dt, about z: -J_y·Ω·d(roll)/dt.
-void add_rolling(VehicleModel& vehicle, int wheelset, double Jy) {
-  const DofIndices& dof = vehicle.dof[wheelset];
-  if (dof[pitch_dof] != held) vehicle.acceleration_load[dof[pitch_dof]] += Jy / vehicle.nominal_radius;
+void add_rolling(VehicleModel& vehicle, std::size_t wheelset, double Jy) {
+  const DofIndices& dof = vehicle.dof[vehicle.wheelsets[wheelset]];
+  const double per_speed = Jy / vehicle.wheel_radius[wheelset];
+  if (dof[pitch_dof] != held) vehicle.acceleration_load[dof[pitch_dof]] += per_speed;
   const int roll = dof[roll_dof], yaw = dof[yaw_dof];
   if (roll == held || yaw == held) return;
-  vehicle.gyroscopic(roll, yaw) += Jy;
-  vehicle.gyroscopic(yaw, roll) -= Jy;
+  vehicle.gyroscopic(roll, yaw) += per_speed;
+  vehicle.gyroscopic(yaw, roll) -= per_speed;
 }
 
 /// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
@@ -170,6 +171,7 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   check_bodies(name, parts.bodies);
   check_connections(name, parts.bodies.size(), parts.suspension, parts.wheelsets);
   require_positive(name + ".nominal_radius", parts.nominal_radius, "m");
+  for (const double radius : parts.wheel_radius) require_positive(name + ".wheel_radius", radius, "m");
   require_positive(name + ".length", parts.length, "m");
   require_not_negative(name + ".gravity", parts.weight.gravity, "m/s²");
 
@@ -177,7 +179,8 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   vehicle.name = name;
   for (const RigidBody& body : parts.bodies) vehicle.bodies.push_back({body.name, body.position, body.coach});
   vehicle.wheelsets = parts.wheelsets;
-  vehicle.nominal_radius = parts.nominal_radius;
+  vehicle.wheel_radius = parts.wheel_radius;
+  if (vehicle.wheel_radius.empty()) vehicle.wheel_radius.assign(parts.wheelsets.size(), parts.nominal_radius);
   vehicle.length = parts.length;
   vehicle.coaches = parts.coaches;
   const int of_bodies = number_dofs(vehicle, parts.held_dofs);
@@ -193,7 +196,9 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   add_inertia(vehicle, parts.bodies);
   add_suspension(vehicle, parts);
   add_series_dampers(vehicle, parts.suspension, of_bodies, parts.force_elements);
-  for (const int w : vehicle.wheelsets) add_rolling(vehicle, w, parts.bodies[w].inertia.y());
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+    add_rolling(vehicle, w, parts.bodies[vehicle.wheelsets[w]].inertia.y());
+  }
   vehicle.lateral_load = vehicle.mass * vehicle.lateral_shift;
   const StandingVehicle rest = standing(vehicle, weight_of(vehicle, parts.bodies, parts.weight.gravity));
   vehicle.gravity = parts.weight.gravity;

@@ -65,11 +65,11 @@ struct VehicleModel {
   std::vector<VehicleBody> bodies;
   std::vector<DofIndices> dof;               ///< per body
   std::vector<int> wheelsets;                ///< bodies that are wheelsets, front first
-  double nominal_radius = 0.46;              ///< [m]
+  std::vector<double> wheel_radius;          ///< nominal radius R0 of each wheelset's wheels [m]
   double length = 26.4;                      ///< over couplers: distance to the next vehicle of the same kind [m]
   Eigen::MatrixXd mass, damping, stiffness;  ///< dofs × dofs
-  /// Velocity matrix at a wheelset rotation of 1 rad/s in the sense of forward rolling (ω_y = -1 rad/s, z being down)
-  /// [kg m²]; antisymmetric. Damping of the running vehicle: damping + (V/R0)·gyroscopic.
+  /// Velocity matrix of wheelsets that roll forward, ω_y = -V/R0 (z being down), per running speed V [kg m];
+  /// antisymmetric. Damping of the running vehicle: damping + V·gyroscopic.
   Eigen::MatrixXd gyroscopic;
   double gravity = standard_gravity;  ///< under which it stands, normal to the track [m/s²]
   Eigen::VectorXd static_load;  ///< load that balances the contact forces at rest: static axle loads on wheelset z [N]
@@ -96,11 +96,12 @@ struct VehicleDescription {
   std::vector<int> wheelsets;  ///< bodies that are wheelsets, front first
   /// Per body; an entry `held` holds that dof, any other value frees it; empty: all are free.
   std::vector<DofIndices> held_dofs;
-  double nominal_radius = 0.46;  ///< [m]
+  double nominal_radius = 0.46;  ///< R0 of the wheels [m]
   double length = 26.4;          ///< over couplers [m]
   int coaches = 1;               ///< whose bodies these are (RigidBody::coach)
   VehicleWeight weight{};
   ForceElementChoice force_elements = ForceElementChoice::nonlinear;
+  std::vector<double> wheel_radius{};  ///< R0 of each wheelset's wheels, where they differ; else empty [m]
 };
 
 /// Assemble matrices from bodies and suspension (B^T k B with B the kinematics of the attachment points, and the

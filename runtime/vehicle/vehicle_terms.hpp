@@ -8,7 +8,7 @@ namespace railtab {
 /// What a wheelset of rotational inertia Jy [kg m²] about its axle adds by rolling: gyroscopic moments at a rotation of
 /// 1 rad/s, and the load of a rotation that changes with the train's speed.
 /// @param wheelset index of its body; matrices and acceleration_load have their sizes
-void add_rolling(VehicleModel& vehicle, int wheelset, double Jy);
+void add_rolling(VehicleModel& vehicle, std::size_t wheelset, double Jy);
 
 /// Adds what joins bodies a and b to a matrix of the vehicle's dofs; held ones are left out.
 void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndices& b, const PairMatrix& pair);

@@ -17,18 +17,18 @@ void add(const NewtonReport& attempt, NewtonReport& total) {
 
 }  // namespace
 
-NewtonReport solve_contact_by_continuation(const WheelContactModel& model, const ContactProblem& problem,
+NewtonReport solve_contact_by_continuation(const TrainContact& train, const ContactProblem& problem,
                                            const NewtonLimits& limits, ContactSolution& solution, NewtonWorkspace& ws,
                                            InitialForces forces) {
   constexpr std::array first_shares{1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0};
   constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
   const Eigen::VectorXd start = solution.displacement;
-  NewtonReport report = solve_contact(model, problem, limits, solution, ws, forces);
-  if (report.converged || model.friction <= 0.0) return report;
+  NewtonReport report = solve_contact(train, problem, limits, solution, ws, forces);
+  if (report.converged || train.shared().friction <= 0.0) return report;
 
-  WheelContactModel part = model;
+  TrainContact part = train;
   const auto solve = [&](double share, const Eigen::VectorXd& from) {
-    part.creepage_share = share;
+    for (WheelContactModel& model : part.model) model.creepage_share = share;
     solution.displacement = from;
     ws.forget_tangents();  // of another law
     add(solve_contact(part, problem, limits, solution, ws), report);

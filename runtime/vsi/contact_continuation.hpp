@@ -9,7 +9,7 @@ namespace railtab {
 /// directions of sliding. The solution for a small share of the creepages, as at a higher speed, is easy; from there
 /// the share grows to 1, each solution being the start of the next. What is found is a solution of the full problem.
 /// @return iterations and look-ups of all attempts together
-[[nodiscard]] NewtonReport solve_contact_by_continuation(const WheelContactModel& model, const ContactProblem& problem,
+[[nodiscard]] NewtonReport solve_contact_by_continuation(const TrainContact& train, const ContactProblem& problem,
                                                          const NewtonLimits& limits, ContactSolution& solution,
                                                          NewtonWorkspace& workspace,
                                                          InitialForces forces = InitialForces::unknown);

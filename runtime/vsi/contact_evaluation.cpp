@@ -27,10 +27,11 @@ WheelContact contact_of_wheel(const WheelContactModel& model, std::size_t wheel,
 
 }  // namespace
 
-ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
+ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& s, NewtonWorkspace& ws) {
   ContactCounts counts;
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
+    const WheelContactModel& model = train[w];
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
     auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
     auto end_force = s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w);
@@ -57,6 +58,8 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
       s.rail_x[number] = wheel.rail_x;
       counts.outside_creep_table += wheel.outside_creep_table;
       s.normal[number] = wheel.normal;
+      s.creep_power[number] = wheel.creep_power;
+      s.pressure[number] = wheel.pressure;
       s.memory[number] = contact_memory(model.geometry->pair(), contact, wheel);
       if (problem.start) {
         const ContactMemory& start = problem.start->memory[number];
@@ -74,9 +77,10 @@ ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& pro
   return counts;
 }
 
-void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
+void differentiate(const TrainContact& train, const ContactProblem& problem, Wheelsets wheelsets,
                    const ContactSolution& s, NewtonWorkspace& ws) {
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
+    const WheelContactModel& model = train[w];
     Matrix12& tangent = ws.tangent[index(w)];
     tangent.setZero();
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
@@ -121,12 +125,11 @@ RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd&
   return motion;
 }
 
-NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem,
-                              ContactSolution& solution) {
+NewtonReport evaluate_contact(const TrainContact& train, const ContactProblem& problem, ContactSolution& solution) {
   NewtonReport report;
   NewtonWorkspace workspace;
   const int wheelsets = static_cast<int>(solution.displacement.size()) / wheelset_unknowns;
-  report.counts = evaluate(model, problem, Pairs::searched, {0, wheelsets}, solution, workspace);
+  report.counts = evaluate(train, problem, Pairs::searched, {0, wheelsets}, solution, workspace);
   return report;
 }
 

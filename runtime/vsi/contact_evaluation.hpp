@@ -18,11 +18,11 @@ struct Wheelsets {
 }
 
 /// Contact forces at the solution's displacement, and what they are made of.
-ContactCounts evaluate(const WheelContactModel& model, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
+ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& solution, NewtonWorkspace& workspace);
 
 /// df/dq where evaluate() has found the patches.
-void differentiate(const WheelContactModel& model, const ContactProblem& problem, Wheelsets wheelsets,
+void differentiate(const TrainContact& train, const ContactProblem& problem, Wheelsets wheelsets,
                    const ContactSolution& solution, NewtonWorkspace& workspace);
 
 }  // namespace railtab

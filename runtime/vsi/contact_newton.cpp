@@ -140,9 +140,9 @@ double force_change(const NewtonWorkspace& ws, Wheelsets wheelsets) {
 // rest where they are while that is good enough.
 class TrainNewton {
  public:
-  TrainNewton(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
+  TrainNewton(const TrainContact& train, const ContactProblem& problem, const NewtonLimits& limits,
               ContactSolution& solution, NewtonWorkspace& ws, InitialForces forces)
-      : model_(model),
+      : train_(train),
         problem_(problem),
         limits_(limits),
         first_order_(std::pow(limits.force_tolerance / stiffest_contact, 2.0 / 3.0)),
@@ -154,7 +154,7 @@ class TrainNewton {
     ws.start.resize(s_.displacement.size());
     ws.start_force.resize(s_.displacement.size());
     ws.correction.resize(s_.displacement.size());
-    ws.found.resize(model.geometry->is_paper() ? 2 * ws.tangent.size() : 0);
+    ws.found.resize(train.shared().geometry->is_paper() ? 2 * ws.tangent.size() : 0);
     ws.found_at.resize(ws.found.size());
     // The tangents of the step before serve as long as they are good enough, with the compliance of this one. A group
     // that has rested since the beginning has none yet.
@@ -214,7 +214,7 @@ class TrainNewton {
 
   void evaluate_group(int g) {
     const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
-    report_.counts += evaluate(model_, problem_, searches ? Pairs::searched : Pairs::kept, wheelsets(g), s_, ws_);
+    report_.counts += evaluate(train_, problem_, searches ? Pairs::searched : Pairs::kept, wheelsets(g), s_, ws_);
   }
 
   // Broyden's update of the tangent: the least change that explains what the last correction has changed the forces by,
@@ -253,7 +253,7 @@ class TrainNewton {
     n.turn = n.moved && size > 2.0 * n.previous && n.part > shortest_part ? Turn::goes_back : Turn::corrects;
     if (n.turn == Turn::goes_back) return;
     if (n.new_tangent || (n.moved && size > fast_enough * n.previous)) {
-      differentiate(model_, problem_, wheelsets(g), s_, ws_);
+      differentiate(train_, problem_, wheelsets(g), s_, ws_);
       ws_.to_invert.push_back(g);
       n.new_tangent = false;
     } else if (n.moved && n.previous < std::numeric_limits<double>::infinity()) {
@@ -294,7 +294,7 @@ class TrainNewton {
     return false;
   }
 
-  const WheelContactModel& model_;
+  const TrainContact& train_;
   const ContactProblem& problem_;
   const NewtonLimits& limits_;
   /// A wheel in the air, whose tangent is zero, gains no more than the tolerance by such a correction [m, rad].
@@ -323,9 +323,9 @@ void contact_residual(const ContactProblem& problem, const ContactSolution& s, E
   if (problem.elements) problem.elements->respond(s.force, r);
 }
 
-NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem, const NewtonLimits& limits,
+NewtonReport solve_contact(const TrainContact& train, const ContactProblem& problem, const NewtonLimits& limits,
                            ContactSolution& solution, NewtonWorkspace& workspace, InitialForces forces) {
-  return TrainNewton(model, problem, limits, solution, workspace, forces).solve();
+  return TrainNewton(train, problem, limits, solution, workspace, forces).solve();
 }
 
 }  // namespace railtab

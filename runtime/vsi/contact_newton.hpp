@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/train_contact.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
 namespace railtab {
@@ -36,6 +37,7 @@ struct ContactSolution {
   Eigen::VectorXd step_load;   ///< p, the contacts' part of Eq. 12 in the last step
   std::vector<double> rail_x;  ///< longitudinal force on the rail per wheel [N]
   std::vector<std::array<double, ContactPatches::capacity>> normal;  ///< of the patches [N]
+  std::vector<double> creep_power, pressure;                         ///< WheelForce's, per wheel [W], [Pa]
   std::vector<WheelContact> contact;  ///< per wheel, of its own (mirrored on the left) side
   std::vector<ContactMemory> memory;  ///< per wheel, what the next step wants to know of this one's end
 };
@@ -133,7 +135,7 @@ struct NewtonWorkspace {
 void contact_residual(const ContactProblem& problem, const ContactSolution& solution, Eigen::VectorXd& residual);
 
 /// Forces at solution.displacement, written into the solution.
-NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProblem& problem, ContactSolution& solution);
+NewtonReport evaluate_contact(const TrainContact& train, const ContactProblem& problem, ContactSolution& solution);
 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is inverted group by group of wheelsets;
 /// their coupling through vehicles and rails enters the residual.
@@ -144,7 +146,7 @@ NewtonReport evaluate_contact(const WheelContactModel& model, const ContactProbl
 /// as a wheel moves: they are searched in the first evaluations and then held, each moving with its bodies' particles,
 /// so that Newton ends on forces that are smooth. Converged: the residual is below the tolerance or the next correction
 /// below one of the limits; the forces are those at the displacement.
-[[nodiscard]] NewtonReport solve_contact(const WheelContactModel& model, const ContactProblem& problem,
+[[nodiscard]] NewtonReport solve_contact(const TrainContact& train, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
                                          NewtonWorkspace& workspace, InitialForces forces = InitialForces::unknown);
 

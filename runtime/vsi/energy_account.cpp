@@ -24,8 +24,8 @@ double stored(const ForceElements& elements, const Eigen::VectorXd& x, const Eig
 }  // namespace
 
 EnergyAccount::EnergyAccount(const VsiModel& model, const VsiState& state)
-    : model_(model), contact_(model.contact), frictionless_(model.contact) {
-  frictionless_.friction = 0.0;
+    : model_(model), contact_(model.train_contact()), frictionless_(contact_) {
+  for (WheelContactModel& contact : frictionless_.model) contact.friction = 0.0;
   wheelset_gain_.assign(index(model.wheelsets()), 0.0);
   last_ = observe(state);
   balance_.initial = balance_.energy();
@@ -55,7 +55,8 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
     b.strain += 0.5 * m.displacement.dot(model_.structure->stiffness * m.displacement);
     now.structure_velocity = m.velocity;
   }
-  contact_.speed = frictionless_.speed = model_.speed(state.time);
+  contact_.set_speed(model_.speed(state.time));
+  frictionless_.set_speed(model_.speed(state.time));
   if (!model_.loads.empty() || model_.speed_profile || model_.lateral_acceleration != 0.0) {
     now.vehicle_load.resize(state.vehicle.size());
     for (std::size_t v = 0; v < state.vehicle.size(); ++v)
@@ -66,16 +67,17 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
   now.wheel_velocity = problem.predicted_velocity;
   now.mean_force = now.mean_normal_force = Eigen::VectorXd::Zero(problem.predicted.size());
   now.step_load = state.contact.step_load;
-  const WheelRailPair& pair = model_.geometry->pair();
   now.contact_energy.assign(index(model_.wheelsets()), 0.0);
   for (int w = 0; w < model_.wheelsets(); ++w) {
+    const ContactGeometry& geometry = *contact_[w].geometry;
+    const WheelRailPair& pair = geometry.pair();
     const WheelsetMotion motion = wheelset_motion(problem, problem.predicted, w);
     for (int side = 0; side < 2; ++side) {
       const WheelSide wheel_side = wheel_sides[index(side)];
       const RailHeadMotion rail = rail_motion(problem, problem.predicted, w, side);
       const WheelsetPose pose = relative_pose(pair, wheel_side, motion, rail);
-      const WheelContact found = wheel_contact(*model_.geometry, pose);
-      now.contact_energy[index(w)] += elastic_energy(contact_, found);
+      const WheelContact found = wheel_contact(geometry, pose);
+      now.contact_energy[index(w)] += elastic_energy(contact_[w], found);
       const std::size_t number = now.contact.size();
       const int k = wheelset_unknowns * w, r = rail_unknown(2 * w + side);
       now.wheel_displacement.segment<3>(r) = rail.displacement;
@@ -89,8 +91,8 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
         mean.segment<6>(k) += f.head<6>();
         mean.segment<3>(r) = f.tail<3>();
       };
-      add(contact_, last_.contact, now.contact, now.mean_force);
-      add(frictionless_, last_.normal, now.normal, now.mean_normal_force);
+      add(contact_[w], last_.contact, now.contact, now.mean_force);
+      add(frictionless_[w], last_.normal, now.normal, now.mean_normal_force);
     }
     b.contact += now.contact_energy[index(w)];
   }

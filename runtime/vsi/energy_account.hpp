@@ -71,7 +71,7 @@ class EnergyAccount {
   [[nodiscard]] double dissipated_by_elements(double time_step, const Instant& now) const;
 
   const VsiModel& model_;
-  WheelContactModel contact_, frictionless_;  ///< at the speed of the instant
+  TrainContact contact_, frictionless_;  ///< at the speed of the instant
   Instant last_;
   EnergyBalance balance_;
   std::vector<double> wheelset_gain_;

@@ -44,8 +44,8 @@ void vehicle_step_load(const VsiModel& model, const HhtScheme& scheme, int vehic
   vehicle_load(model, vehicle, time, acting);
   load -= scheme.alpha * acting;
   if (model.speed_profile && model.gyroscopic_moments == GyroscopicMoments::included) {
-    const double rotation = (model.speed(end) - model.speed(time)) / model.vehicle.nominal_radius;
-    load -= scheme.alpha * rotation * (model.vehicle.gyroscopic * motion.velocity);
+    const double faster = model.speed(end) - model.speed(time);
+    load -= scheme.alpha * faster * (model.vehicle.gyroscopic * motion.velocity);
   }
 }
 

@@ -78,17 +78,21 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   record.position = model.wheelset_x(0, state.time);
   const auto wheels = static_cast<std::size_t>(2 * model.wheelsets());
   record.wheels.resize(wheels);
+  const double speed = model.speed(state.time);
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
     w = {};
     if (model.geometry) {
-      fill_patches(model.geometry->pair(), state.contact, wheel, w);
-      w.from_table = answered_by_table(*model.geometry, state.contact.contact[wheel]) ? 1 : 0;
+      const ContactGeometry& geometry = model.geometry_of(static_cast<int>(wheel / 2));
+      fill_patches(geometry.pair(), state.contact, wheel, w);
+      w.from_table = answered_by_table(geometry, state.contact.contact[wheel]) ? 1 : 0;
     }
     const int unknown = rail_unknown(static_cast<int>(wheel));
     w.Y = state.contact.end_force[unknown];
     w.Q = state.contact.end_force[unknown + 1];
     w.X = state.contact.rail_x[wheel];
+    w.wear_number = speed > 0.0 ? state.contact.creep_power[wheel] / speed : 0.0;
+    w.pressure = state.contact.pressure[wheel];
   }
   const std::size_t bodies = model.vehicle.bodies.size();
   record.bodies.resize(bodies * state.vehicle.size());

@@ -1,5 +1,6 @@
 // Hertz's contacts with creep forces as the contact law of a step (NormalContact::hertz).
 
+#include <map>
 #include <optional>
 
 #include "railtab/runtime/base/index.hpp"
@@ -32,7 +33,7 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
 
 class HertzContacts : public ContactLaw {
  public:
-  explicit HertzContacts(const VsiModel& model) : contact_(model.contact) {
+  explicit HertzContacts(const VsiModel& model) : of_model_(model.train_contact()), contact_(of_model_) {
     const std::size_t n = model.vehicle_x.size();
     prediction_.resize(n);
     free_.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
@@ -72,10 +73,12 @@ class HertzContacts : public ContactLaw {
   // or (I − 𝐂 T) δq = q_free + 𝐂 f(q, v) − q.
   // 𝐂: vehicle_compliance and rail; q_free: free; f and T: evaluate() and differentiate().
   void present(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
-    contact_.speed = step.model.speed(step.end);
     const bool search = step.limits.geometry == GeometrySource::search;
-    if (search && !search_) search_.emplace(step.model.contact.geometry->without_table());
-    contact_.geometry = search ? &*search_ : step.model.contact.geometry;
+    for (std::size_t w = 0; w < contact_.model.size(); ++w) {
+      const ContactGeometry* geometry = of_model_.model[w].geometry;
+      contact_.model[w].geometry = search ? searched(geometry) : geometry;
+    }
+    contact_.set_speed(step.model.speed(step.end));
     if (step.model.structure) {
       gather_structure(step, state, ws);
       couple_rails(step, problem_.rail);
@@ -168,8 +171,16 @@ class HertzContacts : public ContactLaw {
     }
   }
 
-  std::optional<ContactGeometry> search_;  // made when first needed
-  WheelContactModel contact_;              // at the speed of the step's end
+  // Made when first needed.
+  const ContactGeometry* searched(const ContactGeometry* geometry) {
+    auto known = search_.find(geometry);
+    if (known == search_.end()) known = search_.emplace(geometry, geometry->without_table()).first;
+    return &known->second;
+  }
+
+  TrainContact of_model_;
+  TrainContact contact_;                                      // at the speed of the step's end
+  std::map<const ContactGeometry*, ContactGeometry> search_;  // geometries of the model, and the same without tables
   ContactProblem problem_;
   std::optional<TrainElements> elements_;  // where vehicles have force elements
   std::vector<Prediction> prediction_;     // per vehicle

@@ -121,8 +121,8 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   if (model.normal_contact == NormalContact::rigid) return;
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   const ContactProblem problem = present_contact(model, state);
-  WheelContactModel contact = model.contact;
-  contact.speed = model.speed(state.time);
+  TrainContact contact = model.train_contact();
+  contact.set_speed(model.speed(state.time));
   ContactSolution now = state.contact;
   now.displacement = problem.predicted;
   static_cast<void>(evaluate_contact(contact, problem, now));
@@ -135,6 +135,8 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   state.contact.end_force = std::move(now.end_force);
   state.contact.memory = std::move(now.memory);
   state.contact.normal = std::move(now.normal);
+  state.contact.creep_power = std::move(now.creep_power);
+  state.contact.pressure = std::move(now.pressure);
   state.contact.contact = std::move(now.contact);
 }
 

@@ -20,6 +20,8 @@ struct WheelRecord {
   double normal_force = 0;         ///< of that patch [N]
   double penetration = 0;          ///< of that patch [m]
   double second_y_rail = 0, second_normal_force = 0;  ///< of the next patch; 0 where there is none
+  double wear_number = 0;                             ///< T·γ: energy that creep takes per way of the train [J/m]
+  double pressure = 0;                                ///< largest normal pressure [Pa]
 };
 
 /// Displacement and acceleration of one body or node: x, y, z, roll, pitch, yaw.
@@ -73,6 +75,8 @@ struct ResultHeader {
   double deck_cut_off = 0;                               ///< of its filtered acceleration [Hz]
   std::string wheel_profile, rail_profile;               ///< names
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]
+  /// Where wheels differ in their profiles: 1 where a wheel has the outline above, else 0; otherwise empty.
+  std::vector<double> wheel_outline;
   /// What the run was built of, what was left out, and what it was warned of before its first step.
   std::vector<std::string> built, left_out, warnings;
 };

@@ -26,9 +26,17 @@ double VsiModel::wheelset_x(int wheelset, double time) const noexcept {
   return vehicle_x[index(wheelset / per_vehicle)] + vehicle.bodies[index(body)].position[0] + distance(time);
 }
 
+TrainContact VsiModel::train_contact() const {
+  TrainContact train(contact);
+  if (wheelset_geometry.empty()) return train;
+  train.model.assign(wheelset_geometry.size(), contact);
+  for (std::size_t w = 0; w < wheelset_geometry.size(); ++w) train.model[w].geometry = wheelset_geometry[w].get();
+  return train;
+}
+
 WheelRise VsiModel::wheel_rise(int wheel, double time) const noexcept {
   if (wheel_deviation.empty()) return {};
-  const double R = vehicle.nominal_radius;
+  const double R = wheel_radius(wheel / 2);
   const WheelRise rise = wheel_deviation[index(wheel)].at(distance(time) / R);
   return {rise.rise, rise.slope / R, rise.curvature / (R * R)};
 }
@@ -59,6 +67,8 @@ VsiState::VsiState(const VsiModel& model)
   contact.rail_x.assign(index(2 * wheelsets), 0.0);
   contact.contact.resize(index(2 * wheelsets));
   contact.normal.resize(index(2 * wheelsets));
+  contact.creep_power.assign(index(2 * wheelsets), 0.0);
+  contact.pressure.assign(index(2 * wheelsets), 0.0);
   far_field = Eigen::VectorXd::Zero(6 * wheelsets);
   if (model.window) left_behind = Eigen::VectorXd::Zero(model.window->numbers());
 }

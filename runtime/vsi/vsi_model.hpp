@@ -54,7 +54,10 @@ struct VsiModel {
   std::optional<RailFriction> rail_friction;          ///< in place of contact.friction, which scales it
   NormalContact normal_contact = NormalContact::hertz;
   std::shared_ptr<const ContactGeometry> geometry;
-  WheelContactModel contact;                  ///< its geometry points to `geometry`, its speed is that at t = 0
+  WheelContactModel contact;  ///< its geometry points to `geometry`, its speed is that at t = 0
+  /// Where wheelsets differ in their profiles or radius: the geometry of each wheelset of the train; else empty, and
+  /// all have `geometry`, which is that of the first.
+  std::vector<std::shared_ptr<const ContactGeometry>> wheelset_geometry;
   std::optional<SpeedProfile> speed_profile;  ///< speed over time; without it contact.speed throughout
   std::vector<BodyLoad> loads;                ///< on the vehicles' bodies, besides gravity
   double lateral_acceleration = 0.0;          ///< that pushes the vehicles to the right, in the track's plane [m/s²]
@@ -75,6 +78,15 @@ struct VsiModel {
   [[nodiscard]] double distance(double time) const noexcept {
     return speed_profile ? speed_profile->distance(time) : contact.speed * time;
   }
+  [[nodiscard]] const ContactGeometry& geometry_of(int wheelset) const noexcept {
+    return wheelset_geometry.empty() ? *geometry : *wheelset_geometry[static_cast<std::size_t>(wheelset)];
+  }
+  /// `contact` on the profiles of every wheelset.
+  [[nodiscard]] TrainContact train_contact() const;
+  /// Nominal radius of a wheelset's wheels [m].
+  [[nodiscard]] double wheel_radius(int wheelset) const noexcept {
+    return vehicle.wheel_radius[static_cast<std::size_t>(wheelset % wheelsets_per_vehicle())];
+  }
   /// How much higher a wheel runs than a round one at time t, over the way x: rise [m], dz/dx [-], d²z/dx² [1/m].
   [[nodiscard]] WheelRise wheel_rise(int wheel, double time) const noexcept;
   /// Irregularity of a rail and its deviation by turning spans together.
@@ -82,7 +94,7 @@ struct VsiModel {
   /// Damping with the gyroscopic terms of wheelsets that roll at V/R0.
   [[nodiscard]] Eigen::MatrixXd vehicle_damping(double speed) const {
     if (gyroscopic_moments == GyroscopicMoments::neglected) return vehicle.damping;
-    return vehicle.damping + speed / vehicle.nominal_radius * vehicle.gyroscopic;
+    return vehicle.damping + speed * vehicle.gyroscopic;
   }
 };
 

@@ -176,7 +176,7 @@ scenes = {
     "speed": '[train]\nvehicle = "stops.toml"\nspeed_file = "speed.csv"\nstart = 0.0\n'
              + online.replace("polach", "fastsim") + 'friction_file = "friction.csv"\n' + rigid,
     "consist": '[train]\nconsist = ["wagon.toml", "-stops.toml"]\njoint = "coupler.toml"\nspeed = 20.0\n'
-               + online + rigid,
+               + online + '[[profiles]]\ncoach = 2\nvehicle = "stops.toml"\nwheel = "cone-1:40"\n' + rigid,
     "coaches": '[train]\nvehicle = "coach.toml"\ncount = 2\nspeed_kmh = 200\n' + vertical + rigid,
     "imported_vehicle": '[vehicle]\nmass = "vehicle_mass.mtx"\ndamping = "vehicle_damping.mtx"\n'
                         'stiffness = "vehicle_stiffness.mtx"\ndofs = "vehicle_dofs.csv"\naxes = "x y z"\n'

@@ -86,7 +86,7 @@ TEST_F(VehicleImportFiles, GiveTheMatricesOfTheBuiltCoach) {
     ASSERT_EQ(read.dofs(), 41);
     EXPECT_EQ(read.dof, coach.dof);
     EXPECT_EQ(read.wheelsets, coach.wheelsets);
-    EXPECT_NEAR(read.nominal_radius, coach.nominal_radius, 1e-12);
+    EXPECT_NEAR(read.wheel_radius.front(), coach.wheel_radius.front(), 1e-12);
     EXPECT_EQ(read.length, coach.length);
     const auto expect_equal = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
       EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-12 * b.cwiseAbs().maxCoeff());

@@ -174,6 +174,29 @@ TEST(LoadedWheel, LeftIsTheMirrorImageOfRight) {
   }
 }
 
+// Normal forces alone have the power that they have without friction.
+TEST(LoadedWheel, CreepPowerIsWhatFrictionTakesFromTheMotion) {
+  States states;
+  WheelContactModel model = model_with(creep_law("table", 0.28), 0.0);
+  model.friction_law = {.limit = 0.4, .decay = 0.6, .initial_slope = 0.7};
+  WheelContactModel smooth = model;
+  smooth.friction = 0.0;
+  for (int n = 0; n < 40; ++n) {
+    const State s = states.next(n % 2 == 0 ? WheelSide::right : WheelSide::left);
+    Vector6 velocity = s.wheelset.velocity;  // along the rail's tangent
+    velocity[0] += model.speed;
+    velocity[1] -= s.rail.velocity[0] + model.speed * s.rail.yaw;
+    velocity[2] -= s.rail.velocity[1] + model.speed * s.rail.slope;
+    velocity[4] -= model.speed / geometry().pair().nominal_radius();
+    const auto power = [&](const WheelForce& f) { return f.wheelset.dot(velocity) + f.rail[2] * s.rail.velocity[2]; };
+    const WheelForce force = wheel_force(model, s.side, s.wheelset, s.rail, s.contact()),
+                     normal = wheel_force(smooth, s.side, s.wheelset, s.rail, s.contact());
+    EXPECT_GT(force.creep_power, 0.0);
+    EXPECT_NEAR(force.creep_power, power(normal) - power(force), 1e-9 * std::abs(power(force)) + 1e-5);
+    EXPECT_GT(force.pressure, 5e8);
+  }
+}
+
 TEST(LoadedWheel, MeanForceDoesTheWorkOfTheEnergysChange) {
   States states(States::Rails::still);
   WheelContactModel model = model_with(LinearCreep{});

@@ -52,6 +52,8 @@ struct Chain {
     end.displacement = end.force = end.end_force = end.step_load = Eigen::VectorXd::Zero(wheelset_unknowns);
     end.rail_x.resize(2);
     end.normal.resize(2);
+    end.creep_power.resize(2);
+    end.pressure.resize(2);
     end.contact.resize(2);
     end.memory.resize(2);
     start = end;

@@ -59,7 +59,9 @@ std::string scene_with(const std::string& key, double value, bool integer) {
     if (key.starts_with("contact.k_")) contact += "creep_law = \"polach\"\n";
     if (key == "contact.creep_speed_floor") rest = "train.speed_file = \"pair.h5\"\n";
     contact += line(8);
-  } else if (key.starts_with("wheel."))
+  } else if (key.starts_with("profiles."))
+    bridge += "[[profiles]]\n" + line(9);
+  else if (key.starts_with("wheel."))
     bridge +=
         std::string("[[wheel]]\n") + (key == "wheel.run_out" ? "flat_length = 0.05\n" : "run_out = 1e-4\n") + line(6);
   else if (key.starts_with("bridge."))

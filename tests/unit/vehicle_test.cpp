@@ -167,7 +167,7 @@ TEST(Vehicle, GyroscopicMatrixIsTheRateOfTheWheelsetsAngularMomentum) {
   const VehicleModel vehicle = frame({0, 0, -0.8});
   EXPECT_EQ((vehicle.gyroscopic + vehicle.gyroscopic.transpose()).norm(), 0.0);
   // second route: angular momentum of the spinning axle, turned by a finite rotation, differentiated numerically
-  const double Jy = 60, Omega = 1.0;
+  const double Jy = 60, Omega = 1.0 / vehicle.wheel_radius.front();       // at a running speed of 1 m/s
   const Vector3d spin = Jy * Vector3d(0, -Omega, 0);                      // forward rolling with z down
   ASSERT_LT(Vector3d(0, -Omega, 0).cross(Vector3d(0, 0, 0.5)).x(), 0.0);  // the wheel's bottom moves backwards
   constexpr double step = 1e-6;
@@ -179,9 +179,9 @@ TEST(Vehicle, GyroscopicMatrixIsTheRateOfTheWheelsetsAngularMomentum) {
       Eigen::VectorXd velocity = Eigen::VectorXd::Zero(vehicle.dofs());
       velocity[vehicle.dof[w][3 + axis]] = 1.0;
       const Eigen::VectorXd moment = vehicle.gyroscopic * velocity;
-      EXPECT_NEAR(moment[vehicle.dof[w][3]], momentum_rate.x(), 1e-6 * Jy);
-      EXPECT_NEAR(moment[vehicle.dof[w][5]], momentum_rate.z(), 1e-6 * Jy);
-      EXPECT_NEAR(moment.norm(), Jy, 1e-9 * Jy);
+      EXPECT_NEAR(moment[vehicle.dof[w][3]], momentum_rate.x(), 1e-6 * Jy * Omega);
+      EXPECT_NEAR(moment[vehicle.dof[w][5]], momentum_rate.z(), 1e-6 * Jy * Omega);
+      EXPECT_NEAR(moment.norm(), Jy * Omega, 1e-9 * Jy * Omega);
     }
   }
 }

@@ -120,6 +120,43 @@ TEST(WheelForce, RailCarriesTheOppositeForceAndTheLeftWheelMirrorsTheRight) {
   for (int k = 0; k < 6; ++k) EXPECT_DOUBLE_EQ(b.wheelset[k], (k % 2 == 1 ? -1.0 : 1.0) * a.wheelset[k]) << k;
 }
 
+/// Power of all contact forces on wheelset and rail, the rail's material at rest along x [W].
+double power(const WheelContactModel& model, const WheelForce& f, const WheelsetMotion& w, const RailHeadMotion& r) {
+  const double V = model.speed, R0 = model.geometry->pair().nominal_radius();
+  Vector6 velocity = w.velocity;  // along the rail's tangent
+  velocity[0] += V;
+  velocity[1] -= r.velocity[0] + V * r.yaw;
+  velocity[2] -= r.velocity[1] + V * r.slope;
+  velocity[4] -= V / R0;
+  return f.wheelset.dot(velocity) + f.rail[2] * r.velocity[2];
+}
+
+// Without friction the normal forces alone have a power; what friction adds to it is what creep takes.
+TEST(WheelForce, CreepPowerIsWhatFrictionTakesFromTheMotion) {
+  const auto geometry = s1002_on_60e1();
+  WheelsetMotion w;
+  w.displacement << 0.0, 4.4e-3, 0.28e-3, 2e-4, 0.0, 3e-3;  // tread and root
+  w.velocity << 0.01, 0.02, -0.01, 0.03, 0.05, 0.02;
+  RailHeadMotion rail;
+  rail.displacement << 2e-4, 1e-4, 1e-3;
+  rail.velocity << 3e-3, -2e-3, 4e-2;
+  rail.yaw = 1e-3;
+  rail.slope = -2e-3;
+  for (const WheelSide side : wheel_sides) {
+    WheelContactModel model = contact_model(*geometry);
+    model.friction_law = {.limit = 0.4, .decay = 0.6, .initial_slope = 0.7};
+    const ContactPatches patches = geometry->patches(relative_pose(geometry->pair(), side, w, rail));
+    const WheelForce force = wheel_force(model, side, w, rail, patches);
+    model.friction = 0.0;
+    const WheelForce normal = wheel_force(model, side, w, rail, patches);
+    const double taken = power(model, normal, w, rail) - power(model, force, w, rail);
+    EXPECT_GT(force.creep_power, 100.0);
+    EXPECT_NEAR(force.creep_power, taken, 1e-9 * std::abs(power(model, force, w, rail)) + 1e-6);
+    EXPECT_EQ(normal.creep_power, 0.0);
+    EXPECT_EQ(normal.pressure, force.pressure);
+  }
+}
+
 // The tangent against differences of the whole chain, patches searched anew, in displacements that carry velocities.
 TEST(WheelForce, TangentIsThatOfTheForce) {
   const auto geometry = s1002_on_60e1();

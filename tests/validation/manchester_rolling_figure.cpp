@@ -136,7 +136,7 @@ class Rolling {
     const HeldRun run(wheelset_, y_mm * mm, yaw);
     const VsiModel& model = run.model;
     const double* const u = run.rest.motion.displacement;
-    const double pitch_rate = -manchester_speed / model.vehicle.nominal_radius + run.rest.motion.velocity[4];
+    const double pitch_rate = -manchester_speed / model.vehicle.wheel_radius.front() + run.rest.motion.velocity[4];
     double left_difference = 0.0;  // of the longitudinal creepages
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const double side = sides[i];

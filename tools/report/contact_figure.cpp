@@ -43,12 +43,17 @@ struct Contacts {
   double mean_shift = 0.0;  // rail position minus wheel position, mean [mm]
 };
 
+/// Whether a wheel has the profile of which the results hold the outline.
+bool has_outline(const ResultHeader& header, std::size_t wheel) {
+  return header.wheel_outline.empty() || header.wheel_outline[wheel] == 1.0;
+}
+
 Contacts contacts_of(const RunResults& results, Side side) {
   Contacts contacts;
   for (const StepRecord& step : results.steps) {
     for (std::size_t i = side == Side::left ? 0 : 1; i < step.wheels.size(); i += 2) {
       const WheelRecord& wheel = step.wheels[i];
-      if (wheel.patches == 0) continue;
+      if (wheel.patches == 0 || !has_outline(results.header, i)) continue;
       contacts.rail.add(1e3 * wheel.y_rail);
       contacts.wheel.add(1e3 * wheel.y_wheel);
       contacts.mean_shift += 1e3 * (wheel.y_rail - wheel.y_wheel);
@@ -155,11 +160,12 @@ std::string contact_figure(const RunResults& results) {
     return "";
   return fmt::format(
       "<figure class=\"chart\"><figcaption><h3>Contact positions</h3><p>Wheel {} and rail {}, seen in the direction of "
-      "travel and drawn apart; a bar is how often that place was in contact, over all wheels and records. The wheel "
+      "travel and drawn apart; a bar is how often that place was in contact, over {} and all records. The wheel "
       "shows the patch with the larger force. y in the "
       "profile's own frame, negative towards the track centre.</p></figcaption><div "
       "class=\"pair\">{}{}</div></figure>\n",
-      escaped(header.wheel_profile), escaped(header.rail_profile), side_figure(results, Side::left),
+      escaped(header.wheel_profile), escaped(header.rail_profile),
+      header.wheel_outline.empty() ? "all wheels" : "the wheels of that profile", side_figure(results, Side::left),
       side_figure(results, Side::right));
 }
 

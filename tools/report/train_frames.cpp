@@ -115,14 +115,14 @@ std::string frame_data(const RunResults& results, const FrameWriter& writer) {
   return fmt::format(
       R"({{"frames":{},"time":{},"position":{},"spans":[{},{}],"deck_names":{},"deck_x":{},"deck_z":{},)"
       R"("body_names":{},"body_x":{},"body_z":{},"body_pitch":{},"wheel_x":{},"load":{},{},)"
-      R"("wheel":[{},{}],"rail":[{},{}]}})",
+      R"("outline":{},"wheel":[{},{}],"rail":[{},{}]}})",
       writer.count(), writer.times(&StepRecord::time), writer.times(&StepRecord::position), numbers(header.span_from),
       numbers(header.span_to), chosen_names(header.node_names, deck), numbers(at(header.node_x, deck)),
       writer.array(deck.size(), motion(&StepRecord::nodes, deck, z_dof)), chosen_names(header.body_names, bodies),
       numbers(at(header.body_x, bodies)), writer.array(bodies.size(), motion(&StepRecord::bodies, bodies, z_dof)),
       writer.array(bodies.size(), motion(&StepRecord::bodies, bodies, pitch_dof)), numbers(header.wheel_x),
-      numbers(header.static_wheel_load), wheel_arrays(writer), numbers(header.wheel_y), numbers(header.wheel_z),
-      numbers(header.rail_y), numbers(header.rail_z));
+      numbers(header.static_wheel_load), wheel_arrays(writer), numbers(header.wheel_outline), numbers(header.wheel_y),
+      numbers(header.wheel_z), numbers(header.rail_y), numbers(header.rail_z));
 }
 
 }  // namespace

@@ -72,9 +72,11 @@ std::string contact_text(const VehicleModel& vehicle, MotionPlane motion) {
       "rail_inclination = 0.025    #   then, in place of these lines: table = \"table.h5\"\n"
       "{0}"
       "friction = 0.3\n",
-      vehicle.nominal_radius == usual ? std::string()
-                                      : fmt::format("dimensions.nominal_radius = {:.6g}\n", vehicle.nominal_radius),
-      vehicle.nominal_radius == usual ? std::string() : fmt::format(" --wheel-radius {:.6g}", vehicle.nominal_radius));
+      vehicle.wheel_radius.front() == usual
+          ? std::string()
+          : fmt::format("dimensions.nominal_radius = {:.6g}\n", vehicle.wheel_radius.front()),
+      vehicle.wheel_radius.front() == usual ? std::string()
+                                            : fmt::format(" --wheel-radius {:.6g}", vehicle.wheel_radius.front()));
 }
 
 std::string scene_text(const NewScene& scene, double length, const std::string& contact) {

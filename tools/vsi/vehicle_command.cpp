@@ -110,7 +110,7 @@ void print(const Described& v) {
     print_formatted("  vertical data only: runs with contact.normal = \"rigid\"\n");
   }
   print_formatted("  {:.6g} kg, {:.6g} m over couplers, wheels of {:.6g} m radius{}\n", v.summary.mass, v.model.length,
-                  v.model.nominal_radius,
+                  v.model.wheel_radius.front(),
                   data.top_speed > 0.0 ? fmt::format(", top speed {:.6g} km/h", 3.6 * data.top_speed) : "");
   print_formatted("  {:24} {:>8} {:>12} {:>14}\n", "wheelset", "x m", "wheel kN", "axle load t");
   for (std::size_t w = 0; w < v.summary.wheel_load.size(); ++w) {
@@ -195,7 +195,7 @@ Json as_json(const Described& v) {
           {"motion", motion_of(data)},
           {"mass", v.summary.mass},
           {"length", v.model.length},
-          {"nominal_radius", v.model.nominal_radius},
+          {"nominal_radius", v.model.wheel_radius.front()},
           {"top_speed", data.top_speed > 0.0 ? Json(data.top_speed) : Json()},
           {"dofs", v.model.dofs()},
           {"wheelsets", wheelsets},

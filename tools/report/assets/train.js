@@ -273,7 +273,9 @@
       c.strokeStyle = railtab.colour('--ink'); c.lineWidth = 1.3; c.lineJoin = 'round'; c.stroke();
     }
     shape(stored.rail, 0, 0, '--steel', height + 20);
-    shape(stored.wheel, last_shift[w], isNaN(lift) ? 0 : lift, '--deck', -20);
+    // the outline of other wheels' profile is not stored
+    const own = stored.outline.length === 0 || stored.outline[w] === 1;
+    if (own) shape(stored.wheel, last_shift[w], isNaN(lift) ? 0 : lift, '--deck', -20);
     const from = source(w), load = stored.load[w] || 1, per = 0.22 * height / load;
     const total = signed(wheel('force', w)) + signed(wheel('second_force', w));
     function patch(y, force) {
