@@ -33,7 +33,7 @@ std::span<const StepRecord> RecordedRun::records_before() const noexcept {
   return std::span(before_->steps).first(checkpoint_->records);
 }
 
-RunSummary RecordedRun::run(RunObserver observer) {
+RunSummary RecordedRun::run(RunObserver observer, SharedSetUp* shared) {
   std::optional<ResultWriter> writer;
   ResultHeader header;
   std::optional<RunCheckpoint> from;
@@ -64,7 +64,7 @@ RunSummary RecordedRun::run(RunObserver observer) {
     writer->checkpoint(state, step);
     if (observer.checkpoint) observer.checkpoint(step, state);
   };
-  RunSummary summary = run_scene(scene_, writing, from);
+  RunSummary summary = run_scene(scene_, writing, from, shared);
   if (from && summary.complete) {
     summary.message = fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then",
                                   static_cast<double>(summary.counted_from) * scene_.integration.time_step);

@@ -29,7 +29,8 @@ class RecordedRun {
   /// As run_scene(). Earlier results are replaced once the set-up has succeeded and `observer` has been told that the
   /// run is ready: they are worth more than a run that could not begin. Records and checkpoints are written before
   /// `observer` has them. Where it throws, the file holds everything up to there.
-  [[nodiscard]] RunSummary run(RunObserver observer);
+  /// @param shared as of run_scene()
+  [[nodiscard]] RunSummary run(RunObserver observer, SharedSetUp* shared = nullptr);
 
   /// Whether the file holds results of this run. Not where no step was made and earlier results stay there.
   [[nodiscard]] bool has_results() const noexcept { return has_results_; }

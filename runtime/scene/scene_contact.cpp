@@ -13,6 +13,7 @@
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/scene/scene_wheels.hpp"
+#include "railtab/runtime/scene/shared_setup.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
@@ -50,22 +51,6 @@ std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& co
                                   loaded->contact_modulus, contact.table.string()));
   }
   return std::make_shared<const LoadedTable>(std::move(*loaded));
-}
-
-ContactGeometry scene_geometry(const ContactParameters& contact) {
-  switch (contact.mode) {
-    case ContactMode::table: {
-      GeometryTableData table = read_geometry_table(contact.table);
-      std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
-      return in_file(contact.table.string(),
-                     [&] { return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded)); });
-    }
-    case ContactMode::online:
-      return ContactGeometry(ContactSearch(scene_pair(contact)));
-    case ContactMode::paper:
-      return ContactGeometry(PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline));
-  }
-  throw InputError("contact.mode: unknown");
 }
 
 constexpr double same_length = 1e-9;  // m: of radii and gauges that are meant to be equal
@@ -143,7 +128,23 @@ void check_rail(const std::string& place, const WheelRailPair& pair, const Wheel
 
 }  // namespace
 
-void add_contact(const SceneParameters& scene, VsiModel& model) {
+ContactGeometry scene_geometry(const ContactParameters& contact) {
+  switch (contact.mode) {
+    case ContactMode::table: {
+      GeometryTableData table = read_geometry_table(contact.table);
+      std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
+      return in_file(contact.table.string(),
+                     [&] { return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded)); });
+    }
+    case ContactMode::online:
+      return ContactGeometry(ContactSearch(scene_pair(contact)));
+    case ContactMode::paper:
+      return ContactGeometry(PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline));
+  }
+  throw InputError("contact.mode: unknown");
+}
+
+void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* shared) {
   const ContactParameters& contact = scene.contact;
   const std::vector<PlaceInTrain> places = wheelset_places(model);
   const std::vector<int> entries = entries_of_wheelsets(scene, places);
@@ -158,8 +159,9 @@ void add_contact(const SceneParameters& scene, VsiModel& model) {
         e >= 0 ? fmt::format("scene: [[profiles]] {} of {}", e + 1, scene.profiles.size())
                : fmt::format("scene: contact.{}", contact.table.empty() ? "dimensions.nominal_radius" : "table");
     if (!geometry) {
-      geometry = std::make_shared<const ContactGeometry>(scene_geometry(
-          e < 0 ? contact : contact_of_entry(contact, scene.profiles[static_cast<std::size_t>(e)], key.second)));
+      const ContactParameters own =
+          e < 0 ? contact : contact_of_entry(contact, scene.profiles[static_cast<std::size_t>(e)], key.second);
+      geometry = shared ? shared->geometry(own) : std::make_shared<const ContactGeometry>(scene_geometry(own));
     }
     check_radius(place, geometry->pair(), model, w, places[static_cast<std::size_t>(w)].coach);
     of_wheelset.push_back(geometry);
@@ -171,7 +173,8 @@ void add_contact(const SceneParameters& scene, VsiModel& model) {
   model.contact.normal.material = contact.material;
   model.contact.normal.curvature_floor =
       contact.mode == ContactMode::paper ? paper_curvature_floor : contact.curvature_floor;
-  model.contact.creep_law = creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
+  model.contact.creep_law =
+      shared ? shared->creep_law(contact) : creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
   if (auto* polach = std::get_if<PolachCreep>(&model.contact.creep_law)) {
     polach->k_adhesion = contact.k_adhesion;
     polach->k_slip = contact.k_slip;

@@ -9,11 +9,17 @@
 
 namespace railtab {
 
+class SharedSetUp;
+
 /// Contact geometry of every wheelset and the laws of the contact forces, for a model whose vehicle and positions are
 /// there already. [[profiles]] gives wheelsets other profiles than [contact]; the last entry that names a wheelset's
 /// coach holds. @throws InputError where a table or profile is wrong, an entry meets no wheelset, wheels have another
 /// radius than their profiles are for, or rails differ
-void add_contact(const SceneParameters& scene, VsiModel& model);
+/// @param shared what earlier runs have read; or null
+void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* shared = nullptr);
+
+/// Geometry of [contact]. @throws InputError
+[[nodiscard]] ContactGeometry scene_geometry(const ContactParameters& contact);
 
 /// Geometries of a model's wheelsets, each once, in the order in which they appear from the front of the train.
 [[nodiscard]] std::vector<std::shared_ptr<const ContactGeometry>> contact_geometries(const VsiModel& model);

@@ -10,6 +10,7 @@
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/scene/scene_wheels.hpp"
+#include "railtab/runtime/scene/shared_setup.hpp"
 #include "railtab/runtime/stability/rigid_rails.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/vehicle/consist.hpp"
@@ -154,7 +155,7 @@ VsiModel limit_cycle_model(const SceneParameters& scene) {
   return model;
 }
 
-VsiModel build_model(const SceneParameters& scene) {
+VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
   scene.validate();
   VsiModel model;
   model.vehicle = scene_vehicle(scene);
@@ -162,7 +163,8 @@ VsiModel build_model(const SceneParameters& scene) {
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
-  if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model);
+  if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model, shared);
+  if (shared) model.store = shared->structures();
   if (scene.track_kind != TrackKind::rigid) {
     model.structure = build_structure(scene);
     model.structure_warnings = model.structure->warnings;

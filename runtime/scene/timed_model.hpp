@@ -10,7 +10,8 @@ namespace railtab {
 /// A model and what building it takes, which the summary of its run counts as set-up.
 class TimedModel {
  public:
-  explicit TimedModel(const SceneParameters& scene) : model_(build(scene, seconds_)) {}
+  explicit TimedModel(const SceneParameters& scene, SharedSetUp* shared = nullptr)
+      : model_(build(scene, shared, seconds_)) {}
   [[nodiscard]] const VsiModel& model() const noexcept { return model_; }
   [[nodiscard]] RunSummary counted(RunSummary summary) const {
     summary.seconds_setup += seconds_;
@@ -19,9 +20,9 @@ class TimedModel {
   }
 
  private:
-  static VsiModel build(const SceneParameters& scene, double& seconds) {
+  static VsiModel build(const SceneParameters& scene, SharedSetUp* shared, double& seconds) {
     const Stopwatch watch(seconds);
-    return build_model(scene);
+    return build_model(scene, shared);
   }
   double seconds_ = 0.0;
   VsiModel model_;

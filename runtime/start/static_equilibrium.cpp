@@ -44,7 +44,7 @@ struct RestOperators {
   TrainContact contact;
   VehicleResponse vehicle;
   std::optional<ElementCompliance> elements;
-  std::unique_ptr<StructureResponse> structure;
+  std::shared_ptr<StructureResponse> structure;
 
   explicit RestOperators(const VsiModel& model)
       : contact(contact_at_rest(model)), vehicle(model.vehicle, regularisation) {
@@ -52,7 +52,9 @@ struct RestOperators {
       elements.emplace(model.vehicle, vehicle.inverse(), 1.0);
       elements->leave_out_pitch();
     }
-    if (model.structure) structure = std::make_unique<StructureResponse>(*model.structure);
+    if (!model.structure) return;
+    structure =
+        model.store ? model.store->at_rest(*model.structure) : std::make_shared<StructureResponse>(*model.structure);
   }
 };
 

@@ -17,7 +17,7 @@ class StepOperators {
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
   std::optional<ElementCompliance> elements;       ///< where vehicles have force elements and NormalContact::hertz
-  std::unique_ptr<StructureResponse> structure;    ///< null on rigid track
+  std::shared_ptr<StructureResponse> structure;    ///< null on rigid track
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);

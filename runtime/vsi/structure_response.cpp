@@ -346,6 +346,9 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
 }
 
 void StructureResponse::tabulate_compliance(const StructureModel& structure, double window, double from, double to) {
+  constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes
+  const RailLine& line = structure.rail[0];
+  const bool keeps = keeps_compliances_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
   for (std::size_t side = 0; side < 2; ++side) {
     const RailLine& rail = structure.rail[side];
     column_[side].resize(rail.x.size());
@@ -355,7 +358,7 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
     for (std::size_t node = 0; node < rail.x.size(); ++node) {
       Column& column = column_[side][node];
       if (rail.x[node] < from - longest || rail.x[node] > to + longest) {
-        column = {};
+        if (!keeps) column = {};
       } else if (column.rows[side].empty()) {
         column = column_of(structure, std::max(window, longest), side, node);
       }

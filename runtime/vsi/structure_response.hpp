@@ -86,6 +86,9 @@ class StructureResponse {
   /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
   /// dropped: a moving train takes its table along, at a cost that does not depend on the track's length.
   void tabulate_compliance(const StructureModel& structure, double window, double from, double to);
+  /// From now on nothing is dropped from that table, for trains that will run there again, unless it takes more than
+  /// 64 MiB.
+  void keep_compliances() noexcept { keeps_compliances_ = true; }
   /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
   /// @pre the table covers `j`
@@ -135,6 +138,7 @@ class StructureResponse {
   std::unique_ptr<Selected> selected_;  ///< made when first needed
   Eigen::Index dofs_ = 0;
   std::array<std::vector<Column>, 2> column_;  ///< per rail and node
+  bool keeps_compliances_ = false;
 };
 
 }  // namespace railtab

@@ -21,6 +21,7 @@
 #include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
+#include "railtab/runtime/vsi/structure_store.hpp"
 
 namespace railtab {
 
@@ -47,6 +48,7 @@ struct VsiModel {
   std::optional<StructureModel> structure;
   std::vector<std::string> structure_warnings{};  ///< StructureModel::warnings of what was imported
   std::optional<WindowModel> window;              ///< for Reduction::window
+  std::shared_ptr<StructureStore> store;          ///< of factors, for later runs of this structure; null: none
   Irregularity irregularity;
   std::optional<SpanDeviation> span_deviation;        ///< besides `irregularity`
   std::optional<DeviationHistory> deviation_history;  ///< in place of `irregularity`

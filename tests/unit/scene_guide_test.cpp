@@ -47,7 +47,7 @@ std::string section_of(const SceneKey& key) {
 std::string heading_of(const std::string& section) {
   if (section.empty()) return "### Top of the file";
   const bool list = section == "bridge" || section == "support" || section == "load" || section == "wheel" ||
-                    section == "ground_motion";
+                    section == "profiles" || section == "ground_motion";
   return list ? "### `[[" + section + "]]`" : "### `[" + section + "]`";
 }
 

@@ -230,7 +230,7 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
   RunDisplay display(options);
   if (run.is_resumed()) display.take_up(*run.before(), run.records_before());
   try {
-    const RunSummary summary = run.run(display.observer());
+    const RunSummary summary = run.run(display.observer(), options.shared);
     return display.finish(scene, summary, run.has_results());
   } catch (const ComputationError& failure) {
     if (!run.is_resumable()) throw;

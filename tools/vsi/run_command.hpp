@@ -5,6 +5,7 @@
 
 #include "headline.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/shared_setup.hpp"
 
 namespace railtab::vsi {
 
@@ -14,6 +15,7 @@ struct RunOptions {
   /// Told how a run has ended, before the program says it; may be empty.
   std::function<void(const report::Headline&, const RunSummary&)> ended{};
   std::function<void(double share)> progress{};  ///< of the steps done, 0..1; may be empty
+  SharedSetUp* shared = nullptr;                 ///< as of run_scene()
 };
 
 /// Runs a scene and writes its results; with `resume` it goes on from the checkpoint that they hold, and leaves

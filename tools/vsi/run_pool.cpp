@@ -1,17 +1,21 @@
 #include "run_pool.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <new>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "command/print.hpp"
@@ -29,7 +33,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using exit_code::done, exit_code::failed, exit_code::wrong_input, exit_code::interrupted;
-constexpr int kept = 3;  // of a process whose run was finished before
+constexpr int kept = 3;  // of a run that was finished before
 volatile std::sig_atomic_t asked = 0;
 
 bool is_readable(const fs::path& results) {
@@ -41,51 +45,121 @@ bool is_readable(const fs::path& results) {
   }
 }
 
-/// How far each run is, in memory that all processes share.
-class SharedShares {
- public:
-  explicit SharedShares(std::size_t count) : count_(count) {
-    void* memory = mmap(nullptr, count * sizeof(double), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory != MAP_FAILED) shares_ = static_cast<double*>(memory);
-  }
-  ~SharedShares() {
-    if (shares_) munmap(shares_, count_ * sizeof(double));
-  }
-  SharedShares(const SharedShares&) = delete;
-  SharedShares& operator=(const SharedShares&) = delete;
-  [[nodiscard]] double* of(std::size_t run) const { return shares_ ? shares_ + run : nullptr; }
-  [[nodiscard]] double mean() const {
-    const std::span<const double> all(shares_, shares_ ? count_ : 0);
-    return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(count_);
-  }
-
- private:
-  std::size_t count_;
-  double* shares_ = nullptr;
-};
-
 }  // namespace
 
 RunPool::RunPool(fs::path scene_file, fs::path folder, RunPoolOptions options)
     : scene_file_(std::move(scene_file)), folder_(std::move(folder)), options_(std::move(options)) {}
 
+/// What the workers know of each other, in memory that all processes share.
+struct RunPool::Board {
+  static constexpr std::size_t most_workers = 1024;
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  std::atomic<std::size_t> next{0};                       ///< run that nobody has begun
+  std::atomic<bool> stop{false};                          ///< no further run is begun
+  std::atomic<bool> one_ended{false};                     ///< otherwise than by wrong input
+  std::array<std::atomic<std::size_t>, most_workers> at;  ///< run that each worker makes, or none
+  double* share;                                          ///< how far each run is, 0..1, as many as there are runs
+
+  static_assert(std::atomic<std::size_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+};
+
+namespace {
+
+/// Of a run that has ended: its number and exit code, as a worker tells it.
+struct EndOfRun {
+  std::size_t run;
+  int code;
+};
+
+/// Memory that processes share, zero at first.
+class SharedMemory {
+ public:
+  explicit SharedMemory(std::size_t bytes) : bytes_(bytes) {
+    memory_ = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory_ == MAP_FAILED)
+      throw ComputationError(fmt::format("no memory of {} bytes for several processes", bytes));
+  }
+  ~SharedMemory() { munmap(memory_, bytes_); }
+  SharedMemory(const SharedMemory&) = delete;
+  SharedMemory& operator=(const SharedMemory&) = delete;
+  [[nodiscard]] void* get() const { return memory_; }
+
+ private:
+  std::size_t bytes_;
+  void* memory_;
+};
+
+/// The end of a pipe from the workers to the pool.
+class ReportPipe {
+ public:
+  ReportPipe() {
+    if (::pipe2(ends_, O_CLOEXEC) != 0) throw ComputationError("no pipe to further processes can be made");
+  }
+  ~ReportPipe() {
+    ::close(ends_[0]);
+    ::close(ends_[1]);
+  }
+  ReportPipe(const ReportPipe&) = delete;
+  ReportPipe& operator=(const ReportPipe&) = delete;
+
+  [[nodiscard]] int to_write() const { return ends_[1]; }
+  /// Waits a moment for a report. @return none where there was none
+  [[nodiscard]] std::optional<EndOfRun> wait() const {
+    constexpr int moment = 100;  // ms
+    pollfd wanted{ends_[0], POLLIN, 0};
+    EndOfRun end{};
+    // a report is shorter than what a pipe takes as a whole
+    if (::poll(&wanted, 1, moment) <= 0 || ::read(ends_[0], &end, sizeof end) != sizeof end) return std::nullopt;
+    return end;
+  }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
+}  // namespace
+
 int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
   if (runs.empty()) return done;
   signal(SIGINT, [](int) { asked = 1; });
-  const SharedShares shares(runs.size());
+  runs_ = &runs;
+  const SharedMemory memory(sizeof(Board)), shares(runs.size() * sizeof(double));
+  Board& board = *new (memory.get()) Board;
+  board.share = new (shares.get()) double[runs.size()]();
+  const ReportPipe reports;
+  const std::size_t most = std::min({processes, runs.size(), Board::most_workers});
+  for (std::size_t worker = 0; worker < most; ++worker) begin_worker(board, worker, reports.to_write());
   int code = done;
-  std::size_t next = 0;
-  while (next < runs.size() || !going_.empty()) {
-    while (asked == 0 && next < runs.size() && going_.size() < processes) {
-      const PooledRun& run = runs[next];
-      going_.emplace(begin(run, shares.of(next)), &run);
-      ++next;
+  std::vector<bool> told(runs.size(), false);
+  const auto ended = [&](std::size_t run, int how) {
+    told[run] = true;
+    if (how == kept) return;
+    if (how != wrong_input || board.one_ended) say_end(runs[run], how);
+    if (how == wrong_input && !board.one_ended) code = wrong_input;
+    if (how != done) code = std::max(code, failed);
+  };
+  while (!workers_.empty()) {
+    if (asked != 0) board.stop = true;
+    while (const std::optional<EndOfRun> end = reports.wait()) ended(end->run, end->code);
+    for (pid_t process = 0; (process = ::waitpid(-1, nullptr, WNOHANG)) > 0;) {
+      const auto at = workers_.find(process);
+      if (at == workers_.end()) continue;
+      const std::size_t worker = at->second, lost = board.at[worker];
+      workers_.erase(at);
+      while (const std::optional<EndOfRun> end = reports.wait()) ended(end->run, end->code);
+      if (lost == Board::none) continue;
+      // the worker died, with its run where it had not told its end
+      board.one_ended = true;
+      if (!told[lost]) ended(lost, failed);
+      if (!board.stop && board.next < runs.size()) begin_worker(board, worker, reports.to_write());
     }
-    if (going_.empty()) break;
-    code = std::max(code, wait());
-    if (code == wrong_input) next = runs.size();
-    if (options_.progress) options_.progress(shares.mean());
+    if (options_.progress) {
+      options_.progress(std::accumulate(board.share, board.share + runs.size(), 0.0) /
+                        static_cast<double>(runs.size()));
+    }
   }
+  if (!board.stop && board.next < runs.size()) code = std::max(code, failed);
   return asked != 0 ? interrupted : code;
 }
 
@@ -95,12 +169,38 @@ bool RunPool::finished(const std::string& name) const {
 
 fs::path RunPool::file(const std::string& name, const char* suffix) const { return folder_ / (name + suffix); }
 
-int RunPool::begin(const PooledRun& run, double* share) {
+void RunPool::begin_worker(Board& board, std::size_t worker, int report) {
+  board.at[worker] = Board::none;
   std::fflush(nullptr);
   const pid_t process = fork();
   if (process < 0) throw ComputationError(options_.command + ": no more processes can be started");
-  if (process == 0) _exit(in_own_process(run, share));
-  return process;
+  if (process == 0) {
+    signal(SIGINT, SIG_DFL);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a parent that is killed leaves no run behind that would hold its file
+    work(board, worker, report);
+    std::fflush(nullptr);
+    _exit(done);
+  }
+  workers_.emplace(process, worker);
+}
+
+void RunPool::work(Board& board, std::size_t worker, int report) const {
+  SharedSetUp shared;
+  while (!board.stop) {
+    const std::size_t run = board.next++;
+    if (run >= runs_->size()) return;
+    board.at[worker] = run;
+    const EndOfRun end{run, make((*runs_)[run], board.share[run], shared)};
+    board.share[run] = 1.0;
+    if (end.code != wrong_input) {
+      board.one_ended = true;
+    } else if (!board.one_ended) {
+      board.stop = true;  // wrong for all
+    }
+    if (::write(report, &end, sizeof end) != sizeof end) _exit(failed);
+    board.at[worker] = Board::none;
+    if (end.code == interrupted) return;
+  }
 }
 
 /// Another name beside the old one, which nothing is lost by.
@@ -150,13 +250,11 @@ void RunPool::set_others_aside(const std::string& name, const SceneParameters& s
   if (fs::exists(file(name, ".row"))) set_aside(name, ".row", why);
 }
 
-int RunPool::in_own_process(const PooledRun& run, double* share) const {
+int RunPool::make(const PooledRun& run, double& share, SharedSetUp& shared) const {
   std::optional<SceneParameters> scene;
   try {
-    signal(SIGINT, SIG_DFL);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a parent that is killed leaves no run behind that would hold its file
     scene = run.scene();
-    return make_row(run, *scene, share);
+    return make_row(run, *scene, share, shared);
   } catch (const InputError& wrong) {
     const InputError placed = scene ? with_scene_line(wrong, *scene, scene_file_) : wrong;
     print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, placed.what()));
@@ -168,10 +266,9 @@ int RunPool::in_own_process(const PooledRun& run, double* share) const {
 }
 
 /// The run, where it is not finished, and its row.
-int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double* share) const {
+int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double& share, SharedSetUp& shared) const {
   const fs::path results = file(run.name, ".h5");
   const auto tidy = [&] {
-    if (share) *share = 1.0;
     if (!options_.keep_results && finished(run.name)) fs::remove(results);
   };
   if (options_.keep_results || !finished(run.name)) set_others_aside(run.name, scene);
@@ -181,9 +278,8 @@ int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double
   }
   std::optional<std::pair<report::Headline, RunSummary>> end;
   RunOptions options{results.string(), false, true, true};
-  options.progress = [share](double done_so_far) {
-    if (share) *share = done_so_far;
-  };
+  options.progress = [&share](double done_so_far) { share = done_so_far; };
+  options.shared = &shared;
   options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
     if (!summary.interrupted) end.emplace(headline, summary);
   };
@@ -193,29 +289,11 @@ int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double
   return code;
 }
 
-/// Waits for one of the processes, or a moment where progress is shown; the exit code of what has ended.
-int RunPool::wait() {
-  constexpr useconds_t moment = 100000;  // [µs]
-  int status = 0;
-  const pid_t process = ::waitpid(-1, &status, options_.progress ? WNOHANG : 0);
-  if (process == 0) usleep(moment);
-  return process > 0 ? ended(process, status) : done;  // a signal: those that go on are waited for again
-}
-
-/// Its exit code, 2 only where no run has ended otherwise.
-int RunPool::ended(int process, int status) {
-  const auto at = going_.find(process);
-  if (at == going_.end()) return done;
-  const PooledRun& run = *at->second;
-  going_.erase(at);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == wrong_input && !one_ended_) return wrong_input;
-  one_ended_ = true;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kept) return done;
-  const bool complete = WIFEXITED(status) && WEXITSTATUS(status) == done;
-  if (!options_.quiet)
-    print_formatted("{}: {}\n", run.name, complete ? "done" : finished(run.name) ? "ended early" : "not finished");
+/// @param code of the run, 0: it came to its end
+void RunPool::say_end(const PooledRun& run, int code) {
+  if (options_.quiet) return;
+  print_formatted("{}: {}\n", run.name, code == done ? "done" : finished(run.name) ? "ended early" : "not finished");
   std::fflush(stdout);
-  return complete ? done : failed;
 }
 
 void make_output_folder(const fs::path& folder) {

@@ -8,13 +8,14 @@
 
 #include "headline.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/shared_setup.hpp"
 
 namespace railtab::vsi {
 
 /// One run of many.
 struct PooledRun {
   std::string name;                        ///< of its files, without their suffix
-  std::function<SceneParameters()> scene;  ///< asked for in the run's own process
+  std::function<SceneParameters()> scene;  ///< asked for in the process that runs it
   /// Its row, which ends with the line, from its results; these are read again where the headline is not enough.
   std::function<std::string(const report::Headline&, const RunSummary&, const std::filesystem::path& results)> row;
 };
@@ -26,8 +27,9 @@ struct RunPoolOptions {
   bool keep_results = true;                      ///< false: those of a run are removed once it has its row
 };
 
-/// Runs in processes of their own: one that dies takes no other with it, and every one can be resumed. A run has two
-/// files in the folder: NAME.h5, its results, and NAME.row, written last.
+/// Runs in worker processes, each of which makes one run after the other and keeps what they have in common
+/// (SharedSetUp). A worker that dies loses the run that it makes, and another takes its place; every run can be
+/// resumed. A run has two files in the folder: NAME.h5, its results, and NAME.row, written last.
 class RunPool {
  public:
   RunPool(std::filesystem::path scene_file, std::filesystem::path folder, RunPoolOptions options);
@@ -43,19 +45,21 @@ class RunPool {
   [[nodiscard]] std::filesystem::path file(const std::string& name, const char* suffix) const;
 
  private:
-  int begin(const PooledRun& run, double* share);
+  struct Board;
+  void begin_worker(Board& board, std::size_t worker, int report);
+  void work(Board& board, std::size_t worker, int report) const;
   void set_aside(const std::string& name, const char* suffix, const std::string& why) const;
   void check_results(const std::string& name, const SceneParameters& scene) const;
   void set_others_aside(const std::string& name, const SceneParameters& scene) const;
-  [[nodiscard]] int in_own_process(const PooledRun& run, double* share) const;
-  [[nodiscard]] int make_row(const PooledRun& run, const SceneParameters& scene, double* share) const;
-  int wait();
-  int ended(int process, int status);
+  [[nodiscard]] int make(const PooledRun& run, double& share, SharedSetUp& shared) const;
+  [[nodiscard]] int make_row(const PooledRun& run, const SceneParameters& scene, double& share,
+                             SharedSetUp& shared) const;
+  void say_end(const PooledRun& run, int code);
 
   std::filesystem::path scene_file_, folder_;
   RunPoolOptions options_;
-  bool one_ended_ = false;  ///< with another exit code than that of wrong input
-  std::map<int, const PooledRun*> going_;
+  const std::vector<PooledRun>* runs_ = nullptr;
+  std::map<int, std::size_t> workers_;  ///< numbers of the workers by their processes
 };
 
 /// The folder of the results is made, but none that would hold it: a path with a slip is rejected, as for every -o.

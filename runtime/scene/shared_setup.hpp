@@ -1,0 +1,28 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/vsi/structure_store.hpp"
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+namespace railtab {
+
+/// What the runs of one process, one after the other, have in common and is made once: tables and profiles that were
+/// read, and the factors of the structure. Files are read again where their contents have changed.
+class SharedSetUp {
+ public:
+  /// @throws InputError as reading the files
+  [[nodiscard]] std::shared_ptr<const ContactGeometry> geometry(const ContactParameters& contact);
+  [[nodiscard]] CreepLaw creep_law(const ContactParameters& contact);
+  [[nodiscard]] const std::shared_ptr<StructureStore>& structures() const noexcept { return structures_; }
+
+ private:
+  std::map<std::string, std::shared_ptr<const ContactGeometry>> geometry_;  // by all that it depends on
+  std::map<std::string, CreepLaw> creep_law_;
+  std::shared_ptr<StructureStore> structures_ = std::make_shared<StructureStore>();
+};
+
+}  // namespace railtab

@@ -1,0 +1,67 @@
+#include "railtab/runtime/vsi/structure_store.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+bool equal(const Sparse& a, const Sparse& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols() || !a.isCompressed() || !b.isCompressed()) return false;
+  const auto same = [](const auto* x, const auto* y, Eigen::Index count) { return std::equal(x, x + count, y); };
+  return a.nonZeros() == b.nonZeros() && same(a.outerIndexPtr(), b.outerIndexPtr(), a.outerSize() + 1) &&
+         same(a.innerIndexPtr(), b.innerIndexPtr(), a.nonZeros()) && same(a.valuePtr(), b.valuePtr(), a.nonZeros());
+}
+
+bool equal(const RailLine& a, const RailLine& b) {
+  return a.x == b.x && a.dof == b.dof && a.head_height == b.head_height;
+}
+
+bool equal(const StructureModel& a, const StructureModel& b) {
+  return equal(a.mass, b.mass) && equal(a.damping, b.damping) && equal(a.stiffness, b.stiffness) &&
+         equal(a.rail[0], b.rail[0]) && equal(a.rail[1], b.rail[1]) && a.dof_x == b.dof_x && a.dof_line == b.dof_line;
+}
+
+}  // namespace
+
+void StructureStore::take_up(const StructureModel& structure) {
+  if (equal(structure_, structure)) return;
+  at_rest_.reset();
+  of_steps_.reset();
+  structure_ = {};
+  structure_.mass = structure.mass;
+  structure_.damping = structure.damping;
+  structure_.stiffness = structure.stiffness;
+  structure_.rail = structure.rail;
+  structure_.dof_x = structure.dof_x;
+  structure_.dof_line = structure.dof_line;
+}
+
+std::shared_ptr<StructureResponse> StructureStore::at_rest(const StructureModel& structure) {
+  take_up(structure);
+  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(structure);
+  return at_rest_;
+}
+
+std::shared_ptr<StructureResponse> StructureStore::of_steps(const StructureModel& structure, const HhtScheme& scheme,
+                                                            const DofRange& active) {
+  take_up(structure);
+  const bool fits = of_steps_ && scheme.alpha == scheme_.alpha && scheme.time_step == scheme_.time_step;
+  if (!fits) {
+    const bool in_use = of_steps_ && of_steps_.use_count() > 1;  // by the whole steps of the run that asks
+    auto made = std::make_shared<StructureResponse>(structure, scheme, active);
+    if (in_use) return made;
+    made->keep_compliances();
+    of_steps_ = std::move(made);
+    scheme_ = scheme;
+  } else if (active.count > 0) {
+    of_steps_->activate(active);
+  }
+  return of_steps_;
+}
+
+}  // namespace railtab

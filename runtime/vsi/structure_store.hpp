@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "railtab/runtime/vsi/structure_response.hpp"
+
+namespace railtab {
+
+/// Factors of a structure that outlive a run: runs of one process that follow each other on the same structure, with
+/// steps of the same size, make them once. What they hold does not depend on the run, so that results are the same to
+/// the last bit. Not for runs at the same time.
+class StructureStore {
+ public:
+  /// StructureResponse(structure), of the last call where that was for the same matrices and rails.
+  [[nodiscard]] std::shared_ptr<StructureResponse> at_rest(const StructureModel& structure);
+  /// Likewise StructureResponse(structure, scheme, active). Kept is that of the whole step, which a run asks for first.
+  [[nodiscard]] std::shared_ptr<StructureResponse> of_steps(const StructureModel& structure, const HhtScheme& scheme,
+                                                            const DofRange& active);
+
+ private:
+  /// Forgets everything where the structure is another.
+  void take_up(const StructureModel& structure);
+
+  StructureModel structure_;  ///< what responses are made of: matrices, rails, places of the unknowns
+  HhtScheme scheme_;
+  std::shared_ptr<StructureResponse> at_rest_, of_steps_;
+};
+
+}  // namespace railtab
