@@ -92,8 +92,9 @@ TEST_F(Scene, UnknownKeyNamesItsLineAndTheNearestKey) {
   EXPECT_EQ(message("[track.pad]\nstiffness_in_the_vertical_direction = 1\n").substr(0, 70),
             "scene.toml:2: unknown key 'track.pad.stiffness_in_the_vertical_directi");
   EXPECT_EQ(message("[weather]\n"),
-            "scene.toml:1: unknown key 'weather'; the sections are train, vehicle, contact, track, "
-            "bridge, structure, support, irregularity, span_deviation, wheel, load, ground_motion, integration, output "
+            "scene.toml:1: unknown key 'weather'; the sections are train, vehicle, contact, profiles, "
+            "track, bridge, structure, support, irregularity, span_deviation, wheel, load, ground_motion, integration, "
+            "output "
             "and assessment");
 }
 

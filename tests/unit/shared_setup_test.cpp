@@ -15,7 +15,7 @@ namespace railtab {
 namespace {
 
 struct Variant {
-  std::string speed = "40.0", seed = "1", time_step = "1e-3", rail_mass = "60.0", wheel = "S1002", window;
+  std::string speed = "40.0", seed = "1", time_step = "1e-3", rail_mass = "60.0", wheel = "S1002", window{};
 };
 
 class SharedSetUpOf : public testing::InFolder {
