@@ -13,6 +13,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
@@ -70,6 +71,27 @@ std::vector<double> chain(const std::vector<double>& m, const std::vector<double
   std::vector<double> frequencies;
   for (const double value : omega2) frequencies.push_back(std::sqrt(value) / (2.0 * std::numbers::pi));
   return frequencies;
+}
+
+/// A natural motion of tests/reference/vehicle_modes.csv.
+struct ReferenceMode {
+  double undamped, frequency, damping;  ///< [Hz, Hz, -]
+};
+
+std::vector<ReferenceMode> reference_modes(const std::string& vehicle) {
+  std::ifstream file(RAILTAB_REFERENCE_DIR "/vehicle_modes.csv");
+  std::vector<ReferenceMode> modes;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with(vehicle + ",")) continue;
+    std::istringstream fields(line.substr(vehicle.size()));
+    char comma = 0;
+    std::size_t number = 0;
+    ReferenceMode mode{};
+    fields >> comma >> number >> comma >> mode.undamped >> comma >> mode.frequency >> comma >> mode.damping;
+    EXPECT_TRUE(fields && number == modes.size() + 1) << line;
+    modes.push_back(mode);
+  }
+  return modes;
 }
 
 class VehicleLibrary : public ::testing::TestWithParam<std::string> {};
@@ -132,6 +154,26 @@ TEST_P(VehicleLibrary, BounceIsThatOfMassesOnSprings) {
     expected = chain({mass("car-body"), mass("bolster"), mass("side-frame")}, {kz(2, 3), kz(1, 2), kz(0, 1)});
   }
   for (const double frequency : expected) EXPECT_TRUE(is_among(modes, frequency)) << frequency << " Hz";
+}
+
+/// The first eight natural motions against an own assembly from energies (tests/reference/vehicle_modes.py): masses on
+/// springs without dampers and without the lean of the weight, and the linear vehicle with both, as `vsi vehicle`
+/// prints it. Vertical data have six motions, bounce and pitch of the car body and of two bogies.
+TEST_P(VehicleLibrary, FirstEightMotionsAreThoseOfAnOwnAssembly) {
+  const VehicleData data = library_vehicle(GetParam());
+  const std::vector<ReferenceMode> expected = reference_modes(GetParam());
+  ASSERT_EQ(expected.size(), data.motion == MotionPlane::vertical ? 6U : 8U);
+  const int count = static_cast<int>(expected.size());
+  const std::vector<VehicleMode> undamped_modes = natural_modes(undamped(data), count);
+  const std::vector<VehicleMode> modes = natural_modes(build_vehicle(data, data.motion), count);
+  ASSERT_EQ(undamped_modes.size(), expected.size());
+  ASSERT_EQ(modes.size(), expected.size());
+  constexpr double tolerance = 1e-6;  // of the nine digits of the reference, and of nearly equal eigenvalues
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_NEAR(undamped_modes[k].frequency / expected[k].undamped, 1.0, tolerance) << "mode " << k + 1;
+    EXPECT_NEAR(modes[k].frequency / expected[k].frequency, 1.0, tolerance) << "mode " << k + 1;
+    EXPECT_NEAR(modes[k].damping, expected[k].damping, tolerance) << "mode " << k + 1;
+  }
 }
 
 TEST_P(VehicleLibrary, SpringsHoldEveryMotionAndDampersDampIt) {
