@@ -73,7 +73,7 @@ void add_growth(const HuntingSystem& system, const VsiModel& contacts, double sp
   constexpr double to_kmh = 3.6, amplitude = 3e-3;
   const VsiModel model = stability_model(system.scene, contacts);
   const LeastStableMotion at_rest = least_stable_motion(model, speed);
-  if (at_rest.growth > 0.0) {
+  if (at_rest.grows()) {
     list.push_back(fmt::format(
         "the train runs at {:.6g} km/h, above a linear critical speed of {} on these profiles: a small motion of "
         "{:.3g} Hz grows by {:.3g} per second, until flanges or slip bound it (vsi critical-speed finds the speed)",
@@ -83,7 +83,7 @@ void add_growth(const HuntingSystem& system, const VsiModel& contacts, double sp
   const std::optional<double> conicity = equivalent_conicity(model.geometry->pair(), amplitude);
   if (!conicity) return;
   const LeastStableMotion disturbed = least_stable_motion(model, speed, conicity);
-  if (disturbed.growth <= 0.0) return;
+  if (!disturbed.grows()) return;
   list.push_back(fmt::format(
       "the train runs at {:.6g} km/h, above the critical speed of {} at the equivalent conicity {:.3g} of 3 mm: small "
       "motions decay, but one of that amplitude may grow into a limit cycle of about {:.3g} Hz (vsi critical-speed "

@@ -29,15 +29,25 @@ struct Stand {
   double load;
 };
 const std::map<std::string, Stand> stands{
-    {"manchester-coach", {8, 54.546}},       {"chinese-high-speed-car", {8, 55.917}},
-    {"chinese-emu-car", {8, 55.917}},        {"crh380a", {8, 65.000}},
-    {"china-star-power-car", {8, 95.647}},   {"c0c0-locomotive", {12, 112.815}},
-    {"c0c0-locomotive-fast", {12, 101.337}}, {"speed-raised-coach", {8, 49.786}},
-    {"ordinary-coach", {8, 66.843}},         {"metro-gz18", {8, 68.296}},
-    {"ice3-like-coach", {8, 78.480}},        {"freight-21t", {8, 103.079}},
-    {"freight-21t-empty", {8, 26.561}},      {"freight-25t", {8, 119.697}},
-    {"velaro-e-coach", {8, 76.028}},         {"shinkansen-300", {8, 67.382}},
-    {"eurostar-power-car", {8, 76.886}},     {"traxx-locomotive", {8, 103.005}},
+    {"manchester-coach", {8, 54.546}},
+    {"manchester-coach-series", {8, 54.546}},
+    {"chinese-high-speed-car", {8, 55.917}},
+    {"chinese-emu-car", {8, 55.917}},
+    {"crh380a", {8, 65.000}},
+    {"china-star-power-car", {8, 95.647}},
+    {"c0c0-locomotive", {12, 112.815}},
+    {"c0c0-locomotive-fast", {12, 101.337}},
+    {"speed-raised-coach", {8, 49.786}},
+    {"ordinary-coach", {8, 66.843}},
+    {"metro-gz18", {8, 68.296}},
+    {"ice3-like-coach", {8, 78.480}},
+    {"freight-21t", {8, 103.079}},
+    {"freight-21t-empty", {8, 26.561}},
+    {"freight-25t", {8, 119.697}},
+    {"velaro-e-coach", {8, 76.028}},
+    {"shinkansen-300", {8, 67.382}},
+    {"eurostar-power-car", {8, 76.886}},
+    {"traxx-locomotive", {8, 103.005}},
 };
 
 /// The vehicle without dampers and without the lean of its weight, so that natural frequencies are those of masses on
