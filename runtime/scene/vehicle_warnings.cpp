@@ -111,10 +111,10 @@ void above_critical_speed(const SceneCase& at, Warnings& list) {
     }
   }
   if (unchecked.empty()) return;
-  list.push_back(
-      fmt::format("whether {} runs above its critical speed is not checked: the train is one system of {} degrees of "
-                  "freedom, more than {} (vsi critical-speed finds the speed of a shorter train)",
-                  fmt::join(unchecked, ", "), at.model.vehicle.dofs(), most_dofs));
+  list.push_back(fmt::format(
+      "the critical speed of {} is not checked: the train is one system of {} degrees of freedom, more than "
+      "{} (vsi critical-speed finds that of a shorter train)",
+      fmt::join(unchecked, ", "), at.model.vehicle.dofs(), most_dofs));
 }
 
 void linear_stand_ins(const SceneCase& at, Warnings& list) {

@@ -407,6 +407,15 @@ TEST_F(VehicleAtHighSpeed, VehiclesOfALargeTrainAreLookedAtAlone) {
   expect(all, "the top speed of the train of 2 x ice3-like-coach, 9 x manchester-coach is 200 km/h");
 }
 
+TEST_F(VehicleAtHighSpeed, CoachesOnSharedBogiesOfALargeTrainAreNamed) {
+  const std::string folder = RAILTAB_SOURCE_DIR "/docs/examples/articulated/";
+  const std::string all = warnings("consist = [\"" + folder + "power-car.toml\", \"" + folder + "end-coach.toml\", \"" +
+                                       folder + "coach.toml*20\", \"-" + folder + "end-coach.toml\"]\nspeed_kmh = 100",
+                                   0.46);
+  expect(all, "the critical speed of coach, end-coach is not checked: the train is one system of ");
+  EXPECT_EQ(all.find("power-car"), std::string::npos) << all;
+}
+
 /// A run of each vehicle over the bridge of docs/examples/demo.toml: what it warns of is what its file says.
 class VehicleRun : public testing::InFolder, public ::testing::WithParamInterface<std::string> {};
 

@@ -26,8 +26,8 @@ using namespace railtab;
 constexpr int modes = 8;
 constexpr double to_kmh = 3.6;
 
-/// At 100 km/h the empty wagon hunts from flange to flange.
-double demo_kmh(const std::string& vehicle) { return vehicle == "freight-21t-empty" ? 60.0 : 100.0; }
+/// At 100 km/h the freight wagons hunt.
+double demo_kmh(const std::string& vehicle) { return vehicle.starts_with("freight") ? 60.0 : 100.0; }
 
 /// The demo's scene with another vehicle.
 SceneParameters scene_of(const VehicleData& vehicle) {
