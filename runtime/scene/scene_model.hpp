@@ -13,8 +13,8 @@ class SharedSetUp;
 /// The first vehicle of a scene, or its train where that is one system, by itself on rigid rails, its force elements by
 /// linear stand-ins: what linear_stability.hpp takes. @throws InputError
 [[nodiscard]] VsiModel stability_model(const SceneParameters& scene);
-/// The same with the contacts of a model of the scene.
-[[nodiscard]] VsiModel stability_model(const SceneParameters& scene, const VsiModel& model);
+/// The same with contacts of a model that is there: on the profiles of its wheelsets from `first_wheelset` on.
+[[nodiscard]] VsiModel stability_model(const SceneParameters& scene, const VsiModel& model, int first_wheelset = 0);
 /// The same with the force elements that its runs have: what hunting_branch.hpp takes. @throws InputError
 [[nodiscard]] VsiModel limit_cycle_model(const SceneParameters& scene);
 /// Time until the scene's run is over: its duration, or until the last wheelset has left the last span [s].

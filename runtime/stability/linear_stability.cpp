@@ -109,7 +109,7 @@ LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSear
   for (int i = 0;; ++i) {
     const double speed = std::min(search.low + i * search.step, search.high);
     result.searched.push_back(least_stable_motion(model, speed, conicity, search.motion));
-    if (result.searched.back().growth > 0.0) break;
+    if (result.searched.back().grows()) break;
     if (speed >= search.high) return result;
     stable = speed;
   }
@@ -117,7 +117,7 @@ LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSear
   while (stable > 0.0 && unstable.speed - stable > search.tolerance) {
     const LeastStableMotion middle =
         least_stable_motion(model, 0.5 * (stable + unstable.speed), conicity, search.motion);
-    if (middle.growth > 0.0) {
+    if (middle.grows()) {
       unstable = middle;
     } else {
       stable = middle.speed;

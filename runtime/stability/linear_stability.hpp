@@ -29,6 +29,9 @@ struct LeastStableMotion {
   double frequency = 0.0;  ///< |Im λ|/2π [Hz]; 0: no oscillation
   /// −Re λ/|λ|: damping ratio, negative where the motion grows.
   double damping = 0.0;
+
+  /// By more than the rounding of eigenvalues: motions that no damper meets have Re λ = 0.
+  [[nodiscard]] bool grows() const noexcept { return damping < -1e-6; }
 };
 
 /// By the eigenvalues λ of running_vehicle(), without the rotations of wheelsets, which nothing resists.

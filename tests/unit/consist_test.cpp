@@ -60,6 +60,29 @@ TEST(ConsistEntry, HasSignNameAndCount) {
   }
 }
 
+/// Wheels of docs/examples/eurostar.toml carry the shares of their coaches by the law of the lever, with bogies and
+/// wheelsets of their own; the two halves of the train mirror each other.
+TEST(Eurostar, WheelsCarryTheSharesOfTheirCoaches) {
+  const VsiModel model = build_model(read_scene(RAILTAB_SOURCE_DIR "/docs/examples/eurostar.toml"));
+  const std::vector<double> loads = wheel_loads(model.vehicle);
+  const double long_end = 13.252 / 18.7, short_end = 5.448 / 18.7;  // of EC1 and EC9
+  const double front = 9.774 / 18.7, rear = 8.926 / 18.7;           // of EC2 to EC8
+  const double motor_bogie = 2200.0 + 2 * 1700.0, trailer_bogie = 2900.0 + 2 * 1900.0;
+  std::vector<double> bogies(2, 0.5 * 51500.0 + motor_bogie);
+  bogies.push_back(35860.0 * long_end + motor_bogie);
+  bogies.push_back(35860.0 * short_end + 22525.0 * front + trailer_bogie);
+  for (int coach = 2; coach < 8; ++coach) bogies.push_back(22525.0 * (rear + front) + trailer_bogie);
+  bogies.push_back(22525.0 * rear + 27122.0 * short_end + trailer_bogie);
+  bogies.push_back(27122.0 * long_end + trailer_bogie);
+  std::vector<double> expected;
+  for (const double mass : bogies) expected.insert(expected.end(), 2, 0.25 * 9.81 * mass);
+  ASSERT_EQ(loads.size(), 2 * expected.size());
+  for (std::size_t w = 0; w < expected.size(); ++w) {
+    EXPECT_NEAR(loads[w], expected[w], 1e-6 * expected[w]) << w;
+    EXPECT_NEAR(loads[loads.size() - 1 - w], expected[w], 1e-6 * expected[w]) << w;
+  }
+}
+
 TEST(Consist, OfUnlikeVehiclesLoadsItsWheelsAsEachVehicleAlone) {
   // six axles, four axles, bodies on side frames; one of them turned round
   const std::vector<std::string> names{"c0c0-locomotive", "manchester-coach", "manchester-coach", "freight-21t"};

@@ -18,12 +18,12 @@ using Complex = std::complex<double>;
 constexpr double m = 1000.0, k = 4e5, c = 2e4, series = 6e5;  // 3.2 Hz, c ω about as stiff as the series spring
 
 /// A mass above a wheelset that is held, on a spring beside a damper in series with a stiffness.
-VehicleModel mass_on_series_damper(double damping = c, double series_stiffness = series) {
+VehicleModel mass_on_series_damper(double damping = c, double series_stiffness = series, double stiffness = k) {
   VehicleDescription parts;
   parts.name = "mass";
   parts.bodies = {{"car-body", m, {100.0, 100.0, 100.0}, {0.0, 0.0, -1.0}},
                   {"wheelset-1", 100.0, {10.0, 10.0, 10.0}, {0.0, 0.0, -0.46}}};
-  Suspension unit{0, 1, {0.0, 0.0, -0.46}, {0.0, 0.0, k}, {0.0, 0.0, damping}};
+  Suspension unit{0, 1, {0.0, 0.0, -0.46}, {0.0, 0.0, stiffness}, {0.0, 0.0, damping}};
   unit.series_stiffness = {0.0, 0.0, series_stiffness};
   parts.suspension = {unit};
   parts.wheelsets = {1};
@@ -51,6 +51,29 @@ TEST(SeriesDamper, HasTheDynamicStiffnessOfAMaxwellElement) {
     const Complex condensed = D(0, 0) - D(0, 1) * D(1, 0) / D(1, 1);
     const Complex closed = k + series * s * c / (series + s * c);
     EXPECT_LT(std::abs(condensed - closed), 1e-9 * std::abs(closed)) << omega;
+  }
+}
+
+/// An air-spring with reservoir by the state of its gas, with the parameters that docs/theory/vehicle.md makes of it:
+/// the pressures p_b = n p/V_b (A x − Q) and p_r = n p/V_r Q above that at rest, the volume Q that has passed the
+/// orifice, R dQ/dt = p_b − p_r, and the force A p_b + (p − p_a) dA/dz x.
+TEST(SeriesDamper, IsAnAirSpringWithReservoir) {
+  constexpr double n = 1.3, p = 5e5, ambient = 1e5, area = 0.25, area_slope = 0.3;  // -, Pa, Pa, m², m
+  constexpr double bellows = 0.05, reservoir = 0.04, resistance = 3e5;              // m³, m³, Pa s/m³
+  constexpr double both = bellows + reservoir, share = reservoir / both;
+  constexpr double stiffness = n * p * area * area / both + (p - ambient) * area_slope;
+  constexpr double series_stiffness = n * p * area * area * share / bellows;
+  constexpr double damping = area * area * resistance * share * share;
+  const VehicleModel vehicle = mass_on_series_damper(damping, series_stiffness, stiffness);
+  for (const double omega : {1e-2, 1.0, 5.0, 20.0, 200.0, 1e4}) {
+    const Complex s(0.0, omega);
+    Eigen::Matrix3cd gas;  // of p_b, p_r, Q per x
+    gas << 1.0, 0.0, n * p / bellows, 0.0, 1.0, -n * p / reservoir, 1.0, -1.0, -resistance * s;
+    const Eigen::Vector3cd per_x = gas.fullPivLu().solve(Eigen::Vector3cd(n * p / bellows * area, 0.0, 0.0));
+    const Complex of_gas = area * per_x[0] + (p - ambient) * area_slope;
+    const Eigen::Matrix2cd D = vehicle.stiffness.cast<Complex>() + s * vehicle.damping.cast<Complex>();
+    const Complex of_element = D(0, 0) - D(0, 1) * D(1, 0) / D(1, 1);
+    EXPECT_LT(std::abs(of_element - of_gas), 1e-9 * std::abs(of_gas)) << omega;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "command/print.hpp"
 #include "command/progress_bar.hpp"
 #include "commands.hpp"
+#include "hunting_case.hpp"
 #include "limit_cycle_output.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
@@ -25,35 +26,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr double to_kmh = 3.6;
 
-struct Stability {
-  VsiModel model;
-  std::optional<double> amplitude, conicity;
+struct Stability : HuntingCase {
   SpeedSearch search;
   LinearCriticalSpeed found;
   std::optional<HuntingBranch> branch;
 };
-
-// The equivalent conicity at the amplitude that the command line names.
-void set_conicity(const CommandLine& line, Stability& s) {
-  if (!line.given("amplitude")) return;
-  s.amplitude = line.number("amplitude");
-  if (!(*s.amplitude > 0.0 && *s.amplitude < 0.01)) {
-    throw input_error("--amplitude", fmt::format("{} m", *s.amplitude), "above 0, below 0.01 m");
-  }
-  s.conicity = equivalent_conicity(s.model.geometry->pair(), *s.amplitude);
-  if (s.conicity) return;
-  throw input_error("--amplitude", fmt::format("{} m, at which these profiles have no wave", *s.amplitude),
-                    "a smaller amplitude, or none: the contact at rest");
-}
-
-std::string name_of(const Stability& s) {
-  const WheelRailPair& pair = s.model.geometry->pair();
-  const std::string about = s.conicity ? fmt::format("equivalent conicity {:.4f} at an amplitude of {:.3g} mm",
-                                                     *s.conicity, 1e3 * *s.amplitude)
-                                       : std::string("the contact at rest");
-  return fmt::format("{}, {} on {}, friction {:.3g}, {}", s.model.vehicle.name, pair.wheel().knots().name,
-                     pair.rail().knots().name, s.model.contact.friction, about);
-}
 
 void print(const Stability& s) {
   print_formatted("{}\n", name_of(s));

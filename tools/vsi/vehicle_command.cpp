@@ -3,20 +3,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
+#include "hunting_case.hpp"
+#include "railtab/runtime/base/in_file.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/stability/linear_stability.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double to_kmh = 3.6;
+
+/// The linear critical speed of a vehicle on a table; none up to SpeedSearch::high.
+struct HuntingSpeed {
+  HuntingCase on;
+  SpeedSearch search;
+  std::optional<LeastStableMotion> critical;
+};
 
 /// A vehicle with what follows from its data.
 struct Described {
@@ -25,7 +42,37 @@ struct Described {
   VehicleSummary summary;
   std::vector<VehicleMode> modes;
   std::vector<ClosingCheck> checks;
+  std::optional<HuntingSpeed> hunting;  // on the table that the command names
 };
+
+// A model of the vehicle by itself on the table's profiles, as a scene has it.
+VsiModel on_table(const std::string& name, const VehicleData& data, const std::string& table) {
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    return input_error("--table", found, expected);
+  };
+  if (data.motion == MotionPlane::vertical) {
+    throw refuse(fmt::format("{}, whose data are vertical only", data.name), "a vehicle with lateral springs");
+  }
+  const double radius = in_file(
+      table, [&] { return TableContact(GeometryTable(read_geometry_table(table))).search().pair().nominal_radius(); });
+  if (std::abs(radius - data.parts.nominal_radius) > 1e-9) {
+    throw refuse(fmt::format("{}, of wheels of {} m radius", table, radius),
+                 fmt::format("a table for {} m, the wheels of {} (tablegen geometry --wheel-radius)",
+                             data.parts.nominal_radius, data.name));
+  }
+  SceneParameters scene;
+  scene.train.vehicle = name;
+  scene.contact.table = table;
+  return stability_model(scene);
+}
+
+HuntingSpeed hunting_speed(const CommandLine& line, const std::string& name, const VehicleData& data) {
+  HuntingSpeed found;
+  found.on.model = on_table(name, data, line.text("table"));
+  set_conicity(line, found.on);
+  found.critical = linear_critical_speed(found.on.model, found.search, found.on.conicity).critical;
+  return found;
+}
 
 Described describe(const std::string& name, int modes) {
   Described v;
@@ -103,6 +150,16 @@ void print_sources(const VehicleData& data) {
   }
 }
 
+void print(const HuntingSpeed& hunting) {
+  print_formatted("  {}\n", name_of(hunting.on));
+  if (!hunting.critical) {
+    print_formatted("    no linear critical speed up to {:.6g} km/h\n", to_kmh * hunting.search.high);
+    return;
+  }
+  print_formatted("    linear critical speed {:.2f} km/h: a motion of {:.3f} Hz\n", to_kmh * hunting.critical->speed,
+                  hunting.critical->frequency);
+}
+
 void print(const Described& v) {
   const VehicleData& data = v.data;
   print_formatted("{}: {}\n", data.name, data.description);
@@ -111,7 +168,7 @@ void print(const Described& v) {
   }
   print_formatted("  {:.6g} kg, {:.6g} m over couplers, wheels of {:.6g} m radius{}\n", v.summary.mass, v.model.length,
                   v.model.wheel_radius.front(),
-                  data.top_speed > 0.0 ? fmt::format(", top speed {:.6g} km/h", 3.6 * data.top_speed) : "");
+                  data.top_speed > 0.0 ? fmt::format(", top speed {:.6g} km/h", to_kmh * data.top_speed) : "");
   print_formatted("  {:24} {:>8} {:>12} {:>14}\n", "wheelset", "x m", "wheel kN", "axle load t");
   for (std::size_t w = 0; w < v.summary.wheel_load.size(); ++w) {
     const auto body = static_cast<std::size_t>(v.model.wheelsets[w]);
@@ -125,6 +182,7 @@ void print(const Described& v) {
     print_formatted("    {:8.3f} Hz, damping ratio {:5.3f}  {}{}\n", mode.frequency, mode.damping, mode.motion,
                     mode.damping < 1.0 ? "" : ", without oscillation");
   }
+  if (v.hunting) print(*v.hunting);
   for (const std::string& element : data.nonlinear) print_formatted("  not linear: {}\n", element);
   for (const std::string& element : data.stand_ins) print_formatted("  {}\n", element);
   for (const std::string& element : data.linearised) {
@@ -137,6 +195,19 @@ void print(const Described& v) {
                     check.stated.low, check.stated.high, check.stated.unit);
   }
   print_sources(data);
+}
+
+Json as_json(const HuntingSpeed& hunting) {
+  const WheelRailPair& pair = hunting.on.model.geometry->pair();
+  const auto number = [](const std::optional<double>& x) { return x ? Json(*x) : Json(); };
+  return {{"wheel", pair.wheel().knots().name},
+          {"rail", pair.rail().knots().name},
+          {"friction", hunting.on.model.contact.friction},
+          {"amplitude", number(hunting.on.amplitude)},
+          {"equivalent_conicity", number(hunting.on.conicity)},
+          {"linear_critical_speed", hunting.critical ? Json(hunting.critical->speed) : Json()},
+          {"frequency", hunting.critical ? Json(hunting.critical->frequency) : Json()},
+          {"searched_to", hunting.search.high}};
 }
 
 Json bodies_as_json(const VehicleData& data) {
@@ -201,6 +272,7 @@ Json as_json(const Described& v) {
           {"wheelsets", wheelsets},
           {"bodies", bodies_as_json(data)},
           {"modes", modes},
+          {"hunting", v.hunting ? as_json(*v.hunting) : Json()},
           {"nonlinear", data.nonlinear},
           {"linearised", data.linearised},
           {"left_out", data.left_out},
@@ -215,8 +287,13 @@ int vehicle_command(const Arguments& arguments) {
   own.add_options()("vehicle", text_value()->value_name("NAME|FILE.toml"),
                     "a vehicle of the library or of a file; none: list the library")  //
       ("modes", text_value("8")->value_name("N"), "natural frequencies on standing wheelsets, 0 for none")(
+          "table", text_value()->value_name("TABLE.h5"),
+          "a contact geometry table: prints the linear critical speed on its profiles, friction 0.3")(
+          "amplitude", text_value()->value_name("M"),
+          "with --table: lateral amplitude in m whose equivalent conicity counts; none: the contact at rest")(
           "toml", "print the vehicle's file, to copy and change");
-  const CommandLine line("vsi vehicle [NAME|FILE.toml] [--modes N] [--toml]", own, {"vehicle"}, arguments);
+  const CommandLine line("vsi vehicle [NAME|FILE.toml] [--modes N] [--table TABLE.h5 [--amplitude M]] [--toml]", own,
+                         {"vehicle"}, arguments);
   if (line.help_printed()) return 0;
   constexpr int most_modes = 500;
   const int modes = static_cast<int>(line.whole_number("modes", 0, most_modes));
@@ -233,7 +310,11 @@ int vehicle_command(const Arguments& arguments) {
     print_formatted("{}", find_vehicle(name).text);
     return 0;
   }
-  const Described vehicle = describe(name, modes);
+  Described vehicle = describe(name, modes);
+  if (line.given("amplitude") && !line.given("table")) {
+    throw input_error("--amplitude", "no --table", "--table with it");
+  }
+  if (line.given("table")) vehicle.hunting = hunting_speed(line, name, vehicle.data);
   if (line.json()) {
     print_json_line(as_json(vehicle));
   } else {
