@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "../measured.hpp"
+#include "../moments_at_rails.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -193,18 +194,7 @@ TEST(ForceElements, MomentsBalanceOnTheStops) {
   scene.loads[0].start = 0.0;
   const VsiModel model = build_model(scene);
   const VsiState state = at_rest(model);
-  // about the track's axis at the height of the rail heads: of the loads on both, and of their moments about them
-  double moment = 0.0, weights = 0.0;
-  for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel) {
-    const Eigen::Vector3d on_rail = state.contact.end_force.segment<3>(rail_unknown(wheel));
-    const double y = (wheel % 2 == 0 ? -1.0 : 1.0) * model.contact.geometry->pair().rail_offset();
-    moment += y * on_rail[1] + on_rail[2];
-  }
-  for (std::size_t b = 0; b < model.vehicle.dof.size(); ++b) {
-    const int z = model.vehicle.dof[b][2];
-    const double aside = state.vehicle[0].displacement[model.vehicle.dof[b][1]];
-    weights += model.vehicle.gravity * model.vehicle.mass(z, z) * aside;
-  }
+  const double moment = testing::moment_at_rails(model, state), weights = testing::moment_of_weights(model, state);
   const double expected = 35e3 * 1.8 + weights;
   EXPECT_GT(weights, 0.2 * expected);
   std::printf("moments on the stops: %.3f %% off\n", 100.0 * (moment / expected - 1.0));

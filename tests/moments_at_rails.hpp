@@ -1,0 +1,31 @@
+// Equilibrium of moments of a train about the track's axis at the height of the rail heads, positive where they push
+// the right rail down.
+#pragma once
+
+#include "railtab/runtime/vsi/vsi_model.hpp"
+
+namespace railtab::testing {
+
+/// Of the contact forces, by the loads on both rail heads and their moments about them [N m].
+inline double moment_at_rails(const VsiModel& model, const VsiState& state) {
+  double moment = 0.0;
+  for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel) {
+    const Eigen::Vector3d on_rail = state.contact.end_force.segment<3>(rail_unknown(wheel));
+    const double y = (wheel % 2 == 0 ? -1.0 : 1.0) * model.geometry->pair().rail_offset();
+    moment += y * on_rail[1] + on_rail[2];
+  }
+  return moment;
+}
+
+/// Σ W Δy: what the weights of bodies add that have moved aside [N m].
+inline double moment_of_weights(const VsiModel& model, const VsiState& state) {
+  double moment = 0.0;
+  for (const LinearMotion& vehicle : state.vehicle) {
+    for (const DofIndices& dof : model.vehicle.dof) {
+      moment += model.vehicle.gravity * model.vehicle.mass(dof[2], dof[2]) * vehicle.displacement[dof[1]];
+    }
+  }
+  return moment;
+}
+
+}  // namespace railtab::testing
