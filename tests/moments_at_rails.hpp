@@ -28,4 +28,27 @@ inline double moment_of_weights(const VsiModel& model, const VsiState& state) {
   return moment;
 }
 
+/// −Σ (m h a_y + J_x·d²φ/dt²): of the masses' inertia [N m].
+inline double moment_of_inertia_forces(const VsiModel& model, const VsiState& state) {
+  double moment = 0.0;
+  for (const LinearMotion& vehicle : state.vehicle) {
+    for (std::size_t b = 0; b < model.vehicle.dof.size(); ++b) {
+      const int y = model.vehicle.dof[b][1], roll = model.vehicle.dof[b][3];
+      const double height = -model.vehicle.bodies[b].position.z();
+      moment -= model.vehicle.mass(y, y) * height * vehicle.acceleration[y];
+      moment -= model.vehicle.mass(roll, roll) * vehicle.acceleration[roll];
+    }
+  }
+  return moment;
+}
+
+/// Σ m h: moment per lateral acceleration of the track [kg m].
+inline double mass_times_height(const VehicleModel& vehicle) {
+  double moment = 0.0;
+  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    moment -= vehicle.mass(vehicle.dof[b][1], vehicle.dof[b][1]) * vehicle.bodies[b].position.z();
+  }
+  return moment;
+}
+
 }  // namespace railtab::testing

@@ -23,7 +23,9 @@
 namespace railtab {
 namespace {
 
+using testing::mass_times_height;
 using testing::moment_at_rails;
+using testing::moment_of_inertia_forces;
 using testing::moment_of_weights;
 using WindOnCoach = testing::InFolder;
 
@@ -62,27 +64,6 @@ double largest_unloading(const VsiModel& model, const VsiState& state) {
     unloading = std::max(unloading, 1.0 - wheel_load(state, wheel) / static_wheel_load(model.vehicle, wheel / 2));
   }
   return unloading;
-}
-
-// About the rails, of the masses' inertia: −Σ (m h a_y + J_x·d²φ/dt²).
-double moment_of_inertia_forces(const VsiModel& model, const VsiState& state) {
-  double moment = 0.0;
-  for (std::size_t b = 0; b < model.vehicle.dof.size(); ++b) {
-    const int y = model.vehicle.dof[b][1], roll = model.vehicle.dof[b][3];
-    const double height = -model.vehicle.bodies[b].position.z();
-    moment -= model.vehicle.mass(y, y) * height * state.vehicle[0].acceleration[y];
-    moment -= model.vehicle.mass(roll, roll) * state.vehicle[0].acceleration[roll];
-  }
-  return moment;
-}
-
-// Σ m h: moment about the rails per lateral acceleration.
-double mass_times_height(const VehicleModel& vehicle) {
-  double moment = 0.0;
-  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
-    moment -= vehicle.mass(vehicle.dof[b][1], vehicle.dof[b][1]) * vehicle.bodies[b].position.z();
-  }
-  return moment;
 }
 
 TEST(Crosswind, ConstantWindAndTheWeightsMovedAsideUnloadTheWheels) {
