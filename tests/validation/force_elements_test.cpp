@@ -62,6 +62,7 @@ CoachRun run(const VsiModel& model, const IntegrationParameters& integration, do
   observer.record = [&](StepRecord& record) {
     result.y.push_back(record.bodies[0].displacement[1]);
     result.time.push_back(record.time);
+    if (elements.empty()) return;
     const Eigen::VectorXd x = elements.rows * state.vehicle[0].displacement;
     for (std::size_t e = 0; e < elements.element.size(); ++e) {
       if (elements.element[e].kind != ForceElementKind::friction) continue;
