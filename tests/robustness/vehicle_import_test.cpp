@@ -140,8 +140,9 @@ TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
             "no error");
   tied.stiffness(roll_row, roll_row) -= 3e7;
   write(tied);
-  EXPECT_NE(message([&] { static_cast<void>(import_vehicle(files(), MotionPlane::spatial, in_matrices)); })
-                .find("a stiffness by which the vehicle stands on its rails"),
+  EXPECT_NE(message([&] {
+              static_cast<void>(import_vehicle(files(), MotionPlane::spatial, in_matrices));
+            }).find("a stiffness by which the vehicle stands on its rails"),
             std::string::npos);
 
   CoachParameters loose = coach_parameters("manchester-coach");

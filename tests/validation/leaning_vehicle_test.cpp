@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "../imported_vehicle.hpp"
 #include "../measured.hpp"
 #include "../moments_at_rails.hpp"
+#include "body_balance.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -230,55 +230,6 @@ TEST(Cant, LateralAccelerationThatItDoesNotBalanceOverturns) {
   EXPECT_GT(moment, 1.2 * centrifugal);
   EXPECT_NEAR(moment_at_rails(model, state), moment, balance * moment);
 }
-
-// A force that acts on a body at a point of its own, by finite rotations of rigid bodies and not by matrices.
-struct BodyBalance {
-  std::vector<Eigen::Vector3d> position, rotation, force, moment;  // of the displaced body, about its centre of gravity
-
-  BodyBalance(const VehicleModel& vehicle, const Eigen::VectorXd& displacement) {
-    for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
-      Eigen::Matrix<double, 6, 1> u = Eigen::Matrix<double, 6, 1>::Zero();
-      for (int k = 0; k < 6; ++k) {
-        const int row = vehicle.dof[b][static_cast<std::size_t>(k)];
-        if (row != held) u[k] = displacement[row];
-      }
-      position.emplace_back(vehicle.bodies[b].position + u.head<3>());
-      rotation.emplace_back(u.tail<3>());
-    }
-    force.assign(position.size(), Eigen::Vector3d::Zero());
-    moment = force;
-  }
-  static Eigen::Matrix3d turned(const Eigen::Vector3d& rotation) {
-    return Eigen::AngleAxisd(rotation.norm(), rotation.norm() > 0.0 ? rotation.normalized() : Eigen::Vector3d::UnitX())
-        .toRotationMatrix();
-  }
-  void add(std::size_t body, const Eigen::Vector3d& point, const Eigen::Vector3d& f) {
-    force[body] += f;
-    moment[body] += (point - position[body]).cross(f);
-  }
-  /// A spring between the bodies `below` and `above`, which meet at `point` when at rest, along axes that turn by the
-  /// mean of their rotations. It presses them apart by `load` there. The couple of its ends that have moved apart is
-  /// shared by halves.
-  void add_spring(std::size_t below, std::size_t above, const Eigen::Vector3d& rest_below,
-                  const Eigen::Vector3d& rest_above, const Eigen::Vector3d& point, const Eigen::Vector3d& stiffness,
-                  double load) {
-    const Eigen::Vector3d lower = position[below] + turned(rotation[below]) * (point - rest_below);
-    const Eigen::Vector3d upper = position[above] + turned(rotation[above]) * (point - rest_above);
-    const Eigen::Matrix3d axes = turned(0.5 * (rotation[below] + rotation[above]));
-    const Eigen::Vector3d along = axes.transpose() * (upper - lower);
-    const Eigen::Vector3d on_below = axes * (Eigen::Vector3d(0.0, 0.0, load) + stiffness.cwiseProduct(along));
-    add(below, lower, on_below);
-    add(above, upper, -on_below);
-    const Eigen::Vector3d couple = (upper - lower).cross(on_below);
-    moment[below] += 0.5 * couple;
-    moment[above] += 0.5 * couple;
-  }
-  void add_rotational(std::size_t below, std::size_t above, const Eigen::Vector3d& stiffness) {
-    const Eigen::Vector3d torque = stiffness.cwiseProduct(rotation[above] - rotation[below]);
-    moment[below] += torque;
-    moment[above] -= torque;
-  }
-};
 
 // Of the coach at rest under a wind on its car body: by its parameters and displacements alone.
 BodyBalance balance_of_bodies(const VsiModel& model, const VsiState& state, const CoachParameters& p, double force) {
