@@ -55,8 +55,9 @@ inline constexpr VehicleWeight without_geometric_stiffness{standard_gravity, Geo
 
 /// The built coach with its car body's x set free: springs know differences only, so that x of the car body does what
 /// the opposite x of all others does.
-inline FreeCoach free_coach(const CoachParameters& parameters = coach_parameters("manchester-coach")) {
-  const VehicleModel coach = build_coach(parameters, MotionPlane::spatial, without_geometric_stiffness);
+inline FreeCoach free_coach(const CoachParameters& parameters = coach_parameters("manchester-coach"),
+                            const VehicleWeight& weight = without_geometric_stiffness) {
+  const VehicleModel coach = build_coach(parameters, MotionPlane::spatial, weight);
   const int n = coach.dofs();
   const std::vector<std::string> names{"CAR", "bogie-1", "bogie-2", "WS1", "WS2", "WS3", "WS4"};
   FreeCoach free;

@@ -155,19 +155,26 @@ SoftestMotion softest_motion(const FreeVehicle& vehicle, const CholeskyFactor& m
   return {eigen.values[0], moving_row(vehicle, mass, eigen.vectors.col(0))};
 }
 
-void check_springs(const FreeVehicle& vehicle, const CholeskyFactor& mass) {
+// Weights in the matrices push where no rails hold the vehicle: it has to stand on them alone.
+void check_springs(const FreeVehicle& vehicle, const CholeskyFactor& mass, GeometricStiffness geometric) {
   const auto place = [&](const SoftestMotion& motion) {
     return fmt::format("{}: {}", vehicle.import.stiffness.string(), row_text(vehicle, motion.row));
   };
-  const Matrix nothing = Matrix::Zero(vehicle.mass.rows(), vehicle.mass.rows());
-  const SoftestMotion free = softest_motion(vehicle, mass, vehicle.stiffness, unresisted_motions(vehicle, nothing));
-  if (free.omega2 < -softest_omega2) {
-    throw input_error(place(free), fmt::format("springs that push, ω² = {:.3g} rad²/s²", free.omega2),
-                      "a positive semidefinite stiffness");
+  if (geometric != GeometricStiffness::in_matrices) {
+    const Matrix nothing = Matrix::Zero(vehicle.mass.rows(), vehicle.mass.rows());
+    const SoftestMotion free = softest_motion(vehicle, mass, vehicle.stiffness, unresisted_motions(vehicle, nothing));
+    if (free.omega2 < -softest_omega2) {
+      throw input_error(place(free), fmt::format("springs that push, ω² = {:.3g} rad²/s²", free.omega2),
+                        "a positive semidefinite stiffness");
+    }
   }
   const Matrix on_rails = stiffness_on_rails(vehicle);
   const SoftestMotion standing = softest_motion(vehicle, mass, on_rails, unresisted_motions(vehicle, on_rails));
   if (standing.omega2 >= softest_omega2) return;
+  if (standing.omega2 < -softest_omega2) {
+    throw input_error(place(standing), fmt::format("springs that push, ω² = {:.3g} rad²/s²", standing.omega2),
+                      "a stiffness by which the vehicle stands on its rails");
+  }
   throw input_error(
       place(standing), "a motion that no spring resists",
       "six rigid motions of the whole vehicle, the wheelsets' rotations, and hinges that do not move while the "
@@ -303,7 +310,7 @@ void check_free_motions(const FreeVehicle& vehicle, GeometricStiffness geometric
   for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) check_rotation(vehicle, vehicle.wheelset(w));
   check_total_mass(vehicle);
   const CholeskyFactor mass(vehicle.mass);
-  check_springs(vehicle, mass);
+  check_springs(vehicle, mass, geometric);
   check_dampers(vehicle, mass);
 }
 

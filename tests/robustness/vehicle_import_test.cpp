@@ -138,6 +138,12 @@ TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
   const VehicleWeight in_matrices{standard_gravity, GeometricStiffness::in_matrices};
   EXPECT_EQ(message([&] { static_cast<void>(import_vehicle(files(), MotionPlane::spatial, in_matrices)); }),
             "no error");
+  tied.stiffness(roll_row, roll_row) -= 3e7;
+  write(tied);
+  EXPECT_NE(message([&] {
+              static_cast<void>(import_vehicle(files(), MotionPlane::spatial, in_matrices));
+            }).find("a stiffness by which the vehicle stands on its rails"),
+            std::string::npos);
 
   CoachParameters loose = coach_parameters("manchester-coach");
   loose.secondary.kx = loose.secondary.ky = 0.0;
