@@ -31,7 +31,7 @@ bool equal(const StructureModel& a, const StructureModel& b) {
 void StructureStore::take_up(const StructureModel& structure) {
   if (equal(structure_, structure)) return;
   at_rest_.reset();
-  of_steps_.reset();
+  of_steps_.clear();
   structure_ = {};
   structure_.mass = structure.mass;
   structure_.damping = structure.damping;
@@ -49,19 +49,21 @@ std::shared_ptr<StructureResponse> StructureStore::at_rest(const StructureModel&
 
 std::shared_ptr<StructureResponse> StructureStore::of_steps(const StructureModel& structure, const HhtScheme& scheme,
                                                             const DofRange& active) {
+  constexpr std::size_t most_kept = 3;
   take_up(structure);
-  const bool fits = of_steps_ && scheme.alpha == scheme_.alpha && scheme.time_step == scheme_.time_step;
-  if (!fits) {
-    const bool in_use = of_steps_ && of_steps_.use_count() > 1;  // by the whole steps of the run that asks
-    auto made = std::make_shared<StructureResponse>(structure, scheme, active);
-    if (in_use) return made;
-    made->keep_compliances();
-    of_steps_ = std::move(made);
-    scheme_ = scheme;
-  } else if (active.count > 0) {
-    of_steps_->activate(active);
+  const auto found = std::find_if(of_steps_.begin(), of_steps_.end(), [&](const OfSteps& kept) {
+    return kept.alpha == scheme.alpha && kept.time_step == scheme.time_step;
+  });
+  if (found == of_steps_.end()) {
+    if (of_steps_.size() == most_kept) of_steps_.erase(of_steps_.begin());
+    of_steps_.push_back(
+        {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(structure, scheme, active)});
+    of_steps_.back().response->keep_compliances();
+  } else {
+    std::rotate(found, found + 1, of_steps_.end());
+    if (active.count > 0) of_steps_.back().response->activate(active);
   }
-  return of_steps_;
+  return of_steps_.back().response;
 }
 
 }  // namespace railtab

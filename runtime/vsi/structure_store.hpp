@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "railtab/runtime/vsi/structure_response.hpp"
 
@@ -13,7 +14,7 @@ class StructureStore {
  public:
   /// StructureResponse(structure), of the last call where that was for the same matrices and rails.
   [[nodiscard]] std::shared_ptr<StructureResponse> at_rest(const StructureModel& structure);
-  /// Likewise StructureResponse(structure, scheme, active). Kept is that of the whole step, which a run asks for first.
+  /// Likewise StructureResponse(structure, scheme, active), for as many step sizes as a run has at once.
   [[nodiscard]] std::shared_ptr<StructureResponse> of_steps(const StructureModel& structure, const HhtScheme& scheme,
                                                             const DofRange& active);
 
@@ -22,8 +23,12 @@ class StructureStore {
   void take_up(const StructureModel& structure);
 
   StructureModel structure_;  ///< what responses are made of: matrices, rails, places of the unknowns
-  HhtScheme scheme_;
-  std::shared_ptr<StructureResponse> at_rest_, of_steps_;
+  std::shared_ptr<StructureResponse> at_rest_;
+  struct OfSteps {
+    double alpha, time_step;
+    std::shared_ptr<StructureResponse> response;
+  };
+  std::vector<OfSteps> of_steps_;  ///< last used last
 };
 
 }  // namespace railtab

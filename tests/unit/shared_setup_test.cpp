@@ -79,7 +79,7 @@ TEST_F(SharedSetUpOf, RunsMakesFactorsAndProfilesOnce) {
   const auto rest = store.at_rest(*first.structure), steps = store.of_steps(*first.structure, scheme, all);
   EXPECT_EQ(store.at_rest(*second.structure), rest);
   EXPECT_EQ(store.of_steps(*second.structure, scheme, all), steps);
-  EXPECT_NE(store.of_steps(*second.structure, halved, all), steps) << "divided steps of a run have their own";
+  EXPECT_NE(store.of_steps(*second.structure, halved, all), steps) << "divided steps have their own";
   EXPECT_EQ(store.of_steps(*second.structure, scheme, all), steps) << "and leave those of whole steps";
   EXPECT_NE(store.at_rest(*stiffer.structure), rest) << "another mass is another structure";
 }
