@@ -17,6 +17,8 @@ std::vector<KeyRow> assessment_keys() {
       {"assessment.track", "", "track on the deck, for the limit of its acceleration",
        choice<DeckTrack>(of_assessment<&AssessmentParameters::track>,
                          {{"ballasted", DeckTrack::ballasted}, {"direct", DeckTrack::direct}})},
+      {"assessment.trains", "", "trains besides the scene's: axle loads or vehicles",
+       TextListKey{of_assessment<&AssessmentParameters::trains>}},
       {"assessment.seeds",
        "1",
        "random tracks for each speed, from irregularity.seed on",

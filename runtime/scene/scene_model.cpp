@@ -230,12 +230,17 @@ VsiModel limit_cycle_model(const SceneParameters& scene) {
   return model;
 }
 
-VsiModel build_model(const SceneParameters& scene) {
-  scene.validate();
+VsiModel train_model(const SceneParameters& scene) {
   VsiModel model;
   model.vehicle = scene_vehicle(scene);
-  model.lateral_acceleration = lateral_acceleration(scene.train);
   model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
+  return model;
+}
+
+VsiModel build_model(const SceneParameters& scene) {
+  scene.validate();
+  VsiModel model = train_model(scene);
+  model.lateral_acceleration = lateral_acceleration(scene.train);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene.contact, model);

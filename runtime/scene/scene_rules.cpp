@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
 
 namespace railtab::scene {
 namespace {
@@ -106,11 +107,7 @@ Broken energy_of_contact_springs(Scene scene) {
 }
 
 Broken deck_of_envelope(Scene scene) {
-  if (!scene.output.deck_envelope) return {};
-  const bool by_rows =
-      scene.track_kind == TrackKind::imported && (scene.structure.files.nodes.empty() || !scene.structure.deck.given());
-  const bool bridge = !scene.spans.empty() || scene.structure.files.given();
-  if (scene.track_kind != TrackKind::rigid && bridge && !by_rows) return {};
+  if (!scene.output.deck_envelope || has_deck_nodes(scene)) return {};
   return Violation{"output.deck_envelope", "true without a deck",
                    "a [[bridge]] under flexible track, or a [structure] with nodes and structure.deck"};
 }

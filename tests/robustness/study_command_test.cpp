@@ -109,6 +109,36 @@ TEST_F(StudyCommand, RunsTheSceneWithTheKeysOfThePlan) {
   EXPECT_NE(kept.header.scene_text.find("train.vehicle = \"ice3-like-coach\""), std::string::npos);
 }
 
+// Decks are judged at all their nodes, as vsi assess judges them: the largest of what the run followed, not midspan.
+TEST_F(StudyCommand, JudgesWholeDecks) {
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\n[track]\nlength_before = 30\nlength_after = 30\n"
+        "[integration]\ntime_step = 1e-3\n[[bridge]]\nlength = 25.0\nmass = 15e3\nE = 30e9\nIy = 1.0\n");
+  write("plan.toml",
+        "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [250]\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  for (const char* measure : {"deck_twist[m]", "deck_end_rotation[rad]", "horizontal_rotation[rad]",
+                              "deck_joint_step[m]", "deck_joint_gap[m]"}) {
+    const std::string value = column("out/runs.csv", measure)[0];
+    ASSERT_NE(value, "") << measure;
+    EXPECT_GE(std::stod(value), 0.0) << measure;
+  }
+  EXPECT_GT(std::stod(column("out/runs.csv", "deck_end_rotation[rad]")[0]), 1e-4);
+  const RunResults run = read_results(folder_ / ("out/" + table("out/runs.csv")[1][0] + ".h5"));
+  double largest = 0.0, midspan = 0.0;
+  for (std::size_t q = 0; q < run.header.deck.size(); ++q) {
+    if (run.header.deck[q].quantity != "acceleration") continue;
+    for (std::size_t i = 0; i < run.header.deck[q].x.size(); ++i) {
+      const DeckExtremes& e = run.summary.deck[q];
+      const double here = std::max(-e.smallest[i], e.largest[i]);
+      largest = std::max(largest, here);
+      if (std::abs(run.header.deck[q].x[i] - 12.5) < 1e-9) midspan = here;
+    }
+  }
+  EXPECT_NEAR(std::stod(column("out/runs.csv", "deck_acceleration_unfiltered[m/s2]")[0]), largest, 1e-6 * largest);
+  EXPECT_GT(largest, 1.01 * midspan) << "a node beside midspan";
+}
+
 // Bytes are the same from one worker and two, from shards, and after five kills; a longer plan keeps what is there.
 TEST_F(StudyCommand, MakesTheSameTableHoweverItIsMade) {
   const std::string plan = std::string(speeds) + seeds + "[sampling]\nmethod = \"monte-carlo\"\nseed = 3\nsamples = ";

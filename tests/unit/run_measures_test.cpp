@@ -252,5 +252,59 @@ TEST(Assessment, TextPageAndJsonSayWhatFailsAndWhere) {
   EXPECT_EQ((*deck)["verified"], true);
 }
 
+// Every verdict on a deck has the unloading of its own run beside it; moving forces have none, and say so.
+TEST(Assessment, DeckVerdictsHaveTheUnloadingOfTheirRun) {
+  Assessment a;
+  a.facts = {"ballasted", 200.0 / 3.6};
+  a.clauses = library_clauses();
+  const auto add = [&](const char* measure, AssessmentStage stage, double value, const char* run) {
+    MeasuredValue v;
+    v.measure = measure;
+    v.stage = stage;
+    v.value = value;
+    v.where = std::string("place of ") + measure;
+    v.run = run;
+    a.values.push_back(v);
+  };
+  add("deck_acceleration", AssessmentStage::moving_load, 3.0, "");
+  add("deck_acceleration", AssessmentStage::contact, 2.0, "slow");
+  add("deck_acceleration", AssessmentStage::contact, 2.5, "fast");
+  add("deck_twist", AssessmentStage::contact, 1e-3, "slow");
+  add("horizontal_rotation", AssessmentStage::contact, 1e-3, "bare");
+  add("wheel_unloading", AssessmentStage::contact, 0.55, "slow");
+  add("wheel_unloading", AssessmentStage::contact, 0.3, "fast");
+  add("wheel_unloading", AssessmentStage::contact, 0.35, "fast");
+  a.verdicts = judge(a.clauses, a.facts, a.values, {});
+  const auto beside = [&](std::string_view id, AssessmentStage stage) {
+    for (const Verdict& v : a.verdicts) {
+      if (v.clause->id == id && v.stage == stage) return unloading_beside(a, v);
+    }
+    throw std::runtime_error("no verdict");
+  };
+  const auto fast = beside("en1990.deck-acceleration.ballasted", AssessmentStage::contact);
+  EXPECT_EQ(fast->value->value, 0.35) << "not 0.55 of another run";
+  EXPECT_EQ(beside("en1990.twist.200", AssessmentStage::contact)->value->value, 0.55);
+  EXPECT_EQ(beside("en1990.deck-acceleration.ballasted", AssessmentStage::moving_load)->reason,
+            "moving forces have no wheels");
+  EXPECT_EQ(beside("en1990.horizontal-rotation.200", AssessmentStage::contact)->reason, "the run has none");
+  EXPECT_FALSE(beside("en14363.unloading", AssessmentStage::contact)) << "no verdict on a deck";
+  const std::string text = assessment_text(a), page = assessment_page(a);
+  EXPECT_NE(text.find("wheel unloading ΔQ/Q0 of the run: 0.350, place of wheel_unloading\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("wheel unloading ΔQ/Q0 of the run: none: moving forces have no wheels"), std::string::npos);
+  EXPECT_NE(page.find("<td><b>0.350</b><br>"), std::string::npos);
+  EXPECT_NE(page.find("<small>none: moving forces have no wheels</small>"), std::string::npos);
+  int decks = 0, with_value = 0;
+  const auto json = assessment_json(a);
+  for (const auto& verdict : json["verdicts"]) {
+    if (!verdict.contains("value") || !verdict["id"].get<std::string>().starts_with("en1990")) continue;
+    ++decks;
+    with_value += verdict["wheel_unloading"].contains("value");
+    EXPECT_NE(verdict["wheel_unloading"].contains("value"), verdict["wheel_unloading"].contains("reason"));
+  }
+  EXPECT_EQ(decks, 4);
+  EXPECT_EQ(with_value, 2);
+}
+
 }  // namespace
 }  // namespace railtab::assess

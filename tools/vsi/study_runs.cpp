@@ -128,7 +128,7 @@ void StudyRuns::bind_folder() const {
       if (value.other && is_file(named)) files.push_back(named);
     }
   }
-  check_same_scene(scene_.text + fmt::format("\n# vsi study: deck acceleration low-passed at {} Hz", deck_cut_off_),
+  check_same_scene(scene_.text + fmt::format("\n# vsi study: decks judged at all their nodes, acceleration low-passed at {} Hz", deck_cut_off_),
                    files, options_.folder);
 }
 
@@ -167,7 +167,9 @@ SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
     scene.name += fmt::format(", {} = {}", plan_.variables[j].name, point[j].cell());
   }
   record_what_is_judged(scene);
-  scene.text += "# vsi study: what is judged is recorded\n";
+  scene.text += "# vsi study: what is judged is recorded";
+  if (follow_deck(scene, deck_cut_off_)) scene.text += fmt::format(", output.deck_cut_off = {}", deck_cut_off_);
+  scene.text += "\n";
   return scene;
 }
 
