@@ -264,6 +264,14 @@ Broken supports_under_moving_ground(Scene scene) {
                    "[[support]] for each"};
 }
 
+Broken way_that_is_judged(Scene scene) {
+  const AssessmentParameters& assessment = scene.assessment;
+  const double begin = assessment.begin.value_or(scene.train.start);
+  if (!assessment.end || *assessment.end > begin) return {};
+  return Violation{"assessment.end", fmt::format("{:g} m, and judging begins at {:g} m", *assessment.end, begin),
+                   "more than assessment.begin, or train.start without it"};
+}
+
 }  // namespace
 
 const std::vector<SceneRule>& scene_rules() {
@@ -293,6 +301,7 @@ const std::vector<SceneRule>& scene_rules() {
       {"stations are in order", order_of_stations},
       {"a wave has one record", wave_of_one_record},
       {"one record has no position", position_of_one_record},
+      {"judging ends after it begins", way_that_is_judged},
       {"supports follow ground that moves differently along the track", supports_under_moving_ground},
   };
   return rules;

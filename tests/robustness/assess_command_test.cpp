@@ -162,6 +162,29 @@ TEST_F(AssessCommand, ClausesOfAUser) {
   EXPECT_EQ(verdict(object(vsi(command + "--json")), "client.deck")["edition"], "client");
 }
 
+// Rules, the end of what is judged and sections are keys of the scene.
+TEST_F(AssessCommand, RulesAndWhatIsJudged) {
+  write("scene.toml", vertical + stiff_span +
+                          "[assessment]\nrules = [\"China\"]\nend = 60\nsection_length = 30\nsection_step = 0.25\n");
+  const json found = object(vsi("assess scene.toml --stage contact --speed-kmh 160 -o chosen --json"));
+  EXPECT_EQ(verdict(found, "china.unloading")["outcome"], "pass");
+  EXPECT_EQ(verdict(found, "en14363.unloading")["outcome"], "does not apply");
+  EXPECT_NE(found["stages"]["contact"]["notes"].dump().find(
+                "judged from x = 0 m to 60 m; percentiles of Q, Y, Y/Q and ΣY of sections of 30 m, at every 0.25 m"),
+            std::string::npos)
+      << found["stages"]["contact"]["notes"];
+  double percentile = 0.0, largest = 0.0;
+  for (const json& value : found["measures"]) {
+    if (value["measure"] == "wheel_force_percentile") percentile = value["value"];
+    if (value["measure"] == "wheel_force") largest = value["value"];
+  }
+  EXPECT_LE(percentile, largest);
+  EXPECT_GT(percentile, 0.99 * largest);
+  write("wrong.toml", vertical + stiff_span + "[assessment]\nbegin = 20\nend = 10\n");
+  expect_refused("assess wrong.toml -o no",
+                 "assessment.end: found 10 m, and judging begins at 20 m, expected more than");
+}
+
 // Named trains, of axle loads or of vehicles; of the latter those that govern as moving loads run with contact.
 TEST_F(AssessCommand, TrainsOfTheUser) {
   write("two.csv", "x[m],P[kN]\n0,100\n3,100\n");

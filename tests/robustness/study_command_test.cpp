@@ -314,6 +314,46 @@ TEST_F(StudyCommand, OneVariableSetsSeveralKeys) {
       << results.header.scene_text;
 }
 
+// Temperature drives a stiffness by a table and a damping by a line; it may be negative.
+TEST_F(StudyCommand, KeysFollowATableOfTheVariable) {
+  write("scene.toml",
+        "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 30\nlength_after = 20\n"
+        "[integration]\ntime_step = 1e-3\nduration = 0.1\n[[bridge]]\nlength = 16.0\nmass = 12e3\nE = 30e9\nIy = "
+        "0.25\n");
+  const std::string begin =
+      "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nname = \"temperature\"\nunit = \"degC\"\n";
+  const std::string pads =
+      "[[vary.set]]\nkey = \"track.pad.kz\"\ntable = [[-20, 120e6], [0, 80e6], [30, 50e6]]\n"
+      "[[vary.set]]\nkey = \"track.pad.cz\"\nfactor = -200\noffset = 30e3\n";
+  write("plan.toml", begin + "values = [-20, -5, 0, 15, 30]\n" + pads);
+  ASSERT_EQ(study("plan.toml -o tables"), 0);
+  const auto rows = table("tables/runs.csv");
+  EXPECT_EQ(rows[0][1], "temperature[degC]");
+  const std::vector<std::string> changes{
+      "track.pad.kz = 120000000, track.pad.cz = 34000", "track.pad.kz = 90000000, track.pad.cz = 31000",
+      "track.pad.kz = 80000000, track.pad.cz = 30000", "track.pad.kz = 65000000, track.pad.cz = 27000",
+      "track.pad.kz = 50000000, track.pad.cz = 24000"};
+  ASSERT_EQ(rows.size(), changes.size() + 1);
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const RunResults results = read_results(folder_ / ("tables/" + rows[i + 1][0] + ".h5"));
+    EXPECT_NE(results.header.scene_text.find(changes[i]), std::string::npos) << results.header.scene_text;
+  }
+  EXPECT_NE(rows[1].back() + column("tables/runs.csv", "wheel_unloading_unfiltered[-]")[0],
+            rows[5].back() + column("tables/runs.csv", "wheel_unloading_unfiltered[-]")[4]);
+  const auto refused = [&](const std::string& values, const std::string& sets, const std::string& message) {
+    write("plan.toml", begin + values + sets);
+    expect_refused("study plan.toml -o no", message);
+  };
+  refused("values = [-30, 0]\n", pads,
+          "found a table of track.pad.kz from -20 to 30 for values from -30 to 0, expected a table as "
+          "far as the values");
+  refused("distribution = \"normal\"\nmean = 10\nstd = 5\n", pads, "expected a table as far as the distribution");
+  refused("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\ntable = [[0, 1e8], [0, 2e8]]\n",
+          "expected two points [[x, value], [x, value]] at least, x rising");
+  refused("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\nfactor = 2\ntable = [[0, 1e8], [1, 2e8]]\n",
+          "set[1].factor: found a table too, expected a table, or factor, power and offset");
+}
+
 TEST_F(StudyCommand, RejectsWrongPlans) {
   const auto refused = [&](const std::string& plan, const std::string& message) {
     write("plan.toml", plan);

@@ -12,6 +12,7 @@
 #include "railtab/runtime/measures/comfort.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/measures/running_safety.hpp"
+#include "railtab/runtime/measures/section_percentiles.hpp"
 #include "railtab/runtime/measures/track_mean.hpp"
 #include "railtab/runtime/measures/weighting.hpp"
 
@@ -19,7 +20,7 @@ namespace railtab::assess {
 namespace {
 
 using Series = std::vector<double>;
-constexpr int lateral = 1, vertical = 2;  // of MotionRecord's six
+constexpr int longitudinal = 0, lateral = 1, vertical = 2;  // of MotionRecord's six
 
 /// The steepest place of a wheel profile between the flange tip and the field side, against the horizontal [rad], over
 /// chords of a millimetre at least.
@@ -69,6 +70,30 @@ std::size_t even_records(const RunResults& results) {
   return std::abs(last - step) > 1e-6 * step ? steps.size() - 1 : steps.size();
 }
 
+constexpr double averaged = 2.0, five_feet = 1.524;  // [m]
+constexpr double car_body_cut_off = 6.0;             // [Hz]
+
+/// Measures of car bodies, and why a run has none of them.
+struct BodyMeasure {
+  std::string_view name, otherwise;
+};
+constexpr std::string_view too_short = "no car body is judged for as long as 5 s";
+constexpr std::array body_measures{
+    BodyMeasure{"car_body_vertical", "no car body is judged"},
+    BodyMeasure{"car_body_lateral", "no car body is judged"},
+    BodyMeasure{"car_body_vertical_6hz", "no car body is judged, or records are too far apart"},
+    BodyMeasure{"car_body_lateral_6hz", "no car body is judged, or records are too far apart"},
+    BodyMeasure{"comfort_vertical", too_short},
+    BodyMeasure{"comfort_lateral", too_short},
+    BodyMeasure{"comfort_longitudinal", "car bodies have no longitudinal acceleration, or none for as long as 5 s"},
+    BodyMeasure{"mean_comfort", "no car body is judged for as long as 5 minutes, 60 windows of 5 s"},
+    BodyMeasure{"running_rms_vertical", "no car body is judged for as long as 1 s"},
+    BodyMeasure{"running_rms_lateral", "no car body is judged for as long as 1 s, or none moves laterally"},
+    BodyMeasure{"vibration_dose_vertical", "no car body is judged"},
+    BodyMeasure{"vibration_dose_lateral", "no car body is judged"},
+    BodyMeasure{"sperling_vertical", too_short},
+    BodyMeasure{"sperling_lateral", too_short}};
+
 class RunJudge {
  public:
   RunJudge(const RunResults& results, const RunWindow& window)
@@ -110,7 +135,8 @@ class RunJudge {
   }
 
   /// Keeps the largest amount of a measure; `group` tells values with limits of their own.
-  void raise(const std::string& measure, double value, double time, const std::string& where, double group = 0.0) {
+  void raise(const std::string& measure, double value, std::optional<double> time, const std::string& where,
+             double group = 0.0) {
     const double amount = std::abs(value);
     MeasuredValue& best = best_[{measure, group}];
     if (!best.measure.empty() && !(amount > best.value)) return;
@@ -124,7 +150,20 @@ class RunJudge {
     best.quantities["static_wheel_load"] = group;
     best.quantities["nadal_limit"] = nadal_;
     best.quantities["weinstock_limit"] = nadal_ + window_.friction;
+    best.quantities["fra_limit"] = fra_;
   }
+  /// The largest percentile of a quantity in any of its sections.
+  void raise_sections(const std::string& measure, const SectionPercentiles& of, const std::string& name,
+                      double group = 0.0) {
+    for (const SectionRange& section : of.sections()) {
+      raise(measure, section.extreme(), std::nullopt,
+            fmt::format("{}, x = {:.4g} to {:.4g} m", name, section.from, section.to), group);
+    }
+  }
+  [[nodiscard]] SectionPercentiles sections() const {
+    return {window_.begin, window_.section_length, window_.section_step};
+  }
+  [[nodiscard]] bool judged(double x) const noexcept { return x >= window_.begin && x <= window_.end; }
   void keep() {
     for (auto& [key, value] : best_) found_.values.push_back(std::move(value));
     best_.clear();
@@ -204,9 +243,12 @@ class RunJudge {
   }
 
   void wheels() {
-    const std::vector<std::string> forces{"wheel_unloading", "wheel_unloading_unfiltered", "unloading_duration",
-                                          "wheel_force"};
-    const std::vector<std::string> guiding{"derailment_2m", "derailment", "weinstock_sum", "track_shift_2m"};
+    const std::vector<std::string> forces{"wheel_unloading",     "wheel_unloading_unfiltered",
+                                          "wheel_unloading_5ft", "unloading_duration",
+                                          "wheel_force",         "wheel_force_percentile"};
+    const std::vector<std::string> guiding{
+        "derailment_2m",  "derailment",      "derailment_percentile",  "derailment_5ft",          "weinstock_sum",
+        "track_shift_2m", "track_shift_5ft", "track_shift_percentile", "guiding_force_percentile"};
     const bool fast = samples_fast_enough(window_.wheel_cut_off, step_);
     const bool guided = !header_.wheel_y.empty();
     if (header_.static_wheel_load.empty() || at(0).wheels.empty() || !fast) {
@@ -217,14 +259,28 @@ class RunJudge {
       return miss(guiding, reason);
     }
     if (!guided) miss(guiding, "the scene's wheels have no lateral forces (contact.normal = \"rigid\")");
-    if (guided) nadal_ = nadal_limit(flange_angle(header_), window_.friction);
+    if (guided) {
+      constexpr double fra_friction = 0.5;
+      nadal_ = nadal_limit(flange_angle(header_), window_.friction);
+      fra_ = nadal_limit(flange_angle(header_), fra_friction);
+    }
     for (std::size_t w = 0; w + 1 < header_.static_wheel_load.size(); w += 2) wheelset(w, guided);
-    if (best_.empty()) {
-      const std::string reason = fmt::format("no wheel comes to x = {:.4g} m, where judging begins", window_.begin);
-      miss(forces, reason);
-      miss(guiding, reason);
+    for (const auto* measures : {&forces, &guiding}) {
+      if (measures == &guiding && !guided) continue;
+      for (const std::string& measure : *measures) miss_unless_found(measure);
     }
     keep();
+  }
+
+  void miss_unless_found(const std::string& measure) {
+    if (std::any_of(best_.begin(), best_.end(), [&](const auto& b) { return b.first.first == measure; })) return;
+    const bool none =
+        std::none_of(best_.begin(), best_.end(), [&](const auto& b) { return b.first.first == "wheel_force"; });
+    miss({measure}, none ? fmt::format("no wheel comes to x = {:.4g} m, where judging begins", window_.begin)
+                         : fmt::format("no wheel is judged over as long a way{}",
+                                       measure.ends_with("percentile") && window_.section_length > 0.0
+                                           ? fmt::format(" as a section of {:.4g} m", window_.section_length)
+                                           : ""));
   }
 
   void wheelset(std::size_t left, bool guided) {
@@ -237,41 +293,73 @@ class RunJudge {
         Y[side] =
             low_passed(of_records([&](const StepRecord& r) { return r.wheels[w].Y; }), window_.wheel_cut_off, step_);
       }
-      wheel(w, Q[side], Y[side], guided);
+      wheel(w, Q[side]);
+      if (guided) guided_wheel(w, Q[side], Y[side]);
     }
     if (!guided) return;
-    constexpr double averaged = 2.0;  // [m]
-    TrackMean shift(averaged);
+    TrackMean shift(averaged), shift_5ft(five_feet);
+    SectionPercentiles percentiles = sections();
+    const double Q0 = header_.static_wheel_load[left];
     const std::string name = fmt::format("wheelset {}", left / 2 + 1);
     for (std::size_t k = 0; k < records_; ++k) {
-      if (wheel_position(left, k) < window_.begin) continue;
-      const auto mean = shift.add(wheel_position(left, k), Y[0][k] + Y[1][k]);
-      if (mean) raise("track_shift_2m", *mean, at(k).time, name, header_.static_wheel_load[left]);
-      raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), at(k).time, name);
+      const double x = wheel_position(left, k), time = at(k).time, sum = Y[0][k] + Y[1][k];
+      if (!judged(x)) continue;
+      if (const auto mean = shift.add(x, sum)) {
+        raise("track_shift_2m", *mean, time, name, Q0);
+        percentiles.add(x - averaged, *mean);  // by where its 2 m begin
+      }
+      if (const auto mean = shift_5ft.add(x, sum)) raise("track_shift_5ft", *mean, time, name, Q0);
+      raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), time, name);
     }
+    raise_sections("track_shift_percentile", percentiles, name, Q0);
   }
 
-  void wheel(std::size_t w, const Series& Q, const Series& Y, bool guided) {
-    constexpr double averaged = 2.0, lasting = 0.6, least_share = 0.05;  // [m]; ΔQ/Q0; of Q0, for a quotient
+  void wheel(std::size_t w, const Series& Q) {
+    constexpr double lasting = 0.6;  // ΔQ/Q0
     const double Q0 = header_.static_wheel_load[w];
-    TrackMean quotient(averaged);
+    TrackMean unloading_5ft(five_feet);
+    SectionPercentiles percentiles = sections();
     Unloading raw(lasting);
+    const std::string name = report::wheel_name(w);
+    bool any = false;
+    for (std::size_t k = 0; k < records_; ++k) {
+      const double x = wheel_position(w, k), time = at(k).time;
+      if (!judged(x)) continue;
+      any = true;
+      const double unloading = (Q0 - Q[k]) / Q0;
+      raise("wheel_unloading", std::max(0.0, unloading), time, name);
+      const auto mean = unloading_5ft.add(x, unloading);
+      if (mean) raise("wheel_unloading_5ft", std::max(0.0, *mean), time, name);
+      raw.add(time, at(k).wheels[w].Q, Q0);
+      raise("wheel_force", Q[k], time, name, Q0);
+      percentiles.add(x, Q[k]);
+    }
+    if (!any) return;
+    raise("wheel_unloading_unfiltered", std::max(0.0, raw.largest()), raw.time(), name);
+    raise("unloading_duration", raw.longest_above(), raw.time(), name);
+    raise_sections("wheel_force_percentile", percentiles, name, Q0);
+  }
+
+  void guided_wheel(std::size_t w, const Series& Q, const Series& Y) {
+    constexpr double least_share = 0.05;  // of Q0, for a quotient
+    const double Q0 = header_.static_wheel_load[w];
+    TrackMean quotient(averaged), quotient_5ft(five_feet);
+    SectionPercentiles quotients = sections(), forces = sections();
     const std::string name = report::wheel_name(w);
     for (std::size_t k = 0; k < records_; ++k) {
       const double x = wheel_position(w, k), time = at(k).time;
-      if (x < window_.begin) continue;
-      const double unloading = (Q0 - Q[k]) / Q0;
-      raise("wheel_unloading", std::max(0.0, unloading), time, name);
-      raw.add(time, at(k).wheels[w].Q, Q0);
-      raise("wheel_force", Q[k], time, name, Q0);
-      if (!guided || !(Q[k] > least_share * Q0)) continue;
+      if (!judged(x)) continue;
+      forces.add(x, Y[k]);
+      if (!(Q[k] > least_share * Q0)) continue;
       raise("derailment", Y[k] / Q[k], time, name);
-      const auto mean = quotient.add(x, Y[k] / Q[k]);
-      if (mean) raise("derailment_2m", *mean, time, name);
+      if (const auto mean = quotient.add(x, Y[k] / Q[k])) {
+        raise("derailment_2m", *mean, time, name);
+        quotients.add(x - averaged, *mean);
+      }
+      if (const auto mean = quotient_5ft.add(x, Y[k] / Q[k])) raise("derailment_5ft", *mean, time, name);
     }
-    if (wheel_position(w, records_ - 1) < window_.begin) return;
-    raise("wheel_unloading_unfiltered", std::max(0.0, raw.largest()), raw.time(), name);
-    raise("unloading_duration", raw.longest_above(), raw.time(), name);
+    raise_sections("guiding_force_percentile", forces, name, Q0);
+    raise_sections("derailment_percentile", quotients, name);
   }
 
   void bodies() {
@@ -279,17 +367,15 @@ class RunJudge {
     for (std::size_t i = 0; i < header_.body_names.size(); ++i) {
       if (report::is_car_body(header_.body_names[i])) cars.push_back(i);
     }
-    const std::vector<std::string> all{"car_body_vertical", "car_body_lateral",     "comfort_vertical",
-                                       "comfort_lateral",   "running_rms_vertical", "vibration_dose_vertical",
-                                       "sperling_vertical", "sperling_lateral"};
-    if (cars.empty()) return miss(all, "no car body is recorded");
+    if (cars.empty()) {
+      for (const BodyMeasure& measure : body_measures) miss({std::string(measure.name)}, "no car body is recorded");
+      return;
+    }
     for (const std::size_t car : cars) car_body(car);
-    for (const std::string& measure : all) {
-      const bool any = std::any_of(best_.begin(), best_.end(), [&](const auto& b) { return b.first.first == measure; });
-      const bool second = measure.starts_with("running");
-      if (!any) {
-        miss({measure}, fmt::format("no car body is judged for as long as {} s", second ? 1 : 5));
-      }
+    for (const BodyMeasure& measure : body_measures) {
+      const bool any =
+          std::any_of(best_.begin(), best_.end(), [&](const auto& b) { return b.first.first == measure.name; });
+      if (!any) miss({std::string(measure.name)}, std::string(measure.otherwise));
     }
     keep();
   }
@@ -301,34 +387,57 @@ class RunJudge {
 
   void car_body(std::size_t body) {
     const std::string name = report::vehicle_of(header_.body_names[body]);
-    WeightedSeries b(weighting_b, step_), d(weighting_d, step_), k_weighted(weighting_k, step_);
-    WindowedRms rms_b(5.0, step_), rms_d(5.0, step_);
+    const auto acceleration = [&](int direction) {
+      return of_records([&](const StepRecord& r) { return r.bodies[body].acceleration[direction]; });
+    };
+    const Series x = acceleration(longitudinal), y = acceleration(lateral), z = acceleration(vertical);
+    const std::vector<double> x_rms = weighted(body, x, weighting_d, "longitudinal", {});
+    const std::vector<double> y_rms = weighted(body, y, weighting_d, "lateral", weighting_d);
+    const std::vector<double> z_rms = weighted(body, z, weighting_b, "vertical", weighting_k);
+    constexpr std::size_t five_minutes = 60;  // windows
+    if (z_rms.size() >= five_minutes) raise("mean_comfort", mean_comfort(x_rms, y_rms, z_rms), std::nullopt, name);
+    if (!samples_fast_enough(car_body_cut_off, step_)) return;
+    const Series y_smooth = low_passed(y, car_body_cut_off, step_), z_smooth = low_passed(z, car_body_cut_off, step_);
+    for (std::size_t k = 0; k < records_; ++k) {
+      if (!judged(body_position(body, k))) continue;
+      raise("car_body_lateral_6hz", y_smooth[k], at(k).time, name);
+      raise("car_body_vertical_6hz", z_smooth[k], at(k).time, name);
+    }
+  }
+
+  /// Measures of a car body's acceleration in one direction; a direction in which it does not move has none.
+  /// @param comfort weighting of 5 s windows @param dose that of the running rms and the dose @return rms of the
+  /// windows
+  std::vector<double> weighted(std::size_t body, const Series& acceleration, const Weighting& comfort,
+                               const std::string& direction, const std::optional<Weighting>& dose_weighting) {
+    const std::string name = report::vehicle_of(header_.body_names[body]);
+    const bool moves = std::any_of(acceleration.begin(), acceleration.end(), [](double a) { return a != 0.0; });
+    const bool sperling = direction != "longitudinal";
+    WeightedSeries comfort_series(comfort, step_), dose_series(dose_weighting.value_or(comfort), step_);
+    WindowedRms rms(5.0, step_);
     VibrationDose dose(step_);
-    SperlingIndex sperling_z(SperlingDirection::vertical, step_), sperling_y(SperlingDirection::lateral, step_);
+    SperlingIndex index(direction == "lateral" ? SperlingDirection::lateral : SperlingDirection::vertical, step_);
     double end = 0.0;
     for (std::size_t k = 0; k < records_; ++k) {
-      const double z = at(k).bodies[body].acceleration[vertical], y = at(k).bodies[body].acceleration[lateral];
-      const double weighted_b = b.add(z), weighted_d = d.add(y), weighted_k = k_weighted.add(z);
-      if (body_position(body, k) < window_.begin) continue;
+      const double a = acceleration[k], of_comfort = comfort_series.add(a), of_dose = dose_series.add(a);
+      if (!judged(body_position(body, k))) continue;
       end = at(k).time;
-      raise("car_body_vertical", z, end, name);
-      raise("car_body_lateral", y, end, name);
-      rms_b.add(weighted_b);
-      rms_d.add(weighted_d);
-      dose.add(weighted_k);
-      sperling_z.add(z);
-      sperling_y.add(y);
-      windows(rms_b, "comfort_vertical", end, name);
-      windows(rms_d, "comfort_lateral", end, name);
-      windows(sperling_z, "sperling_vertical", end, name);
-      windows(sperling_y, "sperling_lateral", end, name);
+      rms.add(of_comfort);
+      if (!moves && !sperling) continue;
+      windows(rms, "comfort_" + direction, end, name);
+      if (!sperling) continue;
+      raise("car_body_" + direction, a, end, name);
+      dose.add(of_dose);
+      index.add(a);
+      windows(index, "sperling_" + direction, end, name);
     }
-    if (dose.largest_running_rms() > 0.0) raise("running_rms_vertical", dose.largest_running_rms(), end, name);
-    if (end > 0.0) raise("vibration_dose_vertical", dose.dose(), end, name);
+    if (dose.largest_running_rms() > 0.0) raise("running_rms_" + direction, dose.largest_running_rms(), end, name);
+    if (sperling && end > 0.0) raise("vibration_dose_" + direction, dose.dose(), end, name);
+    return rms.values();
   }
 
   template <class Windows>
-  void windows(const Windows& of, const char* measure, double time, const std::string& name) {
+  void windows(const Windows& of, const std::string& measure, double time, const std::string& name) {
     if (!of.values().empty()) raise(measure, of.values().back(), time, name);
   }
 
@@ -359,7 +468,7 @@ class RunJudge {
       Series smooth = low_passed(raw, window_.wheel_cut_off, step_);
       double peak = -1e300;
       for (std::size_t k = 0; k < records_; ++k) {
-        if (wheel_position(w, k) >= window_.begin) peak = std::max(peak, smooth[k]);
+        if (judged(wheel_position(w, k))) peak = std::max(peak, smooth[k]);
       }
       if (!(peak > largest)) continue;
       largest = peak;
@@ -374,7 +483,7 @@ class RunJudge {
   const ResultHeader& header_;
   RunWindow window_;
   std::size_t records_ = 0;
-  double step_ = 0.0, nadal_ = 0.0;
+  double step_ = 0.0, nadal_ = 0.0, fra_ = 0.0;
   std::map<std::pair<std::string, double>, MeasuredValue> best_;
   RunMeasures found_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct RunWindow {
   double deck_cut_off = 30.0;   ///< [Hz]
   double wheel_cut_off = 20.0;  ///< [Hz]
   double friction = 0.3;        ///< of Nadal's limit
+  /// Where they end to be judged [m].
+  double end = std::numeric_limits<double>::infinity();
+  double section_length = 0.0;  ///< of percentiles, from `begin` on [m]; 0: one section, all that is judged
+  double section_step = 0.5;    ///< between their values [m]
 };
 
 struct RunMeasures {

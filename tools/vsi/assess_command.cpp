@@ -133,6 +133,7 @@ Assessment begin(const SceneParameters& scene, const Request& request, const Com
   const double line_speed = scene.assessment.line_speed_kmh / 3.6;
   assessment.facts.line_speed = line_speed > 0.0 ? line_speed : scene.train.speed;
   assessment.facts.track = scene.assessment.track == DeckTrack::ballasted ? "ballasted" : "direct";
+  assessment.facts.rules = scene.assessment.rules;
   std::vector<fs::path> files;
   if (line.given("clauses")) {
     for (const std::string& file : line.required_many("clauses")) files.emplace_back(file);

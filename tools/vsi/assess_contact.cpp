@@ -73,6 +73,9 @@ void record_what_is_judged(SceneParameters& scene) {
 assess::RunWindow judged_window(const SceneParameters& scene) {
   assess::RunWindow window;
   window.begin = scene.assessment.begin.value_or(scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0));
+  if (scene.assessment.end) window.end = *scene.assessment.end;
+  window.section_length = scene.assessment.section_length;
+  window.section_step = scene.assessment.section_step;
   window.friction = scene.contact.friction;
   return window;
 }
@@ -169,10 +172,13 @@ ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::Dec
   for (const assess::DeckAssessment& deck : decks) {
     plan.window.deck_cut_off = std::max(plan.window.deck_cut_off, deck.cut_off);
   }
-  plan.notes.push_back(
-      fmt::format("Wheels and car bodies are judged from x = {:g} m on; largest values, no "
-                  "percentiles, since the section is short.",
-                  plan.window.begin));
+  plan.notes.push_back(fmt::format(
+      "Wheels and car bodies are judged from x = {:g} m {}; percentiles of Q, Y, Y/Q and ΣY of {}, at every "
+      "{:g} m.",
+      plan.window.begin, made.assessment.end ? fmt::format("to {:g} m", plan.window.end) : "on",
+      plan.window.section_length > 0.0 ? fmt::format("sections of {:g} m", plan.window.section_length)
+                                       : "that way as one section",
+      plan.window.section_step));
   if (!made.contact.friction_file.empty()) {
     plan.notes.emplace_back("Nadal's limit takes contact.friction, not the coefficients of contact.friction_file.");
   }
