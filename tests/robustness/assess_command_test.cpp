@@ -229,6 +229,7 @@ TEST_F(AssessCommand, ShardsShareTheRuns) {
         << outcome.output;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "parts/assessment.json"));
   }
+  EXPECT_EQ(object(vsi(command + "-o parts --shard 2/2 --json")), (json{{"finished", 1}, {"ended_early", 0}}));
   const std::filesystem::path run = folder_ / "parts/runs/v044.444.h5";
   const auto written = std::filesystem::last_write_time(run);
   const json joined = object(vsi(command + "-o parts --json"));

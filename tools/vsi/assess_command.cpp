@@ -70,7 +70,7 @@ struct Request {
   std::string fail_on;
   PartOf shard;
   int threads = 1;
-  bool progress = false;
+  bool progress = false, json = false;
   [[nodiscard]] bool asks(AssessmentStage stage) const {
     return std::find(stages.begin(), stages.end(), stage) != stages.end();
   }
@@ -121,6 +121,7 @@ Request request_of(const CommandLine& line) {
   }
   request.threads = line.workers();
   request.progress = !line.quiet() && !line.json();
+  request.json = line.json();
   return request;
 }
 
@@ -272,7 +273,9 @@ int contact_runs(const std::vector<AssessTrain>& trains, const SceneParameters& 
     return code;
   }
   const RunCount count = runs.count(request.shard);
-  if (request.progress) {
+  if (request.json) {
+    print_json_line({{"finished", count.finished}, {"ended_early", count.ended_early}});
+  } else if (request.progress) {
     print_formatted(
         "shard {} of {}: {} of its runs finished, {} of them ended early; the same command without --shard writes the "
         "verdict of all\n",
