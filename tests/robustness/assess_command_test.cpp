@@ -210,6 +210,18 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
   EXPECT_EQ(asked["decks"][0]["trains"][1]["train"], "en15528-d2*4");
   EXPECT_NE(asked["stages"]["moving-load"]["notes"].dump().find("hslm-a3, en15528-d2*4 and the scene's train"),
             std::string::npos);
+  // vehicles of files, relative to the scene, and mixed trains
+  std::filesystem::create_directory(folder_ / "below");
+  write("below/coach.toml", vsi("vehicle manchester-coach --toml").output);
+  write("below/scene.toml", vertical + stiff_span +
+                                "[assessment]\ntrains = [\"coach.toml*2\", \"manchester-coach*2\", "
+                                "\"coach.toml+manchester-coach\", \"ice3-like-coach+manchester-coach\"]\n");
+  const json mixed = object(vsi("assess below/scene.toml --stage moving-load -o mixed --json"))["decks"][0]["trains"];
+  ASSERT_EQ(mixed.size(), 5U);
+  EXPECT_EQ(mixed[0]["passages"], mixed[1]["passages"]);
+  const auto first = [&](std::size_t train) { return mixed[train]["passages"][0]["acceleration"].get<double>(); };
+  EXPECT_NEAR(first(2), first(0), 1e-9 * first(0)) << "the same axles by another way";
+  EXPECT_GT(std::abs(first(3) - first(0)), 0.01 * first(0));
   expect_refused("assess scene.toml --train nobody -o out", "train: found 'nobody', expected");
   expect_refused("assess scene.toml --train lm71 -o out",
                  "found 'lm71', a load model at rest, expected trains that move");
