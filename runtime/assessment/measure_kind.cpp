@@ -28,6 +28,7 @@ const std::vector<MeasureKind>& measure_kinds() {
        {moving_load, contact},
        "largest rotation of the deck's ends about the lateral axis"},
       {"deck_twist", "m", {contact}, "largest change of the deck's cross level over 3 m of the track"},
+      {"track_twist", "m", {contact}, "largest twist over 3 m of the deck and of the track without traffic together"},
       {"horizontal_rotation", "rad", {contact}, "largest rotation of the deck's ends about the vertical axis"},
       {"deck_joint_step", "m", {contact}, "largest vertical offset of a deck's end against what adjoins it"},
       {"deck_joint_gap", "m", {contact}, "largest longitudinal displacement of a deck's end against what adjoins it"},
@@ -69,7 +70,6 @@ const std::vector<MeasureKind>& measure_kinds() {
       {"vibration_dose_lateral", "m/s1.75", {contact}, "vibration dose of a car body's lateral acceleration, W_d"},
       {"sperling_vertical", "-", {contact}, "largest W_z of 5 s of a car body, vertical"},
       {"sperling_lateral", "-", {contact}, "largest W_z of 5 s of a car body, lateral"},
-      {"track_twist", "m", {}, "deck twist over 3 m together with the twist of the track without traffic"},
   };
   return kinds;
 }

@@ -55,7 +55,7 @@ std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasu
   for (const AssessmentStage stage : kind->stages) {
     stages += fmt::format("{}{}", stages.empty() ? "" : " or ", stage_name(stage));
   }
-  return stages.empty() ? "railtab does not compute it" : "needs stage " + stages;
+  return fmt::format("needs stage {}", stages);
 }
 
 /// The verdict of one stage; none where the stage has no value that the clause is about.

@@ -113,7 +113,10 @@ TEST_F(StudyCommand, RunsTheSceneWithTheKeysOfThePlan) {
 TEST_F(StudyCommand, JudgesWholeDecks) {
   write("scene.toml",
         "[contact]\nmode = \"online\"\n[track]\nlength_before = 30\nlength_after = 30\n"
-        "[integration]\ntime_step = 1e-3\n[[bridge]]\nlength = 25.0\nmass = 15e3\nE = 30e9\nIy = 1.0\n");
+        "[integration]\ntime_step = 1e-3\n[irregularity]\nfile = \"track.csv\"\n"
+        "[[bridge]]\nlength = 25.0\nmass = 15e3\nE = 30e9\nIy = 1.0\n");
+  // the right rail falls by 0.02 mm/m: 0.06 mm over 3 m
+  write("track.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-60,0,0,0,0\n100,0,0,0,3.2\n");
   write("plan.toml",
         "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [250]\n");
   ASSERT_EQ(study("plan.toml -o out"), 0);
@@ -124,6 +127,8 @@ TEST_F(StudyCommand, JudgesWholeDecks) {
     EXPECT_GE(std::stod(value), 0.0) << measure;
   }
   EXPECT_GT(std::stod(column("out/runs.csv", "deck_end_rotation[rad]")[0]), 1e-4);
+  EXPECT_NEAR(std::stod(column("out/runs.csv", "track_twist[m]")[0]),
+              std::stod(column("out/runs.csv", "deck_twist[m]")[0]) + 6e-5, 1e-9);
   const RunResults run = read_results(folder_ / ("out/" + table("out/runs.csv")[1][0] + ".h5"));
   double largest = 0.0, midspan = 0.0;
   for (std::size_t q = 0; q < run.header.deck.size(); ++q) {

@@ -102,14 +102,14 @@ TEST(RunMeasures, OfARunMadeByHand) {
   EXPECT_NEAR(of(found, "wheel_unloading_5ft").value, 0.3, 1e-3);
   EXPECT_EQ(std::ranges::count(found.missing, "the run has no envelope of the deck (output.deck_envelope)",
                                &MissingMeasure::reason),
-            5);
+            6);
   const auto reason = [&](std::string_view measure) {
     return std::ranges::find(found.missing, measure, &MissingMeasure::measure)->reason;
   };
   // once the weighting has settled
   const RunMeasures settled = run_measures(made_run(), {0.0, 30.0, 20.0, 0.3});
   EXPECT_NEAR(of(settled, "running_rms_lateral").value, 0.1 / std::numbers::sqrt2 * 0.891, 2e-4);
-  EXPECT_EQ(found.missing.size(), 7U);
+  EXPECT_EQ(found.missing.size(), 8U);
   EXPECT_EQ(reason("comfort_longitudinal"), "car bodies have no longitudinal acceleration, or none for as long as 5 s");
   EXPECT_EQ(reason("mean_comfort"), "no car body is judged for as long as 5 minutes, 60 windows of 5 s");
 }
@@ -219,6 +219,12 @@ TEST(RunMeasures, WholeDeckInPlaceOfRecordedNodes) {
   EXPECT_EQ(of(found, "deck_displacement").time, 2.5);
   EXPECT_EQ(of(found, "deck_twist").value, 1.6e-3);
   EXPECT_EQ(of(found, "deck_twist").where, "x = 12.00 m");
+  EXPECT_EQ(std::ranges::find(found.missing, "track_twist", &MissingMeasure::measure)->reason,
+            "the scene's track is perfect: its twist without traffic is not known");
+  RunWindow rough{-100.0, 30.0, 20.0, 0.3};
+  rough.track_twist = [](double first, double last) { return 1e-3 * first + 2e-3 * last - 34e-3; };
+  EXPECT_NEAR(of(run_measures(with_envelope(30.0), rough), "track_twist").value, 1.6e-3 + 2e-3, 1e-12)
+      << "of x = 12 m, where alone the deck's twist is followed";
   EXPECT_EQ(of(found, "deck_end_rotation").value, 5e-4);
   EXPECT_EQ(of(found, "deck_joint_gap").value, 9e-3);
   EXPECT_EQ(std::ranges::count(found.missing, "horizontal_rotation", &MissingMeasure::measure), 1)
@@ -251,7 +257,7 @@ TEST(RunMeasures, EnvelopeOfAnotherCutOffOrOfAKilledRunIsNotTaken) {
   EXPECT_NEAR(of(recorded, "deck_acceleration").value, 1.0, 2e-3) << "that of the recorded node";
   EXPECT_EQ(std::ranges::count(recorded.missing, "the run was ended before it wrote the envelope of the deck",
                                &MissingMeasure::reason),
-            5);
+            6);
 }
 
 TEST(RunMeasures, WhatStandsBeforeTheBeginIsNotJudged) {

@@ -20,8 +20,8 @@ constexpr std::array envelope_measures{EnvelopeMeasure{"filtered_acceleration", 
                                        EnvelopeMeasure{"horizontal_rotation", "horizontal_rotation"},
                                        EnvelopeMeasure{"joint_step", "deck_joint_step"},
                                        EnvelopeMeasure{"joint_gap", "deck_joint_gap"}};
-const std::vector<std::string> of_envelope{"deck_twist", "deck_end_rotation", "horizontal_rotation", "deck_joint_step",
-                                           "deck_joint_gap"};
+const std::vector<std::string> of_envelope{"deck_twist",      "deck_end_rotation", "horizontal_rotation",
+                                           "deck_joint_step", "deck_joint_gap",    "track_twist"};
 
 /// "x = 12.00 m, y = 2.20 m"; without y where all places have one.
 std::string place_on_deck(const DeckPlaces& places, std::size_t i) {
@@ -69,7 +69,25 @@ class DeckJudge : public RunJudge {
       if (std::ranges::count(header_.deck, measure.quantity, &DeckPlaces::quantity) > 0) continue;
       miss({std::string(measure.name)}, "the decks of this scene do not have it");
     }
+    track_twist();
     keep();
+  }
+
+  /// A bound: deck and track have their largest twists at different places.
+  void track_twist() {
+    const auto twist = std::ranges::find(header_.deck, "twist", &DeckPlaces::quantity);
+    if (twist == header_.deck.end() || twist->x.empty()) {
+      return miss({"track_twist"}, "the decks of this scene do not have it");
+    }
+    if (!window_.track_twist) {
+      return miss({"track_twist"}, "the scene's track is perfect: its twist without traffic is not known");
+    }
+    const DeckExtremes& extremes = results_.summary.deck[static_cast<std::size_t>(twist - header_.deck.begin())];
+    const double deck = std::max(std::ranges::max(extremes.largest), -std::ranges::min(extremes.smallest));
+    const auto [first, last] = std::ranges::minmax(twist->x);
+    const double track = window_.track_twist(first, last);
+    raise("track_twist", deck + track, std::nullopt,
+          fmt::format("deck {:.2f} mm + track {:.2f} mm", 1e3 * deck, 1e3 * track));
   }
 
   void recorded_deck() {

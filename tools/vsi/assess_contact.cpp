@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/irregularity.hpp"
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
@@ -70,8 +72,29 @@ void record_what_is_judged(SceneParameters& scene) {
   scene.output.nodes = {scene.track_kind == TrackKind::flexible ? "deck*" : "*"};
 }
 
+namespace {
+
+/// Twist of the track without traffic, by the difference of the rails' heights; empty where the track is perfect.
+std::function<double(double, double)> track_twist_of(const SceneParameters& scene) {
+  if (!scene.irregularity && !scene.spectrum) return {};
+  return [file = scene.irregularity, spectrum = scene.spectrum, start = scene.train.start](double first, double last) {
+    constexpr double base = 3.0, step = 0.1;  // [m]
+    const Irregularity track =
+        file ? read_irregularity(*file) : random_irregularity(*spectrum, first, last + base, start);
+    const auto cross_level = [&](double x) { return track.at(RailSide::right, x).z - track.at(RailSide::left, x).z; };
+    double largest = 0.0;
+    for (double x = first; x <= last + 1e-9; x += step) {
+      largest = std::max(largest, std::abs(cross_level(x + base) - cross_level(x)));
+    }
+    return largest;
+  };
+}
+
+}  // namespace
+
 assess::RunWindow judged_window(const SceneParameters& scene) {
   assess::RunWindow window;
+  window.track_twist = track_twist_of(scene);
   window.begin = scene.assessment.begin.value_or(scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0));
   if (scene.assessment.end) window.end = *scene.assessment.end;
   window.section_length = scene.assessment.section_length;
@@ -117,7 +140,9 @@ void take_up(const ContactPlan& plan, const SweepRun& run, const RunPool& pool, 
   entry.there = true;
   entry.complete = results.summary.complete;
   entry.message = results.summary.message;
-  assess::RunMeasures measures = assess::run_measures(results, assessment.window);
+  assess::RunWindow window = judged_window(scene_of(plan.scene, run));
+  window.deck_cut_off = plan.window.deck_cut_off;
+  assess::RunMeasures measures = assess::run_measures(results, window);
   for (MeasuredValue& value : measures.values) {
     value.train = plan.train;
     value.seed = entry.seed;
