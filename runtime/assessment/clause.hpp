@@ -34,6 +34,7 @@ struct Clause {
   bool verified = false;  ///< read in that source; else the number is still to be checked
 
   // Applies where all of these hold that are there:
+  std::string rules;                                ///< whose they are: "Europe", "China", …
   std::string track;                                ///< "ballasted" or "direct"
   std::optional<std::array<double, 2>> line_speed;  ///< above the first, up to the second [km/h]
   std::optional<std::array<double, 2>> span;        ///< likewise [m]

@@ -31,7 +31,8 @@ ClauseLimit read_limit(TomlSection& s, const std::string& unit) {
     limit.constant = s.number("limit", {unit, -any, any});
   } else {
     TomlSection by = s.section("limit_by");
-    limit.of = by.text_of("of", {"span", "axle_load", "static_wheel_load", "nadal_limit", "weinstock_limit"});
+    limit.of =
+        by.text_of("of", {"span", "axle_load", "static_wheel_load", "nadal_limit", "weinstock_limit", "fra_limit"});
     limit.factor = by.number("factor", {"", -any, any}, 1.0);
     limit.constant = by.number("constant", {unit, -any, any}, 0.0);
     limit.exponent = by.number("exponent", {"", -10.0, 10.0}, 1.0);
@@ -52,9 +53,10 @@ void read_conditions(TomlSection& s, Clause& clause) {
   applies->reject_others();
 }
 
-Clause read_clause(TomlSection& s, const std::string& edition) {
+Clause read_clause(TomlSection& s, const std::string& edition, const std::string& rules) {
   Clause clause;
   clause.edition = edition;
+  clause.rules = rules;
   clause.id = s.text("id");
   clause.clause = s.text("clause");
   clause.title = s.text("title");
@@ -78,11 +80,12 @@ void read_clauses(const toml::table& table, const std::filesystem::path& file, s
   SourcedValues values;
   TomlSection root(file, "", table, {}, values);
   const std::string edition = root.text("edition");
+  const std::string rules = root.has("rules") ? root.text("rules") : "";
   std::vector<TomlSection> sections = root.sections("clause");
   if (sections.empty()) throw root.error("clause", "nothing", "at least one [[clause]]");
   std::vector<std::string> own;
   for (TomlSection& section : sections) {
-    Clause clause = read_clause(section, edition);
+    Clause clause = read_clause(section, edition, rules);
     if (std::find(own.begin(), own.end(), clause.id) != own.end()) {
       throw section.error("id", fmt::format("\"{}\" twice", clause.id), "one clause of each id in a file");
     }

@@ -1,6 +1,7 @@
 #include "railtab/runtime/assessment/verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,10 @@ bool within(double value, const std::array<double, 2>& range) { return value > r
 /// Why a clause does not apply to anything here; empty where it does.
 std::string excluded(const Clause& clause, const AssessmentFacts& facts) {
   constexpr double kmh = 3.6;
+  const std::vector<std::string>& rules = facts.rules;
+  if (!clause.rules.empty() && std::find(rules.begin(), rules.end(), clause.rules) == rules.end()) {
+    return fmt::format("of the rules \"{}\"; assessment.rules has {}", clause.rules, fmt::join(rules, ", "));
+  }
   if (!clause.track.empty() && clause.track != facts.track) {
     return fmt::format("for {} track; this is {}", clause.track, facts.track);
   }

@@ -22,14 +22,15 @@ struct MeasuredValue {
   std::optional<double> speed;  ///< [m/s]
   std::optional<int> seed;      ///< of the random track
   std::string run;              ///< name of the run's files; empty: none
-  /// What limits depend on: span [m], axle_load, static_wheel_load [N], nadal_limit, weinstock_limit.
+  /// What limits depend on: span [m], axle_load, static_wheel_load [N], nadal_limit, weinstock_limit, fra_limit.
   std::map<std::string, double, std::less<>> quantities;
 };
 
 /// What clauses are chosen by.
 struct AssessmentFacts {
-  std::string track = "ballasted";  ///< or "direct"
-  double line_speed = 0.0;          ///< [m/s]
+  std::string track = "ballasted";           ///< or "direct"
+  double line_speed = 0.0;                   ///< [m/s]
+  std::vector<std::string> rules{"Europe"};  ///< that apply, besides clauses that belong to none
 };
 
 /// Why a measure has no value, or may be larger than the one found: by measure and stage.

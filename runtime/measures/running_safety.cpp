@@ -15,8 +15,6 @@ double weinstock_ratio(double Y_left, double Q_left, double Y_right, double Q_ri
   return std::abs(Y_left / Q_left) + std::abs(Y_right / Q_right);
 }
 
-double prudhomme_limit(double axle_load, double k1) noexcept { return k1 * (10e3 + axle_load / 3.0); }
-
 void Unloading::add(double time, double Q, double Q0) noexcept {
   const double value = (Q0 - Q) / Q0;
   if (value > largest_) {

@@ -9,10 +9,6 @@ namespace railtab {
 /// nothing. Forces [N].
 [[nodiscard]] double weinstock_ratio(double Y_left, double Q_left, double Y_right, double Q_right) noexcept;
 
-/// Prud'homme's limit of the sum of both Y of a wheelset, k1 (10 kN + P/3), P the static axle load [N]. k1: 1, 0.85 of
-/// freight wagons. @return [N]
-[[nodiscard]] double prudhomme_limit(double axle_load, double k1 = 1.0) noexcept;
-
 /// Wheel unloading ΔQ/Q0 = (Q0 − Q)/Q0: the largest, and the longest time without a break above a limit, ends of it
 /// between samples by the line through them.
 class Unloading {

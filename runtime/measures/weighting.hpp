@@ -23,6 +23,8 @@ struct Weighting {
 
 /// [EN12299, Annex C]: vertical and lateral acceleration of railway passengers.
 inline constexpr Weighting weighting_b{0.4, 100.0, 16.0, 16.0, 0.63, 2.5, 0.8, 4.0, 0.8, 0.4};
+/// [EN12299, Annex C], [ISO2631-1, Annex A]: longitudinal, at the backs of seats.
+inline constexpr Weighting weighting_c{0.4, 100.0, 8.0, 8.0, 0.63, 0.0, 0.0, 0.0, 0.0};
 /// [EN12299, Annex C], [ISO2631-1, Annex A]: lateral and longitudinal.
 inline constexpr Weighting weighting_d{0.4, 100.0, 2.0, 2.0, 0.63, 0.0, 0.0, 0.0, 0.0};
 /// [ISO2631-1, Annex A]: vertical. Its K is that of high frequencies: the step has gain (f5/f6)² at low ones.

@@ -17,6 +17,8 @@ std::vector<KeyRow> assessment_keys() {
       {"assessment.track", "", "track on the deck, for the limit of its acceleration",
        choice<DeckTrack>(of_assessment<&AssessmentParameters::track>,
                          {{"ballasted", DeckTrack::ballasted}, {"direct", DeckTrack::direct}})},
+      {"assessment.trains", "", "trains besides the scene's: axle loads or vehicles",
+       TextListKey{of_assessment<&AssessmentParameters::trains>}},
       {"assessment.seeds",
        "1",
        "random tracks for each speed, from irregularity.seed on",
@@ -25,6 +27,14 @@ std::vector<KeyRow> assessment_keys() {
       {"assessment.begin", "m",
        "where wheels and car bodies begin to be judged; absent: train.start, or the end of the fade-in",
        OptionalNumberKey{of_assessment<&AssessmentParameters::begin>, {-1e5, 1e5}}},
+      {"assessment.end", "m", "where they end to be judged; absent: where the run ends",
+       OptionalNumberKey{of_assessment<&AssessmentParameters::end>, {-1e5, 1e5}}},
+      {"assessment.section_length", "m", "of percentiles by section, from assessment.begin on; 0: all that is judged",
+       NumberKey{of_assessment<&AssessmentParameters::section_length>, {2.0, 1e5, true}}},
+      {"assessment.section_step", "m", "between the values of a section",
+       NumberKey{of_assessment<&AssessmentParameters::section_step>, {0.01, 10.0}}},
+      {"assessment.rules", "", "whose clauses apply: Europe, China, Japan, USA, or names of your own files",
+       TextListKey{of_assessment<&AssessmentParameters::rules>}},
   };
 }
 

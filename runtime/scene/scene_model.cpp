@@ -129,6 +129,13 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
 
 }  // namespace
 
+VsiModel train_model(const SceneParameters& scene) {
+  VsiModel model;
+  model.vehicle = scene_vehicle(scene);
+  model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
+  return model;
+}
+
 VsiModel stability_model(const SceneParameters& scene, const VsiModel& model, int first_wheelset) {
   SceneParameters linear = scene;
   linear.train.force_elements = ForceElementChoice::linear;
@@ -150,9 +157,7 @@ VsiModel stability_model(const SceneParameters& scene) {
   if (scene.contact.normal != NormalContact::hertz) {
     throw input_error("scene: contact.normal", "\"rigid\"", "\"hertz\": wheels that follow the rails cannot hunt");
   }
-  VsiModel contacts;
-  contacts.vehicle = scene_vehicle(scene);
-  contacts.vehicle_x = vehicle_positions(scene.train, contacts.vehicle);
+  VsiModel contacts = train_model(scene);
   add_contact(scene, contacts);
   return stability_model(scene, contacts);
 }
@@ -165,10 +170,8 @@ VsiModel limit_cycle_model(const SceneParameters& scene) {
 
 VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
   scene.validate();
-  VsiModel model;
-  model.vehicle = scene_vehicle(scene);
+  VsiModel model = train_model(scene);
   model.lateral_acceleration = lateral_acceleration(scene.train);
-  model.vehicle_x = vehicle_positions(scene.train, model.vehicle);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model, shared);

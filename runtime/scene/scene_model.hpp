@@ -10,6 +10,8 @@ class SharedSetUp;
 /// The model of a scene: reads the table, builds vehicle, structure and irregularity.
 /// @param shared what earlier runs of this process have made; or null @throws InputError
 [[nodiscard]] VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared = nullptr);
+/// The train of a scene by itself: vehicles and where they stand, without contacts and structure. @throws InputError
+[[nodiscard]] VsiModel train_model(const SceneParameters& scene);
 /// The first vehicle of a scene, or its train where that is one system, by itself on rigid rails, its force elements by
 /// linear stand-ins: what linear_stability.hpp takes. @throws InputError
 [[nodiscard]] VsiModel stability_model(const SceneParameters& scene);

@@ -118,10 +118,14 @@ enum class DeckTrack { ballasted, direct };
 
 /// What vsi assess asks besides what a run does.
 struct AssessmentParameters {
-  double line_speed_kmh = 0.0;             ///< highest speed of the line [km/h]; 0: the train's
-  DeckTrack track = DeckTrack::ballasted;  ///< by which limits of deck acceleration are chosen
-  int seeds = 3;                           ///< random tracks for each speed, from irregularity.seed on
-  std::optional<double> begin;             ///< where wheels and car bodies begin to be judged [m]
+  double line_speed_kmh = 0.0;                ///< highest speed of the line [km/h]; 0: the train's
+  DeckTrack track = DeckTrack::ballasted;     ///< by which limits of deck acceleration are chosen
+  std::vector<std::string> trains{"hslm-a"};  ///< besides the scene's own
+  int seeds = 3;                              ///< random tracks for each speed, from irregularity.seed on
+  std::optional<double> begin, end;           ///< where wheels and car bodies begin and end to be judged [m]
+  double section_length = 0.0;                ///< of percentiles [m]; 0: all that is judged
+  double section_step = 0.5;                  ///< between the values of a section [m]
+  std::vector<std::string> rules{"Europe"};   ///< whose clauses apply besides those that belong to none
 };
 
 /// Ground motion by one record; several are stations along the track.

@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
 
 namespace railtab::scene {
 namespace {
@@ -106,11 +107,7 @@ Broken energy_of_contact_springs(Scene scene) {
 }
 
 Broken deck_of_envelope(Scene scene) {
-  if (!scene.output.deck_envelope) return {};
-  const bool by_rows =
-      scene.track_kind == TrackKind::imported && (scene.structure.files.nodes.empty() || !scene.structure.deck.given());
-  const bool bridge = !scene.spans.empty() || scene.structure.files.given();
-  if (scene.track_kind != TrackKind::rigid && bridge && !by_rows) return {};
+  if (!scene.output.deck_envelope || has_deck_nodes(scene)) return {};
   return Violation{"output.deck_envelope", "true without a deck",
                    "a [[bridge]] under flexible track, or a [structure] with nodes and structure.deck"};
 }
@@ -276,6 +273,14 @@ Broken supports_under_moving_ground(Scene scene) {
                    "[[support]] for each"};
 }
 
+Broken way_that_is_judged(Scene scene) {
+  const AssessmentParameters& assessment = scene.assessment;
+  const double begin = assessment.begin.value_or(scene.train.start);
+  if (!assessment.end || *assessment.end > begin) return {};
+  return Violation{"assessment.end", fmt::format("{:g} m, and judging begins at {:g} m", *assessment.end, begin),
+                   "more than assessment.begin, or train.start without it"};
+}
+
 }  // namespace
 
 const std::vector<SceneRule>& scene_rules() {
@@ -306,6 +311,7 @@ const std::vector<SceneRule>& scene_rules() {
       {"stations are in order", order_of_stations},
       {"a wave has one record", wave_of_one_record},
       {"one record has no position", position_of_one_record},
+      {"judging ends after it begins", way_that_is_judged},
       {"supports follow ground that moves differently along the track", supports_under_moving_ground},
   };
   return rules;

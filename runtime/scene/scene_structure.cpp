@@ -14,6 +14,12 @@ bool track_on_import(const SceneParameters& scene) noexcept {
   return scene.track_kind == TrackKind::flexible && scene.structure.files.given();
 }
 
+bool has_deck_nodes(const SceneParameters& scene) noexcept {
+  const bool bridge = !scene.spans.empty() || scene.structure.files.given();
+  if (scene.track_kind != TrackKind::imported) return scene.track_kind == TrackKind::flexible && bridge;
+  return bridge && !scene.structure.files.nodes.empty() && scene.structure.deck.given();
+}
+
 StructureModel build_structure(const SceneParameters& scene) {
   const FeFiles& files = scene.structure.files;
   for (const auto& [file, key] : {std::pair{&files.mass, "mass"}, {&files.damping, "damping"}}) {

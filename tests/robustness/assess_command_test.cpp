@@ -92,7 +92,7 @@ TEST_F(AssessCommand, ABridgeThatPassesAllStages) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / found["runs"][0]["results"].get<std::string>()));
   const std::string rows = text_of("out/runs.csv");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + static_cast<long>(found["runs"].size()));
-  EXPECT_EQ(rows.find("run,speed[m/s],speed[km/h],seed,complete,deck_acceleration[m/s2],"), 0U);
+  EXPECT_EQ(rows.find("run,train,speed[m/s],speed[km/h],seed,complete,deck_acceleration[m/s2],"), 0U);
   EXPECT_EQ(text_of("out/moving_load.csv").find("deck,train,speed[m/s]"), 0U);
 }
 
@@ -160,6 +160,95 @@ TEST_F(AssessCommand, ClausesOfAUser) {
   EXPECT_EQ(vsi(command + "--fail-on any").exit_code, 3);
   EXPECT_EQ(vsi(command + "--fail-on verified").exit_code, 0) << "the client's limit has no source";
   EXPECT_EQ(verdict(object(vsi(command + "--json")), "client.deck")["edition"], "client");
+}
+
+// Rules, the end of what is judged and sections are keys of the scene.
+TEST_F(AssessCommand, RulesAndWhatIsJudged) {
+  write("scene.toml", vertical + stiff_span +
+                          "[assessment]\nrules = [\"China\"]\nend = 60\nsection_length = 30\nsection_step = 0.25\n");
+  const json found = object(vsi("assess scene.toml --stage contact --speed-kmh 160 -o chosen --json"));
+  EXPECT_EQ(verdict(found, "china.unloading")["outcome"], "pass");
+  EXPECT_EQ(verdict(found, "en14363.unloading")["outcome"], "does not apply");
+  EXPECT_NE(found["stages"]["contact"]["notes"].dump().find(
+                "judged from x = 0 m to 60 m; percentiles of Q, Y, Y/Q and ΣY of sections of 30 m, at every 0.25 m"),
+            std::string::npos)
+      << found["stages"]["contact"]["notes"];
+  double percentile = 0.0, largest = 0.0;
+  for (const json& value : found["measures"]) {
+    if (value["measure"] == "wheel_force_percentile") percentile = value["value"];
+    if (value["measure"] == "wheel_force") largest = value["value"];
+  }
+  EXPECT_LE(percentile, largest);
+  EXPECT_GT(percentile, 0.99 * largest);
+  write("wrong.toml", vertical + stiff_span + "[assessment]\nbegin = 20\nend = 10\n");
+  expect_refused("assess wrong.toml -o no",
+                 "assessment.end: found 10 m, and judging begins at 20 m, expected more than");
+}
+
+// Named trains, of axle loads or of vehicles; of the latter those that govern as moving loads run with contact.
+TEST_F(AssessCommand, TrainsOfTheUser) {
+  write("two.csv", "x[m],P[kN]\n0,100\n3,100\n");
+  write("scene.toml", vertical + stiff_span +
+                          "[assessment]\ntrains = [\"two.csv\", \"metro-gz18\", "
+                          "\"traxx-locomotive*2\"]\n");
+  const json found =
+      object(vsi("assess scene.toml --stage moving-load --stage contact --speed-kmh 160 -o named --json"));
+  std::vector<std::string> trains;
+  for (const json& train : found["decks"][0]["trains"]) trains.push_back(train["train"]);
+  EXPECT_EQ(trains, (std::vector<std::string>{"two.csv", "metro-gz18", "traxx-locomotive*2", "the scene's train"}));
+  ASSERT_EQ(found["runs"].size(), 1U) << "the heavy locomotive governs acceleration, displacement and rotation";
+  EXPECT_EQ(found["runs"][0]["train"], "traxx-locomotive*2");
+  EXPECT_EQ(found["runs"][0]["run"], "traxx-locomotive-2-v044.444");
+  EXPECT_EQ(found["runs"][0]["complete"], true) << found["runs"][0];
+  const std::string notes = found["stages"]["contact"]["notes"].dump();
+  EXPECT_NE(notes.find("No runs of metro-gz18, the scene's train: as moving loads"), std::string::npos) << notes;
+  // another list by the command line
+  const json asked =
+      object(vsi("assess scene.toml --train hslm-a3 --train en15528-d2*4 --stage moving-load -o named "
+                 "--json"));
+  EXPECT_EQ(asked["decks"][0]["trains"].size(), 3U);
+  EXPECT_EQ(asked["decks"][0]["trains"][1]["train"], "en15528-d2*4");
+  EXPECT_NE(asked["stages"]["moving-load"]["notes"].dump().find("hslm-a3, en15528-d2*4 and the scene's train"),
+            std::string::npos);
+  // vehicles of files, relative to the scene, and mixed trains
+  std::filesystem::create_directory(folder_ / "below");
+  write("below/coach.toml", vsi("vehicle manchester-coach --toml").output);
+  write("below/scene.toml", vertical + stiff_span +
+                                "[assessment]\ntrains = [\"coach.toml*2\", \"manchester-coach*2\", "
+                                "\"coach.toml+manchester-coach\", \"ice3-like-coach+manchester-coach\"]\n");
+  const json mixed = object(vsi("assess below/scene.toml --stage moving-load -o mixed --json"))["decks"][0]["trains"];
+  ASSERT_EQ(mixed.size(), 5U);
+  EXPECT_EQ(mixed[0]["passages"], mixed[1]["passages"]);
+  const auto first = [&](std::size_t train) { return mixed[train]["passages"][0]["acceleration"].get<double>(); };
+  EXPECT_NEAR(first(2), first(0), 1e-9 * first(0)) << "the same axles by another way";
+  EXPECT_GT(std::abs(first(3) - first(0)), 0.01 * first(0));
+  expect_refused("assess scene.toml --train nobody -o out", "train: found 'nobody', expected");
+  expect_refused("assess scene.toml --train lm71 -o out",
+                 "found 'lm71', a load model at rest, expected trains that move");
+}
+
+// Shards make the runs, and the command without one the verdict of all, the same as in one go.
+TEST_F(AssessCommand, ShardsShareTheRuns) {
+  write("scene.toml", vertical + stiff_span);
+  const std::string command = "assess scene.toml --stage contact --speed-kmh 120:160:20 ";
+  const json whole = object(vsi(command + "-o whole --json"));
+  for (const char* shard : {"1/2", "2/2"}) {
+    const Outcome outcome = vsi(command + "-o parts --shard " + shard);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_NE(outcome.output.find(std::string(shard) == "1/2" ? "shard 1 of 2: 2 of its runs finished"
+                                                              : "shard 2 of 2: 1 of its runs finished"),
+              std::string::npos)
+        << outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "parts/assessment.json"));
+  }
+  EXPECT_EQ(object(vsi(command + "-o parts --shard 2/2 --json")), (json{{"finished", 1}, {"ended_early", 0}}));
+  const std::filesystem::path run = folder_ / "parts/runs/v044.444.h5";
+  const auto written = std::filesystem::last_write_time(run);
+  const json joined = object(vsi(command + "-o parts --json"));
+  EXPECT_EQ(std::filesystem::last_write_time(run), written);
+  EXPECT_EQ(joined["measures"], whole["measures"]);
+  EXPECT_EQ(joined["verdicts"], whole["verdicts"]);
+  expect_refused("assess scene.toml --stage check --shard 1/2 -o out", "--shard: found stages without runs");
 }
 
 TEST_F(AssessCommand, WrongInput) {

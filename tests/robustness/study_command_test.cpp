@@ -109,6 +109,41 @@ TEST_F(StudyCommand, RunsTheSceneWithTheKeysOfThePlan) {
   EXPECT_NE(kept.header.scene_text.find("train.vehicle = \"ice3-like-coach\""), std::string::npos);
 }
 
+// Decks are judged at all their nodes, as vsi assess judges them: the largest of what the run followed, not midspan.
+TEST_F(StudyCommand, JudgesWholeDecks) {
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\n[track]\nlength_before = 30\nlength_after = 30\n"
+        "[integration]\ntime_step = 1e-3\n[irregularity]\nfile = \"track.csv\"\n"
+        "[[bridge]]\nlength = 25.0\nmass = 15e3\nE = 30e9\nIy = 1.0\n");
+  // the right rail falls by 0.02 mm/m: 0.06 mm over 3 m
+  write("track.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-60,0,0,0,0\n100,0,0,0,3.2\n");
+  write("plan.toml",
+        "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [250]\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  for (const char* measure : {"deck_twist[m]", "deck_end_rotation[rad]", "horizontal_rotation[rad]",
+                              "deck_joint_step[m]", "deck_joint_gap[m]"}) {
+    const std::string value = column("out/runs.csv", measure)[0];
+    ASSERT_NE(value, "") << measure;
+    EXPECT_GE(std::stod(value), 0.0) << measure;
+  }
+  EXPECT_GT(std::stod(column("out/runs.csv", "deck_end_rotation[rad]")[0]), 1e-4);
+  EXPECT_NEAR(std::stod(column("out/runs.csv", "track_twist[m]")[0]),
+              std::stod(column("out/runs.csv", "deck_twist[m]")[0]) + 6e-5, 1e-9);
+  const RunResults run = read_results(folder_ / ("out/" + table("out/runs.csv")[1][0] + ".h5"));
+  double largest = 0.0, midspan = 0.0;
+  for (std::size_t q = 0; q < run.header.deck.size(); ++q) {
+    if (run.header.deck[q].quantity != "acceleration") continue;
+    for (std::size_t i = 0; i < run.header.deck[q].x.size(); ++i) {
+      const DeckExtremes& e = run.summary.deck[q];
+      const double here = std::max(-e.smallest[i], e.largest[i]);
+      largest = std::max(largest, here);
+      if (std::abs(run.header.deck[q].x[i] - 12.5) < 1e-9) midspan = here;
+    }
+  }
+  EXPECT_NEAR(std::stod(column("out/runs.csv", "deck_acceleration_unfiltered[m/s2]")[0]), largest, 1e-6 * largest);
+  EXPECT_GT(largest, 1.01 * midspan) << "a node beside midspan";
+}
+
 // Bytes are the same from one worker and two, from shards, and after five kills; a longer plan keeps what is there.
 TEST_F(StudyCommand, MakesTheSameTableHoweverItIsMade) {
   const std::string plan = std::string(speeds) + seeds + "[sampling]\nmethod = \"monte-carlo\"\nseed = 3\nsamples = ";
@@ -282,6 +317,46 @@ TEST_F(StudyCommand, OneVariableSetsSeveralKeys) {
   const RunResults results = read_results(folder_ / ("out/" + rows[2][0] + ".h5"));
   EXPECT_NE(results.header.scene_text.find("load.1.Fy = 20000, load.1.Fz = -4000"), std::string::npos)
       << results.header.scene_text;
+}
+
+// Temperature drives a stiffness by a table and a damping by a line; it may be negative.
+TEST_F(StudyCommand, KeysFollowATableOfTheVariable) {
+  write("scene.toml",
+        "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 30\nlength_after = 20\n"
+        "[integration]\ntime_step = 1e-3\nduration = 0.1\n[[bridge]]\nlength = 16.0\nmass = 12e3\nE = 30e9\nIy = "
+        "0.25\n");
+  const std::string begin =
+      "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nname = \"temperature\"\nunit = \"degC\"\n";
+  const std::string pads =
+      "[[vary.set]]\nkey = \"track.pad.kz\"\ntable = [[-20, 120e6], [0, 80e6], [30, 50e6]]\n"
+      "[[vary.set]]\nkey = \"track.pad.cz\"\nfactor = -200\noffset = 30e3\n";
+  write("plan.toml", begin + "values = [-20, -5, 0, 15, 30]\n" + pads);
+  ASSERT_EQ(study("plan.toml -o tables"), 0);
+  const auto rows = table("tables/runs.csv");
+  EXPECT_EQ(rows[0][1], "temperature[degC]");
+  const std::vector<std::string> changes{
+      "track.pad.kz = 120000000, track.pad.cz = 34000", "track.pad.kz = 90000000, track.pad.cz = 31000",
+      "track.pad.kz = 80000000, track.pad.cz = 30000", "track.pad.kz = 65000000, track.pad.cz = 27000",
+      "track.pad.kz = 50000000, track.pad.cz = 24000"};
+  ASSERT_EQ(rows.size(), changes.size() + 1);
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const RunResults results = read_results(folder_ / ("tables/" + rows[i + 1][0] + ".h5"));
+    EXPECT_NE(results.header.scene_text.find(changes[i]), std::string::npos) << results.header.scene_text;
+  }
+  EXPECT_NE(rows[1].back() + column("tables/runs.csv", "wheel_unloading_unfiltered[-]")[0],
+            rows[5].back() + column("tables/runs.csv", "wheel_unloading_unfiltered[-]")[4]);
+  const auto refused = [&](const std::string& values, const std::string& sets, const std::string& message) {
+    write("plan.toml", begin + values + sets);
+    expect_refused("study plan.toml -o no", message);
+  };
+  refused("values = [-30, 0]\n", pads,
+          "found a table of track.pad.kz from -20 to 30 for values from -30 to 0, expected a table as "
+          "far as the values");
+  refused("distribution = \"normal\"\nmean = 10\nstd = 5\n", pads, "expected a table as far as the distribution");
+  refused("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\ntable = [[0, 1e8], [0, 2e8]]\n",
+          "expected two points [[x, value], [x, value]] at least, x rising");
+  refused("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\nfactor = 2\ntable = [[0, 1e8], [1, 2e8]]\n",
+          "set[1].factor: found a table too, expected a table, or factor, power and offset");
 }
 
 TEST_F(StudyCommand, RejectsWrongPlans) {

@@ -95,7 +95,8 @@ std::string scene_with(const std::string& key, double value, bool integer) {
 
 /// Keys whose values another key bounds too, from below (or above).
 bool bounded_below(const std::string& key) {
-  return key == "track.rail.height" || key == "irregularity.longest_wave" || key.ends_with("frequency_high");
+  return key == "track.rail.height" || key == "irregularity.longest_wave" || key.ends_with("frequency_high") ||
+         key == "assessment.end";
 }
 bool bounded_above(const std::string& key) {
   return key == "track.rail.head_height" || key == "irregularity.shortest_wave" || key.ends_with("frequency_low") ||

@@ -62,6 +62,29 @@ std::string onset_in_words(const Assessment& assessment, const Verdict& verdict)
   return first ? fmt::format("exceeded from {:.0f} km/h on ({})", 3.6 * first->speed, train) : "";
 }
 
+std::optional<UnloadingBeside> unloading_beside(const Assessment& assessment, const Verdict& verdict) {
+  const std::string& measure = verdict.clause->measure;
+  if (!verdict.at || !(measure.starts_with("deck_") || measure == "horizontal_rotation")) return std::nullopt;
+  if (verdict.at->run.empty()) return UnloadingBeside{{}, "moving forces have no wheels"};
+  UnloadingBeside beside{{}, "the run has none"};
+  for (const MeasuredValue& value : assessment.values) {
+    if (value.measure != "wheel_unloading" || value.run != verdict.at->run) continue;
+    if (!beside.value || value.value > beside.value->value) beside.value = value;
+  }
+  for (const MissingMeasure& missing : assessment.missing) {
+    if (missing.measure == "wheel_unloading" && !missing.partly) beside.reason = missing.reason;
+  }
+  if (beside.value) beside.reason.clear();
+  return beside;
+}
+
+std::string unloading_in_words(const UnloadingBeside& beside) {
+  if (!beside.value) return "none: " + beside.reason;
+  std::string text = amount_in_words(beside.value->value, "-") + ", " + beside.value->where;
+  if (beside.value->time) text += fmt::format(", t = {:.3f} s", *beside.value->time);
+  return text;
+}
+
 bool needs_no_dynamic_analysis(const Assessment& assessment) {
   return std::all_of(assessment.decks.begin(), assessment.decks.end(),
                      [](const DeckAssessment& d) { return d.need.need == DynamicNeed::not_required; });

@@ -24,7 +24,7 @@ struct DeckAssessment {
 
 /// One run with contact.
 struct RunAssessment {
-  std::string name;
+  std::string name, train;
   double speed = 0.0;       ///< [m/s]
   std::optional<int> seed;  ///< of the random track
   bool there = false, complete = false;
@@ -68,6 +68,15 @@ struct Assessment {
 /// Where a limit that moving loads exceed is exceeded first: "exceeded from 158.2 km/h on (hslm-a9)"; empty for other
 /// verdicts.
 [[nodiscard]] std::string onset_in_words(const Assessment& assessment, const Verdict& verdict);
+/// Wheel unloading of the run that a verdict on a deck stands for: research puts the safety of the train beside what
+/// the deck does. None of verdicts on other things, and of decks without a value.
+struct UnloadingBeside {
+  std::optional<MeasuredValue> value;  ///< the largest of the run, low-passed
+  std::string reason;                  ///< why there is none
+};
+[[nodiscard]] std::optional<UnloadingBeside> unloading_beside(const Assessment& assessment, const Verdict& verdict);
+/// "0.312, wheelset 2 left, t = 1.2 s", or "none: …".
+[[nodiscard]] std::string unloading_in_words(const UnloadingBeside& beside);
 /// Whether EN 1991-2 asks for a dynamic analysis of no deck.
 [[nodiscard]] bool needs_no_dynamic_analysis(const Assessment& assessment);
 /// A measure's value or limit with its unit as pages show it: "3.50 m/s²".

@@ -18,7 +18,7 @@ std::vector<const MeasureKind*> measures_of_runs() {
 }  // namespace
 
 std::string run_columns() {
-  std::string text = "run,speed[m/s],speed[km/h],seed,complete";
+  std::string text = "run,train,speed[m/s],speed[km/h],seed,complete";
   for (const MeasureKind* kind : measures_of_runs()) text += fmt::format(",{}[{}]", kind->name, kind->unit);
   return text + "\n";
 }
@@ -26,7 +26,9 @@ std::string run_columns() {
 std::string run_rows(const Assessment& assessment) {
   std::string text = run_columns();
   for (const RunAssessment& run : assessment.runs) {
-    text += fmt::format("{},{:.8g},{:.8g},{},{}", run.name, run.speed, 3.6 * run.speed,
+    std::string train = run.train;
+    std::replace(train.begin(), train.end(), ',', ';');
+    text += fmt::format("{},{},{:.8g},{:.8g},{},{}", run.name, train, run.speed, 3.6 * run.speed,
                         run.seed ? fmt::format("{}", *run.seed) : "", run.complete ? 1 : 0);
     for (const MeasureKind* kind : measures_of_runs()) {
       const MeasuredValue* largest = nullptr;

@@ -40,6 +40,9 @@ Json verdict_json(const Assessment& assessment, const Verdict& verdict) {
     json["utilisation"] = verdict.utilisation();
     json["value"] = verdict.at->value;
     json["at"] = value_json(*verdict.at);
+    if (const auto beside = unloading_beside(assessment, verdict)) {
+      json["wheel_unloading"] = beside->value ? value_json(*beside->value) : Json{{"reason", beside->reason}};
+    }
     const std::string onset = onset_in_words(assessment, verdict);
     if (!onset.empty()) json["onset"] = onset;
   }
@@ -73,7 +76,11 @@ Json deck_json(const DeckAssessment& deck) {
 }
 
 Json run_json(const RunAssessment& run) {
-  Json json{{"run", run.name}, {"speed", run.speed}, {"complete", run.complete}, {"message", run.message}};
+  Json json{{"run", run.name},
+            {"train", run.train},
+            {"speed", run.speed},
+            {"complete", run.complete},
+            {"message", run.message}};
   if (run.seed) json["seed"] = *run.seed;
   json["results"] = run.results;
   Json values = Json::object();

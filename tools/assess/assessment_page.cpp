@@ -52,25 +52,34 @@ std::string clause_cell(const Clause& clause) {
   return cell;
 }
 
+/// Beside what a deck does stands what the wheels do.
+std::string unloading_cell(const Assessment& assessment, const Verdict& v) {
+  const auto beside = unloading_beside(assessment, v);
+  if (!beside) return "";
+  if (!beside->value) return "<small>none: " + escaped(beside->reason) + "</small>";
+  return fmt::format("<b>{}</b><br><small>{}</small>", amount_in_words(beside->value->value, "-"),
+                     escaped(beside->value->where));
+}
+
 std::string verdict_row(const Assessment& assessment, const Verdict& v) {
   const Clause& clause = *v.clause;
   std::string row = fmt::format("<tr><td><span class=\"mark {}\">{}</span></td><td>{}</td>", mark_class(v),
                                 mark_text(v), clause_cell(clause));
-  if (!v.at) return row + fmt::format("<td colspan=\"4\">{}</td></tr>\n", escaped(v.reason));
+  if (!v.at) return row + fmt::format("<td colspan=\"5\">{}</td></tr>\n", escaped(v.reason));
   const double share = 100.0 * v.utilisation();
   row += fmt::format(
       "<td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{:.0f} %<span class=\"bar {}\">"
-      "<i style=\"width:{:.0f}%\"></i></span></td><td>{}<br><small>stage {}{}</small></td></tr>\n",
+      "<i style=\"width:{:.0f}%\"></i></span></td><td>{}<br><small>stage {}{}</small></td><td>{}</td></tr>\n",
       amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤", amount_in_words(v.limit, clause.unit),
       share, mark_class(v), std::min(100.0, share), escaped(place_in_words(*v.at)), stage_name(v.at->stage),
-      v.at->run.empty() ? "" : ", run " + escaped(v.at->run));
+      v.at->run.empty() ? "" : ", run " + escaped(v.at->run), unloading_cell(assessment, v));
   const std::string onset = onset_in_words(assessment, v);
-  if (!onset.empty()) row += fmt::format("<tr><td></td><td colspan=\"5\">→ {}</td></tr>\n", escaped(onset));
+  if (!onset.empty()) row += fmt::format("<tr><td></td><td colspan=\"6\">→ {}</td></tr>\n", escaped(onset));
   if (v.outcome == Outcome::fail && !clause.consequence.empty()) {
-    row += fmt::format("<tr><td></td><td colspan=\"5\">→ {}</td></tr>\n", escaped(clause.consequence));
+    row += fmt::format("<tr><td></td><td colspan=\"6\">→ {}</td></tr>\n", escaped(clause.consequence));
   }
   if (v.outcome == Outcome::not_judged) {
-    row += fmt::format("<tr><td></td><td colspan=\"5\">not judged: {}</td></tr>\n", escaped(v.reason));
+    row += fmt::format("<tr><td></td><td colspan=\"6\">not judged: {}</td></tr>\n", escaped(v.reason));
   }
   return row;
 }
@@ -82,8 +91,8 @@ std::string verdict_table(const Assessment& assessment, bool judged) {
   }
   if (rows.empty()) return "";
   return "<div class=\"scroll\"><table class=\"limits\"><tr><th>verdict</th><th>limit of</th><th class=\"n\">"
-         "value</th><th class=\"n\">limit</th><th class=\"n\">used</th><th>largest at</th></tr>" +
-         rows + "</table></div>";
+         "value</th><th class=\"n\">limit</th><th class=\"n\">used</th><th>largest at</th>" +
+         std::string(judged ? "<th>ΔQ/Q0 of that run</th>" : "<th></th>") + "</tr>" + rows + "</table></div>";
 }
 
 std::string banner(const Assessment& assessment) {
@@ -203,12 +212,13 @@ std::string run_table(const Assessment& assessment) {
                                      "car_body_vertical", "running_rms_vertical"};
   constexpr const char* heads[] = {
       "ΔQ/Q0", "Y/Q, 2 m", "ΣY, 2 m", "Q", "deck acceleration", "deck displacement", "car body", "car body, 1 s rms"};
-  std::string html = "<div class=\"scroll\"><table class=\"limits\"><tr><th>run</th><th>km/h</th><th>seed</th>";
+  std::string html =
+      "<div class=\"scroll\"><table class=\"limits\"><tr><th>run</th><th>train</th><th>km/h</th><th>seed</th>";
   for (const char* head : heads) html += fmt::format("<th class=\"n\">{}</th>", head);
   html += "<th></th></tr>";
   for (const RunAssessment& run : assessment.runs) {
-    html += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{}</td>", escaped(run.name), 3.6 * run.speed,
-                        run.seed ? fmt::format("{}", *run.seed) : "");
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{:.1f}</td><td>{}</td>", escaped(run.name), escaped(run.train),
+                        3.6 * run.speed, run.seed ? fmt::format("{}", *run.seed) : "");
     for (const char* column : columns) {
       const MeasuredValue* best = nullptr;
       for (const MeasuredValue& v : run.values) {

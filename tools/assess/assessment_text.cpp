@@ -26,6 +26,9 @@ void verdict_line(const Assessment& assessment, const Verdict& verdict, std::str
                  amount_in_words(verdict.limit, clause.unit));
   fmt::format_to(out, "       {}; {} {}{} [{}]\n", place_in_words(*verdict.at), clause.edition, clause.clause, standing,
                  stage_name(verdict.at->stage));
+  if (const auto beside = unloading_beside(assessment, verdict)) {
+    fmt::format_to(out, "       wheel unloading ΔQ/Q0 of the run: {}\n", unloading_in_words(*beside));
+  }
   const std::string onset = onset_in_words(assessment, verdict);
   if (!onset.empty()) fmt::format_to(out, "       {}\n", onset);
   if (verdict.outcome == Outcome::fail && !clause.consequence.empty()) {

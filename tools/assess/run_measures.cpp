@@ -1,336 +1,16 @@
 #include "run_measures.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <string_view>
-
 #include "headline.hpp"
-#include "railtab/runtime/measures/comfort.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
-#include "railtab/runtime/measures/running_safety.hpp"
-#include "railtab/runtime/measures/track_mean.hpp"
-#include "railtab/runtime/measures/weighting.hpp"
+#include "run_judge.hpp"
 
 namespace railtab::assess {
 namespace {
 
-using Series = std::vector<double>;
-constexpr int lateral = 1, vertical = 2;  // of MotionRecord's six
-
-/// The steepest place of a wheel profile between the flange tip and the field side, against the horizontal [rad], over
-/// chords of a millimetre at least.
-double flange_angle(const ResultHeader& header) {
-  constexpr double chord = 1e-3;  // [m]
-  const std::vector<double>&y = header.wheel_y, &z = header.wheel_z;
-  const auto tip = std::max_element(z.begin(), z.end()) - z.begin();  // z down: the lowest point
-  const double y_tip = y[static_cast<std::size_t>(tip)];
-  double steepest = 0.0;
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    if (y[i] < y_tip) continue;
-    std::size_t j = i + 1;
-    while (j < y.size() && std::hypot(y[j] - y[i], z[j] - z[i]) < chord) ++j;
-    if (j == y.size() || y[j] < y_tip) continue;
-    steepest = std::max(steepest, std::atan2(std::abs(z[j] - z[i]), std::abs(y[j] - y[i])));
-  }
-  return steepest;
-}
-
-/// Measures that the envelope of a deck has, by quantity; the first three also its recorded nodes.
-struct EnvelopeMeasure {
-  std::string_view quantity, name;
-};
-constexpr std::array envelope_measures{EnvelopeMeasure{"filtered_acceleration", "deck_acceleration"},
-                                       EnvelopeMeasure{"acceleration", "deck_acceleration_unfiltered"},
-                                       EnvelopeMeasure{"displacement", "deck_displacement"},
-                                       EnvelopeMeasure{"twist", "deck_twist"},
-                                       EnvelopeMeasure{"end_rotation", "deck_end_rotation"},
-                                       EnvelopeMeasure{"horizontal_rotation", "horizontal_rotation"},
-                                       EnvelopeMeasure{"joint_step", "deck_joint_step"},
-                                       EnvelopeMeasure{"joint_gap", "deck_joint_gap"}};
-const std::vector<std::string> of_envelope{"deck_twist", "deck_end_rotation", "horizontal_rotation", "deck_joint_step",
-                                           "deck_joint_gap"};
-
-/// "x = 12.00 m, y = 2.20 m"; without y where all places have one.
-std::string place_on_deck(const DeckPlaces& places, std::size_t i) {
-  const bool one_line = std::ranges::all_of(places.y, [&](double y) { return y == places.y.front(); });
-  return one_line ? fmt::format("x = {:.2f} m", places.x[i])
-                  : fmt::format("x = {:.2f} m, y = {:.2f} m", places.x[i], places.y[i]);
-}
-
-/// Records at even times: the last step is recorded whatever the distance.
-std::size_t even_records(const RunResults& results) {
-  const std::vector<StepRecord>& steps = results.steps;
-  if (steps.size() < 3) return steps.size();
-  const double step = steps[1].time - steps[0].time, last = steps.back().time - steps[steps.size() - 2].time;
-  return std::abs(last - step) > 1e-6 * step ? steps.size() - 1 : steps.size();
-}
-
-class RunJudge {
+/// Series of the deck's node and of the wheel with the largest values.
+class SeriesFinder : public RunJudge {
  public:
-  RunJudge(const RunResults& results, const RunWindow& window)
-      : results_(results), header_(results.header), window_(window), records_(even_records(results)) {
-    if (records_ >= 2) step_ = results.steps[1].time - results.steps[0].time;
-  }
-
-  RunMeasures measures() {
-    if (records_ < 2) {
-      miss_all("the run has no records");
-      return std::move(found_);
-    }
-    deck();
-    wheels();
-    bodies();
-    return std::move(found_);
-  }
-
-  RunSeries series() {
-    RunSeries result;
-    if (records_ < 2) return result;
-    deck_series(result);
-    wheel_series(result);
-    return result;
-  }
-
- private:
-  void miss(const std::vector<std::string>& measures, const std::string& reason) {
-    for (const std::string& measure : measures) {
-      found_.missing.push_back({measure, AssessmentStage::contact, reason, false});
-    }
-  }
-  void miss_all(const std::string& reason) {
-    for (const MeasureKind& kind : measure_kinds()) {
-      if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) > 0) {
-        miss({std::string(kind.name)}, reason);
-      }
-    }
-  }
-
-  /// Keeps the largest amount of a measure; `group` tells values with limits of their own.
-  void raise(const std::string& measure, double value, double time, const std::string& where, double group = 0.0) {
-    const double amount = std::abs(value);
-    MeasuredValue& best = best_[{measure, group}];
-    if (!best.measure.empty() && !(amount > best.value)) return;
-    best.measure = measure;
-    best.stage = AssessmentStage::contact;
-    best.value = amount;
-    best.time = time;
-    best.where = where;
-    best.speed = header_.speed;
-    best.quantities["axle_load"] = 2.0 * group;
-    best.quantities["static_wheel_load"] = group;
-    best.quantities["nadal_limit"] = nadal_;
-    best.quantities["weinstock_limit"] = nadal_ + window_.friction;
-  }
-  void keep() {
-    for (auto& [key, value] : best_) found_.values.push_back(std::move(value));
-    best_.clear();
-  }
-
-  [[nodiscard]] const StepRecord& at(std::size_t k) const { return results_.steps[k]; }
-  [[nodiscard]] double wheel_position(std::size_t wheel, std::size_t k) const {
-    return at(k).position + header_.wheel_x[wheel];
-  }
-
-  template <class Value>
-  [[nodiscard]] Series of_records(const Value& value) const {
-    Series series(records_);
-    for (std::size_t k = 0; k < records_; ++k) series[k] = value(at(k));
-    return series;
-  }
-
-  void deck() {
-    if (header_.deck.empty()) {
-      miss(of_envelope, "the run has no envelope of the deck (output.deck_envelope)");
-    } else if (results_.summary.deck.empty()) {
-      miss(of_envelope, "the run was ended before it wrote the envelope of the deck");
-    } else {
-      return whole_deck();
-    }
-    recorded_deck();
-  }
-
-  /// From the extremes of all its nodes.
-  void whole_deck() {
-    const bool fast = std::abs(header_.deck_cut_off - window_.deck_cut_off) <= 1e-6 * window_.deck_cut_off;
-    for (std::size_t q = 0; q < header_.deck.size(); ++q) {
-      const auto measure = std::ranges::find(envelope_measures, header_.deck[q].quantity, &EnvelopeMeasure::quantity);
-      if (measure == envelope_measures.end()) continue;
-      if (!fast && measure->name == "deck_acceleration") {
-        miss({"deck_acceleration"}, fmt::format("output.deck_cut_off is {:.4g} Hz, and the decks ask for {:.4g} Hz",
-                                                header_.deck_cut_off, window_.deck_cut_off));
-        continue;
-      }
-      const DeckPlaces& places = header_.deck[q];
-      const DeckExtremes& extremes = results_.summary.deck[q];
-      for (std::size_t i = 0; i < places.x.size(); ++i) {
-        const std::string where = place_on_deck(places, i);
-        raise(std::string(measure->name), extremes.smallest[i], extremes.smallest_time[i], where);
-        raise(std::string(measure->name), extremes.largest[i], extremes.largest_time[i], where);
-      }
-    }
-    for (const EnvelopeMeasure& measure : envelope_measures) {
-      if (std::ranges::count(header_.deck, measure.quantity, &DeckPlaces::quantity) > 0) continue;
-      miss({std::string(measure.name)}, "the decks of this scene do not have it");
-    }
-    keep();
-  }
-
-  void recorded_deck() {
-    const std::vector<std::string> filtered{"deck_acceleration"},
-        all{"deck_acceleration", "deck_acceleration_unfiltered", "deck_displacement"};
-    if (std::none_of(header_.node_names.begin(), header_.node_names.end(), [](const auto& n) { return is_deck(n); })) {
-      return miss(all, "no node named deck… is recorded");
-    }
-    const bool fast = samples_fast_enough(window_.deck_cut_off, step_);
-    if (!fast)
-      miss(filtered,
-           fmt::format("records {:g} s apart are too far for a filter of {:.4g} Hz", step_, window_.deck_cut_off));
-    for (std::size_t i = 0; i < header_.node_names.size(); ++i) {
-      if (!is_deck(header_.node_names[i])) continue;
-      const Series raw = of_records([&](const StepRecord& r) { return r.nodes[i].acceleration[vertical]; });
-      const Series smooth = fast ? low_passed(raw, window_.deck_cut_off, step_) : Series{};
-      for (std::size_t k = 0; k < records_; ++k) {
-        const std::string& node = header_.node_names[i];
-        raise("deck_acceleration_unfiltered", raw[k], at(k).time, node);
-        if (fast) raise("deck_acceleration", smooth[k], at(k).time, node);
-        raise("deck_displacement", at(k).nodes[i].displacement[vertical], at(k).time, node);
-      }
-    }
-    keep();
-  }
-
-  void wheels() {
-    const std::vector<std::string> forces{"wheel_unloading", "wheel_unloading_unfiltered", "unloading_duration",
-                                          "wheel_force"};
-    const std::vector<std::string> guiding{"derailment_2m", "derailment", "weinstock_sum", "track_shift_2m"};
-    const bool fast = samples_fast_enough(window_.wheel_cut_off, step_);
-    const bool guided = !header_.wheel_y.empty();
-    if (header_.static_wheel_load.empty() || at(0).wheels.empty() || !fast) {
-      const std::string reason = fast ? "no wheel forces are recorded"
-                                      : fmt::format("records {:g} s apart are too far for a filter of {:.4g} Hz", step_,
-                                                    window_.wheel_cut_off);
-      miss(forces, reason);
-      return miss(guiding, reason);
-    }
-    if (!guided) miss(guiding, "the scene's wheels have no lateral forces (contact.normal = \"rigid\")");
-    if (guided) nadal_ = nadal_limit(flange_angle(header_), window_.friction);
-    for (std::size_t w = 0; w + 1 < header_.static_wheel_load.size(); w += 2) wheelset(w, guided);
-    if (best_.empty()) {
-      const std::string reason = fmt::format("no wheel comes to x = {:.4g} m, where judging begins", window_.begin);
-      miss(forces, reason);
-      miss(guiding, reason);
-    }
-    keep();
-  }
-
-  void wheelset(std::size_t left, bool guided) {
-    Series Q[2], Y[2];
-    for (std::size_t side = 0; side < 2; ++side) {
-      const std::size_t w = left + side;
-      Q[side] =
-          low_passed(of_records([&](const StepRecord& r) { return r.wheels[w].Q; }), window_.wheel_cut_off, step_);
-      if (guided) {
-        Y[side] =
-            low_passed(of_records([&](const StepRecord& r) { return r.wheels[w].Y; }), window_.wheel_cut_off, step_);
-      }
-      wheel(w, Q[side], Y[side], guided);
-    }
-    if (!guided) return;
-    constexpr double averaged = 2.0;  // [m]
-    TrackMean shift(averaged);
-    const std::string name = fmt::format("wheelset {}", left / 2 + 1);
-    for (std::size_t k = 0; k < records_; ++k) {
-      if (wheel_position(left, k) < window_.begin) continue;
-      const auto mean = shift.add(wheel_position(left, k), Y[0][k] + Y[1][k]);
-      if (mean) raise("track_shift_2m", *mean, at(k).time, name, header_.static_wheel_load[left]);
-      raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), at(k).time, name);
-    }
-  }
-
-  void wheel(std::size_t w, const Series& Q, const Series& Y, bool guided) {
-    constexpr double averaged = 2.0, lasting = 0.6, least_share = 0.05;  // [m]; ΔQ/Q0; of Q0, for a quotient
-    const double Q0 = header_.static_wheel_load[w];
-    TrackMean quotient(averaged);
-    Unloading raw(lasting);
-    const std::string name = report::wheel_name(w);
-    for (std::size_t k = 0; k < records_; ++k) {
-      const double x = wheel_position(w, k), time = at(k).time;
-      if (x < window_.begin) continue;
-      const double unloading = (Q0 - Q[k]) / Q0;
-      raise("wheel_unloading", std::max(0.0, unloading), time, name);
-      raw.add(time, at(k).wheels[w].Q, Q0);
-      raise("wheel_force", Q[k], time, name, Q0);
-      if (!guided || !(Q[k] > least_share * Q0)) continue;
-      raise("derailment", Y[k] / Q[k], time, name);
-      const auto mean = quotient.add(x, Y[k] / Q[k]);
-      if (mean) raise("derailment_2m", *mean, time, name);
-    }
-    if (wheel_position(w, records_ - 1) < window_.begin) return;
-    raise("wheel_unloading_unfiltered", std::max(0.0, raw.largest()), raw.time(), name);
-    raise("unloading_duration", raw.longest_above(), raw.time(), name);
-  }
-
-  void bodies() {
-    std::vector<std::size_t> cars;
-    for (std::size_t i = 0; i < header_.body_names.size(); ++i) {
-      if (report::is_car_body(header_.body_names[i])) cars.push_back(i);
-    }
-    const std::vector<std::string> all{"car_body_vertical", "car_body_lateral",     "comfort_vertical",
-                                       "comfort_lateral",   "running_rms_vertical", "vibration_dose_vertical",
-                                       "sperling_vertical", "sperling_lateral"};
-    if (cars.empty()) return miss(all, "no car body is recorded");
-    for (const std::size_t car : cars) car_body(car);
-    for (const std::string& measure : all) {
-      const bool any = std::any_of(best_.begin(), best_.end(), [&](const auto& b) { return b.first.first == measure; });
-      const bool second = measure.starts_with("running");
-      if (!any) {
-        miss({measure}, fmt::format("no car body is judged for as long as {} s", second ? 1 : 5));
-      }
-    }
-    keep();
-  }
-
-  /// Along the track; where the results do not say it, that of the first wheelset [m].
-  [[nodiscard]] double body_position(std::size_t body, std::size_t k) const {
-    return at(k).position + (body < header_.body_x.size() ? header_.body_x[body] : 0.0);
-  }
-
-  void car_body(std::size_t body) {
-    const std::string name = report::vehicle_of(header_.body_names[body]);
-    WeightedSeries b(weighting_b, step_), d(weighting_d, step_), k_weighted(weighting_k, step_);
-    WindowedRms rms_b(5.0, step_), rms_d(5.0, step_);
-    VibrationDose dose(step_);
-    SperlingIndex sperling_z(SperlingDirection::vertical, step_), sperling_y(SperlingDirection::lateral, step_);
-    double end = 0.0;
-    for (std::size_t k = 0; k < records_; ++k) {
-      const double z = at(k).bodies[body].acceleration[vertical], y = at(k).bodies[body].acceleration[lateral];
-      const double weighted_b = b.add(z), weighted_d = d.add(y), weighted_k = k_weighted.add(z);
-      if (body_position(body, k) < window_.begin) continue;
-      end = at(k).time;
-      raise("car_body_vertical", z, end, name);
-      raise("car_body_lateral", y, end, name);
-      rms_b.add(weighted_b);
-      rms_d.add(weighted_d);
-      dose.add(weighted_k);
-      sperling_z.add(z);
-      sperling_y.add(y);
-      windows(rms_b, "comfort_vertical", end, name);
-      windows(rms_d, "comfort_lateral", end, name);
-      windows(sperling_z, "sperling_vertical", end, name);
-      windows(sperling_y, "sperling_lateral", end, name);
-    }
-    if (dose.largest_running_rms() > 0.0) raise("running_rms_vertical", dose.largest_running_rms(), end, name);
-    if (end > 0.0) raise("vibration_dose_vertical", dose.dose(), end, name);
-  }
-
-  template <class Windows>
-  void windows(const Windows& of, const char* measure, double time, const std::string& name) {
-    if (!of.values().empty()) raise(measure, of.values().back(), time, name);
-  }
+  using RunJudge::RunJudge;
 
   void deck_series(RunSeries& result) const {
     if (!samples_fast_enough(window_.deck_cut_off, step_)) return;
@@ -359,7 +39,7 @@ class RunJudge {
       Series smooth = low_passed(raw, window_.wheel_cut_off, step_);
       double peak = -1e300;
       for (std::size_t k = 0; k < records_; ++k) {
-        if (wheel_position(w, k) >= window_.begin) peak = std::max(peak, smooth[k]);
+        if (judged(wheel_position(w, k))) peak = std::max(peak, smooth[k]);
       }
       if (!(peak > largest)) continue;
       largest = peak;
@@ -369,22 +49,33 @@ class RunJudge {
       result.filtered_unloading = std::move(smooth);
     }
   }
-
-  const RunResults& results_;
-  const ResultHeader& header_;
-  RunWindow window_;
-  std::size_t records_ = 0;
-  double step_ = 0.0, nadal_ = 0.0;
-  std::map<std::pair<std::string, double>, MeasuredValue> best_;
-  RunMeasures found_;
 };
 
 }  // namespace
 
 RunMeasures run_measures(const RunResults& results, const RunWindow& window) {
-  return RunJudge(results, window).measures();
+  RunMeasures found;
+  if (count_even_records(results) < 2) {
+    for (const MeasureKind& kind : measure_kinds()) {
+      if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) == 0) continue;
+      found.missing.push_back({std::string(kind.name), AssessmentStage::contact, "the run has no records", false});
+    }
+    return found;
+  }
+  measure_decks(results, window, found);
+  measure_wheels(results, window, found);
+  measure_car_bodies(results, window, found);
+  return found;
 }
 
-RunSeries run_series(const RunResults& results, const RunWindow& window) { return RunJudge(results, window).series(); }
+RunSeries run_series(const RunResults& results, const RunWindow& window) {
+  RunSeries series;
+  if (count_even_records(results) < 2) return series;
+  RunMeasures unused;
+  const SeriesFinder finder(results, window, unused);
+  finder.deck_series(series);
+  finder.wheel_series(series);
+  return series;
+}
 
 }  // namespace railtab::assess

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,6 +17,12 @@ struct RunWindow {
   double deck_cut_off = 30.0;   ///< [Hz]
   double wheel_cut_off = 20.0;  ///< [Hz]
   double friction = 0.3;        ///< of Nadal's limit
+  /// Where they end to be judged [m].
+  double end = std::numeric_limits<double>::infinity();
+  double section_length = 0.0;  ///< of percentiles, from `begin` on [m]; 0: one section, all that is judged
+  double section_step = 0.5;    ///< between their values [m]
+  /// Largest twist of the track without traffic over the 3 m from any place between two on [m]; empty: not known.
+  std::function<double(double first, double last)> track_twist{};
 };
 
 struct RunMeasures {

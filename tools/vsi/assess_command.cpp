@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -33,10 +34,10 @@ namespace {
 using assess::Assessment;
 using assess::StageReport;
 
-using exit_code::done, exit_code::failed, exit_code::clause_fails, exit_code::interrupted;
+using exit_code::done, exit_code::failed, exit_code::wrong_input, exit_code::clause_fails, exit_code::interrupted;
 constexpr const char* assess_usage =
     "vsi assess SCENE.toml [--stage check|moving-load|contact] [--speed-kmh V|LO:HI:STEP] [--seeds N]\n"
-    "           [--clauses FILE.toml] [--fail-on any|verified] [-o DIR]";
+    "           [--train NAME] [--clauses FILE.toml] [--fail-on any|verified] [--shard I/N] [-o DIR]";
 
 po::options_description assess_options() {
   po::options_description own("Options");
@@ -47,10 +48,14 @@ po::options_description assess_options() {
        "speeds of the runs with contact in m/s; default: the line's, and the critical one of the scene's train")  //
       ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "the same in km/h")                                   //
       ("seeds", text_value()->value_name("N"), "random tracks for each speed, in place of assessment.seeds")      //
+      ("train", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+       "a train besides the scene's, in place of assessment.trains, may be given many times: NAME, NAME*N wagons or "
+       "AXLES.csv as moving forces; vehicles as VEHICLE*N+VEHICLE also in runs; default hslm-a")  //
       ("clauses", po::value<std::vector<std::string>>()->composing()->value_name("FILE.toml"),
        "further clauses, or others of the same id; may be given many times")  //
       ("fail-on", text_value()->value_name("any|verified"),
-       "exit code 3 where a limit is not met: any, or one that is verified")  //
+       "exit code 3 where a limit is not met: any, or one that is verified")                                       //
+      ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs with contact, no verdict")  //
       ("output,o", text_value()->value_name("DIR"),
        "folder of assessment.html, assessment.json and runs; default: <scene>.assessment");
   return own;
@@ -61,9 +66,11 @@ struct Request {
   std::vector<AssessmentStage> stages;
   std::vector<double> speeds;  ///< [m/s]; none: chosen
   std::optional<int> seeds;
+  std::vector<std::string> trains;  ///< none: those of the scene
   std::string fail_on;
+  PartOf shard;
   int threads = 1;
-  bool progress = false;
+  bool progress = false, json = false;
   [[nodiscard]] bool asks(AssessmentStage stage) const {
     return std::find(stages.begin(), stages.end(), stage) != stages.end();
   }
@@ -107,8 +114,14 @@ Request request_of(const CommandLine& line) {
       throw input_error("--fail-on", request.fail_on, "any or verified");
     }
   }
+  if (line.given("train")) request.trains = line.required_many("train");
+  request.shard = line.part("shard");
+  if (request.shard.count > 1 && !request.asks(AssessmentStage::contact)) {
+    throw input_error("--shard", "stages without runs", "stage contact");
+  }
   request.threads = line.workers();
   request.progress = !line.quiet() && !line.json();
+  request.json = line.json();
   return request;
 }
 
@@ -121,6 +134,7 @@ Assessment begin(const SceneParameters& scene, const Request& request, const Com
   const double line_speed = scene.assessment.line_speed_kmh / 3.6;
   assessment.facts.line_speed = line_speed > 0.0 ? line_speed : scene.train.speed;
   assessment.facts.track = scene.assessment.track == DeckTrack::ballasted ? "ballasted" : "direct";
+  assessment.facts.rules = scene.assessment.rules;
   std::vector<fs::path> files;
   if (line.given("clauses")) {
     for (const std::string& file : line.required_many("clauses")) files.emplace_back(file);
@@ -144,15 +158,33 @@ void stage(AssessmentStage which, const Request& request, Assessment& assessment
   assessment.stages.push_back(std::move(report));
 }
 
-void moving_loads(const std::optional<AxleTrain>& own, const Request& request, StageReport& report,
-                  Assessment& assessment) {
+/// "hslm-a, traxx-locomotive+ordinary-coach*8 and the scene's train"
+std::string names_of(const std::vector<std::string>& names) {
+  return fmt::format("{} and the scene's train", fmt::join(names, ", "));
+}
+
+/// Trains besides the scene's.
+std::vector<std::string> train_names_of(const SceneParameters& scene, const Request& request) {
+  return request.trains.empty() ? scene.assessment.trains : request.trains;
+}
+
+std::vector<AssessTrain> trains_of(const SceneParameters& scene, const Request& request) {
+  const fs::path folder = request.trains.empty() ? request.scene_file.parent_path() : fs::path();
+  return assess_trains(scene, train_names_of(scene, request), folder);
+}
+
+void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std::string>& names, const Request& request,
+                  StageReport& report, Assessment& assessment) {
+  std::vector<AxleTrain> axles;
+  for (const AssessTrain& train : trains) axles.push_back(train.axles);
   ProgressBar bar("moving loads", request.progress);
   run_moving_loads(
-      own, request.threads, [&](double share) { bar.show(share); }, assessment);
+      axles, request.threads, [&](double share) { bar.show(share); }, assessment);
   bar.wipe();
   report.notes.push_back(
-      fmt::format("HSLM-A{} at {:.1f} to {:.1f} km/h, every 2 km/h or nearer, and at the critical speeds.",
-                  own ? " and the scene's train" : "", 3.6 * assessment.low_speed, 3.6 * assessment.high_speed));
+      fmt::format("Trains: {}, at {:.1f} to {:.1f} km/h, every 2 km/h or nearer, and at the critical "
+                  "speeds.",
+                  names_of(names), 3.6 * assessment.low_speed, 3.6 * assessment.high_speed));
   report.notes.emplace_back(
       "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
       "accelerations by the modes up to the cut-off frequency of each deck.");
@@ -160,48 +192,95 @@ void moving_loads(const std::optional<AxleTrain>& own, const Request& request, S
     report.notes.emplace_back("EN 1991-2 does not ask for it here (stage check).");
 }
 
-/// Speeds of the runs: those asked for, or the line's and the critical one below it.
-std::vector<double> contact_speeds(const AxleTrain& own, const Request& request, const Assessment& assessment,
+/// Speeds of a train's runs: those asked for, or the line's and the critical one below it.
+std::vector<double> contact_speeds(const AssessTrain& train, const Request& request, const Assessment& assessment,
                                    StageReport& report) {
   if (!request.speeds.empty()) return request.speeds;
   const double line = assessment.facts.line_speed;
-  const double critical = std::round(1e3 * governing_speed(own, assessment.decks, line)) / 1e3;
+  const double critical = std::round(1e3 * governing_speed(train.axles, assessment.decks, line)) / 1e3;
   constexpr double alike = 0.01;
+  const std::string of = train.name == own_train_name ? "the train" : train.name;
   const std::string fastest = fmt::format("at the line speed, {:.1f} km/h", 3.6 * line);
   if (critical > (1.0 - alike) * line) {
-    report.notes.push_back(
-        fmt::format("Runs {}, at which the train as moving loads accelerates the deck most.", fastest));
+    report.notes.push_back(fmt::format("Runs {}, at which {} as moving loads accelerates the deck most.", fastest, of));
     return {line};
   }
   report.notes.push_back(
-      fmt::format("Runs at {:.1f} km/h, at which the train as moving loads accelerates the deck most, and {}.",
-                  3.6 * critical, fastest));
+      fmt::format("Runs at {:.1f} km/h, at which {} as moving loads accelerates the deck most, and {}.", 3.6 * critical,
+                  of, fastest));
   return {critical, line};
 }
 
-int contact_runs(const SceneParameters& scene, const AxleTrain& own, const Request& request, StageReport& report,
-                 Assessment& assessment) {
+/// Which trains run, and which do not and why.
+std::vector<const AssessTrain*> running_trains(const std::vector<AssessTrain>& trains, const Assessment& assessment,
+                                               StageReport& report) {
+  const std::vector<const AssessTrain*> running =
+      governing_trains(trains, assessment.decks, assessment.facts.line_speed);
+  std::string others;
+  for (const AssessTrain& train : trains) {
+    const bool runs = std::find(running.begin(), running.end(), &train) != running.end();
+    if (train.scene && !runs) others += fmt::format("{}{}", others.empty() ? "" : ", ", train.name);
+  }
+  if (!others.empty()) {
+    report.notes.push_back(
+        fmt::format("No runs of {}: as moving loads up to the line speed they give the largest acceleration, "
+                    "displacement or end rotation of no deck.",
+                    others));
+  }
+  return running;
+}
+
+/// Runs of all trains; none where the stage is skipped.
+std::vector<ContactPlan> contact_plans(const std::vector<AssessTrain>& trains, const SceneParameters& scene,
+                                       const Request& request, StageReport& report, const Assessment& assessment) {
   if (!scene.train.speed_file.empty()) {
     report.done = false;
     report.skipped = "the scene's speed varies (train.speed_file); limits are judged at constant speeds";
-    return done;
+    return {};
   }
-  const std::vector<double> speeds = contact_speeds(own, request, assessment, report);
   const int seeds = scene.spectrum ? request.seeds.value_or(scene.assessment.seeds) : request.seeds.value_or(1);
-  const ContactPlan plan = contact_plan(scene, own, assessment.decks, speeds, seeds);
-  report.notes.insert(report.notes.end(), plan.notes.begin(), plan.notes.end());
+  std::vector<ContactPlan> plans;
+  for (const AssessTrain* train : running_trains(trains, assessment, report)) {
+    const std::vector<double> speeds = contact_speeds(*train, request, assessment, report);
+    plans.push_back(contact_plan(*train, assessment.decks, speeds, seeds));
+    for (const std::string& note : plans.back().notes) {
+      const bool there = std::find(report.notes.begin(), report.notes.end(), note) != report.notes.end();
+      if (!there) report.notes.push_back(note);
+    }
+  }
+  name_runs(plans);
   if (!scene.spectrum) {
     report.notes.emplace_back(scene.irregularity
                                   ? "One run for each speed: the irregularity is that of a file."
                                   : "One run for each speed: the track is perfect (irregularity.spectrum adds random "
                                     "tracks). Unloading and comfort are those of the bridge alone.");
   }
+  return plans;
+}
+
+int contact_runs(const std::vector<AssessTrain>& trains, const SceneParameters& scene, const Request& request,
+                 StageReport& report, Assessment& assessment) {
+  const std::vector<ContactPlan> plans = contact_plans(trains, scene, request, report, assessment);
+  if (plans.empty()) return done;
   make_output_folder(request.folder / "runs");
-  ProgressBar bar(fmt::format("{} runs", plan.runs.size()), request.progress);
-  const int code = run_contact(
-      plan, request.scene_file, request.folder / "runs", request.threads, [&](double share) { bar.show(share); },
-      assessment);
+  ProgressBar bar("runs", request.progress);
+  ContactRuns runs(plans, request.scene_file, request.folder / "runs", [&](double share) { bar.show(share); });
+  const int code = runs.make(request.shard, request.threads);
   bar.wipe();
+  if (code == wrong_input || code == interrupted) return code;
+  if (request.shard.count == 1) {
+    runs.measure(assessment);
+    return code;
+  }
+  const RunCount count = runs.count(request.shard);
+  if (request.json) {
+    print_json_line({{"finished", count.finished}, {"ended_early", count.ended_early}});
+  } else if (request.progress) {
+    print_formatted(
+        "shard {} of {}: {} of its runs finished, {} of them ended early; the same command without --shard writes the "
+        "verdict of all\n",
+        request.shard.index, request.shard.count, count.finished, count.ended_early);
+  }
   return code;
 }
 
@@ -235,28 +314,43 @@ int write_outputs(const Request& request, const Assessment& assessment, bool jso
   return fails ? clause_fails : done;
 }
 
+void print_interrupted() { print_message("vsi assess: interrupted; the same command goes on from what is finished\n"); }
+
+/// Part of the runs, without a verdict.
+int assess_shard(const std::vector<AssessTrain>& trains, const SceneParameters& scene, const Request& request,
+                 Assessment& assessment) {
+  StageReport report;
+  report.done = true;
+  const int code = contact_runs(trains, scene, request, report, assessment);
+  if (!report.skipped.empty()) throw input_error("--shard", report.skipped, "a scene with runs to share");
+  if (code == interrupted) print_interrupted();
+  return code;
+}
+
 int assess_scene(const SceneParameters& scene, const Request& request, const CommandLine& line) {
   Assessment assessment = begin(scene, request, line);
   // The decks are those of every stage.
   Assessment decks = assessment;
   check_decks(scene, decks);
+  std::vector<AssessTrain> trains;
+  if (request.asks(AssessmentStage::moving_load) || request.asks(AssessmentStage::contact)) {
+    trains = trains_of(scene, request);
+  }
   make_output_folder(request.folder);
   assessment.decks = decks.decks;
+  if (request.shard.count > 1) return assess_shard(trains, scene, request, assessment);
   stage(AssessmentStage::check, request, assessment, [&](StageReport&) {
     assessment.values = decks.values;
     assessment.missing = decks.missing;
   });
-  std::optional<AxleTrain> own;
-  if (request.asks(AssessmentStage::moving_load) || request.asks(AssessmentStage::contact)) own = axle_train_of(scene);
-  stage(AssessmentStage::moving_load, request, assessment,
-        [&](StageReport& report) { moving_loads(own, request, report, assessment); });
+  stage(AssessmentStage::moving_load, request, assessment, [&](StageReport& report) {
+    moving_loads(trains, train_names_of(scene, request), request, report, assessment);
+  });
   int code = done;
   stage(AssessmentStage::contact, request, assessment,
-        [&](StageReport& report) { code = contact_runs(scene, *own, request, report, assessment); });
+        [&](StageReport& report) { code = contact_runs(trains, scene, request, report, assessment); });
   if (code > failed) {
-    if (code == interrupted) {
-      print_message("vsi assess: interrupted; the same command goes on from what is finished\n");
-    }
+    if (code == interrupted) print_interrupted();
     return code;
   }
   assessment.verdicts = judge(assessment.clauses, assessment.facts, assessment.values, assessment.missing);

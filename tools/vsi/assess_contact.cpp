@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/irregularity.hpp"
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
-#include "run_pool.hpp"
 
 namespace railtab::vsi {
 namespace {
@@ -69,23 +72,50 @@ void record_what_is_judged(SceneParameters& scene) {
   scene.output.nodes = {scene.track_kind == TrackKind::flexible ? "deck*" : "*"};
 }
 
+namespace {
+
+/// Twist of the track without traffic, by the difference of the rails' heights; empty where the track is perfect.
+std::function<double(double, double)> track_twist_of(const SceneParameters& scene) {
+  if (!scene.irregularity && !scene.spectrum) return {};
+  return [file = scene.irregularity, spectrum = scene.spectrum, start = scene.train.start](double first, double last) {
+    constexpr double base = 3.0, step = 0.1;  // [m]
+    const Irregularity track =
+        file ? read_irregularity(*file) : random_irregularity(*spectrum, first, last + base, start);
+    const auto cross_level = [&](double x) { return track.at(RailSide::right, x).z - track.at(RailSide::left, x).z; };
+    double largest = 0.0;
+    for (double x = first; x <= last + 1e-9; x += step) {
+      largest = std::max(largest, std::abs(cross_level(x + base) - cross_level(x)));
+    }
+    return largest;
+  };
+}
+
+}  // namespace
+
 assess::RunWindow judged_window(const SceneParameters& scene) {
   assess::RunWindow window;
+  window.track_twist = track_twist_of(scene);
   window.begin = scene.assessment.begin.value_or(scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0));
+  if (scene.assessment.end) window.end = *scene.assessment.end;
+  window.section_length = scene.assessment.section_length;
+  window.section_step = scene.assessment.section_step;
   window.friction = scene.contact.friction;
   return window;
+}
+
+bool follow_deck(SceneParameters& scene, double cut_off) {
+  scene.output.deck_envelope = has_deck_nodes(scene) && samples_fast_enough(cut_off, scene.integration.time_step);
+  if (scene.output.deck_envelope) scene.output.deck_cut_off = cut_off;
+  return scene.output.deck_envelope;
 }
 
 namespace {
 
 /// All nodes of the deck at every step, where that is possible.
-void follow_deck(ContactPlan& plan) {
+void follow_deck_of(ContactPlan& plan) {
   SceneParameters& scene = plan.scene;
-  const bool fast = samples_fast_enough(plan.window.deck_cut_off, scene.integration.time_step);
-  scene.output.deck_envelope = scene.track_kind == TrackKind::flexible && fast;
-  scene.output.deck_cut_off = plan.window.deck_cut_off;
   plan.notes.push_back(
-      scene.output.deck_envelope
+      follow_deck(scene, plan.window.deck_cut_off)
           ? fmt::format("Decks are judged at all their nodes and every step (output.deck_envelope), accelerations "
                         "low-passed at {:.1f} Hz.",
                         plan.window.deck_cut_off)
@@ -95,11 +125,12 @@ void follow_deck(ContactPlan& plan) {
 }
 
 /// Values of a run for the whole assessment.
-void take_up(const SweepRun& run, const RunPool& pool, Assessment& assessment) {
+void take_up(const ContactPlan& plan, const SweepRun& run, const RunPool& pool, Assessment& assessment) {
   RunAssessment& entry = assessment.runs.emplace_back();
   entry.name = run.name;
+  entry.train = plan.train;
   entry.speed = run.speed;
-  if (run.name.find("-s") != std::string::npos) entry.seed = run.seed;
+  if (plan.scene.spectrum) entry.seed = run.seed;
   entry.results = pool.file(run.name, ".h5").string();
   if (!pool.finished(run.name)) {
     entry.message = "the run is not finished";
@@ -109,9 +140,11 @@ void take_up(const SweepRun& run, const RunPool& pool, Assessment& assessment) {
   entry.there = true;
   entry.complete = results.summary.complete;
   entry.message = results.summary.message;
-  assess::RunMeasures measures = assess::run_measures(results, assessment.window);
+  assess::RunWindow window = judged_window(scene_of(plan.scene, run));
+  window.deck_cut_off = plan.window.deck_cut_off;
+  assess::RunMeasures measures = assess::run_measures(results, window);
   for (MeasuredValue& value : measures.values) {
-    value.train = "the scene's train";
+    value.train = plan.train;
     value.seed = entry.seed;
     value.run = run.name;
     assessment.values.push_back(value);
@@ -153,26 +186,28 @@ void add_series(Assessment& assessment) {
 
 }  // namespace
 
-ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
-                         const std::vector<assess::DeckAssessment>& decks, const std::vector<double>& speeds,
-                         int seeds) {
-  ContactPlan plan{scene, {}, {}, {}};
+ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::DeckAssessment>& decks,
+                         const std::vector<double>& speeds, int seeds) {
+  ContactPlan plan{train.name, *train.scene, {}, {}, {}};
   fade_in(plan);
-  lengthen_track(own, plan);
+  lengthen_track(train.axles, plan);
   record_what_is_judged(plan.scene);
   const SceneParameters& made = plan.scene;
   plan.window = judged_window(made);
   for (const assess::DeckAssessment& deck : decks) {
     plan.window.deck_cut_off = std::max(plan.window.deck_cut_off, deck.cut_off);
   }
-  plan.notes.push_back(
-      fmt::format("Wheels and car bodies are judged from x = {:g} m on; largest values, no "
-                  "percentiles, since the section is short.",
-                  plan.window.begin));
+  plan.notes.push_back(fmt::format(
+      "Wheels and car bodies are judged from x = {:g} m {}; percentiles of Q, Y, Y/Q and ΣY of {}, at every "
+      "{:g} m.",
+      plan.window.begin, made.assessment.end ? fmt::format("to {:g} m", plan.window.end) : "on",
+      plan.window.section_length > 0.0 ? fmt::format("sections of {:g} m", plan.window.section_length)
+                                       : "that way as one section",
+      plan.window.section_step));
   if (!made.contact.friction_file.empty()) {
     plan.notes.emplace_back("Nadal's limit takes contact.friction, not the coefficients of contact.friction_file.");
   }
-  follow_deck(plan);
+  follow_deck_of(plan);
   plan.scene.text += "\n# vsi assess:";
   plan.scene.text += fmt::format(" train.start = {:.9g}, track.length_before = {:.9g}, track.length_after = {:.9g}",
                                  made.train.start, made.track.length_before, made.track.length_after);
@@ -183,19 +218,49 @@ ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
   return plan;
 }
 
-int run_contact(const ContactPlan& plan, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
-                int processes, const std::function<void(double)>& progress, Assessment& assessment) {
-  RunPool pool(scene_file, folder, {"vsi assess", true, progress});
+void name_runs(std::vector<ContactPlan>& plans) {
+  std::set<std::string> taken;
+  for (ContactPlan& plan : plans) {
+    if (plan.train == own_train_name) continue;
+    std::string prefix;
+    for (const char letter : plan.train) {
+      const bool plain =
+          (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9');
+      if (plain || (!prefix.empty() && prefix.back() != '-')) prefix += plain ? letter : '-';
+    }
+    while (!taken.insert(prefix).second) prefix += "-";
+    for (SweepRun& run : plan.runs) run.name = fmt::format("{}-{}", prefix, run.name);
+  }
+}
+
+ContactRuns::ContactRuns(const std::vector<ContactPlan>& plans, std::filesystem::path scene_file,
+                         std::filesystem::path folder, const std::function<void(double)>& progress)
+    : plans_(plans), pool_(std::move(scene_file), std::move(folder), {"vsi assess", true, progress}) {}
+
+int ContactRuns::make(const PartOf& shard, int processes) {
   std::vector<PooledRun> runs;
-  for (const SweepRun& run : plan.runs) runs.push_back(pooled(plan.scene, run));
-  const int code = pool.run(runs, static_cast<std::size_t>(processes));
-  assessment.window = plan.window;
-  constexpr int wrong_input = 2, interrupted = 130;
-  if (code == wrong_input || code == interrupted) return code;
-  for (const SweepRun& run : plan.runs) take_up(run, pool, assessment);
+  for (const ContactPlan& plan : plans_) {
+    for (const SweepRun& run : plan.runs) runs.push_back(pooled(plan.scene, run));
+  }
+  return pool_.run(own_part(runs, shard), static_cast<std::size_t>(processes));
+}
+
+RunCount ContactRuns::count(const PartOf& shard) const {
+  std::vector<RunRow> rows;
+  for (const ContactPlan& plan : plans_) {
+    for (const SweepRun& run : plan.runs) rows.push_back({run.name, row_begin(run)});
+  }
+  std::string unused;
+  return count_rows(pool_, own_part(rows, shard), summary_columns(), unused);
+}
+
+void ContactRuns::measure(Assessment& assessment) const {
+  assessment.window = plans_.front().window;
+  for (const ContactPlan& plan : plans_) {
+    for (const SweepRun& run : plan.runs) take_up(plan, run, pool_, assessment);
+  }
   note_early_ends(assessment);
   add_series(assessment);
-  return code;
 }
 
 }  // namespace railtab::vsi

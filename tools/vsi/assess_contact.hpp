@@ -4,7 +4,9 @@
 #include <functional>
 #include <vector>
 
+#include "assess_trains.hpp"
 #include "assessment.hpp"
+#include "run_folder.hpp"
 #include "sweep_plan.hpp"
 
 namespace railtab::vsi {
@@ -12,26 +14,47 @@ namespace railtab::vsi {
 /// Has the measures of a run recorded, a millisecond apart at most.
 void record_what_is_judged(SceneParameters& scene);
 
+/// Has all nodes of the decks followed at every step, accelerations low-passed at `cut_off` [Hz]; without a bridge
+/// whose nodes are known, or with steps that are too long for the filter, only the recorded nodes are judged.
+/// @return whether they are followed
+bool follow_deck(SceneParameters& scene, double cut_off);
+
 /// Where wheels and car bodies of a scene begin to be judged, and the friction of Nadal's limit.
 [[nodiscard]] assess::RunWindow judged_window(const SceneParameters& scene);
 
-/// Runs with contact of an assessment.
+/// Runs with contact of one train of an assessment.
 struct ContactPlan {
+  std::string train;
   SceneParameters scene;  ///< that of the runs: with room for the fade-in, what is judged recorded, the whole crossing
   std::vector<SweepRun> runs;
   assess::RunWindow window;
   std::vector<std::string> notes;  ///< what was changed of the user's scene, sentence by sentence
 };
 
-/// @param speeds [m/s] @param seeds of a random track; without one there is one run for each speed
+/// @param train with a scene @param speeds [m/s]
+/// @param seeds of a random track; without one there is one run for each speed
 /// @throws InputError naming the key of the scene that excludes runs at several speeds
-[[nodiscard]] ContactPlan contact_plan(const SceneParameters& scene, const AxleTrain& own,
-                                       const std::vector<assess::DeckAssessment>& decks,
+[[nodiscard]] ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::DeckAssessment>& decks,
                                        const std::vector<double>& speeds, int seeds);
 
-/// Makes the runs that are not there yet, each in a process of its own, into `folder`, and measures them all.
-/// @return exit code of the runs, see RunPool::run()
-int run_contact(const ContactPlan& plan, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
-                int processes, const std::function<void(double)>& progress, assess::Assessment& assessment);
+/// Gives the runs of all plans names of their own: those of trains other than the scene's begin with the train's.
+void name_runs(std::vector<ContactPlan>& plans);
+
+/// Makes the runs that are not there yet, each in a process of its own, into `folder`.
+class ContactRuns {
+ public:
+  /// @param plans outlive it
+  ContactRuns(const std::vector<ContactPlan>& plans, std::filesystem::path scene_file, std::filesystem::path folder,
+              const std::function<void(double)>& progress);
+  /// A part of the runs. @return exit code of the runs, see RunPool::run()
+  int make(const PartOf& shard, int processes);
+  [[nodiscard]] RunCount count(const PartOf& shard) const;
+  /// Measures of all runs; those that are not there are noted.
+  void measure(assess::Assessment& assessment) const;
+
+ private:
+  const std::vector<ContactPlan>& plans_;
+  RunPool pool_;
+};
 
 }  // namespace railtab::vsi

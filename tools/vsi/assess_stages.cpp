@@ -9,8 +9,8 @@
 #include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/moving_load/speed_search.hpp"
 #include "railtab/runtime/moving_load/static_deflection.hpp"
-#include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "scene_decks.hpp"
 
 namespace railtab::vsi {
@@ -116,14 +116,15 @@ void check_decks(const SceneParameters& scene, Assessment& assessment) {
 }
 
 AxleTrain axle_train_of(const SceneParameters& scene) {
-  const ResultHeader header = model_header(build_model(scene));
+  const VsiModel model = train_model(scene);
   std::vector<std::pair<double, double>> axles;  // behind, load
-  for (std::size_t w = 0; w + 1 < header.wheel_x.size(); w += 2) {
-    axles.emplace_back(-header.wheel_x[w], header.static_wheel_load[w] + header.static_wheel_load[w + 1]);
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    axles.emplace_back(model.wheelset_x(0, 0.0) - model.wheelset_x(w, 0.0),
+                       2.0 * static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
   }
   std::sort(axles.begin(), axles.end());
   AxleTrain train;
-  train.name = "the scene's train";
+  train.name = own_train_name;
   for (const auto& [behind, load] : axles) {
     train.behind.push_back(behind);
     train.load.push_back(load);
@@ -131,7 +132,7 @@ AxleTrain axle_train_of(const SceneParameters& scene) {
   return train;
 }
 
-void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const std::function<void(double)>& progress,
+void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const std::function<void(double)>& progress,
                       Assessment& assessment) {
   assessment.high_speed = 1.2 * assessment.facts.line_speed;
   assessment.low_speed = lowest_speed(assessment.high_speed);
@@ -140,10 +141,7 @@ void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const st
   double done = 0.0;
   const double parts = 2.0 * static_cast<double>(assessment.decks.size());
   for (DeckAssessment& deck : assessment.decks) {
-    for (const std::string& name : expanded_names({"hslm-a"})) {
-      deck.trains.push_back(find_axle_train(name, deck.deck.length()));
-    }
-    if (own) deck.trains.push_back(*own);
+    deck.trains = trains;
     const auto show = [&](double share) {
       if (progress) progress((done + share) / parts);
     };
@@ -160,17 +158,28 @@ void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const st
   }
 }
 
-double governing_speed(const AxleTrain& own, const std::vector<DeckAssessment>& decks, double highest) {
-  const double lowest = lowest_speed(highest);
-  double speed = highest, largest = -1.0;
-  for (const DeckAssessment& deck : decks) {
-    for (const PassagePeaks& p : search_critical_speeds(deck.deck, own, lowest, highest)) {
-      if (!(p.acceleration.value > largest)) continue;
-      largest = p.acceleration.value;
-      speed = p.speed;
+LargestResponse largest_response(const AxleTrain& train, const ModalDeck& deck, double highest) {
+  LargestResponse largest;
+  largest.speed = highest;
+  for (const PassagePeaks& p : search_critical_speeds(deck, train, lowest_speed(highest), highest)) {
+    if (p.acceleration.value > largest.acceleration) {
+      largest.acceleration = p.acceleration.value;
+      largest.speed = p.speed;
     }
+    largest.displacement = std::max(largest.displacement, p.displacement.value);
+    largest.end_rotation = std::max(largest.end_rotation, p.end_rotation.value);
   }
-  return speed;
+  return largest;
+}
+
+double governing_speed(const AxleTrain& train, const std::vector<DeckAssessment>& decks, double highest) {
+  LargestResponse worst;
+  worst.speed = highest;
+  for (const DeckAssessment& deck : decks) {
+    const LargestResponse here = largest_response(train, deck.deck, highest);
+    if (here.acceleration > worst.acceleration) worst = here;
+  }
+  return worst.speed;
 }
 
 }  // namespace railtab::vsi

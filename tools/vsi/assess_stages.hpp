@@ -12,19 +12,29 @@ namespace railtab::vsi {
 /// @throws InputError where the scene has no bridge
 void check_decks(const SceneParameters& scene, assess::Assessment& assessment);
 
+inline constexpr const char* own_train_name = "the scene's train";
 /// The scene's train as constant axle loads, from its wheelsets and their static loads.
-/// @throws InputError as build_model()
+/// @throws InputError as train_model()
 [[nodiscard]] AxleTrain axle_train_of(const SceneParameters& scene);
 
-/// HSLM-A and `own` on every deck from 40 m/s (or half the highest speed, if that is below 50 m/s) to 1.2 times the
-/// line speed: even steps for the curves, and the critical speeds. @param progress share done; may be empty
-/// @pre check_decks()
-void run_moving_loads(const std::optional<AxleTrain>& own, int threads, const std::function<void(double)>& progress,
+/// The trains on every deck from 40 m/s (or half the highest speed, if that is below 50 m/s) to 1.2 times the line
+/// speed: even steps for the curves, and the critical speeds. @param trains the scene's own last
+/// @param progress share done; may be empty @pre check_decks()
+void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const std::function<void(double)>& progress,
                       assess::Assessment& assessment);
 
-/// The speed up to `highest` [m/s] at which the scene's own train as moving loads gives the largest acceleration of a
-/// deck. @pre check_decks()
-[[nodiscard]] double governing_speed(const AxleTrain& own, const std::vector<assess::DeckAssessment>& decks,
+/// Largest response of a deck to a train as moving loads at speeds up to `highest` [m/s].
+struct LargestResponse {
+  double acceleration = -1.0;  ///< [m/s²]
+  double displacement = -1.0;  ///< [m]
+  double end_rotation = -1.0;  ///< [rad]
+  double speed = 0.0;          ///< of the largest acceleration [m/s]
+};
+[[nodiscard]] LargestResponse largest_response(const AxleTrain& train, const ModalDeck& deck, double highest);
+
+/// The speed up to `highest` [m/s] at which a train as moving loads gives the largest acceleration of a deck.
+/// @pre check_decks()
+[[nodiscard]] double governing_speed(const AxleTrain& train, const std::vector<assess::DeckAssessment>& decks,
                                      double highest);
 
 }  // namespace railtab::vsi

@@ -37,9 +37,72 @@ const SceneKey* known_key(const std::string& key) {
   return found == keys.end() ? nullptr : &*found;
 }
 
-StudyKey study_key(const std::string& key, double factor, double power) {
+StudyKey study_key(const std::string& key) {
   const SceneKey* known = known_key(key);
-  return {key, factor, power, known && known->type == "integer"};
+  StudyKey result;
+  result.key = key;
+  result.whole = known && known->type == "integer";
+  return result;
+}
+
+/// [[x, key], …] with rising x.
+std::vector<std::array<double, 2>> read_table(const TomlSection& set, const toml::node& node) {
+  constexpr const char* expected = "two points [[x, value], [x, value]] at least, x rising";
+  const toml::array* list = node.as_array();
+  if (!list || list->size() < 2) throw set.error("table", found_text(node), expected);
+  std::vector<std::array<double, 2>> points;
+  for (const toml::node& entry : *list) {
+    const toml::array* point = entry.as_array();
+    std::optional<double> x, y;
+    if (point && point->size() == 2) {
+      x = point->get(0)->value<double>();
+      y = point->get(1)->value<double>();
+    }
+    const bool valid = x && y && std::abs(*x) < any && std::abs(*y) < any;
+    if (!valid || (!points.empty() && !(*x > points.back()[0]))) {
+      throw set.error("table", found_text(entry) + " in the list", expected);
+    }
+    points.push_back({*x, *y});
+  }
+  return points;
+}
+
+/// A [[vary.set]]: a key by a formula or a table of the variable.
+StudyKey read_set(TomlSection& set, const toml::table& table) {
+  constexpr NumberKind factor{"", -1e12, 1e12}, power{"", -10.0, 10.0}, offset{"", -any, any};
+  StudyKey key = study_key(set.text("key"));
+  if (set.has("table")) {
+    for (const char* other : {"factor", "power", "offset"}) {
+      if (set.has(other)) throw set.error(other, "a table too", "a table, or factor, power and offset");
+    }
+    key.table = read_table(set, *table.get("table"));
+  } else {
+    key.factor = set.number("factor", factor, 1.0);
+    key.power = set.number("power", power, 1.0);
+    key.offset = set.number("offset", offset, 0.0);
+  }
+  set.reject_others();
+  return key;
+}
+
+/// Tables hold for all that the variable takes: there is no value beyond their ends.
+void check_tables(const StudyVariable& v, const TomlSection& s) {
+  for (const StudyKey& key : v.keys) {
+    if (key.table.empty()) continue;
+    const double first = key.table.front()[0], last = key.table.back()[0];
+    double low = v.random() ? quantile(*v.distribution, Probability{0.0, 1.0}) : v.values.front().number;
+    double high = v.random() ? quantile(*v.distribution, Probability{1.0, 0.0}) : low;
+    for (const StudyValue& value : v.values) {
+      low = std::min(low, value.number);
+      high = std::max(high, value.number);
+    }
+    if (low >= first && high <= last) continue;
+    throw s.error(
+        "set",
+        fmt::format("a table of {} from {:g} to {:g} for values from {:g} to {:g}", key.key, first, last, low, high),
+        v.random() ? "a table as far as the distribution, which at_least and at_most cut off"
+                   : "a table as far as the values");
+  }
 }
 
 std::string unit_of(const StudyKey& key) {
@@ -136,16 +199,15 @@ Distribution read_bounded(TomlSection& s) {
 StudyVariable read_variable(TomlSection& s, const toml::table& table) {
   StudyVariable v;
   v.place = s.place();
-  const double factor_high = 1e12;
   if (s.has("key") == s.has("set")) {
     throw s.error("key", s.has("key") ? "key and set" : "neither key nor set",
-                  "key = \"SECTION.KEY\", or [[vary.set]] with key, factor, power and a name for the variable");
+                  "key = \"SECTION.KEY\", or [[vary.set]] with a key and factor, power, offset or a table, and a name "
+                  "for the variable");
   }
-  if (s.has("key")) v.keys.push_back(study_key(s.text("key"), 1.0, 1.0));
-  for (TomlSection& set : s.sections("set")) {
-    v.keys.push_back(study_key(set.text("key"), set.number("factor", {"", -factor_high, factor_high}, 1.0),
-                               set.number("power", {"", -10.0, 10.0}, 1.0)));
-    set.reject_others();
+  if (s.has("key")) v.keys.push_back(study_key(s.text("key")));
+  std::vector<TomlSection> sets = s.sections("set");
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    v.keys.push_back(read_set(sets[i], *table.get("set")->as_array()->get(i)->as_table()));
   }
   v.name = s.has("name") ? s.text("name") : v.keys.front().key;
   v.unit = s.has("unit") ? s.text("unit") : s.has("key") ? unit_of(v.keys.front()) : "-";
@@ -159,9 +221,9 @@ StudyVariable read_variable(TomlSection& s, const toml::table& table) {
   if (s.has("values")) v.values = read_values(table, s);
   if (s.has("range")) v.values = read_range(s);
   if (s.has("distribution")) v.distribution = read_bounded(s);
-  const bool shaped =
-      std::any_of(v.keys.begin(), v.keys.end(), [](const auto& k) { return k.factor != 1.0 || k.power != 1.0; });
-  if (shaped && !v.numeric()) throw s.error("values", "texts with a factor or power", "numbers");
+  const bool shaped = std::any_of(v.keys.begin(), v.keys.end(), [](const auto& k) { return !k.as_it_is(); });
+  if (shaped && !v.numeric()) throw s.error("values", "texts with a formula or table", "numbers");
+  check_tables(v, s);
   s.reject_others();
   return v;
 }
@@ -310,6 +372,14 @@ void read_variables(TomlSection& root, const toml::table& table, StudyPlan& plan
 std::string StudyValue::cell() const {
   if (!other) return fmt::format("{}", number);
   return other->starts_with('"') ? other->substr(1, other->size() - 2) : *other;
+}
+
+double StudyKey::value(double x) const noexcept {
+  if (table.empty()) return factor * std::pow(x, power) + offset;
+  std::size_t b = 1;
+  while (b + 1 < table.size() && table[b][0] < x) ++b;
+  const auto &p = table[b - 1], &q = table[b];
+  return p[1] + (q[1] - p[1]) * (x - p[0]) / (q[0] - p[0]);
 }
 
 bool StudyVariable::numeric() const noexcept { return random() || !values.front().other; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -17,11 +18,17 @@ struct StudyValue {
   [[nodiscard]] std::string cell() const;  ///< in tables: a text without its quotes
 };
 
-/// A key of the scene that a variable sets: factor·x^power of a number x.
+/// A key of the scene that a variable sets: factor·x^power + offset of a number x, or what a table has for it.
 struct StudyKey {
   std::string key;  ///< as KeyChange::key
-  double factor = 1.0, power = 1.0;
-  bool whole = false;  ///< the key takes integers: a sampled number is rounded down
+  double factor = 1.0, power = 1.0, offset = 0.0;
+  std::vector<std::array<double, 2>> table{};  ///< points of x and of the key, straight lines between; empty: none
+  bool whole = false;                          ///< the key takes integers: a sampled number is rounded down
+  [[nodiscard]] bool as_it_is() const noexcept {
+    return factor == 1.0 && power == 1.0 && offset == 0.0 && table.empty();
+  }
+  /// The key for a number x. @pre x is within the table, where there is one
+  [[nodiscard]] double value(double x) const noexcept;
 };
 
 /// What a [[vary]] of a plan varies.

@@ -128,8 +128,10 @@ void StudyRuns::bind_folder() const {
       if (value.other && is_file(named)) files.push_back(named);
     }
   }
-  check_same_scene(scene_.text + fmt::format("\n# vsi study: deck acceleration low-passed at {} Hz", deck_cut_off_),
-                   files, options_.folder);
+  check_same_scene(
+      scene_.text + fmt::format("\n# vsi study: decks judged at all their nodes, acceleration low-passed at {} Hz",
+                                deck_cut_off_),
+      files, options_.folder);
 }
 
 std::vector<KeyChange> StudyRuns::changes_of(const StudyPoint& point) const {
@@ -139,8 +141,7 @@ std::vector<KeyChange> StudyRuns::changes_of(const StudyPoint& point) const {
       if (key.key == "train.speed") changes.push_back({"train.speed_kmh", ""});
       if (key.key == "train.speed_kmh") changes.push_back({"train.speed", ""});
       const StudyValue& value = point[j];
-      const bool as_it_is = key.factor == 1.0 && key.power == 1.0;
-      const double number = as_it_is ? value.number : key.factor * std::pow(value.number, key.power);
+      const double number = key.as_it_is() ? value.number : key.value(value.number);
       changes.push_back({key.key, value.other ? *value.other : fmt::format("{}", number)});
     }
   }
@@ -167,7 +168,9 @@ SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
     scene.name += fmt::format(", {} = {}", plan_.variables[j].name, point[j].cell());
   }
   record_what_is_judged(scene);
-  scene.text += "# vsi study: what is judged is recorded\n";
+  scene.text += "# vsi study: what is judged is recorded";
+  if (follow_deck(scene, deck_cut_off_)) scene.text += fmt::format(", output.deck_cut_off = {}", deck_cut_off_);
+  scene.text += "\n";
   return scene;
 }
 

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "railtab/runtime/measures/section_percentiles.hpp"
+#include "run_measures.hpp"
+
+namespace railtab::assess {
+
+using Series = std::vector<double>;
+inline constexpr int longitudinal = 0, lateral = 1, vertical = 2;  // of MotionRecord's six
+
+/// Records of a run, and the largest values found in them: what deck, wheels and car bodies are judged with.
+class RunJudge {
+ public:
+  /// @param results and found outlive it @pre count_even_records() >= 2
+  RunJudge(const RunResults& results, const RunWindow& window, RunMeasures& found);
+
+ protected:
+  void miss(const std::vector<std::string>& measures, const std::string& reason);
+  /// Keeps the largest amount of a measure; `group` tells values with limits of their own, the static wheel load [N].
+  void raise(const std::string& measure, double value, std::optional<double> time, const std::string& where,
+             double group = 0.0);
+  /// The largest percentile of a quantity in any of its sections.
+  void raise_sections(const std::string& measure, const SectionPercentiles& of, const std::string& name,
+                      double group = 0.0);
+  [[nodiscard]] bool has(std::string_view measure) const;
+  /// Hands the largest values over.
+  void keep();
+
+  [[nodiscard]] SectionPercentiles sections() const {
+    return {window_.begin, window_.section_length, window_.section_step};
+  }
+  [[nodiscard]] bool judged(double x) const noexcept { return x >= window_.begin && x <= window_.end; }
+  [[nodiscard]] const StepRecord& at(std::size_t k) const { return results_.steps[k]; }
+  [[nodiscard]] double wheel_position(std::size_t wheel, std::size_t k) const {
+    return at(k).position + header_.wheel_x[wheel];
+  }
+  template <class Value>
+  [[nodiscard]] Series of_records(const Value& value) const {
+    Series series(records_);
+    for (std::size_t k = 0; k < records_; ++k) series[k] = value(at(k));
+    return series;
+  }
+
+  const RunResults& results_;
+  const ResultHeader& header_;
+  RunWindow window_;
+  std::size_t records_ = 0;
+  double step_ = 0.0;
+  std::map<std::string, double, std::less<>> limits_;  ///< that values carry, see MeasuredValue::quantities
+
+ private:
+  std::map<std::pair<std::string, double>, MeasuredValue> best_;
+  RunMeasures& found_;
+};
+
+/// Records at even times: the last step is recorded whatever the distance.
+[[nodiscard]] std::size_t count_even_records(const RunResults& results);
+
+/// Measures of the decks, the wheels and the car bodies. @pre count_even_records() >= 2
+void measure_decks(const RunResults& results, const RunWindow& window, RunMeasures& found);
+void measure_wheels(const RunResults& results, const RunWindow& window, RunMeasures& found);
+void measure_car_bodies(const RunResults& results, const RunWindow& window, RunMeasures& found);
+
+}  // namespace railtab::assess
