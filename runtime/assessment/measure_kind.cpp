@@ -53,6 +53,9 @@ const std::vector<MeasureKind>& measure_kinds() {
       {"guiding_force_percentile", "N", {contact}, "|Y| of a wheel, low-passed at 20 Hz: 99.85 % of a section"},
       {"wheel_force_percentile", "N", {contact}, "Q, low-passed at 20 Hz: 99.85 % of a section"},
       {"wheel_force", "N", {contact}, "largest Q, low-passed at 20 Hz"},
+      {"wear_number", "J/m", {contact}, "largest mean T·γ of a wheel: energy that creep takes per way"},
+      {"rail_wear", "J/m", {contact}, "largest energy that creep of all wheels leaves in a metre of one rail"},
+      {"contact_pressure", "Pa", {contact}, "largest normal pressure between wheel and rail"},
       {"car_body_vertical", "m/s2", {contact}, "largest vertical acceleration of a car body, unfiltered"},
       {"car_body_lateral", "m/s2", {contact}, "largest lateral acceleration of a car body, unfiltered"},
       {"car_body_vertical_6hz", "m/s2", {contact}, "largest vertical acceleration of a car body, low-passed at 6 Hz"},
@@ -85,6 +88,7 @@ ShownUnit shown_unit(std::string_view unit) noexcept {
   constexpr double thousand = 1e3;
   if (unit == "m") return {"mm", thousand};
   if (unit == "N") return {"kN", 1.0 / thousand};
+  if (unit == "Pa") return {"MPa", 1.0 / (thousand * thousand)};
   if (unit == "rad") return {"mrad", thousand};
   if (unit == "s") return {"ms", thousand};
   if (unit == "m/s2") return {"m/s²", 1.0};

@@ -43,6 +43,9 @@ RunResults made_run() {
     r.wheels[1].Q = Q0;
     r.wheels[0].Y = 10e3;
     r.wheels[1].Y = -2e3;
+    r.wheels[0].wear_number = 40.0 + 20.0 * (r.position > 20.0 && r.position < 30.5);
+    r.wheels[1].wear_number = 10.0;
+    r.wheels[1].pressure = 9e8 + 1e6 * t;
     r.bodies.resize(1);
     r.bodies[0].acceleration[1] = 0.1 * std::sin(2.0 * pi * 2.0 * t);
     r.bodies[0].acceleration[2] = 0.2 * std::sin(2.0 * pi * 5.0 * t);
@@ -76,6 +79,11 @@ TEST(RunMeasures, OfARunMadeByHand) {
   EXPECT_NEAR(of(found, "wheel_force").value, 1.3 * Q0, 1.0);
   EXPECT_NEAR(of(found, "wheel_force").quantities.at("static_wheel_load"), Q0, 1e-9);
   EXPECT_NEAR(of(found, "derailment").value, 0.2 / 0.7, 1e-6);
+  EXPECT_NEAR(of(found, "wear_number").value, 40.0 + 20.0 * 10.5 / 400.0, 5e-3) << "over 400 m";
+  EXPECT_EQ(of(found, "wear_number").where, "wheelset 1 left");
+  EXPECT_NEAR(of(found, "rail_wear").value, 60.0, 1e-9) << "a metre from 21 m to 30 m";
+  EXPECT_TRUE(of(found, "rail_wear").where.starts_with("left rail, x = 2")) << of(found, "rail_wear").where;
+  EXPECT_NEAR(of(found, "contact_pressure").value, 9.08e8, 1.0);
   EXPECT_NEAR(of(found, "derailment_2m").value, 0.2 / 0.7, 1e-3) << "2 m are 40 ms of 2 s";
   EXPECT_NEAR(of(found, "weinstock_sum").value, 0.2 / 0.7 + 0.04, 1e-6);
   EXPECT_NEAR(of(found, "track_shift_2m").value, 8e3, 1e-6);

@@ -2,6 +2,7 @@
 
 #include "headline.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
+#include "railtab/runtime/measures/rail_wear.hpp"
 #include "railtab/runtime/measures/running_safety.hpp"
 #include "railtab/runtime/measures/track_mean.hpp"
 #include "run_judge.hpp"
@@ -34,6 +35,7 @@ class WheelJudge : public RunJudge {
   using RunJudge::RunJudge;
 
   void find() {
+    wear_and_pressure();
     const std::vector<std::string> forces{"wheel_unloading",     "wheel_unloading_unfiltered",
                                           "wheel_unloading_5ft", "unloading_duration",
                                           "wheel_force",         "wheel_force_percentile"};
@@ -66,6 +68,47 @@ class WheelJudge : public RunJudge {
   }
 
  private:
+  /// Needs no filter.
+  void wear_and_pressure() {
+    const std::vector<std::string> measures{"wear_number", "rail_wear", "contact_pressure"};
+    if (header_.wheel_x.empty() || at(0).wheels.empty()) return miss(measures, "no wheels are recorded");
+    if (header_.wheel_y.empty()) {
+      return miss(measures, "the scene's wheels have no contact patches (contact.normal = \"rigid\")");
+    }
+    if (std::isnan(at(0).wheels[0].wear_number)) {
+      return miss(measures, "the results are of a version that did not record it");
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      RailWear rail;
+      for (std::size_t w = side; w < header_.wheel_x.size(); w += 2) wear_of_wheel(w, rail);
+      const std::optional<RailWear::Metre> most = rail.largest();
+      const char* const name = side == 0 ? "left" : "right";
+      if (most) raise("rail_wear", most->energy, std::nullopt, fmt::format("{} rail, x = {:g} m", name, most->begin));
+    }
+    for (const std::string& measure : measures) {
+      if (!has(measure))
+        miss({measure}, fmt::format("no wheel comes to x = {:.4g} m, where judging begins", window_.begin));
+    }
+    keep();
+  }
+
+  void wear_of_wheel(std::size_t w, RailWear& rail) {
+    const std::string name = report::wheel_name(w);
+    double energy = 0.0, way = 0.0;
+    for (std::size_t k = 0; k < records_; ++k) {
+      const double x = wheel_position(w, k);
+      if (!judged(x)) continue;
+      const WheelRecord& now = at(k).wheels[w];
+      raise("contact_pressure", now.pressure, at(k).time, name);
+      if (k == 0 || !judged(wheel_position(w, k - 1))) continue;
+      const double before = wheel_position(w, k - 1), wear = at(k - 1).wheels[w].wear_number;
+      rail.add(before, wear, x, now.wear_number);
+      energy += 0.5 * (wear + now.wear_number) * (x - before);
+      way += x - before;
+    }
+    if (way > 0.0) raise("wear_number", energy / way, std::nullopt, name);
+  }
+
   void miss_unless_found(const std::string& measure) {
     if (has(measure)) return;
     if (!has("wheel_force")) {
