@@ -140,7 +140,8 @@ TEST(Coach, RefusesWrongParameters) {
     FAIL() << "an unknown vehicle was accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("'manchester'"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("manchester-coach, manchester-coach-series, metro-gz18"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("manchester-coach, manchester-coach-series, metro-gz18"),
+              std::string::npos);
   }
   CoachParameters p = manchester();
   p.bogie.mass = -1;

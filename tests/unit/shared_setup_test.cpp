@@ -45,14 +45,14 @@ std::vector<double> numbers_of(const SceneParameters& scene, SharedSetUp* shared
 TEST_F(SharedSetUpOf, RunsChangesNoBit) {
   const std::string window = "[structure]\nreduction = \"window\"\nwindow_ahead = 6.0\nwindow_behind = 6.0\n";
   const std::vector<Variant> runs{{},
-                              {.seed = "2"},
-                              {.speed = "55.0"},
-                              {.speed = "55.0", .time_step = "5e-4"},
-                              {.rail_mass = "50.0"},
-                              {.rail_mass = "50.0", .wheel = "cone-1:40"},
-                              {.window = window},
-                              {.seed = "3", .window = window},
-                              {}};
+                                  {.seed = "2"},
+                                  {.speed = "55.0"},
+                                  {.speed = "55.0", .time_step = "5e-4"},
+                                  {.rail_mass = "50.0"},
+                                  {.rail_mass = "50.0", .wheel = "cone-1:40"},
+                                  {.window = window},
+                                  {.seed = "3", .window = window},
+                                  {}};
   SharedSetUp shared;
   std::vector<double> first, last;
   for (const Variant& run : runs) {
