@@ -70,6 +70,7 @@ namespace {
 struct EndOfRun {
   std::size_t run;
   int code;
+  bool wrong_for_all;  ///< its input, and no run has ended otherwise
 };
 
 /// Memory that processes share, zero at first.
@@ -104,13 +105,12 @@ class ReportPipe {
   ReportPipe& operator=(const ReportPipe&) = delete;
 
   [[nodiscard]] int to_write() const { return ends_[1]; }
-  /// Waits a moment for a report. @return none where there was none
-  [[nodiscard]] std::optional<EndOfRun> wait() const {
-    constexpr int moment = 100;  // ms
+  /// Waits for a report. @param longest [ms] @return none where there was none
+  [[nodiscard]] std::optional<EndOfRun> wait(int longest) const {
     pollfd wanted{ends_[0], POLLIN, 0};
     EndOfRun end{};
     // a report is shorter than what a pipe takes as a whole
-    if (::poll(&wanted, 1, moment) <= 0 || ::read(ends_[0], &end, sizeof end) != sizeof end) return std::nullopt;
+    if (::poll(&wanted, 1, longest) <= 0 || ::read(ends_[0], &end, sizeof end) != sizeof end) return std::nullopt;
     return end;
   }
 
@@ -132,26 +132,30 @@ int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
   for (std::size_t worker = 0; worker < most; ++worker) begin_worker(board, worker, reports.to_write());
   int code = done;
   std::vector<bool> told(runs.size(), false);
-  const auto ended = [&](std::size_t run, int how) {
-    told[run] = true;
-    if (how == kept) return;
-    if (how != wrong_input || board.one_ended) say_end(runs[run], how);
-    if (how == wrong_input && !board.one_ended) code = wrong_input;
-    if (how != done) code = std::max(code, failed);
+  const auto ended = [&](const EndOfRun& end) {
+    told[end.run] = true;
+    if (end.code == kept) return;
+    if (!end.wrong_for_all) say_end(runs[end.run], end.code);
+    if (end.code != done) code = std::max(code, end.wrong_for_all ? wrong_input : failed);
+  };
+  const auto hear = [&](int longest) {
+    constexpr int at_once = 0;
+    for (auto end = reports.wait(longest); end; end = reports.wait(at_once)) ended(*end);
   };
   while (!workers_.empty()) {
     if (asked != 0) board.stop = true;
-    while (const std::optional<EndOfRun> end = reports.wait()) ended(end->run, end->code);
+    constexpr int moment = 100;  // ms
+    hear(moment);
     for (pid_t process = 0; (process = ::waitpid(-1, nullptr, WNOHANG)) > 0;) {
       const auto at = workers_.find(process);
       if (at == workers_.end()) continue;
       const std::size_t worker = at->second, lost = board.at[worker];
       workers_.erase(at);
-      while (const std::optional<EndOfRun> end = reports.wait()) ended(end->run, end->code);
+      hear(0);
       if (lost == Board::none) continue;
       // the worker died, with its run where it had not told its end
       board.one_ended = true;
-      if (!told[lost]) ended(lost, failed);
+      if (!told[lost]) ended({lost, failed, false});
       if (!board.stop && board.next < runs.size()) begin_worker(board, worker, reports.to_write());
     }
     if (options_.progress) {
@@ -190,13 +194,11 @@ void RunPool::work(Board& board, std::size_t worker, int report) const {
     const std::size_t run = board.next++;
     if (run >= runs_->size()) return;
     board.at[worker] = run;
-    const EndOfRun end{run, make((*runs_)[run], board.share[run], shared)};
+    EndOfRun end{run, make((*runs_)[run], board.share[run], shared), false};
     board.share[run] = 1.0;
-    if (end.code != wrong_input) {
-      board.one_ended = true;
-    } else if (!board.one_ended) {
-      board.stop = true;  // wrong for all
-    }
+    end.wrong_for_all = end.code == wrong_input && !board.one_ended;
+    if (end.wrong_for_all) board.stop = true;
+    if (end.code != wrong_input) board.one_ended = true;
     if (::write(report, &end, sizeof end) != sizeof end) _exit(failed);
     board.at[worker] = Board::none;
     if (end.code == interrupted) return;
