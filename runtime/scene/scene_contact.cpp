@@ -111,7 +111,9 @@ void check_radius(const std::string& place, const WheelRailPair& pair, const Vsi
                                          "{} m, the wheels of coach {}: [[profiles]] with that coach gives it "
                                          "profiles of its own",
                                          radius, coach);
-  throw input_error(place, fmt::format("{} m as the wheels' nominal radius", pair.nominal_radius()), wheels);
+  const bool named = place.ends_with("nominal_radius");
+  throw input_error(place, fmt::format("{} m{}", pair.nominal_radius(), named ? "" : " as the wheels' nominal radius"),
+                    wheels);
 }
 
 /// The track has one pair of rails for all wheels.

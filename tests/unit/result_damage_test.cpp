@@ -86,7 +86,7 @@ bool is_damaged(const std::string& bytes, std::size_t i) {
 
 class DamagedCheckpoint : public DamagedResults {
  protected:
-  static constexpr long records = 24;
+  static constexpr long records = 22;
 
   [[nodiscard]] static std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
