@@ -51,7 +51,7 @@ inline StepRecord made_up_record(long index, const ResultHeader& header) {
     w.patches = static_cast<int>((index + static_cast<long>(i)) % 3);
     w.from_table = static_cast<int>((index + static_cast<long>(i)) % 2);
     for (double* value : {&w.Q, &w.Y, &w.X, &w.y_rail, &w.y_wheel, &w.angle, &w.rolling_radius, &w.normal_force,
-                          &w.penetration, &w.second_y_rail, &w.second_normal_force}) {
+                          &w.penetration, &w.second_y_rail, &w.second_normal_force, &w.wear_number, &w.pressure}) {
       *value = next();
     }
     record.wheels.push_back(w);
@@ -73,9 +73,9 @@ inline StepRecord made_up_record(long index, const ResultHeader& header) {
 inline std::vector<double> numbers_of(const StepRecord& r) {
   std::vector<double> n{r.time, r.position, static_cast<double>(r.newton_iterations)};
   for (const WheelRecord& w : r.wheels) {
-    n.insert(n.end(),
-             {w.Q, w.Y, w.X, static_cast<double>(w.patches), static_cast<double>(w.from_table), w.y_rail, w.y_wheel,
-              w.angle, w.rolling_radius, w.normal_force, w.penetration, w.second_y_rail, w.second_normal_force});
+    n.insert(n.end(), {w.Q, w.Y, w.X, static_cast<double>(w.patches), static_cast<double>(w.from_table), w.y_rail,
+                       w.y_wheel, w.angle, w.rolling_radius, w.normal_force, w.penetration, w.second_y_rail,
+                       w.second_normal_force, w.wear_number, w.pressure});
   }
   for (const auto* motions : {&r.bodies, &r.nodes}) {
     for (const MotionRecord& m : *motions) {
