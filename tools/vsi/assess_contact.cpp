@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "assess_stages.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/line/irregularity.hpp"
 #include "railtab/runtime/line/irregularity_spectrum.hpp"
