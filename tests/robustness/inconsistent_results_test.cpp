@@ -146,8 +146,9 @@ TEST_F(InconsistentResults, LengthsOfTheHeaderAgree) {
   expect_rejected({.texts = {{"header/input_checksums", {"one"}}}}, "header/input_checksums", "the shape (1)",
                   "2 files as in header/input_files");
   expect_rejected({.texts = {{"header/scene_text", {}}}}, "header/scene_text", "the shape (0)", "(1)");
-  expect_rejected({.values = {{"header/wheel_x", three}, {"header/static_wheel_load", three}, {"header/wheel_outline", three}}}, "header/wheel_x",
-                  "3 wheels", "an even number");
+  expect_rejected(
+      {.values = {{"header/wheel_x", three}, {"header/static_wheel_load", three}, {"header/wheel_outline", three}}},
+      "header/wheel_x", "3 wheels", "an even number");
 }
 
 TEST_F(InconsistentResults, HistoriesHaveTheShapeOfTheHeader) {
