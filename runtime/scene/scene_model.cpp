@@ -11,6 +11,7 @@
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/scene/scene_wheels.hpp"
 #include "railtab/runtime/scene/shared_setup.hpp"
+#include "railtab/runtime/stability/rigid_rails.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/vehicle/consist.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
@@ -139,18 +140,7 @@ VsiModel train_model(const SceneParameters& scene) {
 VsiModel stability_model(const SceneParameters& scene, const VsiModel& model, int first_wheelset) {
   SceneParameters linear = scene;
   linear.train.force_elements = ForceElementChoice::linear;
-  VsiModel result;
-  result.vehicle = scene_vehicle(linear);
-  result.vehicle_x = {0.0};
-  result.contact = model.contact;
-  result.geometry = model.geometry;
-  if (!model.wheelset_geometry.empty()) {
-    const auto first = model.wheelset_geometry.begin() + first_wheelset;
-    result.wheelset_geometry.assign(first, first + result.wheelsets());
-    result.geometry = result.wheelset_geometry.front();
-    result.contact.geometry = result.geometry.get();
-  }
-  return result;
+  return on_rigid_rails(model, scene_vehicle(linear), first_wheelset, model.contact.speed);
 }
 
 VsiModel stability_model(const SceneParameters& scene) {
