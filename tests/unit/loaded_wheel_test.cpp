@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "contact_power.hpp"
 #include "loaded_table_fixture.hpp"
 #include "railtab/runtime/base/dual.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
@@ -183,12 +184,7 @@ TEST(LoadedWheel, CreepPowerIsWhatFrictionTakesFromTheMotion) {
   smooth.friction = 0.0;
   for (int n = 0; n < 40; ++n) {
     const State s = states.next(n % 2 == 0 ? WheelSide::right : WheelSide::left);
-    Vector6 velocity = s.wheelset.velocity;  // along the rail's tangent
-    velocity[0] += model.speed;
-    velocity[1] -= s.rail.velocity[0] + model.speed * s.rail.yaw;
-    velocity[2] -= s.rail.velocity[1] + model.speed * s.rail.slope;
-    velocity[4] -= model.speed / geometry().pair().nominal_radius();
-    const auto power = [&](const WheelForce& f) { return f.wheelset.dot(velocity) + f.rail[2] * s.rail.velocity[2]; };
+    const auto power = [&](const WheelForce& f) { return testing::power(model, f, s.wheelset, s.rail); };
     const WheelForce force = wheel_force(model, s.side, s.wheelset, s.rail, s.contact()),
                      normal = wheel_force(smooth, s.side, s.wheelset, s.rail, s.contact());
     EXPECT_GT(force.creep_power, 0.0);

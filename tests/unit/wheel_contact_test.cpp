@@ -1,4 +1,5 @@
 #include "railtab/runtime/contact/wheel_contact.hpp"
+#include "contact_power.hpp"
 
 #include <gtest/gtest.h>
 
@@ -120,19 +121,9 @@ TEST(WheelForce, RailCarriesTheOppositeForceAndTheLeftWheelMirrorsTheRight) {
   for (int k = 0; k < 6; ++k) EXPECT_DOUBLE_EQ(b.wheelset[k], (k % 2 == 1 ? -1.0 : 1.0) * a.wheelset[k]) << k;
 }
 
-/// Power of all contact forces on wheelset and rail, the rail's material at rest along x [W].
-double power(const WheelContactModel& model, const WheelForce& f, const WheelsetMotion& w, const RailHeadMotion& r) {
-  const double V = model.speed, R0 = model.geometry->pair().nominal_radius();
-  Vector6 velocity = w.velocity;  // along the rail's tangent
-  velocity[0] += V;
-  velocity[1] -= r.velocity[0] + V * r.yaw;
-  velocity[2] -= r.velocity[1] + V * r.slope;
-  velocity[4] -= V / R0;
-  return f.wheelset.dot(velocity) + f.rail[2] * r.velocity[2];
-}
-
 // Without friction the normal forces alone have a power; what friction adds to it is what creep takes.
 TEST(WheelForce, CreepPowerIsWhatFrictionTakesFromTheMotion) {
+  using testing::power;
   const auto geometry = s1002_on_60e1();
   WheelsetMotion w;
   w.displacement << 0.0, 4.4e-3, 0.28e-3, 2e-4, 0.0, 3e-3;  // tread and root
