@@ -46,7 +46,14 @@ struct SubsetRepetitions {
   std::size_t most_evaluations = 0;
 };
 
-/// Seeds 1 … repetitions, with samples per level such that there are at most 5000 evaluations.
+/// As many samples per level as 5000 evaluations allow, with a level more than the decades of the probability.
+inline std::size_t samples_of_budget(double probability) {
+  constexpr double budget = 5000.0, repeated = 0.9;  // share of a level's samples that is evaluated anew
+  const double further_levels = std::ceil(-std::log10(probability) - 1e-9);
+  return 10 * static_cast<std::size_t>(budget / (1.0 + repeated * further_levels) / 10.0);
+}
+
+/// Seeds 1 … repetitions.
 inline SubsetRepetitions repeat_subset(const KnownLimitState& state, int repetitions) {
   const ResponseOfPoints response = [&](const std::vector<NormalPoint>& points) {
     std::vector<double> values;
@@ -60,7 +67,7 @@ inline SubsetRepetitions repeat_subset(const KnownLimitState& state, int repetit
     SubsetOptions options;
     options.variables = state.variables;
     options.limit = state.limit;
-    options.samples = state.exact < 5e-4 ? (state.exact < 5e-5 ? 850 : 1050) : 1300;
+    options.samples = samples_of_budget(state.exact);
     options.seed = static_cast<std::uint64_t>(seed);
     const SubsetResult run = subset_simulation(options, response);
     result.mean += run.probability / count;

@@ -1,5 +1,5 @@
 // Writes docs/validation/subset_simulation.csv: repetitions of subset simulation on limit states of known
-// probability. subset_study [FILE.csv]; the figures of docs/validation/subset_simulation.md.
+// probability. subset_study [FILE.csv]; docs/validation/many_runs.md quotes it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ namespace railtab {
 namespace {
 
 constexpr const char* header =
-    "limit_state,variables,exact[-],repetitions,evaluations_mean[-],evaluations_max[-],mean[-],bias[-],"
-    "variation[-],own_estimate[-],least[-],greatest[-]\n";
+    "limit_state,variables,exact,repetitions,mean_evaluations,most_evaluations,mean,bias,variation,own_estimate,least,"
+    "greatest\n";
 
 std::string row(const KnownLimitState& state, int repetitions) {
   const SubsetRepetitions r = repeat_subset(state, repetitions);
