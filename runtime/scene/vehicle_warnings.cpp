@@ -139,7 +139,7 @@ const Warning vehicle_above_top_speed{"the speed is above the top speed that the
                                       above_top_speed};
 const Warning vehicle_above_critical_speed{
     "the speed is above a linear critical speed of the vehicle on its profiles, at rest or at the equivalent conicity "
-    "of 3 mm, or a train of more than 400 degrees of freedom in one system is not checked",
+    "of 3 mm; of trains in one system of more than 400 degrees of freedom, vehicles on joints are not checked",
     above_critical_speed};
 const Warning vehicle_linearised{"force elements of the vehicle run by linear stand-ins", linear_stand_ins};
 

@@ -36,7 +36,7 @@ enum class ElementRule {
 ///     x = x_free + C_xw f_w − C_xx f(x),     q_w = … − C_wx f(x)                          (E1)
 ///
 /// with the contact forces f_w on the wheelsets: their elongations x are solved for given f_w, exactly, in every
-/// evaluation of the contacts' residual (docs/theory/coupling.md, section 9).
+/// evaluation of the contacts' residual (docs/theory/coupling.md, section 10).
 class ElementForces {
  public:
   /// What a step begins with: elongations x and rates v at its begin, the predictor's, and those that the step ends
