@@ -357,13 +357,37 @@ EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, 
   return report;
 }
 
+// Wheelsets rise and roll as the rails do that they run along, deviations of the track and of the wheels. From heights
+// that stand still a wheel of 1000 kg on a rigid rail would begin with an impact.
+void follow_rails(const VsiModel& model, VsiState& state) {
+  const std::vector<RailContact> contacts = place_wheels(model, state.time);
+  std::vector<std::array<RailHeadMotion, 2>> rail;
+  rail_deviation(model, contacts, state.time, Eigen::VectorXd::Zero(state.structure.displacement.size()), rail);
+  const double V = model.speed(state.time);
+  const TrainContact train = model.train_contact();
+  const int per_vehicle = model.wheelsets_per_vehicle();
+  for (int w = 0; w < model.wheelsets(); ++w) {
+    const DofIndices& dof = model.vehicle.dof[index(model.vehicle.wheelsets[index(w % per_vehicle)])];
+    const auto& [left, right] = rail[index(w)];
+    const double left_z = left.velocity[1] + V * left.slope, right_z = right.velocity[1] + V * right.slope;
+    const double distance = 2.0 * train[w].geometry->pair().tape_circle_offset();
+    Eigen::VectorXd& velocity = state.vehicle[index(w / per_vehicle)].velocity;
+    constexpr int z = 2, roll = 3;
+    if (dof[z] != held) velocity[dof[z]] = 0.5 * (left_z + right_z);
+    if (dof[roll] != held) velocity[dof[roll]] = (right_z - left_z) / distance;
+  }
+}
+
 }  // namespace
 
 EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
   return equilibrium(model, RestOperators(model), Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
 }
 
-EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
+namespace {
+
+// With the structure moving as a deflection that travels with the train.
+EquilibriumReport travelling_equilibrium(const VsiModel& model, VsiState& state) {
   const double time_step = travel_between / model.contact.speed;
   const RestOperators rest(model);
   Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
@@ -401,6 +425,14 @@ EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
     report.steady = report.steady && r.converged && change < most;
   }
   if (!report.steady) state = at_rest;
+  return report;
+}
+
+}  // namespace
+
+EquilibriumReport steady_start(const VsiModel& model, VsiState& state) {
+  const EquilibriumReport report = travelling_equilibrium(model, state);
+  if (report.converged && model.normal_contact == NormalContact::hertz) follow_rails(model, state);
   return report;
 }
 

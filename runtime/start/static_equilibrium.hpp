@@ -26,8 +26,9 @@ struct EquilibriumReport {
 
 /// The start of a run at constant speed: static equilibrium, with the structure moving as a deflection that travels
 /// with the train does. Velocity and acceleration come from equilibria some centimetres before and after, and their
-/// inertia and damping forces load the structure, so that the first step finds it in balance. Vehicles start without
-/// vibration. Where that deflection is not found (track whose dampers bear more than its springs), the structure rests.
+/// inertia and damping forces load the structure, so that the first step finds it in balance. Wheelsets with creep
+/// forces rise and roll at the rate of the rails' deviations along which they run; bodies on springs stand still. Where
+/// that deflection is not found (track whose dampers bear more than its springs), the structure rests.
 [[nodiscard]] EquilibriumReport steady_start(const VsiModel& model, VsiState& state);
 
 /// The train moved to the right by `shift` [m] and its wheelsets turned by `yaw` [rad], from a state of rest: where a
