@@ -26,7 +26,7 @@ constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
 constexpr double small = 1 << 20;    // bytes: vectors that the allocator keeps when they are freed, in pieces
 constexpr double most_pieces = 8e6;  // bytes: of what the start has freed, where it is not used again
 constexpr double allocator = 1.03;   // of what is asked of it: ends of pages and pieces
-constexpr double program = 4e6;      // bytes of program and libraries (HDF5) that a run is the first to touch
+constexpr double program = 4.6e6;    // bytes of program and libraries (HDF5) that a run is the first to touch, at most
 
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {
