@@ -52,7 +52,7 @@ AxleTrain repeated(const AxleTrain& unit, int count) {
   if (count == 1) return unit;
   if (!(unit.length > 0.0)) {
     throw input_error(
-        "train", fmt::format("'{}*{}'", unit.name, count),
+        "axle train", fmt::format("'{}*{}'", unit.name, count),
         fmt::format("'{}' once: its length over buffers is not known; wagons (en15528-…) may be repeated", unit.name));
   }
   AxleTrain train = unit;

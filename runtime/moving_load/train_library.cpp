@@ -134,7 +134,7 @@ std::pair<std::string, int> name_and_count(std::string_view text) {
   const std::string_view digits = text.substr(star + 1);
   const auto [stop, status] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
   if (status != std::errc() || stop != digits.data() + digits.size() || count < 1 || count > most) {
-    throw input_error("train", fmt::format("'{}'", text), fmt::format("NAME or NAME*N, N from 1 to {}", most));
+    throw input_error("axle train", fmt::format("'{}'", text), fmt::format("NAME or NAME*N, N from 1 to {}", most));
   }
   return {std::string(text.substr(0, star)), count};
 }
@@ -154,7 +154,7 @@ AxleTrain find_axle_train(std::string_view text, double deck_length) {
     if (entry.train.name != name) continue;
     return repeated(entry.lines.empty() ? entry.train : with_line_forces(entry, deck_length), count);
   }
-  throw input_error("train", fmt::format("'{}'", name),
+  throw input_error("axle train", fmt::format("'{}'", name),
                     fmt::format("a file that ends with .csv, hslm-a (all ten), or one of {}; wagons also as NAME*N",
                                 fmt::join(train_names(), ", ")));
 }

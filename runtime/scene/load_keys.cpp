@@ -97,7 +97,7 @@ std::vector<KeyRow> ground_keys() {
 
 std::vector<KeyRow> load_keys() {
   return all_of({body_load_keys(),
-                 {{"load.aerodynamics", "", "coefficients of a vehicle over the yaw angle: the load of wind",
+                 {{"load.aerodynamics", "", "wind load: coefficients of a vehicle over the yaw angle",
                    FileKey{of_load<&LoadParameters::aerodynamics>}}},
                  applying(with_aerodynamics, wind_keys()),
                  ground_keys()});

@@ -20,7 +20,7 @@ std::vector<KeyRow> train_keys() {
        TextKey{[](SceneDraft& d) -> std::string& { return d.parameters.name; }, nullptr}},
       {"train.vehicle",
        "",
-       "imported: that of [vehicle], the default where it has keys",
+       "imported: the vehicle of [vehicle], the default if that section has keys",
        VehicleKey{of_train<&TrainParameters::vehicle>},
        {&without_consist},
        {&vehicle_above_top_speed, &vehicle_above_critical_speed, &vehicle_linearised}},

@@ -141,6 +141,6 @@ const Warning vehicle_above_critical_speed{
     "the speed is above a linear critical speed of the vehicle on its profiles, at rest or at the equivalent conicity "
     "of 3 mm; of trains in one system of more than 400 degrees of freedom, vehicles on joints are not checked",
     above_critical_speed};
-const Warning vehicle_linearised{"force elements of the vehicle run by linear stand-ins", linear_stand_ins};
+const Warning vehicle_linearised{"force elements of the vehicle are replaced by linear stand-ins", linear_stand_ins};
 
 }  // namespace railtab::scene
