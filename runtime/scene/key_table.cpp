@@ -18,6 +18,8 @@ std::string_view leaf(std::string_view path) {
   return dot == std::string_view::npos ? path : path.substr(dot + 1);
 }
 
+std::string_view heading(std::string_view path) { return path.substr(0, path.size() - leaf(path).size()); }
+
 /// Six digits are what a reader of the guide wants to see; the members themselves keep full precision.
 std::string rounded(double value) { return fmt::format("{:.6g}", value); }
 
@@ -118,8 +120,11 @@ std::string nearest_key(std::string_view path) {
   std::size_t best_distance = one * (std::max<std::size_t>(2, path.size() / 3) + 1);
   for (const KeyRow& key : all_keys()) {
     const std::size_t edits = edit_distance(path, key.path);
-    // a key that stands under the wrong heading is nearer than any misspelling
-    const std::size_t distance = leaf(key.path) == leaf(path) ? one + edits : one * edits;
+    // a key that stands under the wrong heading is nearer than a misspelling, but for one whose end or beginning it is
+    const bool part = heading(key.path) == heading(path) &&
+                      (leaf(key.path).starts_with(leaf(path)) || leaf(key.path).ends_with(leaf(path)));
+    const bool elsewhere = leaf(key.path) == leaf(path);
+    const std::size_t distance = part ? edits : elsewhere ? one + edits : one * edits;
     if (distance < best_distance) {
       best_distance = distance;
       best = key.path;

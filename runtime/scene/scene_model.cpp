@@ -183,7 +183,11 @@ VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
 double run_duration(const SceneParameters& scene, const VsiModel& model) {
   if (scene.integration.duration > 0.0) return scene.integration.duration;
   const auto time_to = [&](double x) {
-    const double way = x - model.wheelset_x(model.wheelsets() - 1, 0.0);
+    const double last = model.wheelset_x(model.wheelsets() - 1, 0.0), way = x - last;
+    if (!(way > 0.0)) {
+      throw input_error("scene: train.start", fmt::format("the last wheelset at x = {:.6g} m", last),
+                        fmt::format("one ahead of x = {:.6g} m, where the run ends (or integration.duration)", x));
+    }
     return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
   };
   if (track_on_import(scene)) {

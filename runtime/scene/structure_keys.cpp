@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "railtab/runtime/scene/key_table.hpp"
+#include "railtab/runtime/scene/key_warnings.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 
@@ -137,8 +138,12 @@ std::vector<KeyRow> span_keys() {
       {"bridge.Iz", "m⁴", "second moments of area, vertical and lateral bending",
        NumberKey{of_span<&BridgeParameters::Iz>, {1e-6, 1e5}}},
       {"bridge.J", "m⁴", "torsion constant", NumberKey{of_span<&BridgeParameters::J>, {1e-8, 1e5}}},
-      {"bridge.mass", "kg/m", "mass per length with ballast and superimposed load, without rails and sleepers",
-       NumberKey{of_span<&BridgeParameters::mass>, {100.0, 1e7}}},
+      {"bridge.mass",
+       "kg/m",
+       "mass per length with ballast and superimposed load, without rails and sleepers",
+       NumberKey{of_span<&BridgeParameters::mass>, {100.0, 1e7}},
+       {},
+       {&span_unlike_a_bridge}},
       {"bridge.rotary_inertia", "kg m²/m", "rotary inertia about x, per length",
        NumberKey{of_span<&BridgeParameters::rotary_inertia>, {0.1, 1e9}}},
       {"bridge.damping_ratio",

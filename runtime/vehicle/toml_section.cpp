@@ -104,8 +104,14 @@ const toml::node* TomlSection::find(std::string_view key) {
 
 const toml::node& TomlSection::require(std::string_view key, std::string_view expected) {
   const toml::node* node = find(key);
-  if (!node) throw error(key, "nothing", expected);
-  return *node;
+  if (node) return *node;
+  constexpr std::size_t telling = 6;  // letters: short names, as of inertias, are all near each other
+  std::vector<std::string> names;
+  for (const auto& entry : *table_) {
+    if (key.size() >= telling) names.emplace_back(entry.first.str());
+  }
+  const std::string meant = nearest(key, names);
+  throw error(key, meant.empty() ? "nothing" : fmt::format("nothing, but '{}'", key_path(meant)), expected);
 }
 
 bool TomlSection::has(std::string_view key) { return find(key) != nullptr; }

@@ -1,5 +1,6 @@
 #include "command/command_table.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/process_memory.hpp"
 #include "railtab/runtime/base/text_file.hpp"
@@ -39,8 +40,12 @@ const CommandTable& commands() {
 }
 
 int run_arguments(const Arguments& arguments) {
-  const bool file = !arguments.empty() && !commands().find(arguments.front()) && is_file(arguments.front());
-  return file ? describe_command(arguments) : run_command_table(commands(), arguments);
+  if (arguments.empty() || commands().find(arguments.front())) return run_command_table(commands(), arguments);
+  const std::string& name = arguments.front();
+  if (is_file(name)) return describe_command(arguments);
+  const bool meant_as_file = !name.starts_with('-') && name.find_first_of("./") != std::string::npos;
+  if (meant_as_file) throw input_error(name, std::string(what_is_at(name)), "a file, or a command (vsi --help)");
+  return run_command_table(commands(), arguments);
 }
 
 }  // namespace

@@ -56,6 +56,9 @@ std::optional<SpeedRange> speed_range(const CommandLine& line) {
   const std::string option = si ? "speed" : "speed-kmh", text = line.text(option);
   const double unit = si ? 1.0 : 1.0 / 3.6;
   SpeedRange range;
+  if (text.find(':') == std::string::npos && text.find('-', 1) != std::string::npos) {
+    throw input_error("--" + option, text, "LO:HI, LO:HI:STEP or one speed");
+  }
   if (std::count(text.begin(), text.end(), ':') == 1) {
     const NumberRange ends = line.range(option);
     range.low = unit * ends.low;

@@ -8,6 +8,7 @@
 #include "command/output_place.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/vehicle/vehicle_data.hpp"
@@ -141,7 +142,7 @@ int new_command(const Arguments& arguments) {
   if (std::filesystem::exists(output)) {
     throw input_error(output, "a file", "a new name: scenes are not replaced");
   }
-  const VehicleData data = find_vehicle(scene.vehicle);
+  const VehicleData data = in_file("--train", [&] { return find_vehicle(scene.vehicle); });
   const VehicleModel vehicle = build_vehicle(data, data.motion);
   if (scene.vehicle.ends_with(".toml")) {  // a scene's files are relative to it
     const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();

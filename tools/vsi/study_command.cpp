@@ -130,7 +130,11 @@ int study_command(const Arguments& arguments) {
   const CommandLine line("vsi study PLAN.toml [--shard I/N] -o DIR", study_options(), {"plan"}, arguments);
   if (line.help_printed()) return done;
   const StudyPlan plan = read_study_plan(line.required("plan"));
-  if (line.given("count")) return print_count(plan, line.json());
+  if (line.given("count")) {
+    const SceneParameters scene = read_scene(plan.scene_file);
+    StudyRuns(plan, scene, {".", 1, true}).check(planned_points(plan));
+    return print_count(plan, line.json());
+  }
   try {
     return run_study(plan, line);
   } catch (const StudyStopped& stopped) {
