@@ -32,6 +32,7 @@ length_before = 30
 length_after = 10
 [[bridge]]
 length = 10
+Iy = 1.0
 [integration]
 duration = 0.1
 time_step = 1e-3

@@ -53,7 +53,34 @@ TEST_F(FirstMinute, WhatIsNoFileOfRailtabIsSaid) {
   expect_refused("empty", "found an empty file");
   write("broken.toml", "[train\n");
   expect_refused("broken.toml", "broken.toml:1: ");
-  expect_refused("absent.toml", "unknown command 'absent.toml'");
+  expect_refused("absent.toml", "absent.toml: found no such file, expected a file, or a command");
+  expect_refused("./", "./: found a folder");
+  expect_refused("absent", "unknown command 'absent'");
+}
+
+TEST_F(FirstMinute, ATrainBehindTheEndOfItsRunIsSaid) {
+  for (const char* start : {"60", "500"}) {
+    write("late.toml", std::string("[train]\nstart = ") + start +
+                           "\n[contact]\nmode = \"online\"\n[[bridge]]\nlength = 32\n"
+                           "[irregularity]\nspectrum = \"german-low\"\n");
+    expect_refused("check late.toml", "late.toml:2: train.start: found the last wheelset at x = ");
+  }
+}
+
+TEST_F(FirstMinute, SpansUnlikeABridgeAreWarnedOf) {
+  const std::string scene = "[train]\nstart = -2\n[contact]\nmode = \"online\"\n[[bridge]]\nlength = 32\n";
+  write("as_it_is.toml", scene);
+  EXPECT_EQ(vsi("check as_it_is.toml").output.find("first natural frequency"), std::string::npos);
+  write("total_mass.toml", scene + "mass = 1093e3\n");
+  expect_said("check total_mass.toml",
+              {"warning: a span of 32 m has its first natural frequency at 0.902 Hz", "3.03 to 7.09 Hz"});
+}
+
+TEST_F(FirstMinute, AMisspeltKeyOfAVehicleIsNamed) {
+  std::string vehicle = vsi("vehicle manchester-coach --toml").output;
+  vehicle.replace(vehicle.find("half_wheelbase"), 14, "half_wheel_base");
+  write("coach.toml", vehicle);
+  expect_refused("vehicle coach.toml", "layout.half_wheelbase: found nothing, but 'layout.half_wheel_base'");
 }
 
 TEST_F(FirstMinute, ANewSceneIsValidAndRuns) {

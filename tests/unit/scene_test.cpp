@@ -86,6 +86,8 @@ TEST_F(Scene, UnknownKeyNamesItsLineAndTheNearestKey) {
             "scene.toml:5: unknown key 'tran.sped'; did you mean 'train.speed'?");
   EXPECT_EQ(message(std::string(online) + "frction = 0.2\n"),
             "scene.toml:3: unknown key 'contact.frction'; did you mean 'contact.friction'?");
+  EXPECT_EQ(message("[[load]]\ndirection = 3\n"),
+            "scene.toml:2: unknown key 'load.direction'; did you mean 'load.wind_direction'?");
   EXPECT_EQ(message("speed_kmh = 200\n"), "scene.toml:1: unknown key 'speed_kmh'; did you mean 'train.speed_kmh'?");
   EXPECT_EQ(message("[[bridge]]\nlenght = 200\n"),
             "scene.toml:2: unknown key 'bridge.lenght'; did you mean 'bridge.length'?");
