@@ -133,7 +133,7 @@ void check_rail(const std::string& place, const WheelRailPair& pair, const Wheel
 ContactGeometry scene_geometry(const ContactParameters& contact) {
   switch (contact.mode) {
     case ContactMode::table: {
-      GeometryTableData table = in_file("scene: contact.table", [&] { return read_geometry_table(contact.table); });
+      GeometryTableData table = in_file("scene: geometry table", [&] { return read_geometry_table(contact.table); });
       std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
       return in_file(contact.table.string(),
                      [&] { return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded)); });

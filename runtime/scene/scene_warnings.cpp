@@ -36,12 +36,10 @@ const Warning structure_unlike_a_bridge{
 
 const Warning span_unlike_a_bridge{
     "the first natural frequency of a span of 4 m to 100 m is below a third of the lower or above three times the "
-    "upper "
-    "limit of EN 1991-2, Figure 6.10",
+    "upper limit of EN 1991-2, Figure 6.10",
     [](const SceneCase& at, Warnings& list) {
       constexpr double factor = 3.0, shortest = 4.0, longest = 100.0;
-      for (std::size_t i = 0; i < at.scene.spans.size(); ++i) {
-        const BridgeParameters& span = at.scene.spans[i];
+      for (const BridgeParameters& span : at.scene.spans) {
         if (span.length < shortest || span.length > longest) continue;
         const double frequency =
             0.5 * std::numbers::pi / (span.length * span.length) * std::sqrt(span.E * span.Iy / span.mass);
@@ -49,8 +47,8 @@ const Warning span_unlike_a_bridge{
         if (frequency >= low / factor && frequency <= factor * high) continue;
         list.push_back(fmt::format(
             "a span of {:.6g} m has its first natural frequency at {:.3g} Hz, as a simply supported beam; spans of "
-            "that "
-            "length have {:.3g} to {:.3g} Hz [EN 1991-2, Figure 6.10]: are bridge.mass (per metre) and E Iy meant so?",
+            "that length have {:.3g} to {:.3g} Hz [EN 1991-2, Figure 6.10]: are bridge.mass (per metre) and E Iy meant "
+            "so?",
             span.length, frequency, low, high));
         return;
       }

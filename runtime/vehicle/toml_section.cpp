@@ -107,10 +107,8 @@ const toml::node& TomlSection::require(std::string_view key, std::string_view ex
   if (node) return *node;
   constexpr std::size_t telling = 6;  // letters: short names, as of inertias, are all near each other
   std::vector<std::string> names;
-  for (const auto& entry : *table_) {
-    if (key.size() >= telling) names.emplace_back(entry.first.str());
-  }
-  const std::string meant = nearest(key, names);
+  for (const auto& entry : *table_) names.emplace_back(entry.first.str());
+  const std::string meant = key.size() >= telling ? nearest(key, names) : "";
   throw error(key, meant.empty() ? "nothing" : fmt::format("nothing, but '{}'", key_path(meant)), expected);
 }
 

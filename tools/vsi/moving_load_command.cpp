@@ -56,15 +56,12 @@ std::optional<SpeedRange> speed_range(const CommandLine& line) {
   const std::string option = si ? "speed" : "speed-kmh", text = line.text(option);
   const double unit = si ? 1.0 : 1.0 / 3.6;
   SpeedRange range;
-  if (text.find(':') == std::string::npos && text.find('-', 1) != std::string::npos) {
-    throw input_error("--" + option, text, "LO:HI, LO:HI:STEP or one speed");
-  }
   if (std::count(text.begin(), text.end(), ':') == 1) {
     const NumberRange ends = line.range(option);
     range.low = unit * ends.low;
     range.high = unit * ends.high;
   } else {
-    range.speeds = values_of_range("--" + option, text);
+    range.speeds = values_of_range("--" + option, text, "LO:HI, LO:HI:STEP or one number");
     for (double& speed : range.speeds) speed *= unit;
     range.low = range.speeds.front();
     range.high = range.speeds.back();

@@ -14,11 +14,11 @@ namespace {
 
 constexpr double most_runs = 100000;
 
-double number(const std::string& option, const std::string& text, std::string_view part) {
+double number(const std::string& option, const std::string& text, std::string_view part, std::string_view forms) {
   double value = 0.0;
   const auto [stop, status] = std::from_chars(part.data(), part.data() + part.size(), value);
   if (status != std::errc() || stop != part.data() + part.size() || !std::isfinite(value)) {
-    throw input_error(option, text, "LO:HI:STEP, three numbers, or one number");
+    throw input_error(option, text, forms);
   }
   return value;
 }
@@ -27,15 +27,15 @@ std::string cell(const report::Extreme& extreme) { return extreme.found() ? fmt:
 
 }  // namespace
 
-std::vector<double> values_of_range(const std::string& option, const std::string& text) {
+std::vector<double> values_of_range(const std::string& option, const std::string& text, std::string_view forms) {
   const std::size_t first = text.find(':');
-  if (first == std::string::npos) return {number(option, text, text)};
+  if (first == std::string::npos) return {number(option, text, text, forms)};
   const std::size_t second = text.find(':', first + 1);
-  if (second == std::string::npos) throw input_error(option, text, "LO:HI:STEP, three numbers, or one number");
+  if (second == std::string::npos) throw input_error(option, text, forms);
   const std::string_view view = text;
-  const double low = number(option, text, view.substr(0, first));
-  const double high = number(option, text, view.substr(first + 1, second - first - 1));
-  const double step = number(option, text, view.substr(second + 1));
+  const double low = number(option, text, view.substr(0, first), forms);
+  const double high = number(option, text, view.substr(first + 1, second - first - 1), forms);
+  const double step = number(option, text, view.substr(second + 1), forms);
   if (!(step > 0.0 && high >= low && (high - low) / step < most_runs)) {
     throw input_error(option, text, fmt::format("LO <= HI and STEP > 0, at most {} values", most_runs));
   }

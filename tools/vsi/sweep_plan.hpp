@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "headline.hpp"
@@ -10,8 +11,9 @@
 namespace railtab::vsi {
 
 /// Equally spaced values LO, LO + STEP, … up to HI, which is one of them where it is reached but for rounding.
-/// @param text "LO:HI:STEP", or one number. @throws InputError naming the option
-[[nodiscard]] std::vector<double> values_of_range(const std::string& option, const std::string& text);
+/// @param text "LO:HI:STEP", or one number. @throws InputError naming the option, and the forms that it permits
+[[nodiscard]] std::vector<double> values_of_range(const std::string& option, const std::string& text,
+                                                  std::string_view forms = "LO:HI:STEP, three numbers, or one number");
 
 /// One run of a sweep.
 struct SweepRun {
