@@ -9,6 +9,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "railtab/runtime/base/pack.hpp"
+
 namespace railtab {
 
 /// Smooth functions of one positive argument over many powers of two: 2^kBits polynomial pieces per binade, chosen by
@@ -50,7 +52,7 @@ class BinadePolynomials {
     sum *= double{degree};
     for (int k = degree - 1; k > 0; --k) {
       power(static_cast<std::size_t>(k), next);
-      sum = sum * place.t + static_cast<double>(k) * next;
+      sum = place.t * sum + static_cast<double>(k) * next;
     }
     const std::uint64_t exponent = std::bit_cast<std::uint64_t>(x) >> 52;
     sum *= 2.0 * kPieces * std::bit_cast<double>((2046 - exponent) << 52);  // dt/dx, by the power of two below x
@@ -73,8 +75,7 @@ class BinadePolynomials {
   };
   static constexpr int kPieces = 1 << kBits;
   static_assert(std::has_single_bit(unsigned{lanes}));
-  /// A vector type: arrays would be carried through memory from step to step.
-  using Lanes [[gnu::vector_size(sizeof(double) * lanes)]] = double;
+  using Lanes = SideBySide<lanes>;
   using Coefficients =
       std::array<std::array<double, lanes>, degree + 1>;  ///< powers of t in [-1, 1], from the constant
 
@@ -90,7 +91,7 @@ class BinadePolynomials {
       Lanes upper;
       evaluate<highest - middle>(c + middle, t, upper);
       evaluate<middle - 1>(c, t, sum);
-      sum += upper * power;
+      sum += power * upper;
     }
   }
 

@@ -266,16 +266,6 @@ struct LoadedTable::LevelPlace {
 
 namespace {
 
-/// Element i of each of four packs as the pack i.
-void transpose(const Pack& a, const Pack& b, const Pack& c, const Pack& d, Pack* rows) noexcept {
-  const Pack ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Pack cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  rows[0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
-  rows[1] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-  rows[2] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-  rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
-}
-
 // Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
 struct Linear {
   std::size_t low = 0, high = 0;

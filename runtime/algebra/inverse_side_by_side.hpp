@@ -12,7 +12,7 @@ namespace railtab {
 /// Eight square matrices side by side: row i, column j of matrix s is entry[n·i + j][s].
 template <int n>
 struct MatricesSideBySide {
-  static constexpr int count = 8;
+  static constexpr int count = Lanes::count;
   std::array<Lanes, std::size_t{n} * n> entry;
 
   [[nodiscard]] Lanes& at(int i, int j) noexcept { return entry[static_cast<std::size_t>(n * i + j)]; }
@@ -29,8 +29,8 @@ void invert_side_by_side(MatricesSideBySide<n>& m) noexcept {
   const MatricesSideBySide<n> given = m;
   Lanes smallest = Lanes{} + HUGE_VAL;
   for (int k = 0; k < n; ++k) {
-    const Lanes pivot = m.at(k, k), amount = pivot < 0.0 ? -pivot : pivot;
-    smallest = amount < smallest ? amount : smallest;
+    const Lanes pivot = m.at(k, k);
+    smallest = min(abs(pivot), smallest);
     const Lanes inverse = 1.0 / pivot;
     m.at(k, k) = Lanes{} + 1.0;
     for (int j = 0; j < n; ++j) m.at(k, j) *= inverse;

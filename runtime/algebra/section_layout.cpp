@@ -312,25 +312,6 @@ class Division {
   std::vector<int> section_;  // of the unknowns in the range
 };
 
-/// Element i of each of eight vectors as the vector i.
-void transpose(std::array<Lanes, 8>& r) noexcept {
-  for (std::size_t i = 0; i < 8; i += 2) {
-    const Lanes a = r[i], b = r[i + 1];
-    r[i] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-    r[i + 1] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (const std::size_t i : {0, 1, 4, 5}) {
-    const Lanes a = r[i], b = r[i + 2];
-    r[i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
-    r[i + 2] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Lanes a = r[i], b = r[i + 4];
-    r[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
-    r[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-}
-
 }  // namespace
 
 Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
@@ -397,10 +378,17 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
       gather(eight * b, eight * (b + 1));
       continue;
     }
-    std::array<Lanes, 8> part;
-    for (std::size_t s = 0; s < 8; ++s) std::memcpy(&part[s], from + unknown[eight * b + s], sizeof part[s]);
-    transpose(part);
-    std::copy(part.begin(), part.end(), slot + 8 * b);
+    for (std::size_t section = 0; section < 8; section += 4) {
+      for (std::size_t first = 0; first < 8; first += 4) {
+        Pack part[4], of_slot[4];
+        for (std::size_t s = 0; s < 4; ++s) {
+          std::memcpy(&part[s], from + unknown[eight * b + section + s] + first, sizeof part[s]);
+        }
+        transpose(part[0], part[1], part[2], part[3], of_slot);
+        double* const block = to + eight * b + 8 * first + section;
+        for (std::size_t k = 0; k < 4; ++k) std::memcpy(block + 8 * k, &of_slot[k], sizeof of_slot[k]);
+      }
+    }
   }
   gather(eight * consecutive.size(), unknown.size());
   for (const auto& [one, two] : paired_slots) {

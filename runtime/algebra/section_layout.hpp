@@ -53,7 +53,7 @@ void visit_entries(const Eigen::SparseMatrix<double>& matrix, const DofRange& ra
 /// Vectors in this layout hold the slots one after the other, of each the sections side by side; then, in the same way,
 /// the border slots, copies of the interface unknowns beside each section; then the interface unknowns themselves.
 struct SectionLayout {
-  static constexpr int sections = 8;
+  static constexpr int sections = Lanes::count;
 
   struct Place {
     int section;  ///< -1: an interface unknown

@@ -37,7 +37,7 @@ void backward_column(const LaneColumns& c, int j, const Lanes* inverse_D, const 
 bool vanishes(Lanes& y) noexcept {
   constexpr double nothing = 1e-40;
   bool all = true;  // false for a NaN, which must reach the solution
-  for (int s = 0; s < side_by_side; ++s) all = all && std::abs(y[s]) < nothing;
+  for (int s = 0; s < side_by_side; ++s) all &= std::abs(y[s]) < nothing;
   if (all) y = Lanes{};
   return all;
 }

@@ -245,21 +245,39 @@ StructureResponse::Memory StructureResponse::memory() const {
   return memory;
 }
 
+namespace {
+
+double longest_element(const RailLine& rail) {
+  double longest = 0.0;
+  for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
+  return longest;
+}
+
+// A wheel loads both nodes of its element, and is always coupled to them, however long the element is.
+double reach_of(const RailLine& rail, double window) { return std::max(window, longest_element(rail)); }
+
+// Most nodes of a rail within `reach` of a position on it.
+std::size_t most_nodes(const RailLine& rail, double reach) {
+  std::size_t most = 0, first = 0;
+  for (std::size_t i = 0; i < rail.x.size(); ++i) {
+    while (rail.x[i] - rail.x[first] > 2.0 * reach) ++first;
+    most = std::max(most, i + 1 - first);
+  }
+  return most;
+}
+
+}  // namespace
+
 double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) {
   double bytes = 0.0;
   for (const RailLine& rail : structure.rail) {
-    double longest = 0.0;
-    for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
-    const double reach = std::max(window, longest);
-    const auto nodes_between = [&](const RailLine& line, double low, double high) {
-      return static_cast<double>(std::upper_bound(line.x.begin(), line.x.end(), high) -
-                                 std::lower_bound(line.x.begin(), line.x.end(), low));
-    };
-    bytes += static_cast<double>(rail.x.size()) * sizeof(Column);
-    for (double x : rail.x) {
-      if (x < from - longest || x > to + longest) continue;
-      for (const RailLine& other : structure.rail) bytes += nodes_between(other, x - reach, x + reach) * sizeof(Block);
-    }
+    const double longest = longest_element(rail), reach = reach_of(rail, window);
+    double blocks = 0.0;
+    for (const RailLine& other : structure.rail) blocks += static_cast<double>(most_nodes(other, reach));
+    const auto columns =
+        std::count_if(rail.x.begin(), rail.x.end(), [&](double x) { return x >= from - longest && x <= to + longest; });
+    bytes +=
+        static_cast<double>(rail.x.size()) * sizeof(Column) + static_cast<double>(columns) * blocks * sizeof(Block);
   }
   return bytes;
 }
@@ -305,8 +323,8 @@ std::size_t StructureResponse::load_bytes() const noexcept {
   return product_ ? product_->bytes() : entry_.size() * (sizeof(Entry) + sizeof(int));
 }
 
-StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double window, std::size_t side,
-                                                       std::size_t node) {
+StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double reach, std::size_t side,
+                                                       std::size_t node, const std::array<std::size_t, 2>& room) {
   Selected& s = selected();
   const RailLine& rail = structure.rail[side];
   Column column;
@@ -319,9 +337,10 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
   involve(rail.dof[node]);
   for (std::size_t other = 0; other < 2; ++other) {
     const RailLine& to = structure.rail[other];
-    const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - window) - to.x.begin();
-    const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + window) - to.x.begin();
+    const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - reach) - to.x.begin();
+    const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + reach) - to.x.begin();
     column.first[other] = static_cast<int>(begin);
+    column.rows[other].reserve(room[other]);
     column.rows[other].assign(static_cast<std::size_t>(end - begin), Block::Zero());
     for (auto n = begin; n < end; ++n) involve(to.dof[static_cast<std::size_t>(n)]);
   }
@@ -349,21 +368,30 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes
   const RailLine& line = structure.rail[0];
   const bool keeps = keeps_compliances_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const RailLine& rail = structure.rail[side];
-    column_[side].resize(rail.x.size());
-    // A wheel loads both nodes of its element, and is always coupled to them, however long the element is.
-    double longest = 0.0;
-    for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
-    for (std::size_t node = 0; node < rail.x.size(); ++node) {
-      Column& column = column_[side][node];
-      if (rail.x[node] < from - longest || rail.x[node] > to + longest) {
-        if (!keeps) column = {};
-      } else if (column.rows[side].empty()) {
-        column = column_of(structure, std::max(window, longest), side, node);
+  const auto visit = [&](auto&& visitor) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const RailLine& rail = structure.rail[side];
+      const double longest = longest_element(rail);
+      for (std::size_t node = 0; node < rail.x.size(); ++node) {
+        visitor(side, node, rail.x[node] >= from - longest && rail.x[node] <= to + longest);
       }
     }
+  };
+  // New columns take the place of those that are dropped before: all have the room of the largest.
+  visit([&](std::size_t side, std::size_t node, bool covered) {
+    column_[side].resize(structure.rail[side].x.size());
+    if (!covered && !keeps) column_[side][node] = {};
+  });
+  std::array<double, 2> reach;
+  std::array<std::array<std::size_t, 2>, 2> room;
+  for (std::size_t side = 0; side < 2; ++side) {
+    reach[side] = reach_of(structure.rail[side], window);
+    for (std::size_t other = 0; other < 2; ++other) room[side][other] = most_nodes(structure.rail[other], reach[side]);
   }
+  visit([&](std::size_t side, std::size_t node, bool covered) {
+    if (!covered || !column_[side][node].rows[side].empty()) return;
+    column_[side][node] = column_of(structure, reach[side], side, node, room[side]);
+  });
 }
 
 template <class Visitor>

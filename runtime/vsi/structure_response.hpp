@@ -102,7 +102,8 @@ class StructureResponse {
   [[nodiscard]] Eigen::MatrixXd compliance_at(const std::vector<RailContact>& contacts);
 
  private:
-  using Block = Eigen::Matrix<double, 6, 6>;
+  /// Not aligned: the allocator finds no freed place again for what asks to be.
+  using Block = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
   /// Compliances of one node; empty where the table does not cover it.
   struct Column {
     std::array<int, 2> first{};              // first node of the window on each rail
@@ -112,7 +113,9 @@ class StructureResponse {
   /// and j; row and column within the 12 unknowns of either element.
   template <class Visitor>
   void visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept;
-  [[nodiscard]] Column column_of(const StructureModel& structure, double window, std::size_t side, std::size_t node);
+  /// @param reach distance to the outermost nodes of the column [m] @param room of the column, blocks per rail
+  [[nodiscard]] Column column_of(const StructureModel& structure, double reach, std::size_t side, std::size_t node,
+                                 const std::array<std::size_t, 2>& room);
 
   /// Matrices by sums and differences of the rails, for a division into sections.
   struct Divisible;

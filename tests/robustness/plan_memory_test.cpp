@@ -89,5 +89,14 @@ TEST_F(PlanMemory, CountsTheWindowAndNotTheLine) {
   EXPECT_LT(reads(windowed), 0.1 * reads(long_track));
 }
 
+// The table of rail compliances goes with the train; what it leaves behind makes room for what lies ahead.
+TEST_F(PlanMemory, BoundsARunWhoseTableOfCompliancesMoves) {
+  expect_bound(
+      "name = \"fine rails\"\n[train]\nspeed_kmh = 720\n[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n"
+      "[track]\nlength_before = 40.0\nlength_after = 40.0\nsleeper_spacing = 1.0\nelements_per_bay = 10\n"
+      "[integration]\ntime_step = 1e-3\nduration = 0.12\ncontact_force = \"endpoint\"\n",
+      0.8);
+}
+
 }  // namespace
 }  // namespace railtab
