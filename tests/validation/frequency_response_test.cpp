@@ -216,17 +216,14 @@ Spectra simulated_spectra(VsiModel model, const Waves& waves, double time_step) 
 
 // Standard deviation of the difference between a run and the linear motion over the same time.
 double rms_of_difference(const Spectra& run, const Spectra& linear, const Waves& waves, std::size_t q) {
-  double sum = 0.0, squares = 0.0;
-  const auto count = static_cast<double>(run.time.size());
+  Eigen::ArrayXd difference = Eigen::ArrayXd::Map(run.history[q].data(), static_cast<Eigen::Index>(run.time.size()));
   for (std::size_t i = 0; i < run.time.size(); ++i) {
-    double difference = run.history[q][i];
     for (std::size_t n = 0; n < waves.frequency.size(); ++n) {
-      difference -= (linear.of[q][n] * std::polar(1.0, 2.0 * pi * waves.frequency[n] * run.time[i])).real();
+      difference[static_cast<Eigen::Index>(i)] -=
+          (linear.of[q][n] * std::polar(1.0, 2.0 * pi * waves.frequency[n] * run.time[i])).real();
     }
-    sum += difference;
-    squares += difference * difference;
   }
-  return std::sqrt(squares / count - sum * sum / (count * count));
+  return std::sqrt((difference - difference.mean()).square().mean());
 }
 
 VsiModel metro() {

@@ -355,6 +355,7 @@ class LeaningImports : public testing::ImportedVehicle {
     observer.state = add;
     IntegrationParameters integration;
     integration.time_step = 2e-3;
+    integration.tolerance = 1e-7;  // the default lets two programs of one motion differ by 1e-5
     EXPECT_TRUE(simulate(model, integration, of.gust, 10000, state, observer).complete);
     return result;
   }
