@@ -164,15 +164,12 @@ void Integrator::after_step(const StepReport& report, int level, ContactForceRul
 }
 
 StepLimits Integrator::limits_of(ContactForceRule rule) const {
-  // What rounding leaves of a wheel's place, 0.5 m from the rail-head tops, times some operations: 10 µN of its force.
-  constexpr double rounding = 1e-14;  // m, rad
   StepLimits limits;
   limits.contact_force = rule;
   // The residual of the contact forces adds energy: steps that keep it end by the displacement. Forces that change a
   // thousand times as fast as Hertz's, those of creep at walking pace, do in any case.
   limits.newton = {.tolerance = std::min(1e-11, 1e-3 * parameters_.tolerance),
-                   .max_iterations = parameters_.max_iterations,
-                   .rounding = rounding};
+                   .max_iterations = parameters_.max_iterations};
   // The structure's response cannot remove Newton's residual.
   limits.far_field_tolerance = std::max(limits.far_field_tolerance, 2.0 * limits.newton.tolerance);
   if (rule == ContactForceRule::endpoint) limits.newton.force_tolerance = parameters_.tolerance * wheel_load_;
