@@ -171,6 +171,7 @@ class TrainNewton {
       if (!n.new_tangent && !known) ws.to_invert.push_back(g);
     }
     invert(problem, ws.to_invert, ws);
+    if (forces == InitialForces::estimated) predict(ws.to_invert);
   }
 
   NewtonReport solve() {
@@ -196,6 +197,17 @@ class TrainNewton {
   }
 
   [[nodiscard]] int groups() const { return static_cast<int>(ws_.group.size()); }
+
+  // The first correction of groups whose tangents are known, from estimated forces.
+  void predict(std::span<const int> known) {
+    contact_residual(problem_, s_, ws_.residual);
+    for (int g : known) {
+      auto correction = part_of(ws_.correction, g);
+      correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
+      limit_moves(problem_, correction);
+      part_of(s_.displacement, g) += correction;
+    }
+  }
 
   // A correction of every group that asks for one. False where a number is not finite.
   bool correct() {

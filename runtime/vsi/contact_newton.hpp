@@ -105,8 +105,12 @@ struct GroupNewton {
   int evaluations = 0;
 };
 
-/// Whether a solution's forces are those at its displacement when its iteration begins.
-enum class InitialForces { unknown, known };
+/// What a solution's forces are when its iteration begins.
+enum class InitialForces {
+  unknown,
+  known,      ///< those at its displacement
+  estimated,  ///< close to those at its displacement; the iteration begins where their kept tangents lead from there
+};
 
 /// Tangents and inverses, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {

@@ -40,7 +40,7 @@ class HertzContacts : public ContactLaw {
     problem_.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
     problem_.wheelsets_per_group = 1;
     if (!model.vehicle.elements.empty()) elements_.emplace(model.vehicle, n);
-    problem_.free = problem_.predicted = problem_.predicted_velocity =
+    problem_.free = problem_.predicted = problem_.predicted_velocity = begin_velocity_ =
         Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
   }
 
@@ -57,6 +57,7 @@ class HertzContacts : public ContactLaw {
       const Eigen::VectorXd free = p.displacement + free_[index(v)];
       gather_wheelsets(step.model, v, p.displacement, problem_.predicted);
       gather_wheelsets(step.model, v, p.velocity, problem_.predicted_velocity);
+      gather_wheelsets(step.model, v, motion.velocity, begin_velocity_);
       gather_wheelsets(step.model, v, free, problem_.free);
       if (!elements_) continue;
       const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
@@ -92,16 +93,16 @@ class HertzContacts : public ContactLaw {
     const bool energy = step.hht.contact_force == ContactForceRule::energy;
     problem_.start = energy ? &state.contact : nullptr;
     problem_.mean_weight = energy ? 1.0 / (step.hht.gamma() * step.hht.load_weight()) : 1.0;
-    // Newton starts from the motion under contact forces that stay what they are.
+    // Velocities that stay what they are leave creepages and, nearly, contact forces what they are. Forces that stay
+    // would be a worse start: at walking pace they leave a motion in which a wheel slides.
     ws.solution.force = energy ? 0.5 * problem_.mean_weight * state.contact.end_force : state.contact.end_force;
-    ws.solution.displacement.setZero();
-    contact_residual(problem_, ws.solution, start_);
-    ws.solution.displacement.swap(start_);
+    ws.solution.displacement =
+        problem_.predicted + (begin_velocity_ - problem_.predicted_velocity) / step.hht.velocity_rate();
   }
 
   ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {
     // the structure's response has moved nothing but q_free
-    const InitialForces forces = pass > 0 ? InitialForces::known : InitialForces::unknown;
+    const InitialForces forces = pass > 0 ? InitialForces::known : InitialForces::estimated;
     NewtonReport newton;
     {
       const Stopwatch watch = report.times.measure(Phase::contact);
@@ -164,6 +165,7 @@ class HertzContacts : public ContactLaw {
     const Prediction& p = ws.structure_prediction;
     gather_rails(step.contacts, p.displacement, problem_.predicted);
     gather_rails(step.contacts, p.velocity, problem_.predicted_velocity);
+    gather_rails(step.contacts, state.structure.velocity, begin_velocity_);
     gather_rails(step.contacts, ws.structure_free, problem_.free);
     for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
       const int k = rail_unknown(wheel);
@@ -185,7 +187,7 @@ class HertzContacts : public ContactLaw {
   std::optional<TrainElements> elements_;  // where vehicles have force elements
   std::vector<Prediction> prediction_;     // per vehicle
   std::vector<Eigen::VectorXd> free_;      // per vehicle: increment without contact forces
-  Eigen::VectorXd start_;                  // of Newton's iteration
+  Eigen::VectorXd begin_velocity_;         // of wheelsets and rail heads, in the order of the unknowns
   NewtonWorkspace newton_;                 // tangents and loads are kept from step to step, until reinitialise()
 };
 
