@@ -95,6 +95,27 @@ class BoundsCheck {
 
 }  // namespace
 
+std::string toml_fault(std::string_view text, std::size_t line, std::string_view parser_words) {
+  for (; line > 1 && text.find('\n') != std::string_view::npos; --line) text.remove_prefix(text.find('\n') + 1);
+  text = text.substr(0, text.find_first_of("#\n"));
+  text.remove_prefix(std::min(text.find('=') + 1, text.size()));  // npos + 1 = 0
+  const auto trim = [](std::string_view value) {
+    const std::size_t first = std::min(value.find_first_not_of(" \t\r"), value.size());
+    return value.substr(first, value.find_last_not_of(" \t\r") + 1 - first);
+  };
+  std::string number(trim(text));
+  const std::size_t comma = number.find(',');
+  constexpr std::string_view digits = "0123456789";
+  const auto digit = [&](std::size_t at) { return at < number.size() && digits.find(number[at]) != digits.npos; };
+  if (comma == std::string::npos || comma == 0 || !digit(comma - 1) || !digit(comma + 1) ||
+      number.find_first_not_of("0123456789+-eE,") != std::string::npos || number.find(',', comma + 1) != number.npos) {
+    return std::string(parser_words);
+  }
+  const std::string found = number;
+  number[comma] = '.';
+  return fmt::format("found {}, expected a number with a decimal point: {}", found, number);
+}
+
 void check_toml_bounds(std::string_view text, const std::filesystem::path& file) { BoundsCheck(text, file).run(); }
 
 std::string read_toml_text(const std::filesystem::path& file, std::string_view what) {

@@ -21,4 +21,7 @@ struct TomlBounds {
 /// @throws InputError naming `file` and the line at which `text` exceeds TomlBounds::key_parts or depth
 void check_toml_bounds(std::string_view text, const std::filesystem::path& file);
 
+/// What is wrong on a line (from 1) that the parser has rejected: its own words, or that a number has a decimal comma.
+[[nodiscard]] std::string toml_fault(std::string_view text, std::size_t line, std::string_view parser_words);
+
 }  // namespace railtab

@@ -146,6 +146,11 @@ ContactGeometry scene_geometry(const ContactParameters& contact) {
   throw InputError("contact.mode: unknown");
 }
 
+CreepLaw scene_creep_law(const ContactParameters& contact) {
+  const auto law = [&] { return creep_law(contact.creep_law, contact.material.nu, contact.creep_table); };
+  return contact.creep_table.empty() ? law() : in_file("scene: contact.creep_table", law);
+}
+
 void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* shared) {
   const ContactParameters& contact = scene.contact;
   const std::vector<PlaceInTrain> places = wheelset_places(model);
@@ -175,8 +180,7 @@ void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* sha
   model.contact.normal.material = contact.material;
   model.contact.normal.curvature_floor =
       contact.mode == ContactMode::paper ? paper_curvature_floor : contact.curvature_floor;
-  model.contact.creep_law =
-      shared ? shared->creep_law(contact) : creep_law(contact.creep_law, contact.material.nu, contact.creep_table);
+  model.contact.creep_law = shared ? shared->creep_law(contact) : scene_creep_law(contact);
   if (auto* polach = std::get_if<PolachCreep>(&model.contact.creep_law)) {
     polach->k_adhesion = contact.k_adhesion;
     polach->k_slip = contact.k_slip;

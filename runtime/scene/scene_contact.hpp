@@ -21,6 +21,9 @@ void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* sha
 /// Geometry of [contact]. @throws InputError
 [[nodiscard]] ContactGeometry scene_geometry(const ContactParameters& contact);
 
+/// Law of creep forces of [contact]. @throws InputError naming contact.creep_table where that is wrong
+[[nodiscard]] CreepLaw scene_creep_law(const ContactParameters& contact);
+
 /// Geometries of a model's wheelsets, each once, in the order in which they appear from the front of the train.
 [[nodiscard]] std::vector<std::shared_ptr<const ContactGeometry>> contact_geometries(const VsiModel& model);
 

@@ -330,8 +330,8 @@ SceneParameters read_scene(const std::filesystem::path& file, const std::vector<
   } catch (const toml::parse_error& wrong) {
     const toml::source_position at = wrong.source().begin;
     const std::string key = scene::key_before(draft.parameters.text, at);
-    throw InputError(
-        fmt::format("{}:{}: {}{}{}", file.string(), at.line, key, key.empty() ? "" : ": ", wrong.description()));
+    throw InputError(fmt::format("{}:{}: {}{}{}", file.string(), at.line, key, key.empty() ? "" : ": ",
+                                 toml_fault(draft.parameters.text, at.line, wrong.description())));
   } catch (const InputError& wrong) {
     if (changes.empty()) throw;
     throw InputError(fmt::format("{} (changed: {})", wrong.what(), scene::changes_text(changes)));

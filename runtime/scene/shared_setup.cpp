@@ -4,7 +4,6 @@
 
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "railtab/runtime/contact_files/creep_law_file.hpp"
 #include "railtab/runtime/scene/scene_contact.hpp"
 
 namespace railtab {
@@ -40,8 +39,7 @@ std::shared_ptr<const ContactGeometry> SharedSetUp::geometry(const ContactParame
 CreepLaw SharedSetUp::creep_law(const ContactParameters& contact) {
   const std::string key =
       fmt::format("{} {} {}", contact.creep_law, contact.material.nu, file_text(contact.creep_table));
-  return kept(creep_law_, key,
-              [&] { return railtab::creep_law(contact.creep_law, contact.material.nu, contact.creep_table); });
+  return kept(creep_law_, key, [&] { return scene_creep_law(contact); });
 }
 
 }  // namespace railtab

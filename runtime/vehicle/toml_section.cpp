@@ -39,7 +39,8 @@ toml::table parse_toml(const std::string& text, const std::filesystem::path& pla
   try {
     return toml::parse(text, place.string());
   } catch (const toml::parse_error& wrong) {
-    throw InputError(fmt::format("{}:{}: {}", place.string(), wrong.source().begin.line, wrong.description()));
+    const std::size_t line = wrong.source().begin.line;
+    throw InputError(fmt::format("{}:{}: {}", place.string(), line, toml_fault(text, line, wrong.description())));
   }
 }
 

@@ -94,7 +94,8 @@ toml::table parsed(const std::filesystem::path& file) {
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& wrong) {
-    throw InputError(fmt::format("{}: {}", place(file, wrong.source().begin.line), wrong.description()));
+    const unsigned line = wrong.source().begin.line;
+    throw InputError(fmt::format("{}: {}", place(file, line), toml_fault(text, line, wrong.description())));
   }
 }
 

@@ -225,6 +225,10 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
   expect_refused("assess scene.toml --train nobody -o out", "train: found 'nobody', expected");
   expect_refused("assess scene.toml --train lm71 -o out",
                  "found 'lm71', a load model at rest, expected trains that move");
+  write("spatial.toml", "[contact]\nmode = \"online\"\n" + stiff_span);
+  expect_refused("assess spatial.toml --train velaro-e-coach -o out",
+                 "--train, assessment.trains: 'velaro-e-coach': train.vehicle: found velaro-e-coach, whose data are "
+                 "vertical only");
 }
 
 // Shards make the runs, and the command without one the verdict of all, the same as in one go.

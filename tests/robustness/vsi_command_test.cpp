@@ -271,6 +271,15 @@ TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
   EXPECT_NE(resumed.output.find("\"simulated_time\": 4"), std::string::npos) << resumed.output;
 }
 
+TEST_F(VsiCommand, ACreepTableOfAnotherTypeNamesTheKeyThatAsksForIt) {
+  write("scene.toml", rigid_scene + "duration = 0.01\n");
+  ASSERT_EQ(vsi("run scene.toml -o other.h5 -q").exit_code, 0);
+  write("wrong.toml",
+        "[contact]\nmode = \"online\"\ncreep_law = \"table\"\ncreep_table = \"other.h5\"\n[track]\nkind = \"rigid\"\n"
+        "[integration]\nduration = 0.01\n");
+  expect_refused("run wrong.toml -o out", "wrong.toml:4: contact.creep_table: other.h5: found a file of type");
+}
+
 // What stands in the way of results must be results; a link is followed, to where there is nothing yet, too.
 TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
   write("scene.toml", rigid_scene + "duration = 0.01\n");
@@ -281,7 +290,10 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_NE(outcome.output.find(words), std::string::npos) << outcome.output;
   };
-  refused("run scene.toml -o table.h5", "-o table.h5: found a file of type railtab-creep-table, expected a new name");
+  for (const char* plan : {"", " --plan"}) {
+    refused("run scene.toml -o table.h5" + std::string(plan),
+            "-o table.h5: found a file of type railtab-creep-table, expected a new name");
+  }
   write("notes.txt", "mine");
   refused("run scene.toml -o notes.txt", "a file of another kind");
   write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");

@@ -181,6 +181,15 @@ TEST_F(Scene, TomlErrorsNameTheLine) {
   EXPECT_TRUE(message("[train]\nspeed = 3\nspeed = 4\n").starts_with("scene.toml:3: "));
 }
 
+TEST_F(Scene, DecimalCommasAreNamed) {
+  EXPECT_EQ(message("[integration]\ntime_step = 0,5e-3  # half a millisecond\n"),
+            "scene.toml:2: integration.time_step: found 0,5e-3, expected a number with a decimal point: 0.5e-3");
+  for (const char* line : {"speed = ,5", "speed = 1,", "speed = 1,5,6", "speed = 1,5 m", "speed"}) {
+    const std::string other = message("[train]\n" + std::string(line) + "\n");
+    EXPECT_TRUE(other.starts_with("scene.toml:2: ") && other.find("decimal") == std::string::npos) << other;
+  }
+}
+
 TEST_F(Scene, RulesOverSeveralKeysNameALine) {
   EXPECT_EQ(message(std::string(online) + "[track]\nrail.head_height = 0.2\n").substr(0, 40),
             "scene.toml:4: track.rail.head_height: fo");

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "assess_stages.hpp"
+#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
@@ -43,8 +44,10 @@ SceneParameters with_train(const SceneParameters& scene, const std::string& name
   result.train.consist = std::move(entries);
   result.name += ", " + name;
   result.text += fmt::format("\n# vsi assess: train \"{}\"", name);
-  result.validate();
-  return result;
+  return in_file(fmt::format("--train, assessment.trains: '{}'", name), [&] {
+    result.validate();
+    return std::move(result);
+  });
 }
 
 AssessTrain find_train(const SceneParameters& scene, const std::string& name, const fs::path& folder) {

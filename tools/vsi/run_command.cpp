@@ -283,7 +283,10 @@ int run_command(const Arguments& arguments) {
     }
   }
   try {
-    if (line.given("plan")) return print_plan(scene, options);
+    if (line.given("plan")) {
+      if (line.given("output")) check_output(scene, file, options);
+      return print_plan(scene, options);
+    }
     if (line.given("check-reduction")) {
       const double seconds = line.number("check-reduction");
       if (!(seconds > 0.0)) throw input_error("--check-reduction", fmt::format("{}", seconds), "> 0 s");
