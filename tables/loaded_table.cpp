@@ -400,11 +400,15 @@ double LoadedTable::margin_share(double roll, double yaw) const noexcept {
   return share * smooth_step((largest - yaw * yaw) / (border * largest));
 }
 
-/// The corners' values, slopes along w and y0 and mixed derivatives, in the directions that are wanted: of the lower
-/// lateral node at both levels, then of the upper one.
+/// The corners' values, slopes along w and y0 and mixed derivatives, by Direction: of the lower lateral node at both
+/// levels, then of the upper one.
+struct LoadedTable::Corners {
+  Pack of[4][directions];
+};
+
+/// The corners in the directions that are wanted.
 template <bool slopes>
-void LoadedTable::add_corners(const Cell& cell, const Weights& weights, Pack (*corner)[6]) const noexcept {
-  static_assert(directions == 6);
+void LoadedTable::add_corners(const Cell& cell, const Weights& weights, Corners& corners) const noexcept {
   constexpr std::size_t wanted = slopes ? directions : by_yaw + 1, packs = slopes ? 2 : 1;
   const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
   for (std::size_t lateral = 0; lateral < 2; ++lateral) {
@@ -426,8 +430,8 @@ void LoadedTable::add_corners(const Cell& cell, const Weights& weights, Pack (*c
     for (std::size_t d = 0; d < wanted; ++d) {
       at_low[d][0] += touches[d / 4][d % 4];
       at_high[d][0] += touches[d / 4][d % 4];
-      corner[2 * lateral][d] = at_low[d];
-      corner[2 * lateral + 1][d] = at_high[d];
+      corners.of[2 * lateral][d] = at_low[d];
+      corners.of[2 * lateral + 1][d] = at_high[d];
     }
   }
 }
@@ -435,7 +439,8 @@ void LoadedTable::add_corners(const Cell& cell, const Weights& weights, Pack (*c
 namespace {
 
 /// Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
-std::array<double, 4> across_at(const Pack (*corner)[6], const std::array<double, 4>& basis, Direction d) noexcept {
+std::array<double, 4> across_at(const Pack (*corner)[directions], const std::array<double, 4>& basis,
+                                Direction d) noexcept {
   const Pack below{basis[0], basis[0], basis[1], basis[1]}, above{basis[2], basis[2], basis[3], basis[3]};
   const Pack low = below * corner[0][d] + above * corner[2][d], high = below * corner[1][d] + above * corner[3][d];
   return {low[0] + low[2], low[1] + low[3], high[0] + high[2], high[1] + high[3]};
@@ -462,10 +467,11 @@ LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, Loa
   }
 
   const HermiteBasis& t = cell.across;
-  Pack corner[4][directions];
+  Corners corners;
+  const auto& corner = corners.of;
   std::array<double, 4> line;
   for (int moved = 0;;) {
-    add_corners<slopes>(cell, weights, corner);
+    add_corners<slopes>(cell, weights, corners);
     line = across_at(corner, t.value, here);
     if (z < line[0] && cell.level > 0 && moved <= 0) {
       moved = -1;

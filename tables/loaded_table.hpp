@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "railtab/runtime/base/pack.hpp"
-
 namespace railtab {
 
 /// The loaded contact of a pair: the half-space solution over all poses of a wheelset against its right rail head.
@@ -130,6 +128,7 @@ class LoadedTable {
   struct Weights;
   struct Cell;
   struct LevelPlace;
+  struct Corners;
   template <bool slopes>
   [[nodiscard]] LoadedLookup found(double y, double z, double roll, double yaw,
                                    LoadedSlopes* derivatives) const noexcept;
@@ -139,7 +138,7 @@ class LoadedTable {
   /// The level below z or one near it; -1 without contact.
   void find_level(double z, const Weights& weights, Cell& cell) const noexcept;
   template <bool slopes>
-  void add_corners(const Cell& cell, const Weights& weights, Pack (*corner)[6]) const noexcept;
+  void add_corners(const Cell& cell, const Weights& weights, Corners& corners) const noexcept;
   /// Asks the memory for what add_parts() will read of the first part.
   void fetch_parts(const Cell& cell, double roll, double yaw) const noexcept;
   template <bool slopes>

@@ -1,6 +1,7 @@
 #include "railtab/runtime/results/result_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -147,6 +148,11 @@ ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
     throw input_error(fmt::format("{}: header/wheel_x", in.file().string()),
                       fmt::format("{} wheels", header.wheel_x.size()),
                       "an even number: left and right of each wheelset");
+  }
+  if (const std::vector<double>& ends = header.judged;
+      !ends.empty() && !(ends.size() == 2 && ends.front() < ends.back())) {
+    throw input_error(fmt::format("{}: header/judged", in.file().string()), fmt::format("{}", fmt::join(ends, ", ")),
+                      "begin and end of a stretch");
   }
   return header;
 }

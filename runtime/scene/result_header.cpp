@@ -15,6 +15,7 @@ namespace railtab {
 ResultHeader model_header(const VsiModel& model) {
   ResultHeader header;
   header.speed = model.speed(0.0);
+  header.judged = model.judged;
   for (int w = 0; w < model.wheelsets(); ++w) {
     for (int side = 0; side < 2; ++side) {
       header.wheel_x.push_back(model.wheelset_x(w, 0.0) - model.wheelset_x(0, 0.0));

@@ -28,6 +28,16 @@ double spans_length(const SceneParameters& scene) {
 }
 
 // Along the track's plane to the right, and normal to it.
+// From assessment.begin, or where the track has faded in, to assessment.end.
+std::vector<double> judged_stretch(const SceneParameters& scene) {
+  constexpr double beyond_the_line = 1e6;  // m: results hold finite numbers
+  const double fade_in = scene.spectrum ? scene.spectrum->fade_in : 0.0;
+  const std::optional<double>&begin = scene.assessment.begin, &end = scene.assessment.end;
+  if (!begin && !end && !(fade_in > 0.0)) return {};
+  const double faded_in = fade_in > 0.0 ? scene.train.start + fade_in : -beyond_the_line;
+  return {begin.value_or(faded_in), end.value_or(beyond_the_line)};
+}
+
 double lateral_acceleration(const TrainParameters& train) {
   const double sine = train.cant_sine();
   return train.lateral_acceleration * std::sqrt(1.0 - sine * sine) - standard_gravity * sine;
@@ -162,6 +172,7 @@ VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
   scene.validate();
   VsiModel model = train_model(scene);
   model.lateral_acceleration = lateral_acceleration(scene.train);
+  model.judged = judged_stretch(scene);
   model.normal_contact = scene.contact.normal;
   model.contact.speed = scene.train.speed;
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model, shared);

@@ -78,16 +78,16 @@ SteppedTime stepped_time(double duration, double longest_step) {
   return {duration, std::max(1, static_cast<int>(std::ceil(duration / longest_step)))};
 }
 
-CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const PeriodicMotion& guess,
-                          const BranchLine& line, const BranchPoint& forward, const BranchSearch& search,
-                          const std::function<bool(const BranchCycle&)>& listener) {
+CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const CycleBranchStart& start,
+                          const BranchSearch& search, const std::function<bool(const BranchCycle&)>& listener) {
   CycleBranch branch;
   Shooting shooting(flow, section, search.shooting);
-  std::optional<BranchCycle> cycle = cycle_at(shooting, section, guess, line, search.unit, search.lowest_height);
+  std::optional<BranchCycle> cycle =
+      cycle_at(shooting, section, start.guess, start.line, search.unit, search.lowest_height);
   if (!cycle) return branch;
   const BranchPoint first = direction_of(cycle->tangent, section, search.unit);
   double length = search.first_step;
-  double sense = first.height * forward.height + first.parameter * forward.parameter < 0.0 ? -1.0 : 1.0;
+  double sense = first.height * start.forward.height + first.parameter * start.forward.parameter < 0.0 ? -1.0 : 1.0;
   for (;;) {
     cycle->tangent.start *= sense;
     cycle->tangent.duration *= sense;

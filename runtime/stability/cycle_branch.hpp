@@ -30,6 +30,13 @@ struct BranchSearch {
   ShootingLimits shooting{};
 };
 
+/// Where a branch begins, and which way it is followed.
+struct CycleBranchStart {
+  PeriodicMotion guess;  ///< near the first motion
+  BranchLine line;       ///< on which that is sought
+  BranchPoint forward;   ///< its height, or its parameter, grows or falls
+};
+
 /// Why a branch ends.
 enum class BranchEnd {
   parameter_range,  ///< it leaves the range of the parameter
@@ -48,11 +55,9 @@ struct CycleBranch {
 [[nodiscard]] SteppedTime stepped_time(double duration, double longest_step);
 
 /// Follows the branch of a periodic motion by pseudo-arclength continuation [Keller1977].
-/// @param guess    near the first motion  @param line  on which that is sought
-/// @param forward  direction in which the branch is followed: its height, or its parameter, grows or falls
 /// @param listener called with every motion found; false ends the search
-[[nodiscard]] CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const PeriodicMotion& guess,
-                                        const BranchLine& line, const BranchPoint& forward, const BranchSearch& search,
+[[nodiscard]] CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const CycleBranchStart& start,
+                                        const BranchSearch& search,
                                         const std::function<bool(const BranchCycle&)>& listener);
 
 /// The fold of the parameter, a minimum or a maximum, between the neighbours of a cycle of the branch: by parabolas

@@ -217,7 +217,7 @@ HuntingBranch hunting_branch(const VsiModel& linear, const VsiModel& model, cons
   const BranchSearch along = branch_search(search);
   const auto tell = [&](const BranchCycle& cycle) { return !listener || listener(limit_cycle(flow, cycle)); };
   const auto follow = [&](const BranchPoint& forward) {
-    return follow_branch(flow, section, start.guess, start.line, forward, along, tell);
+    return follow_branch(flow, section, {start.guess, start.line, forward}, along, tell);
   };
   CycleBranch branch = follow(search.start ? BranchPoint{0.0, 1.0} : BranchPoint{1.0, 0.0});
   if (search.start) branch = joined(std::move(branch), follow({0.0, -1.0}));

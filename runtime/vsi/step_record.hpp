@@ -77,9 +77,15 @@ struct ResultHeader {
   std::vector<double> wheel_y, wheel_z, rail_y, rail_z;  ///< outlines for the report [m]
   /// Where wheels differ in their profiles: 1 where a wheel has the outline above, else 0; otherwise empty.
   std::vector<double> wheel_outline;
+  /// Begin and end of the stretch on which wheels and car bodies are judged, each where it stands [m]; empty: all.
+  std::vector<double> judged;
   /// What the run was built of, what was left out, and what it was warned of before its first step.
   std::vector<std::string> built, left_out, warnings;
 };
+
+[[nodiscard]] inline bool is_judged(const ResultHeader& header, double x) noexcept {
+  return header.judged.empty() || (x >= header.judged[0] && x <= header.judged[1]);
+}
 
 /// Nodes of the bridge deck are named deck….
 [[nodiscard]] inline bool is_deck(std::string_view node_name) noexcept { return node_name.starts_with("deck"); }
@@ -103,7 +109,8 @@ struct WheelExtreme {
   [[nodiscard]] bool found() const noexcept { return wheel >= 0; }
 };
 
-/// Over all steps of a run from t = 0 on, recorded or not, and over the parts of those that are divided.
+/// Over all steps of a run from t = 0 on, recorded or not, and over the parts of those that are divided, of wheels on
+/// the judged stretch.
 struct WheelExtremes {
   WheelExtreme largest_Q, smallest_Q;  ///< [N]
   WheelExtreme derailment;             ///< |Y|/Q of a wheel while Q > 0 [-]

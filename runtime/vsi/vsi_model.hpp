@@ -65,6 +65,7 @@ struct VsiModel {
   double lateral_acceleration = 0.0;          ///< that pushes the vehicles to the right, in the track's plane [m/s²]
   std::optional<GroundMotion> ground_motion;  ///< under the structure's supports and of rails that are rigid
   GyroscopicMoments gyroscopic_moments = GyroscopicMoments::included;
+  std::vector<double> judged{};  ///< ResultHeader::judged
 
   [[nodiscard]] int wheelsets_per_vehicle() const noexcept { return static_cast<int>(vehicle.wheelsets.size()); }
   [[nodiscard]] int wheelsets() const noexcept { return wheelsets_per_vehicle() * static_cast<int>(vehicle_x.size()); }

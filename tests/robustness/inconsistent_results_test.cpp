@@ -54,7 +54,7 @@ class ResultsFile {
     const double speed = one_of(fault_.values, "header/speed", {50.0}).front();
     out_.write("header/speed", std::span(&speed, 1), {}, "m/s", "speed");
     for (const columns::HeaderColumn& column : columns::header) {
-      const std::vector<double> values = one_of(fault_.values, column.path, std::vector<double>{4.0, 2.0});
+      const std::vector<double> values = one_of(fault_.values, column.path, std::vector<double>{2.0, 4.0});
       out_.write(column.path, values, {values.size()}, column.unit, column.description);
     }
     for (const columns::StepColumn& column : columns::step) history(column.path, {});
@@ -149,6 +149,8 @@ TEST_F(InconsistentResults, LengthsOfTheHeaderAgree) {
   expect_rejected(
       {.values = {{"header/wheel_x", three}, {"header/static_wheel_load", three}, {"header/wheel_outline", three}}},
       "header/wheel_x", "3 wheels", "an even number");
+  expect_rejected({.values = {{"header/judged", {10.0}}}}, "header/judged", "10", "begin and end of a stretch");
+  expect_rejected({.values = {{"header/judged", {10.0, 5.0}}}}, "header/judged", "10, 5", "begin and end of a stretch");
 }
 
 TEST_F(InconsistentResults, HistoriesHaveTheShapeOfTheHeader) {

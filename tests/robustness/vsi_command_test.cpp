@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "vsi_fixture.hpp"
@@ -269,6 +271,36 @@ TEST_F(VsiCommand, CtrlCEndsARunThatCanBeTakenUpAgain) {
   EXPECT_NEAR(number_after("resumed at t = "), 5e-4 * from, 1e-6) << resumed.output;
   // First and last record, the last at the end of the run though no multiple of output.every.
   EXPECT_NE(resumed.output.find("\"simulated_time\": 4"), std::string::npos) << resumed.output;
+}
+
+// A bump before the stretch that is judged counts for no wheel, not even for those that meet it while others are
+// beyond.
+TEST_F(VsiCommand, TheHeadlineBeginsWhereJudgingDoes) {
+  std::string bump = "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n";
+  for (int x = -60; x <= 100; ++x) bump += std::to_string(x) + (x == 4 ? ",0,-1,0,-1\n" : ",0,0,0,0\n");
+  write("bump.csv", bump);
+  const std::string rough = rigid_scene + "duration = 0.7\n[irregularity]\nfile = \"bump.csv\"\n";
+  const auto headline = [&](const std::string& keys) {
+    write("scene.toml", rough + keys);
+    const Outcome run = vsi("run scene.toml -o results.h5 --json");
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    const nlohmann::json of_run = nlohmann::json::parse(run.output.substr(run.output.find('{')));
+    // and the same from the file
+    EXPECT_EQ(vsi("report results.h5 -o report.html -q").exit_code, 0);
+    std::ifstream page(folder_ / "report.html");
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    EXPECT_NE(text.find(of_run["extremes_of"].get<std::string>()), std::string::npos) << of_run["extremes_of"];
+    return of_run;
+  };
+  const nlohmann::json whole = headline(""), judged = headline("[assessment]\nbegin = 30.0\n");
+  EXPECT_EQ(whole["extremes_of"], "the recorded steps; Q, Y/Q and unloading of all steps");
+  EXPECT_EQ(judged["extremes_of"],
+            "the recorded steps; Q, Y/Q and unloading of all steps; wheels and car bodies from x = 30 m");
+  const double speed = whole["distance"].get<double>() / whole["simulated_time"].get<double>();
+  EXPECT_GT(judged["max_Q"]["time"].get<double>(), 30.0 / speed - 1e-3);
+  EXPECT_LT(whole["max_wheel_unloading"]["time"].get<double>(), 30.0 / speed);
+  EXPECT_LT(judged["max_wheel_unloading"]["value"].get<double>(),
+            0.5 * whole["max_wheel_unloading"]["value"].get<double>());
 }
 
 TEST_F(VsiCommand, ACreepTableOfAnotherTypeNamesTheKeyThatAsksForIt) {

@@ -61,7 +61,7 @@ double radius_squared(const PeriodicMotion& motion) { return motion.start[0] * m
 CycleBranch branch_of(const NormalForm& flow, const BranchSearch& search) {
   const double r = 0.1;
   const PeriodicMotion guess{Eigen::Vector3d(r, 0.0, 0.0), stepped_time(std::numbers::pi, search.time_step), 1.0};
-  return follow_branch(flow, section, guess, {{r, 1.0}, {1.0, 0.0}}, {1.0, 0.0}, search, {});
+  return follow_branch(flow, section, {guess, {{r, 1.0}, {1.0, 0.0}}, {1.0, 0.0}}, search, {});
 }
 
 BranchSearch search_of(double time_step) {
@@ -115,7 +115,7 @@ TEST(CycleBranch, CanBeFollowedBothWays) {
   const BranchSearch search = search_of(0.01);
   const double r = 1.1;
   const PeriodicMotion guess{Eigen::Vector3d(r, 0.0, 0.5), stepped_time(2.0, search.time_step), 1.2};
-  const CycleBranch branch = follow_branch(flow, section, guess, {{r, 1.2}, {0.0, 1.0}}, {0.0, -1.0}, search, {});
+  const CycleBranch branch = follow_branch(flow, section, {guess, {{r, 1.2}, {0.0, 1.0}}, {0.0, -1.0}}, search, {});
   ASSERT_GT(branch.cycles.size(), 20u);
   EXPECT_EQ(branch.end, BranchEnd::height_range);
   EXPECT_GE(branch.cycles.back().motion.point(section).height, search.lowest_height);
@@ -128,7 +128,7 @@ TEST(CycleBranch, RestIsNoCycle) {
   const NormalForm flow;
   const BranchSearch search = search_of(0.01);
   const PeriodicMotion guess{Eigen::Vector3d(0.1, 0.0, 0.0), stepped_time(3.0, search.time_step), 0.7};
-  const CycleBranch branch = follow_branch(flow, section, guess, {{0.1, 0.7}, {0.0, 1.0}}, {0.0, 1.0}, search, {});
+  const CycleBranch branch = follow_branch(flow, section, {guess, {{0.1, 0.7}, {0.0, 1.0}}, {0.0, 1.0}}, search, {});
   EXPECT_TRUE(branch.cycles.empty());
 }
 

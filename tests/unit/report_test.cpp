@@ -160,6 +160,31 @@ TEST(Headline, SlidingMeansAreOverTwoMetresOfWay) {
   EXPECT_FALSE(headline_of(run).track_shift_2m.found());
 }
 
+// Wheels and car bodies where each of them stands, the deck throughout.
+TEST(Headline, CountsOnTheJudgedStretch) {
+  RunResults run = small_run();
+  const std::size_t wheels = run.header.wheel_x.size();
+  ASSERT_EQ(wheels, 2u);
+  ASSERT_EQ(run.steps.size(), 2u);
+  const double ahead = 1.0 - run.header.wheel_x[0];  // of the wheelset at the second record, when it is at x = 1 m
+  run.steps[0].position = ahead - 2.0;
+  run.steps[1].position = ahead;
+  EXPECT_TRUE(headline_of(run).extent.ends_with("the recorded steps"));
+  run.header.judged = {0.0, 1e6};
+  const Headline headline = headline_of(run);
+  const WheelRecord &left = run.steps[1].wheels[0], &right = run.steps[1].wheels[1];
+  EXPECT_EQ(headline.largest_Q.value, std::max(left.Q, right.Q));
+  EXPECT_EQ(headline.largest_Q.time, run.steps[1].time);
+  EXPECT_EQ(headline.smallest_Q.value, std::min(left.Q, right.Q));
+  EXPECT_EQ(headline.car_body_vertical.time, run.steps[1].time);
+  EXPECT_EQ(headline.deck_acceleration.value, 3.0);
+  EXPECT_TRUE(headline.extent.ends_with("wheels and car bodies from x = 0 m")) << headline.extent;
+  run.header.judged = {2.0, 3.0};
+  EXPECT_FALSE(headline_of(run).largest_Q.found());
+  EXPECT_FALSE(headline_of(run).car_body_vertical.found());
+  EXPECT_TRUE(headline_of(run).deck_acceleration.found());
+}
+
 TEST(Headline, LiftOffIsNoDerailmentCoefficientButWholeUnloading) {
   RunResults run = small_run();
   run.steps[1].wheels[0].Q = 0.0;

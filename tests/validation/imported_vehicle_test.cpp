@@ -119,8 +119,9 @@ TEST_F(ImportedVehicle, IsSetAsideAsAWhole) {
   expect_same(difference(without_bogies(built), run(scene(text + vehicle_section(turned)))));
 }
 
+// At the default tolerance Newton's iterations of the two, from axes that are turned, may end up to five newtons apart.
 TEST_F(ImportedVehicle, RunsAsTheBuiltCoachOnFlexibleTrack) {
-  const std::string text = flexible_track + rough_track + "[integration]\nduration = 0.04\n";
+  const std::string text = flexible_track + rough_track + "[integration]\nduration = 0.04\ntolerance = 1e-7\n";
   write(free_coach(), turned);
   expect_same(difference(run(scene(text)), run(scene(text + vehicle_section(turned)))));
 }

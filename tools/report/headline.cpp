@@ -15,6 +15,9 @@ void raise(Extreme& extreme, double value, double time, const std::string& where
   if (!extreme.found() || value > extreme.value) extreme = {value, time, where};
 }
 
+/// Behind the first wheelset; 0 where an older file does not say.
+double offset(const std::vector<double>& offsets, std::size_t i) { return i < offsets.size() ? offsets[i] : 0.0; }
+
 /// Of all nodes and steps, where the run has followed them.
 void add_deck_extremes(const ResultHeader& header, const RunSummary& summary, Headline& headline) {
   if (summary.deck.empty()) return;
@@ -49,9 +52,15 @@ std::string uncovered_queries(const RunSummary& summary) {
       100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
 }
 
-std::string_view steps_of_extremes(const RunSummary& summary) {
-  return summary.wheel_extremes.largest_Q.found() ? "the recorded steps; Q, Y/Q and unloading of all steps"
-                                                  : "the recorded steps";
+std::string extent_of_extremes(const ResultHeader& header, const RunSummary& summary) {
+  std::string text = "the recorded steps";
+  if (summary.wheel_extremes.largest_Q.found()) text += "; Q, Y/Q and unloading of all steps";
+  if (header.judged.empty()) return text;
+  constexpr double far = 1e5;  // m: beyond is no place on the line
+  text += "; wheels and car bodies";
+  if (header.judged[0] > -far) text += fmt::format(" from x = {:g} m", header.judged[0]);
+  if (header.judged[1] < far) text += fmt::format(" to x = {:g} m", header.judged[1]);
+  return text;
 }
 
 std::string wheel_name(std::size_t wheel) {
@@ -73,6 +82,7 @@ HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(heade
 void HeadlineCollector::add_sliding_means(const StepRecord& step) {
   for (std::size_t i = 0; i < step.wheels.size(); ++i) {
     const WheelRecord& wheel = step.wheels[i];
+    if (!is_judged(header_, step.position + offset(header_.wheel_x, i))) continue;
     if (wheel.Q > 0.0) {
       const auto mean = quotient_[i].add(step.position, wheel.Y / wheel.Q);
       if (mean) raise(headline_.derailment_2m, std::abs(*mean), step.time, wheel_names_[i]);
@@ -92,11 +102,13 @@ void HeadlineCollector::add(const StepRecord& step) {
   headline_.simulated_time = step.time;
   for (std::size_t i = 0; i < step.wheels.size(); ++i) {
     const WheelRecord& wheel = step.wheels[i];
+    if (!is_judged(header_, step.position + offset(header_.wheel_x, i))) continue;
     recorded_.add(step.time, static_cast<int>(i), wheel.Y, wheel.Q, header_.static_wheel_load[i]);
   }
   add_sliding_means(step);
   for (std::size_t i = 0; i < step.bodies.size(); ++i) {
     if (!is_car_body(header_.body_names[i])) continue;
+    if (!is_judged(header_, step.position + offset(header_.body_x, i))) continue;
     const std::string vehicle = vehicle_of(header_.body_names[i]);
     raise(headline_.car_body_vertical, std::abs(step.bodies[i].acceleration[z_dof]), step.time, vehicle);
     raise(headline_.car_body_lateral, std::abs(step.bodies[i].acceleration[y_dof]), step.time, vehicle);
@@ -120,6 +132,7 @@ Headline HeadlineCollector::result(const RunSummary& summary) const {
   result.smallest_Q = of_wheels(&WheelExtremes::smallest_Q);
   result.derailment = of_wheels(&WheelExtremes::derailment);
   result.unloading = of_wheels(&WheelExtremes::unloading);
+  result.extent = extent_of_extremes(header_, summary);
   add_deck_extremes(header_, summary, result);
   result.distance = last_position_ - first_position_;
   if (sparse_) result.derailment_2m = result.track_shift_2m = {};

@@ -20,6 +20,7 @@ struct Extreme {
 
 /// Headline numbers of a run. Maxima without filter or percentile, raw but for the sliding means over 2 m of way, over
 /// the recorded steps; Q, Y/Q and unloading over all steps (RunSummary::wheel_extremes) where the summary has them.
+/// Wheels and car bodies on the judged stretch, decks throughout.
 struct Headline {
   Extreme deck_acceleration;      ///< |vertical| of nodes named deck… [m/s²]
   Extreme deck_displacement;      ///< |vertical| of nodes named deck… [m]
@@ -30,6 +31,7 @@ struct Headline {
   Extreme track_shift_2m;         ///< |mean of ΣY over 2 m| of a wheelset [N]
   Extreme unloading;              ///< (Q0 - Q)/Q0 of a wheel; 1 is lift-off [-]
   Extreme largest_Q, smallest_Q;  ///< [N]
+  std::string extent;             ///< of what these are the extremes: extent_of_extremes()
   double simulated_time = 0.0;    ///< of the last record [s]
   double distance = 0.0;          ///< run by the train [m]
   /// Share of contact queries that the table alone answered [-]; 0 where there was no query.
@@ -66,8 +68,8 @@ class HeadlineCollector {
 /// A warning where a table served less than half of the queries: it makes a run slow, not wrong. Else empty.
 [[nodiscard]] std::string uncovered_queries(const RunSummary& summary);
 
-/// Which steps the headline's values are of, in words.
-[[nodiscard]] std::string_view steps_of_extremes(const RunSummary& summary);
+/// Which steps the headline's values are of, and which stretch of the line, in words.
+[[nodiscard]] std::string extent_of_extremes(const ResultHeader& header, const RunSummary& summary);
 /// "wheelset 3 left" for a wheel's index in StepRecord::wheels.
 [[nodiscard]] std::string wheel_name(std::size_t wheel);
 /// Car bodies are named "<vehicle>/car-body".

@@ -75,7 +75,7 @@ std::string headline_text(const Headline& headline, const RunSummary& summary) {
   line(text, "wheel unloading", headline.unloading, 100.0, "%");
   line(text, "largest Q", headline.largest_Q, 1e-3, "kN");
   line(text, "smallest Q", headline.smallest_Q, 1e-3, "kN");
-  if (!text.empty()) text = fmt::format("Largest values of {}:\n", steps_of_extremes(summary)) + text;
+  if (!text.empty()) text = fmt::format("Largest values of {}:\n", headline.extent) + text;
   if (summary.contact_queries > 0) {
     fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
                    summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
@@ -127,6 +127,7 @@ nlohmann::ordered_json headline_json(const Headline& headline, const RunSummary&
   member(json, "max_wheel_unloading", headline.unloading);
   member(json, "max_Q", headline.largest_Q);
   member(json, "min_Q", headline.smallest_Q);
+  if (!headline.extent.empty()) json["extremes_of"] = headline.extent;
   json["simulated_time"] = headline.simulated_time;
   json["distance"] = headline.distance;
   json["contact_mode"] = summary.contact_mode;

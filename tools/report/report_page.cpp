@@ -44,7 +44,7 @@ std::string program_tiles(const Headline& headline, const RunSummary& summary) {
   return html.empty() ? "" : fmt::format("<dl class=\"tiles\">{}</dl>", html);
 }
 
-std::string tiles(const Headline& headline, const RunSummary& summary) {
+std::string tiles(const Headline& headline) {
   std::string html = "<dl class=\"tiles\">";
   html += tile("Deck acceleration", headline.deck_acceleration, 1.0, "m/s²");
   html += tile("Deck displacement", headline.deck_displacement, 1e3, "mm");
@@ -56,8 +56,8 @@ std::string tiles(const Headline& headline, const RunSummary& summary) {
   html += tile("Smallest Q", headline.smallest_Q, 1e-3, "kN");
   html += tile("Y/Q, mean over 2 m", headline.derailment_2m, 1.0, "");
   html += tile("ΣY, mean over 2 m", headline.track_shift_2m, 1e-3, "kN");
-  return html + fmt::format("</dl><p class=\"lead\">Largest values of {}, unfiltered but for the means.</p>",
-                            steps_of_extremes(summary));
+  return html +
+         fmt::format("</dl><p class=\"lead\">Largest values of {}, unfiltered but for the means.</p>", headline.extent);
 }
 
 struct Share {
@@ -169,7 +169,7 @@ std::string resolution_text(const HistoryStore& histories) {
 std::string report_page(const RunResults& results) {
   const Headline headline = headline_of(results);
   RunCharts charts({&results, 1}, {results.header.scene_name});
-  std::string body = heading(results, headline) + tiles(headline, results.summary) + train_section(results);
+  std::string body = heading(results, headline) + tiles(headline) + train_section(results);
   body += html_chart_section("Running safety", charts.running_safety());
   body += html_chart_section("Wheel forces", charts.wheel_forces());
   body += html_section("Wheel and rail", contact_figure(results));

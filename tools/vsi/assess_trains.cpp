@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "assess_stages.hpp"
-#include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
@@ -44,18 +43,29 @@ SceneParameters with_train(const SceneParameters& scene, const std::string& name
   result.train.consist = std::move(entries);
   result.name += ", " + name;
   result.text += fmt::format("\n# vsi assess: train \"{}\"", name);
-  return in_file(fmt::format("--train, assessment.trains: '{}'", name), [&] {
-    result.validate();
-    return std::move(result);
-  });
+  result.validate();
+  return result;
 }
 
-AssessTrain find_train(const SceneParameters& scene, const std::string& name, const fs::path& folder) {
-  if (std::vector<ConsistEntry> entries = vehicles_of(name, folder); !entries.empty()) {
+/// @throws InputError that names the train, not the line of the scene's own one
+AssessTrain train_of_vehicles(const SceneParameters& scene, const std::string& name,
+                              std::vector<ConsistEntry> entries) {
+  try {
     AssessTrain train{name, {}, with_train(scene, name, std::move(entries))};
     train.axles = axle_train_of(*train.scene);
     train.axles.name = name;
     return train;
+  } catch (const InputError& wrong) {
+    constexpr std::string_view of_scene = "scene: ";
+    std::string_view message = wrong.what();
+    if (message.starts_with(of_scene)) message.remove_prefix(of_scene.size());
+    throw InputError(fmt::format("--train, assessment.trains: '{}': {}", name, message));
+  }
+}
+
+AssessTrain find_train(const SceneParameters& scene, const std::string& name, const fs::path& folder) {
+  if (std::vector<ConsistEntry> entries = vehicles_of(name, folder); !entries.empty()) {
+    return train_of_vehicles(scene, name, std::move(entries));
   }
   constexpr double any_deck = 1.0;  // static load models alone depend on it
   AssessTrain train{name, find_axle_train(name.ends_with(".csv") ? (folder / name).string() : name, any_deck), {}};
