@@ -26,7 +26,13 @@ constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
 constexpr double small = 1 << 20;    // bytes: vectors that the allocator keeps when they are freed, in pieces
 constexpr double most_pieces = 8e6;  // bytes: of what the start has freed, where it is not used again
 constexpr double allocator = 1.03;   // of what is asked of it: ends of pages and pieces
-constexpr double program = 4.6e6;    // bytes of program and libraries (HDF5) that a run is the first to touch, at most
+// Bytes of program and libraries that a run is the first to touch, at most; less where a table has been read by HDF5.
+constexpr double program_without_hdf5 = 4.6e6, program_with_hdf5 = 1.5e6;
+
+/// Whether making the model reads a file of HDF5.
+bool reads_tables(const ContactParameters& contact) {
+  return contact.normal == NormalContact::hertz && (contact.mode == ContactMode::table || contact.creep_law == "table");
+}
 
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {
@@ -40,6 +46,7 @@ double train_bytes(const VsiModel& model) {
 
 PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration) {
   return_freed_memory();
+  const double program = reads_tables(scene.contact) ? program_with_hdf5 : program_without_hdf5;
   const double built = resident_memory() + program;
   const double setup_peak = peak_resident_memory();  // of reading tables, before the run touches what `program` is
   PlannedMemory plan;
@@ -78,7 +85,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const double pieces = number * n < small ? std::min(most_pieces, number * n * start_vectors) : 0.0;
   const double common = built + train;
   const double undivided = common + pieces + vectors + operators + while_made;
-  plan.undivided = allocator * std::max({setup_peak, common + start, undivided});
+  plan.undivided = allocator * std::max({setup_peak + program, common + start, undivided});
   plan.most = plan.undivided + allocator * (most_operators - 1) * (operators + one);
   plan.step_reads = 2.0 * static_cast<double>(response.factor().bytes()) + static_cast<double>(response.load_bytes());
   plan.entries_per_dof = m.low_entries / static_cast<double>(active.count);
