@@ -47,8 +47,7 @@ double train_bytes(const VsiModel& model) {
 PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration) {
   return_freed_memory();
   const double program = reads_tables(scene.contact) ? program_with_hdf5 : program_without_hdf5;
-  const double built = resident_memory() + program;
-  const double setup_peak = peak_resident_memory();  // of reading tables, before the run touches what `program` is
+  const double built = resident_memory() + program, peak = peak_resident_memory() + program;
   PlannedMemory plan;
   const IntegrationParameters& integration = scene.integration;
   const double steps = duration / integration.time_step;
@@ -66,7 +65,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   results.memory += number * envelope;
   plan.results = results.file;
   const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);
-  plan.undivided = allocator * std::max(setup_peak, built + train + operators + results.memory);
+  plan.undivided = allocator * std::max(peak, built + train + operators + results.memory);
   plan.most = plan.undivided + allocator * (most_operators - 1) * operators;
   if (!model.structure) return plan;
 
@@ -85,7 +84,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const double pieces = number * n < small ? std::min(most_pieces, number * n * start_vectors) : 0.0;
   const double common = built + train;
   const double undivided = common + pieces + vectors + operators + while_made;
-  plan.undivided = allocator * std::max({setup_peak + program, common + start, undivided});
+  plan.undivided = allocator * std::max({peak, common + start, undivided});
   plan.most = plan.undivided + allocator * (most_operators - 1) * (operators + one);
   plan.step_reads = 2.0 * static_cast<double>(response.factor().bytes()) + static_cast<double>(response.load_bytes());
   plan.entries_per_dof = m.low_entries / static_cast<double>(active.count);
