@@ -150,7 +150,7 @@ ResultHeader read_header(const ArrayFileReader& in, FieldReader& fields) {
                       "an even number: left and right of each wheelset");
   }
   if (const std::vector<double>& ends = header.judged;
-      !ends.empty() && !(ends.size() == 2 && ends.front() < ends.back())) {
+      !ends.empty() && !(ends.size() == 2 && ends.front() <= ends.back())) {
     throw input_error(fmt::format("{}: header/judged", in.file().string()), fmt::format("{}", fmt::join(ends, ", ")),
                       "begin and end of a stretch");
   }

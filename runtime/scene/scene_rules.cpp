@@ -275,10 +275,11 @@ Broken supports_under_moving_ground(Scene scene) {
 
 Broken way_that_is_judged(Scene scene) {
   const AssessmentParameters& assessment = scene.assessment;
-  const double begin = assessment.begin.value_or(scene.train.start);
+  const double faded_in = scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0);
+  const double begin = assessment.begin.value_or(faded_in);
   if (!assessment.end || *assessment.end > begin) return {};
   return Violation{"assessment.end", fmt::format("{:g} m, and judging begins at {:g} m", *assessment.end, begin),
-                   "more than assessment.begin, or train.start without it"};
+                   "more than assessment.begin; without it more than train.start + irregularity.fade_in"};
 }
 
 }  // namespace

@@ -174,6 +174,9 @@ TEST_F(Scene, PartsThatDoNotFitTogetherAreRejected) {
   EXPECT_TRUE(message("[train]\n").starts_with("scene.toml: contact.mode: found \"table\" without"));
   EXPECT_TRUE(message(std::string(online) + "[track]\nkind = \"rigid\"\n[[bridge]]\n")
                   .starts_with("scene.toml:4: track.kind: found \"rigid\" and a [[bridge]]"));
+  EXPECT_TRUE(message(std::string(online) + "[irregularity]\nspectrum = \"german-low\"\nfade_in = 100\n"
+                                            "[assessment]\nend = 50\n")
+                  .starts_with("scene.toml:7: assessment.end: found 50 m, and judging begins at 100 m"));
 }
 
 TEST_F(Scene, TomlErrorsNameTheLine) {
