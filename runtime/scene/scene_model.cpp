@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/judged_stretch.hpp"
 #include "railtab/runtime/scene/scene_contact.hpp"
 #include "railtab/runtime/scene/scene_loads.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
@@ -28,18 +29,6 @@ double spans_length(const SceneParameters& scene) {
 }
 
 // Along the track's plane to the right, and normal to it.
-// From assessment.begin, or where the track has faded in, to assessment.end; a stretch of no length where an
-// assessment's own fade-in is longer than that.
-std::vector<double> judged_stretch(const SceneParameters& scene) {
-  constexpr double beyond_the_line = 1e6;  // m: results hold finite numbers
-  const double fade_in = scene.spectrum ? scene.spectrum->fade_in : 0.0;
-  const std::optional<double>&begin = scene.assessment.begin, &end = scene.assessment.end;
-  if (!begin && !end && !(fade_in > 0.0)) return {};
-  const double faded_in = fade_in > 0.0 ? scene.train.start + fade_in : -beyond_the_line;
-  const double first = begin.value_or(faded_in);
-  return {first, std::max(first, end.value_or(beyond_the_line))};
-}
-
 double lateral_acceleration(const TrainParameters& train) {
   const double sine = train.cant_sine();
   return train.lateral_acceleration * std::sqrt(1.0 - sine * sine) - standard_gravity * sine;

@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
+#include "railtab/runtime/scene/judged_stretch.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 
 namespace railtab::scene {
@@ -274,11 +275,10 @@ Broken supports_under_moving_ground(Scene scene) {
 }
 
 Broken way_that_is_judged(Scene scene) {
-  const AssessmentParameters& assessment = scene.assessment;
-  const double faded_in = scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0);
-  const double begin = assessment.begin.value_or(faded_in);
-  if (!assessment.end || *assessment.end > begin) return {};
-  return Violation{"assessment.end", fmt::format("{:g} m, and judging begins at {:g} m", *assessment.end, begin),
+  const std::optional<double>& end = scene.assessment.end;
+  const double begin = judging_begin(scene);
+  if (!end || *end > begin) return {};
+  return Violation{"assessment.end", fmt::format("{:g} m, and judging begins at {:g} m", *end, begin),
                    "more than assessment.begin; without it more than train.start + irregularity.fade_in"};
 }
 

@@ -13,6 +13,7 @@
 #include "railtab/runtime/line/irregularity_spectrum.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/scene/judged_stretch.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
 
 namespace railtab::vsi {
@@ -96,7 +97,7 @@ std::function<double(double, double)> track_twist_of(const SceneParameters& scen
 assess::RunWindow judged_window(const SceneParameters& scene) {
   assess::RunWindow window;
   window.track_twist = track_twist_of(scene);
-  window.begin = scene.assessment.begin.value_or(scene.train.start + (scene.spectrum ? scene.spectrum->fade_in : 0.0));
+  window.begin = judging_begin(scene);
   if (scene.assessment.end) window.end = *scene.assessment.end;
   window.section_length = scene.assessment.section_length;
   window.section_step = scene.assessment.section_step;
