@@ -5,7 +5,8 @@
 namespace railtab {
 
 // Eigen's dense decompositions as functions. Each takes seconds to compile; here each is compiled once. For set-up
-// code: matrices are copied and results allocated.
+// code: matrices are copied and results allocated. Where the search for eigenvalues does not converge, as with a matrix
+// that has NaN, the result is NaN.
 
 /// Eigenvalues in increasing order; eigenvectors of unit length, one per column.
 struct SymmetricSpectrum {
@@ -28,18 +29,20 @@ struct GeneralSpectrum {
 /// Inverse by LU decomposition with partial pivoting, of a regular matrix.
 [[nodiscard]] Eigen::MatrixXd dense_inverse(const Eigen::MatrixXd& A);
 
+/// X with A X = B by LU decomposition with partial pivoting, A regular.
+[[nodiscard]] Eigen::MatrixXd dense_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
 /// X with A X = B, A symmetric and semidefinite (LDLᵀ).
 [[nodiscard]] Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-/// The shortest x that minimises |A x - b| for each column b of B, whatever the rank of A (complete orthogonal
-/// decomposition).
-[[nodiscard]] Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-
-/// X that minimises |A X - B|, the columns of A being independent (QR).
+/// The X of shortest columns that minimises |A X - B|, whatever the rank of A (complete orthogonal decomposition).
 [[nodiscard]] Eigen::MatrixXd least_squares_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
 /// An orthonormal basis of the space of the columns of A, which are independent; as many columns.
 [[nodiscard]] Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& A);
+
+/// An orthonormal basis of what is orthogonal to the columns of A, which are independent.
+[[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& A);
 
 /// M = L Lᵀ, M symmetric and positive definite.
 class CholeskyFactor {

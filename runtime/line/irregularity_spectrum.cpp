@@ -92,11 +92,12 @@ void SpectrumParameters::validate() const {
                       fmt::format("{} m with irregularity.shortest_wave = {} m", longest, shortest),
                       "more than the shortest");
   }
-  require_between("irregularity.fade_in", fade_in, 0.0, 1e4, "m");
+  require_between("irregularity.fade_in", fade_length(), 0.0, 1e4, "m");
   require_positive("irregularity: half the distance of the rail heads", half_base, "m");
 }
 
-Irregularity random_irregularity(const SpectrumParameters& parameters, double from, double to, double faded_from) {
+Irregularity random_irregularity(const SpectrumParameters& parameters, double from, double to,
+                                 std::optional<double> fade_from) {
   parameters.validate();
   const double low = 2.0 * std::numbers::pi / parameters.longest, high = 2.0 * std::numbers::pi / parameters.shortest;
   const int bands = std::max(1, static_cast<int>(std::ceil((high - low) / band)));
@@ -135,8 +136,8 @@ Irregularity random_irregularity(const SpectrumParameters& parameters, double fr
     rails[1][i] = sum[0][i] - tilt;
     rails[2][i] = sum[1][i] + 0.5 * sum[3][i];
     rails[3][i] = sum[0][i] + tilt;
-    if (!(parameters.fade_in > 0.0)) continue;
-    for (std::vector<double>& values : rails) values[i] *= smooth_step((x[i] - faded_from) / parameters.fade_in);
+    if (!fade_from || !(parameters.fade_length() > 0.0)) continue;
+    for (std::vector<double>& values : rails) values[i] *= smooth_step((x[i] - *fade_from) / parameters.fade_length());
   }
   return Irregularity(std::move(x), std::move(rails[0]), std::move(rails[1]), std::move(rails[2]), std::move(rails[3]));
 }

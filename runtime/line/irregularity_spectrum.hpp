@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,11 @@ struct SpectrumParameters {
   int seed = 1;                     ///< of the random phases
   double shortest = 3.0;            ///< wavelength [m]; EN 13848-1, range D1
   double longest = 70.0;            ///< wavelength [m]; EN 13848-1, end of range D2
-  double fade_in = 0.0;  ///< length over which the deviations rise from zero [m]; 0: they are there from the beginning
+  std::optional<double>
+      fade_in;              ///< length over which deviations rise from zero [m]; without a number the longest wave
   double half_base = 0.75;  ///< half the distance of the rail heads [m]
-  void validate() const;    ///< @throws InputError
+  [[nodiscard]] double fade_length() const noexcept { return fade_in.value_or(longest); }
+  void validate() const;  ///< @throws InputError
 };
 
 /// german-low, german-high [ERRI B 176]; fra-4, fra-5, fra-6: classes of the Federal Railroad Administration in the
@@ -34,10 +37,10 @@ struct SpectrumParameters {
 /// Deviations of both rails from `from` to `to` [m]: r(x) = Σ √(2 S(Ω_n) ΔΩ) cos(Ω_n x + φ_n) for each of the four
 /// quantities, with equally wide bands ΔΩ, a wave number at random in each of them (so that the track does not repeat
 /// itself) and random phases; vertical ± half_base × cross level, alignment ± gauge / 2. The same seed gives the same
-/// deviation at a position, whatever the ends are. With `fade_in` it is zero up to `faded_from` [m] and rises from
-/// there.
+/// deviation at a position, whatever the ends are. With `fade_from` [m] it is zero up to there and rises over
+/// fade_length() by s²(3 − 2s).
 /// @throws InputError as validate()
 [[nodiscard]] Irregularity random_irregularity(const SpectrumParameters& parameters, double from, double to,
-                                               double faded_from = 0.0);
+                                               std::optional<double> fade_from = std::nullopt);
 
 }  // namespace railtab

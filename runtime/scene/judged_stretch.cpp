@@ -6,7 +6,7 @@ namespace railtab {
 
 namespace {
 
-double fade_in(const SceneParameters& scene) { return scene.spectrum ? scene.spectrum->fade_in : 0.0; }
+double fade_in(const SceneParameters& scene) { return scene.spectrum ? scene.spectrum->fade_length() : 0.0; }
 
 }  // namespace
 

@@ -45,8 +45,8 @@ std::vector<KeyRow> track_quality_keys() {
                  {"irregularity.longest_wave", "m", "shortest, longest wavelength",
                   NumberKey{of_spectrum<&SpectrumParameters::longest>, {0.1, 500.0}}},
                  {"irregularity.fade_in", "m",
-                  "length from train.start over which it rises from zero; 0 in an assessment: longest_wave",
-                  NumberKey{of_spectrum<&SpectrumParameters::fade_in>, {0.0, 1e4}}}})});
+                  "length from train.start over which it rises from zero; longest_wave by default",
+                  OptionalNumberKey{of_spectrum<&SpectrumParameters::fade_in>, {0.0, 1e4}}}})});
 }
 
 std::vector<KeyRow> deviation_keys() {

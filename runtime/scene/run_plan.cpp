@@ -113,7 +113,8 @@ void describe_structure(const SceneParameters& scene, const VsiModel& model, Mod
 
 void describe_track(const SceneParameters& scene, const VsiModel& model, ModelParts& plan) {
   if (scene.spectrum) {
-    plan.built.push_back(fmt::format("random track: {}, seed {}", scene.spectrum->name, scene.spectrum->seed));
+    plan.built.push_back(fmt::format("random track: {}, seed {}, rising from zero over {:g} m", scene.spectrum->name,
+                                     scene.spectrum->seed, scene.spectrum->fade_length()));
   } else if (scene.irregularity) {
     plan.built.push_back(fmt::format("irregularity of {}, measured at x = {:.6g} to {:.6g} m",
                                      scene.irregularity->filename().string(), model.irregularity.begin(),

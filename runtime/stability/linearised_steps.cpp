@@ -1,6 +1,5 @@
 #include "railtab/runtime/stability/linearised_steps.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
@@ -77,7 +76,7 @@ void LinearisedSteps::advance(const LinearMotion& end) {
   take_slopes(end);
   load -= hht_.load_weight() * (damping_ * predicted_velocity + stiffness_ * predicted);
   const Eigen::MatrixXd increment =
-      effective_matrix(hht_, model_.vehicle.mass, damping_, stiffness_).partialPivLu().solve(load);
+      dense_solution(effective_matrix(hht_, model_.vehicle.mass, damping_, stiffness_), load);
   displacement_ = predicted + increment;
   velocity_ = predicted_velocity + hht_.velocity_rate() * increment;
   acceleration_ = hht_.acceleration_rate() * increment;

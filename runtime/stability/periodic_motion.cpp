@@ -1,6 +1,5 @@
 #include "railtab/runtime/stability/periodic_motion.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -74,7 +73,7 @@ std::optional<PeriodicMotion> Shooting::solve(const PeriodicMotion& guess, const
       is_new = true;
     }
     set_line(line.normal, matrix_);
-    const Eigen::VectorXd correction = -matrix_.partialPivLu().solve(*residual);
+    const Eigen::VectorXd correction = -dense_solution(matrix_, *residual);
     PeriodicMotion next = motion;
     next.start += correction.head(size()).cwiseProduct(flow_.unit());
     next.period.duration += correction[size()];
@@ -113,7 +112,7 @@ Eigen::VectorXcd Shooting::floquet_multipliers() const {
 BranchTangent Shooting::tangent(const BranchPoint& direction) const {
   Eigen::MatrixXd matrix = matrix_;
   set_line(direction, matrix);
-  const Eigen::VectorXd t = matrix.partialPivLu().solve(Eigen::VectorXd::Unit(size() + 2, size() + 1));
+  const Eigen::VectorXd t = dense_solution(matrix, Eigen::VectorXd::Unit(size() + 2, size() + 1));
   return {t.head(size()).cwiseProduct(flow_.unit()), t[size()], t[size() + 1]};
 }
 

@@ -145,7 +145,7 @@ std::vector<FreeMotion> in_words(const Matrix& free, const RigidPart& rigid, con
   if (free.cols() == 0) return result;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(free.rows(), k);
-    if ((free * least_norm_solution(free, unit) - unit).norm() > tolerance) continue;
+    if ((free * least_squares_solution(free, unit) - unit).norm() > tolerance) continue;
     const std::string name(motion_names[static_cast<std::size_t>(k)]);
     result.push_back({fmt::format("moves along {}{}", name, of_part), name + " of a support"});
   }
@@ -155,7 +155,7 @@ std::vector<FreeMotion> in_words(const Matrix& free, const RigidPart& rigid, con
     const Matrix turning = free.bottomRows(3);
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
     const Eigen::VectorXd wanted = axis;
-    const Eigen::VectorXd share = least_norm_solution(turning, wanted);
+    const Eigen::VectorXd share = least_squares_solution(turning, wanted);
     if ((turning * share - wanted).norm() > tolerance) continue;
     const Eigen::Vector3d shift = rigid.length * (free.topRows(3) * share);
     const auto i = static_cast<std::size_t>(k);

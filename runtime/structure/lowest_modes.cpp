@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -51,13 +51,12 @@ class BlockLanczos {
   bool ritz(Eigen::Index modes, double tolerance, ModalBasis& basis) const {
     const Eigen::Index known = size_ - added_;  // columns of the projection that are complete
     if (known == 0) return false;
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(projection_.topLeftCorner(known, known));
-    if (eigen.info() != Eigen::Success) return false;
-    const Eigen::Index positive = (eigen.eigenvalues().array() > 0.0).count();  // others are rounding of no mass
+    const SymmetricSpectrum spectrum = symmetric_spectrum(projection_.topLeftCorner(known, known));
+    const Eigen::Index positive = (spectrum.values.array() > 0.0).count();  // others are rounding of no mass
     const Eigen::Index count = std::min(modes, positive);
     if (count == 0) return false;
-    const Matrix vectors = eigen.eigenvectors().rightCols(count).rowwise().reverse();
-    const Eigen::VectorXd theta = eigen.eigenvalues().tail(count).reverse();
+    const Matrix vectors = spectrum.vectors.rightCols(count).rowwise().reverse();
+    const Eigen::VectorXd theta = spectrum.values.tail(count).reverse();
     const Matrix residual = projection_.block(known, 0, added_, known) * vectors;
     for (Eigen::Index k = 0; k < count; ++k) {
       if (!(std::isfinite(1.0 / theta[k]) && residual.col(k).norm() <= tolerance * theta[k])) {

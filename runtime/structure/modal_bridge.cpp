@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/fe/mode_files.hpp"
@@ -183,11 +182,9 @@ void add_other_motions(const ModalStructure& structure, const std::vector<Report
 Eigen::MatrixXd change_of_basis(const Eigen::MatrixXd& motions) {
   const Eigen::Index modes = motions.cols(), count = motions.rows();
   if (count == 0) return Eigen::MatrixXd::Identity(modes, modes);
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(motions.transpose()).householderQ();
   Eigen::MatrixXd T(modes, modes);
-  T.topRows(count) = motions;
-  T.bottomRows(modes - count) = Q.rightCols(modes - count).transpose();
-  return T.fullPivLu().inverse();
+  T << motions, orthogonal_complement(motions.transpose()).transpose();
+  return dense_inverse(T);
 }
 
 void append(const Eigen::MatrixXd& matrix, std::vector<Eigen::Triplet<double>>& entries) {

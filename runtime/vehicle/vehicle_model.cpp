@@ -153,7 +153,7 @@ StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& wei
 
   const Eigen::MatrixXd K = vehicle.stiffness(carried, carried);
   const Eigen::MatrixXd load = weight(carried, Eigen::all);
-  const Eigen::MatrixXd sag = least_norm_solution(K, load);
+  const Eigen::MatrixXd sag = least_squares_solution(K, load);
   const Eigen::MatrixXd residual = K * sag - load;
   for (Eigen::Index k = 0; k < weight.cols(); ++k) {
     if (residual.col(k).norm() <= 1e-6 * weight.col(k).norm()) continue;

@@ -1,8 +1,8 @@
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/index.hpp"
 
 namespace railtab {
@@ -113,7 +113,7 @@ void rest_on_rails(const ContactProblem& problem, ContactSolution& solution) {
     }
   }
   for (const RailCoupling& c : problem.rail) system(c.i / 2, c.j / 2) += 0.25 * c.compliance(1, 1);
-  const Eigen::VectorXd force = system.partialPivLu().solve(gap);
+  const Eigen::VectorXd force = dense_solution(system, gap);
   set_vertical_forces(force, solution);
 
   solution.displacement = problem.free;

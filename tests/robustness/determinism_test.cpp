@@ -26,7 +26,7 @@ class Determinism : public TablegenFixture {
     std::ofstream(folder_ / "scene.toml")
         << "[contact]\nmode = \"online\"\n[track]\nlength_before = 30.0\nlength_after = 15.0\n"
            "[[bridge]]\nlength = 10.0\nelements = 4\n[train]\nspeed = 50.0\nstart = 0.0\n[irregularity]\nspectrum = "
-           "\"german-low\"\nseed = 3\n[integration]\nduration = 0.05\n";
+           "\"german-low\"\nfade_in = 0\nseed = 3\n[integration]\nduration = 0.05\n";
   }
 
   /// Runs the command with this number of threads for OpenMP.

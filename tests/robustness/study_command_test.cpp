@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* scene =
     "[train]\nspeed_kmh = 100\n[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n"
-    "[irregularity]\nspectrum = \"german-low\"\n[integration]\nduration = 0.25\n";
+    "[irregularity]\nspectrum = \"german-low\"\nfade_in = 0\n[integration]\nduration = 0.25\n";
 
 constexpr const char* speeds = "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nrange = \"100:200:50\"\n";
 constexpr const char* friction =

@@ -82,7 +82,7 @@ TEST_P(KilledRun, ResumesToTheLastBit) {
   write("scene.toml", std::string("[train]\nspeed = 30.0\nstart = -2.0\n[contact]\nnormal = \"rigid\"\n"
                                   "[track]\nlength_before = 40.0\nlength_after = 200.0\n"
                                   "[[bridge]]\nlength = 12.0\nelements = 12\ncount = 3\n"
-                                  "[irregularity]\nspectrum = \"german-low\"\n"
+                                  "[irregularity]\nspectrum = \"german-low\"\nfade_in = 0\n"
                                   "[integration]\nduration = 3.0\n[output]\nevery = 7\n[structure]\nreduction = \"") +
                           GetParam() + "\"\nwindow_ahead = 8.0\nwindow_behind = 8.0\n");
   const auto begin = std::chrono::steady_clock::now();
@@ -110,6 +110,7 @@ mode = "online"
 kind = "rigid"
 [irregularity]
 spectrum = "german-low"
+fade_in = 0
 [integration]
 duration = 0.3
 [output]

@@ -48,13 +48,14 @@ TEST(DenseSolvers, GeneralisedEigenvaluesMakeThePencilSingular) {
 TEST(DenseSolvers, InverseAndSolutions) {
   EXPECT_LT((dense_inverse(A) * A - MatrixXd::Identity(3, 3)).norm(), rounding);
   EXPECT_LT((K * symmetric_solution(K, A) - A).norm(), rounding);
+  EXPECT_LT((A * dense_solution(A, K) - K).norm(), rounding);
   const MatrixXd x = least_squares_solution(tall, b);
   EXPECT_LT((tall.transpose() * (tall * x - b)).norm(), rounding);
 }
 
-TEST(DenseSolvers, LeastNormSolutionOfASingularMatrix) {
+TEST(DenseSolvers, LeastSquaresSolutionOfASingularMatrixIsTheShortest) {
   MatrixXd singular = tall * tall.transpose();
-  const VectorXd x = least_norm_solution(singular, b);
+  const VectorXd x = least_squares_solution(singular, b);
   const VectorXd residual = singular * x - b;
   EXPECT_LT((singular.transpose() * residual).norm(), rounding);
   const VectorXd null = symmetric_spectrum(singular).vectors.col(0);
@@ -66,6 +67,14 @@ TEST(DenseSolvers, OrthonormalBasisSpansTheColumns) {
   ASSERT_EQ(Q.cols(), 2);
   EXPECT_LT((Q.transpose() * Q - MatrixXd::Identity(2, 2)).norm(), rounding);
   EXPECT_LT((Q * (Q.transpose() * tall) - tall).norm(), rounding);
+}
+
+TEST(DenseSolvers, OrthogonalComplement) {
+  const MatrixXd Q = orthogonal_complement(tall);
+  ASSERT_EQ(Q.cols(), 1);
+  EXPECT_NEAR(Q.norm(), 1.0, rounding);
+  EXPECT_LT((Q.transpose() * tall).norm(), rounding);
+  EXPECT_EQ(orthogonal_complement(A).cols(), 0);
 }
 
 TEST(DenseSolvers, CholeskyFactor) {

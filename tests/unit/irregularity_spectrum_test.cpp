@@ -75,11 +75,8 @@ TEST(RandomTrack, DependsOnSeedAndPositionAlone) {
 }
 
 TEST(RandomTrack, RisesFromZeroWhereItFadesIn) {
-  const SpectrumParameters p;
-  SpectrumParameters fading = p;
-  fading.fade_in = 70.0;
-  const Irregularity full = random_irregularity(p, -50.0, 300.0),
-                     faded = random_irregularity(fading, -50.0, 300.0, 20.0);
+  const SpectrumParameters p{.fade_in = 70.0};
+  const Irregularity full = random_irregularity(p, -50.0, 300.0), faded = random_irregularity(p, -50.0, 300.0, 20.0);
   double largest = 0.0;
   for (double x = -40.0; x < 290.0; x += 0.37) {
     const RailDeviation a = full.at(RailSide::right, x), b = faded.at(RailSide::right, x);

@@ -21,12 +21,12 @@ struct Variant {
 class SharedSetUpOf : public testing::InFolder {
  protected:
   [[nodiscard]] SceneParameters scene(const Variant& run) const {
-    return read_scene(write("scene.toml", "[train]\nspeed = " + run.speed +
-                                              "\nstart = -4.0\n[contact]\nmode = \"online\"\nwheel = \"" + run.wheel +
-                                              "\"\n[track]\nlength_before = 36.0\nlength_after = 12.0\nrail.mass = " +
-                                              run.rail_mass + "\n[[bridge]]\nlength = 12.0\n" + run.window +
-                                              "[irregularity]\nspectrum = \"german-low\"\nseed = " + run.seed +
-                                              "\n[integration]\nduration = 0.02\ntime_step = " + run.time_step + "\n"));
+    return read_scene(write(
+        "scene.toml", "[train]\nspeed = " + run.speed + "\nstart = -4.0\n[contact]\nmode = \"online\"\nwheel = \"" +
+                          run.wheel + "\"\n[track]\nlength_before = 36.0\nlength_after = 12.0\nrail.mass = " +
+                          run.rail_mass + "\n[[bridge]]\nlength = 12.0\n" + run.window +
+                          "[irregularity]\nspectrum = \"german-low\"\nfade_in = 0\nseed = " + run.seed +
+                          "\n[integration]\nduration = 0.02\ntime_step = " + run.time_step + "\n"));
   }
 };
 

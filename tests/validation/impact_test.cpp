@@ -268,7 +268,7 @@ TEST(Impact, WithoutOneTheRuleIsThatOfTheEnd) {
   scene.contact.mode = ContactMode::online;
   scene.track.length_before = 30.0;
   scene.track.length_after = 20.0;
-  scene.spectrum = SpectrumParameters{};
+  scene.spectrum = SpectrumParameters{.fade_in = 0.0};
   scene.integration.time_step = 1e-3;
   scene.integration.duration = 0.03;
   const VsiModel model = build_model(scene);

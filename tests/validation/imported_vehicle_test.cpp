@@ -18,7 +18,7 @@ using testing::free_coach;
 using testing::FreeCoach;
 using testing::Written;
 
-const std::string rough_track = "[irregularity]\nspectrum = \"german-low\"\n";
+const std::string rough_track = "[irregularity]\nspectrum = \"german-low\"\nfade_in = 0\n";
 const std::string rigid_track = "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n[track]\nkind = \"rigid\"\n";
 const std::string flexible_track =
     "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n[track]\nlength_before = 27.0\nlength_after = 9.0\n";

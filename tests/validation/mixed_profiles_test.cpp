@@ -21,12 +21,13 @@ class MixedProfiles : public testing::InFolder {
   // On rigid rails nothing but the track excites vehicles that no coupler joins.
   [[nodiscard]] SceneParameters scene(const std::string& train, const std::string& contact,
                                       const std::string& profiles = "") const {
-    std::ofstream(folder_ / "scene.toml") << "[train]\nspeed = 30.0\n"
-                                          << train << "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n"
-                                          << contact << profiles
-                                          << "[track]\nkind = \"rigid\"\n[irregularity]\nspectrum = \"german-low\"\n"
-                                             "[integration]\ntime_step = 1e-3\nduration = 0.3\ntolerance = 1e-10\n"
-                                             "contact_force = \"endpoint\"\n";
+    std::ofstream(folder_ / "scene.toml")
+        << "[train]\nspeed = 30.0\n"
+        << train << "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n"
+        << contact << profiles
+        << "[track]\nkind = \"rigid\"\n[irregularity]\nspectrum = \"german-low\"\nfade_in = 0\n"
+           "[integration]\ntime_step = 1e-3\nduration = 0.3\ntolerance = 1e-10\n"
+           "contact_force = \"endpoint\"\n";
     return read_scene(folder_ / "scene.toml");
   }
 

@@ -22,7 +22,7 @@ SceneParameters coach_on_spans(Reduction reduction) {
   span.elements = 16;
   span.Iy = 2.0;
   scene.spans.assign(4, span);
-  scene.spectrum = SpectrumParameters{};
+  scene.spectrum = SpectrumParameters{.fade_in = 0.0};
   scene.integration.time_step = 1e-3;
   scene.reduction.kind = reduction;
   return scene;

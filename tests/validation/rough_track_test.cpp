@@ -27,6 +27,7 @@ TEST(RoughTrack, StepsAreDividedForImpactsOnly) {
   scene.spans.clear();
   scene.spectrum.emplace();
   scene.spectrum->name = "german-low";
+  scene.spectrum->fade_in = 0.0;
   scene.integration.time_step = 1e-3;
   scene.integration.duration = 0.3;
   const auto run = [&](std::optional<ContactForceRule> rule) {

@@ -138,6 +138,7 @@ TEST(StartTransient, WheelsetsBeginAlongRoughRails) {
   scene.integration.duration = 1.0;
   scene.spectrum.emplace();
   scene.spectrum->name = "german-high";
+  scene.spectrum->fade_in = 0.0;
   const std::vector<StepRecord> steps = run(scene);
   const double load = static_load(steps);
   double first = 0.0, later = 0.0;  // largest change of Q

@@ -1,8 +1,9 @@
 #include "drawn_line.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 namespace railtab::vtk {
 namespace {
@@ -44,7 +45,7 @@ Eigen::MatrixXd bending(const std::vector<Knot>& knots) {
     B(i, i) = -6.0 / before - 6.0 / after;
     B(i, i + 1) = 6.0 / after;
   }
-  return A.partialPivLu().solve(B);
+  return dense_solution(A, B);
 }
 
 }  // namespace

@@ -26,13 +26,7 @@ using assess::RunAssessment;
 void fade_in(ContactPlan& plan) {
   SceneParameters& scene = plan.scene;
   if (!scene.spectrum) return;
-  if (!(scene.spectrum->fade_in > 0.0)) {
-    scene.spectrum->fade_in = scene.spectrum->longest;
-    plan.notes.push_back(
-        fmt::format("The random track rises from zero over {:g} m, its longest wave (irregularity.fade_in).",
-                    scene.spectrum->fade_in));
-  }
-  const double shortage = scene.train.start + scene.spectrum->fade_in;
+  const double shortage = scene.train.start + scene.spectrum->fade_length();
   if (!(shortage > 0.0)) return;
   scene.train.start -= shortage;
   scene.track.length_before += shortage;
@@ -215,7 +209,7 @@ ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::Dec
                                  made.train.start, made.track.length_before, made.track.length_after);
   if (made.output.deck_envelope)
     plan.scene.text += fmt::format(", output.deck_cut_off = {:.9g}", made.output.deck_cut_off);
-  if (made.spectrum) plan.scene.text += fmt::format(", irregularity.fade_in = {:.9g}", made.spectrum->fade_in);
+  if (made.spectrum) plan.scene.text += fmt::format(", irregularity.fade_in = {:.9g}", made.spectrum->fade_length());
   plan.runs = sweep_runs(plan.scene, speeds, seeds);
   return plan;
 }

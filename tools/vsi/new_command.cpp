@@ -11,6 +11,7 @@
 #include "railtab/runtime/base/in_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/line/irregularity_spectrum.hpp"
 #include "railtab/runtime/vehicle/vehicle_data.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 
@@ -83,6 +84,7 @@ std::string contact_text(const VehicleModel& vehicle, MotionPlane motion) {
 std::string scene_text(const NewScene& scene, double length, const std::string& contact) {
   // the rear wheelset starts on the track, the last one leaves the bridge
   constexpr double run_in = 20.0, straight_duration = 5.0;
+  const double rising = SpectrumParameters{}.fade_length();
   const double train = length * scene.coaches;
   const double after = scene.span > 0.0 ? train + 2.0 * run_in : straight_duration * scene.speed_kmh / 3.6 + run_in;
   const std::string what =
@@ -96,15 +98,15 @@ std::string scene_text(const NewScene& scene, double length, const std::string& 
              "vehicle = {}   # vsi vehicle lists others\n"
              "count = {}\n"
              "speed_kmh = {:.6g}\n"
-             "start = {:.6g}                 # of the first wheelset; the bridge begins at x = 0 [m]\n\n"
+             "start = {:.6g}                 # of the first wheelset [m]; track fully uneven from the bridge, x = 0\n\n"
              "{}\n"
              "[track]\n"
              "length_before = {:.6g}        # the train's length and its pre-roll [m]\n"
              "length_after = {:.6g}         # so that the train can leave the bridge [m]\n",
              mark,
              quoted(fmt::format("{} x {} {} at {:.6g} km/h", scene.coaches, scene.vehicle, what, scene.speed_kmh)),
-             quoted(scene.vehicle), scene.coaches, scene.speed_kmh, -run_in / 2.0, contact,
-             std::ceil(train + 2.0 * run_in), std::ceil(after)) +
+             quoted(scene.vehicle), scene.coaches, scene.speed_kmh, -rising - run_in / 2.0, contact,
+             std::ceil(rising + train + 2.0 * run_in), std::ceil(after)) +
          bridge_text(scene) +
          fmt::format(
              "\n[irregularity]\nspectrum = \"german-low\"     # a random track; remove the section for an even one\n"

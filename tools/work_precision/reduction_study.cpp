@@ -37,7 +37,7 @@ SceneParameters viaduct(const std::string& table) {
   scene.track.length_before = 90.0;
   scene.track.length_after = 60.0;
   scene.spans.resize(10);
-  scene.spectrum = SpectrumParameters{};
+  scene.spectrum = SpectrumParameters{.fade_in = 0.0};
   return scene;
 }
 
