@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "railtab/runtime/vsi/step_record.hpp"
+
 namespace railtab {
 
 namespace {
@@ -15,12 +17,11 @@ double judging_begin(const SceneParameters& scene) {
 }
 
 std::vector<double> judged_stretch(const SceneParameters& scene) {
-  constexpr double beyond_the_line = 1e6;  // m: results hold finite numbers
   const AssessmentParameters& assessment = scene.assessment;
   const bool has_begin = assessment.begin || fade_in(scene) > 0.0;
   if (!has_begin && !assessment.end) return {};
-  const double first = has_begin ? judging_begin(scene) : -beyond_the_line;
-  return {first, std::max(first, assessment.end.value_or(beyond_the_line))};
+  const double first = has_begin ? judging_begin(scene) : -off_the_line;
+  return {first, std::max(first, assessment.end.value_or(off_the_line))};
 }
 
 }  // namespace railtab

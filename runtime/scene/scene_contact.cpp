@@ -57,10 +57,8 @@ constexpr double same_length = 1e-9;  // m: of radii and gauges that are meant t
 
 /// Names of the vehicles as the scene has them, front first.
 std::vector<std::string> vehicle_names(const TrainParameters& train) {
-  std::vector<ConsistEntry> entries = train.consist;
-  if (entries.empty()) entries.push_back({train.vehicle, train.count, false});
   std::vector<std::string> names;
-  for (const ConsistEntry& entry : entries)
+  for (const ConsistEntry& entry : train.entries())
     names.insert(names.end(), static_cast<std::size_t>(entry.count), entry.vehicle);
   return names;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -35,6 +36,9 @@ struct SceneKey {
 
 /// All keys of a scene, in the order of the guide.
 [[nodiscard]] std::vector<SceneKey> scene_keys();
+
+/// "train.start: found …" of an error of the model's, which begins with "scene: "; other messages as they are.
+[[nodiscard]] std::string_view without_scene(std::string_view message) noexcept;
 
 /// An error of the model's with the line of the scene: "scene: train.start: found …" becomes
 /// "scene.toml:7: train.start: found …", with the line where the scene names that key once. Other messages stay.

@@ -41,15 +41,13 @@ double normal_gravity(const TrainParameters& train) {
 // The vehicles as one system where they differ, are turned or have joints; else none.
 std::optional<VehicleModel> scene_consist(const TrainParameters& train, MotionPlane plane,
                                           const VehicleWeight& weight) {
-  const bool alike = std::all_of(train.consist.begin(), train.consist.end(), [&](const ConsistEntry& entry) {
-    return entry.vehicle == train.consist.front().vehicle && !entry.reversed;
+  const std::vector<ConsistEntry> entries = train.entries();
+  const bool alike = std::all_of(entries.begin(), entries.end(), [&](const ConsistEntry& entry) {
+    return entry.vehicle == entries.front().vehicle && !entry.reversed;
   });
-  const std::string& first = train.consist.empty() ? train.vehicle : train.consist.front().vehicle;
-  const VehicleData data = find_vehicle(first);
+  const VehicleData data = find_vehicle(entries.front().vehicle);
   const bool joined = !train.joint.empty() || !data.joint_front.empty() || !data.joint_rear.empty();
   if (alike && (!joined || train.vehicles() == 1)) return {};
-  std::vector<ConsistEntry> entries = train.consist;
-  if (entries.empty()) entries.push_back({train.vehicle, train.count, false});
   return build_consist(read_consist(entries, train.joint), plane, weight, train.force_elements);
 }
 
@@ -62,8 +60,7 @@ VehicleModel scene_vehicle(const SceneParameters& scene) {
                       "\"included\" or \"omitted\"");
   }
   if (std::optional<VehicleModel> consist = scene_consist(scene.train, plane, weight)) return *std::move(consist);
-  const std::vector<ConsistEntry>& entries = scene.train.consist;
-  const VehicleData data = find_vehicle(entries.empty() ? scene.train.vehicle : entries.front().vehicle);
+  const VehicleData data = find_vehicle(scene.train.entries().front().vehicle);
   if (data.motion == MotionPlane::vertical && plane != MotionPlane::vertical) {
     throw input_error(
         "scene: train.vehicle", fmt::format("{}, whose data are vertical only", data.name),

@@ -12,6 +12,10 @@ std::string_view contact_mode_name(const ContactParameters& contact) noexcept {
   return contact.mode == ContactMode::table ? "table" : contact.mode == ContactMode::online ? "online" : "paper";
 }
 
+std::vector<ConsistEntry> TrainParameters::entries() const {
+  return consist.empty() ? std::vector<ConsistEntry>{{vehicle, count, false}} : consist;
+}
+
 int TrainParameters::vehicles() const noexcept {
   if (consist.empty()) return count;
   int vehicles = 0;

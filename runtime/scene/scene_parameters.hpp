@@ -46,6 +46,8 @@ struct TrainParameters {
   double cant = 0.0;                  ///< height of the right rail above the left one, over cant_base [m]
   static constexpr double cant_base = 1.5;  ///< [m]
 
+  /// `consist`, or where it is empty the one entry of `vehicle` and `count`.
+  [[nodiscard]] std::vector<ConsistEntry> entries() const;
   /// Vehicles of the train.
   [[nodiscard]] int vehicles() const noexcept;
   /// Sine of the angle by which the track is rolled to the left.

@@ -338,11 +338,15 @@ SceneParameters read_scene(const std::filesystem::path& file, const std::vector<
   }
 }
 
-InputError with_scene_line(const InputError& wrong, const SceneParameters& scene, const std::filesystem::path& file) {
+std::string_view without_scene(std::string_view message) noexcept {
   constexpr std::string_view prefix = "scene: ";
-  std::string_view message = wrong.what();
-  const bool of_scene = message.starts_with(prefix);
-  if (of_scene) message.remove_prefix(prefix.size());
+  if (message.starts_with(prefix)) message.remove_prefix(prefix.size());
+  return message;
+}
+
+InputError with_scene_line(const InputError& wrong, const SceneParameters& scene, const std::filesystem::path& file) {
+  const std::string_view whole = wrong.what(), message = without_scene(whole);
+  const bool of_scene = message.size() < whole.size();
   const toml::table root = toml::parse(scene.text, file.string());
   const std::string line = scene::line_of(message, scene::leaves_of(root, file));
   return of_scene || !line.empty() ? InputError(fmt::format("{}{}: {}", file.string(), line, message)) : wrong;

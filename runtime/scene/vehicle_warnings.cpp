@@ -51,11 +51,10 @@ std::vector<HuntingSystem> vehicles_alone(const SceneCase& at, std::vector<std::
   const SceneParameters& scene = at.scene;
   std::map<std::string, int> kinds;  // and the first coach of each
   int coach = 1;
-  for (const ConsistEntry& entry : scene.train.consist) {
+  for (const ConsistEntry& entry : scene.train.entries()) {
     kinds.emplace(entry.vehicle, coach);
     coach += entry.count;
   }
-  if (kinds.empty()) kinds.emplace(scene.train.vehicle, coach);
   const std::vector<PlaceInTrain> places = wheelset_places(at.model);
   std::vector<HuntingSystem> systems;
   for (const auto& [kind, first_coach] : kinds) {

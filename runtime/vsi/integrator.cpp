@@ -25,7 +25,7 @@ double mean_wheel_load(const VehicleModel& vehicle) {
 void record_wheel_extremes(const VsiModel& model, VsiState& state) {
   for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel) {
     const double x = model.wheelset_x(wheel / 2, state.time);
-    if (!model.judged.empty() && !(x >= model.judged[0] && x <= model.judged[1])) continue;
+    if (!is_judged(model.judged, x)) continue;
     const int unknown = rail_unknown(wheel);
     const double static_load = static_wheel_load(model.vehicle, (wheel / 2) % model.wheelsets_per_vehicle());
     state.wheel_extremes.add(state.time, wheel, state.contact.end_force[unknown], state.contact.end_force[unknown + 1],

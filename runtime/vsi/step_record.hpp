@@ -78,13 +78,17 @@ struct ResultHeader {
   /// Where wheels differ in their profiles: 1 where a wheel has the outline above, else 0; otherwise empty.
   std::vector<double> wheel_outline;
   /// Begin and end of the stretch on which wheels and car bodies are judged, each where it stands [m]; empty: all.
+  /// ∓off_the_line where one of them is not stated.
   std::vector<double> judged;
   /// What the run was built of, what was left out, and what it was warned of before its first step.
   std::vector<std::string> built, left_out, warnings;
 };
 
-[[nodiscard]] inline bool is_judged(const ResultHeader& header, double x) noexcept {
-  return header.judged.empty() || (x >= header.judged[0] && x <= header.judged[1]);
+inline constexpr double off_the_line = 1e6;  ///< farther than any place on it [m]; results hold finite numbers
+
+/// @param judged ResultHeader::judged
+[[nodiscard]] inline bool is_judged(const std::vector<double>& judged, double x) noexcept {
+  return judged.empty() || (x >= judged[0] && x <= judged[1]);
 }
 
 /// Nodes of the bridge deck are named deck….

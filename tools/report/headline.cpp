@@ -56,10 +56,9 @@ std::string extent_of_extremes(const ResultHeader& header, const RunSummary& sum
   std::string text = "the recorded steps";
   if (summary.wheel_extremes.largest_Q.found()) text += "; Q, Y/Q and unloading of all steps";
   if (header.judged.empty()) return text;
-  constexpr double far = 1e5;  // m: beyond is no place on the line
   text += "; wheels and car bodies";
-  if (header.judged[0] > -far) text += fmt::format(" from x = {:g} m", header.judged[0]);
-  if (header.judged[1] < far) text += fmt::format(" to x = {:g} m", header.judged[1]);
+  if (header.judged[0] > -off_the_line) text += fmt::format(" from x = {:g} m", header.judged[0]);
+  if (header.judged[1] < off_the_line) text += fmt::format(" to x = {:g} m", header.judged[1]);
   return text;
 }
 
@@ -82,7 +81,7 @@ HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(heade
 void HeadlineCollector::add_sliding_means(const StepRecord& step) {
   for (std::size_t i = 0; i < step.wheels.size(); ++i) {
     const WheelRecord& wheel = step.wheels[i];
-    if (!is_judged(header_, step.position + offset(header_.wheel_x, i))) continue;
+    if (!is_judged(header_.judged, step.position + offset(header_.wheel_x, i))) continue;
     if (wheel.Q > 0.0) {
       const auto mean = quotient_[i].add(step.position, wheel.Y / wheel.Q);
       if (mean) raise(headline_.derailment_2m, std::abs(*mean), step.time, wheel_names_[i]);
@@ -102,13 +101,13 @@ void HeadlineCollector::add(const StepRecord& step) {
   headline_.simulated_time = step.time;
   for (std::size_t i = 0; i < step.wheels.size(); ++i) {
     const WheelRecord& wheel = step.wheels[i];
-    if (!is_judged(header_, step.position + offset(header_.wheel_x, i))) continue;
+    if (!is_judged(header_.judged, step.position + offset(header_.wheel_x, i))) continue;
     recorded_.add(step.time, static_cast<int>(i), wheel.Y, wheel.Q, header_.static_wheel_load[i]);
   }
   add_sliding_means(step);
   for (std::size_t i = 0; i < step.bodies.size(); ++i) {
     if (!is_car_body(header_.body_names[i])) continue;
-    if (!is_judged(header_, step.position + offset(header_.body_x, i))) continue;
+    if (!is_judged(header_.judged, step.position + offset(header_.body_x, i))) continue;
     const std::string vehicle = vehicle_of(header_.body_names[i]);
     raise(headline_.car_body_vertical, std::abs(step.bodies[i].acceleration[z_dof]), step.time, vehicle);
     raise(headline_.car_body_lateral, std::abs(step.bodies[i].acceleration[y_dof]), step.time, vehicle);

@@ -9,6 +9,7 @@
 #include "assess_stages.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 
 namespace railtab::vsi {
@@ -56,10 +57,7 @@ AssessTrain train_of_vehicles(const SceneParameters& scene, const std::string& n
     train.axles.name = name;
     return train;
   } catch (const InputError& wrong) {
-    constexpr std::string_view of_scene = "scene: ";
-    std::string_view message = wrong.what();
-    if (message.starts_with(of_scene)) message.remove_prefix(of_scene.size());
-    throw InputError(fmt::format("--train, assessment.trains: '{}': {}", name, message));
+    throw InputError(fmt::format("--train, assessment.trains: '{}': {}", name, without_scene(wrong.what())));
   }
 }
 
