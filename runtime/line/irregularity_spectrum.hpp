@@ -21,9 +21,8 @@ struct SpectrumParameters {
   int seed = 1;                     ///< of the random phases
   double shortest = 3.0;            ///< wavelength [m]; EN 13848-1, range D1
   double longest = 70.0;            ///< wavelength [m]; EN 13848-1, end of range D2
-  std::optional<double>
-      fade_in;              ///< length over which deviations rise from zero [m]; without a number the longest wave
-  double half_base = 0.75;  ///< half the distance of the rail heads [m]
+  std::optional<double> fade_in{};  ///< length over which deviations rise from zero [m]; empty: longest
+  double half_base = 0.75;          ///< half the distance of the rail heads [m]
   [[nodiscard]] double fade_length() const noexcept { return fade_in.value_or(longest); }
   void validate() const;  ///< @throws InputError
 };
