@@ -18,6 +18,7 @@ constexpr double same_pair = 5e-6;
 constexpr double grazing = 1e-8;
 constexpr int inside_checks = 16;       ///< points inside every cell
 constexpr int last_inside_checks = 64;  ///< points inside a leaf that is not perfect, for its limit
+constexpr int outline_checks = 4;       ///< points inside every leaf, against the outlines' exact overlap
 
 /// Fractions of the unit cube in four dimensions: the additive recurrence that fills it evenly.
 std::array<double, 4> check_point(int n) {
@@ -46,6 +47,7 @@ struct CellRefinement::Trial {
 CellRefinement::CellRefinement(const ContactSearch& search, const GeometrySweepOptions& options)
     : search_(search),
       options_(options),
+      outlines_(search.pair()),
       radius_(search.pair().nominal_radius()),
       yaw_axis_(options.yaw.low < options.yaw.high),
       roll_axis_(options.roll.low < options.roll.high) {}
@@ -82,8 +84,13 @@ void CellRefinement::refine(const CellBox& box, std::size_t node, CellTree& tree
     trial.empty = true;
   } else {
     trial = attempt(box, share);
-    const bool halve = !trial.empty && (trial.failing() * share > options_.fallback_cell ||
-                                        (trial.start_error > options_.start_error && share > options_.iterated_cell));
+    bool halve = !trial.empty && (trial.failing() * share > options_.fallback_cell ||
+                                  (trial.start_error > options_.start_error && share > options_.iterated_cell));
+    if (!halve && !trial.empty) {
+      const int wrong = trial.wrong;
+      check_outlines(box, trial);
+      halve = trial.wrong > wrong && share > options_.fallback_cell;
+    }
     if (halve) {
       const auto lower = static_cast<std::uint32_t>(tree.node.size());
       tree.node[node] = CellNode::halved(static_cast<std::uint32_t>(trial.axis), lower);
@@ -135,24 +142,51 @@ void CellRefinement::check_samples(const CellBox& box, const BoxSamples& samples
   }
 }
 
+WheelsetPose CellRefinement::pose_at(const CellBox& box, const std::array<double, 3>& local) const {
+  WheelsetPose pose;
+  pose.roll = box.at(2, local[2]);
+  pose.yaw = std::sqrt(box.at(1, local[1]));
+  pose.y = box.at(0, local[0]) + radius_ * pose.roll;
+  return pose;
+}
+
 void CellRefinement::check_inside(const CellBox& box, int first, int end, Trial& trial) const {
   for (int n = first; n < end; ++n) {
     const std::array<double, 4> fraction = check_point(n);
     std::array<double, 3> local{};
     for (std::size_t a = 0; a < 3; ++a) local[a] = axis_fixed(a) ? 0.0 : 2.0 * fraction[a] - 1.0;
-    WheelsetPose pose;
-    pose.roll = box.at(2, local[2]);
-    pose.yaw = std::sqrt(box.at(1, local[1]));
-    pose.y = box.at(0, local[0]) + radius_ * pose.roll;
+    WheelsetPose pose = pose_at(box, local);
     pose.z = search_.touch_height(pose.y, pose.roll, pose.yaw) + fraction[3] * options_.searched_lowering;
     if (std::isfinite(pose.z)) check_pose(box, local, pose, search_.patches(pose), trial);
   }
 }
 
-/// What the runtime would answer from this leaf, against the online search's answer.
-void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>& local, const WheelsetPose& pose,
-                                const ContactPatches& online, Trial& trial) const {
-  ++trial.checks;
+/// The patches that the runtime would find from this leaf, against the exact overlap. Every other pose is as deep as
+/// the leaf is trusted, where most contacts exist.
+void CellRefinement::check_outlines(const CellBox& box, Trial& trial) const {
+  for (int n = 0; n < outline_checks; ++n) {
+    const std::array<double, 4> fraction = check_point(last_inside_checks + n);
+    std::array<double, 3> local{};
+    for (std::size_t a = 0; a < 3; ++a) local[a] = axis_fixed(a) ? 0.0 : 2.0 * fraction[a] - 1.0;
+    const GeometryLeaf leaf = leaf_at(box, local, trial);
+    WheelsetPose pose = pose_at(box, local);
+    double first_touch = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < leaf.count; ++k) first_touch = std::min(first_touch, leaf.start(k, 0.0).z_touch);
+    pose.z = first_touch + (n % 2 == 0 ? 1.0 : fraction[3]) * trial.trusted_lowering;
+    ContactPatches patches;
+    if (!std::isfinite(pose.z) || add_branch_patches(search_, leaf, pose, pose.z, 0.0, patches) == TableAnswer::none) {
+      continue;
+    }
+    ++trial.checks;
+    const RegionComparison comparison = compare(outlines_.regions(pose), patches);
+    if (!comparison.mismatch) continue;
+    ++trial.wrong;
+    trial.trusted_lowering = std::min(trial.trusted_lowering, pose.z - first_touch - comparison.height - limit_margin);
+  }
+}
+
+/// As the runtime would look it up, however far it is to be trusted.
+GeometryLeaf CellRefinement::leaf_at(const CellBox& box, const std::array<double, 3>& local, const Trial& trial) const {
   GeometryLeaf leaf;
   leaf.coefficient = trial.coefficient.data();
   leaf.count = trial.branches;
@@ -160,12 +194,21 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
   leaf.point = {static_cast<float>(local[0]), static_cast<float>(local[yaw_axis_ ? 1 : 2]),
                 static_cast<float>(local[2])};
   leaf.per_metre = static_cast<float>(2.0 / (box.high[0] - box.low[0]));
-  leaf.trusted_lowering = std::numeric_limits<float>::infinity();  // how far it is to be trusted is being found out
+  leaf.trusted_lowering = std::numeric_limits<float>::infinity();
+  return leaf;
+}
+
+/// What the runtime would answer from this leaf, against the online search's answer.
+void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>& local, const WheelsetPose& pose,
+                                const ContactPatches& online, Trial& trial) const {
+  ++trial.checks;
+  const GeometryLeaf leaf = leaf_at(box, local, trial);
   double first_touch = std::numeric_limits<double>::infinity();
   for (int n = 0; n < leaf.count; ++n) first_touch = std::min(first_touch, leaf.start(n, pose.z).z_touch);
   ContactPatches table;
   const TableAnswer answer = add_branch_patches(search_, leaf, pose, pose.z, 0.0, table);
-  trial.searched += answer == TableAnswer::searched;
+  trial.searched += static_cast<int>(answer != TableAnswer::looked_up);
+  if (answer == TableAnswer::none) return;
   bool wrong = false;
   const auto missing = [&](const ContactPatches& from, const ContactPatches& in) {
     for (const ContactPatch& p : from) {

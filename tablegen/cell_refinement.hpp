@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "railtab/tablegen/geometry_sweep.hpp"
+#include "railtab/tablegen/intersection/outline_overlap.hpp"
 #include "railtab/tablegen/leaf_branches.hpp"
 
 namespace railtab {
@@ -14,7 +15,8 @@ struct CellTree {
   std::vector<float> coefficient;
 };
 
-/// Makes the trees of root cells: a cell is halved until its polynomials lead where the online search leads.
+/// Makes the trees of root cells: a cell is halved until its polynomials lead where the online search leads, and until
+/// its patches are the regions of the outlines' exact overlap.
 /// Const, thread-safe.
 class CellRefinement {
  public:
@@ -32,6 +34,9 @@ class CellRefinement {
   void check_inside(const CellBox& box, int first, int end, Trial& trial) const;
   void check_pose(const CellBox& box, const std::array<double, 3>& local, const WheelsetPose& pose,
                   const ContactPatches& online, Trial& trial) const;
+  void check_outlines(const CellBox& box, Trial& trial) const;
+  [[nodiscard]] GeometryLeaf leaf_at(const CellBox& box, const std::array<double, 3>& local, const Trial& trial) const;
+  [[nodiscard]] WheelsetPose pose_at(const CellBox& box, const std::array<double, 3>& local) const;
   [[nodiscard]] bool in_range(const CellBox& box) const;
   [[nodiscard]] double share_of_queries(const CellBox& box) const;
   [[nodiscard]] std::size_t axis_to_halve(const BoxSamples& samples, const Trial& trial) const;
@@ -41,6 +46,7 @@ class CellRefinement {
 
   const ContactSearch& search_;
   const GeometrySweepOptions& options_;
+  OutlineOverlap outlines_;
   double radius_;
   bool yaw_axis_, roll_axis_;
 };

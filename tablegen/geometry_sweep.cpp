@@ -45,20 +45,6 @@ void set_axes(const GeometrySweepOptions& o, GeometryTableData& table) {
                 o.roll.low < o.roll.high ? cells_for(o.roll.high - o.roll.low, o.roll_root) : 1};
 }
 
-CellBox root_box(const GeometryTableData& table, std::int64_t root) {
-  CellBox box;
-  const std::array<const TableAxis*, 3> axes{&table.lateral, &table.yaw_squared, &table.roll};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const TableAxis& axis = *axes[a];
-    const std::int64_t cell = root % axis.cells;
-    root /= axis.cells;
-    const double width = (axis.high - axis.low) / axis.cells;
-    box.low[a] = axis.low + width * static_cast<double>(cell);
-    box.high[a] = cell + 1 == axis.cells ? axis.high : axis.low + width * static_cast<double>(cell + 1);
-  }
-  return box;
-}
-
 std::vector<CellTree> make_trees(const ContactSearch& search, const GeometrySweepOptions& options,
                                  const GeometryTableData& table, const Progress& progress) {
   // Not a structured binding: OpenMP's threads cannot share one (clang 14 rejects it).
@@ -121,6 +107,42 @@ void GeometrySweepOptions::validate() const {
   if (!(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count)) {
     throw input_error("geometry sweep: shard", fmt::format("{}/{}", shard.index, shard.count), "I/N with I in 1..N");
   }
+}
+
+CellBox root_box(const GeometryTableData& table, std::int64_t root) {
+  CellBox box;
+  const std::array<const TableAxis*, 3> axes{&table.lateral, &table.yaw_squared, &table.roll};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const TableAxis& axis = *axes[a];
+    const std::int64_t cell = root % axis.cells;
+    root /= axis.cells;
+    const double width = (axis.high - axis.low) / axis.cells;
+    box.low[a] = axis.low + width * static_cast<double>(cell);
+    box.high[a] = cell + 1 == axis.cells ? axis.high : axis.low + width * static_cast<double>(cell + 1);
+  }
+  return box;
+}
+
+std::vector<TableLeaf> leaves_below(const GeometryTableData& table, std::int64_t root) {
+  std::vector<TableLeaf> leaves;
+  std::vector<std::pair<std::uint32_t, CellBox>> open{{static_cast<std::uint32_t>(root), root_box(table, root)}};
+  while (!open.empty()) {
+    const auto [node, box] = open.back();
+    open.pop_back();
+    const std::uint32_t code = table.node[node];
+    if (CellNode::is_leaf(code)) {
+      if (table.leaf_branch[CellNode::index(code)] > 0) leaves.push_back({box, CellNode::index(code)});
+      continue;
+    }
+    const std::uint32_t axis = CellNode::axis(code), lower = CellNode::index(code);
+    CellBox half = box;
+    half.high[axis] = box.at(axis, 0.0);
+    open.emplace_back(lower, half);
+    half = box;
+    half.low[axis] = box.at(axis, 0.0);
+    open.emplace_back(lower + 1, half);
+  }
+  return leaves;
 }
 
 GeometryTableData geometry_heading(const ContactSearch& search, const GeometrySweepOptions& options) {

@@ -68,11 +68,12 @@ void generate_geometry_table_file(const ContactSearch& search, const GeometrySwe
 /// @throws InputError where a part is missing, there twice, or not of the same pair, range and options.
 [[nodiscard]] GeometryTableData merge_geometry_tables(std::vector<GeometryTableData> parts);
 
-/// Holds a table against the online search on 2000 random queries (verify_geometry_table()) and stores the statistics
-/// in it.
+/// Holds a table against the exact overlap of the outlines in every leaf (certify_outlines()), trusts leaves that
+/// disagree only as far as they agree, then holds it against the online search on 2000 random queries
+/// (verify_geometry_table()). Stores the statistics in it.
 /// @throws ComputationError where the penetration error is above the tolerance at the 99.9 % point or a patch is missed
-///         or invented, a search with a finer scan judging where the table differs from the online search; the message
-///         says what was reached and what to do.
+///         or invented, a search with a finer scan judging where the table differs from the online search, or
+///         leaves still disagree with the exact overlap; the message says what was reached and what to do.
 void certify_merged_geometry_table(GeometryTableData& table);
 
 }  // namespace railtab

@@ -12,6 +12,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
+#include "railtab/tablegen/intersection/outline_overlap.hpp"
 #include "railtab/tablegen/random_number.hpp"
 
 namespace railtab {
@@ -112,13 +113,15 @@ constexpr double finer_spacing = 0.02e-3;
 constexpr int paper_points = 1000;
 
 struct Mismatches {
-  int online = 0;  ///< queries at which the table differs from the online search
-  int finer = 0;   ///< of these, from the search with the finer scan as well
+  int online = 0;                ///< queries at which the table differs from the online search
+  int finer = 0;                 ///< of these, from the search with the finer scan as well
+  int outline = 0, in_band = 0;  ///< from the exact overlap of the outlines (RegionComparison)
 };
 
 /// Answers the queries by table and online search, in parallel.
-void compare_queries(const TableContact& contact, const ContactSearch& finer, double deep, std::vector<Query>& queries,
-                     std::vector<PatchError>& errors, Mismatches& mismatched) {
+void compare_queries(const TableContact& contact, const ContactSearch& finer, const OutlineOverlap& outlines,
+                     double deep, std::vector<Query>& queries, std::vector<PatchError>& errors,
+                     Mismatches& mismatched) {
 #pragma omp parallel
   {
     std::vector<PatchError> own;
@@ -131,7 +134,11 @@ void compare_queries(const TableContact& contact, const ContactSearch& finer, do
       const TableAnswer way = contact.answer(q.pose, 0.0, answer);
       q.answered = way != TableAnswer::none;
       q.searched = way == TableAnswer::searched;
-      if (!q.answered || !compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
+      if (!q.answered) continue;
+      const RegionComparison regions = compare(outlines.regions(q.pose), answer);
+      own_mismatched.outline += static_cast<int>(regions.mismatch);
+      own_mismatched.in_band += static_cast<int>(regions.in_band);
+      if (!compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
       ++own_mismatched.online;
       std::vector<PatchError> unused;
       own_mismatched.finer += compare_patches(answer, finer.patches(q.pose), deep, unused);
@@ -141,6 +148,8 @@ void compare_queries(const TableContact& contact, const ContactSearch& finer, do
       errors.insert(errors.end(), own.begin(), own.end());
       mismatched.online += own_mismatched.online;
       mismatched.finer += own_mismatched.finer;
+      mismatched.outline += own_mismatched.outline;
+      mismatched.in_band += own_mismatched.in_band;
     }
   }
 }
@@ -254,13 +263,14 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   Mismatches mismatched;
   int searched = 0;
   const ContactSearch finer(search.pair(), finer_spacing);
+  const OutlineOverlap outlines(search.pair());
   // In portions, so that progress can be told and positions where the wheel does not touch are drawn again.
   const int portion = std::min(options.samples, 5000);
   std::vector<Query> timed;
   while (result.samples < options.samples) {
     std::vector<Query> queries =
         draw_queries(search, options, std::min(portion, options.samples - result.samples), generator);
-    compare_queries(contact, finer, 10 * options.tolerance, queries, errors, mismatched);
+    compare_queries(contact, finer, outlines, 10 * options.tolerance, queries, errors, mismatched);
     for (const Query& q : queries) {
       result.samples += q.touches;
       result.never_touching += !q.touches;
@@ -278,6 +288,8 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   if (result.answered_by_table > 0) {
     result.patch_mismatch_share = static_cast<double>(mismatched.online) / result.answered_by_table;
     result.finer_mismatch_share = static_cast<double>(mismatched.finer) / result.answered_by_table;
+    result.outline_mismatch_share = static_cast<double>(mismatched.outline) / result.answered_by_table;
+    result.outline_in_band_share = static_cast<double>(mismatched.in_band) / result.answered_by_table;
   }
   set_errors(errors, result);
   if (options.timing) measure_time(contact, timed, result);

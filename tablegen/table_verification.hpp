@@ -46,6 +46,8 @@ struct GeometryVerification {
   double patch_mismatch_share = 0;  ///< queries with a patch missed or invented, of those answered by the table
   /// The same against a search with a scan of 0.02 mm: the online search, too, can miss a minimum just born.
   double finer_mismatch_share = 0;
+  /// The same against the exact overlap of the outlines, and the share where only a contact just born differs.
+  double outline_mismatch_share = 0, outline_in_band_share = 0;
   ErrorStatistics penetration, position_rail, position_wheel, contact_angle, rolling_radius;
   ErrorStatistics normal_force_relative;  ///< Hertz, |F_table - F_online| / max(F_online, 1 kN), steel of hertz.hpp;
                                           ///< of patches that have a Hertzian ellipse

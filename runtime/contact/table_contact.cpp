@@ -111,7 +111,8 @@ struct UnmatchedStarts {
                                trig, near_miss, result);
   }
   for (int n = 0; n < result.count; ++n) result.patch[n].source = PatchSource::table;
-  return result.overflow ? TableAnswer::none : TableAnswer::searched;
+  // Where profiles nearly conform, a pair can be farther from its start: a wheel without any patch is searched whole.
+  return result.overflow || result.count == 0 ? TableAnswer::none : TableAnswer::searched;
 }
 
 }  // namespace

@@ -140,6 +140,13 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
       100 * statistic(table.statistics, "certified.patch_mismatch_share"),
       statistic(table.statistics, "certified.error.penetration.p999"),
       statistic(table.statistics, "certified.error.penetration.max"), table.tolerance);
+  if (const double poses = statistic(table.statistics, "certified.outlines.poses"); poses > 0.0) {
+    text += fmt::format(
+        "               on {:.0f} poses of all leaves by the exact overlap of the outlines; {:.0f} found missing "
+        "contacts, "
+        "whose leaves are limited\n",
+        poses, statistic(table.statistics, "certified.outlines.mismatches"));
+  }
   text += table.loaded ? loaded_text(*table.loaded)
                        : "  loaded part  none: contact forces are those of an ellipse per patch (tablegen loaded)\n";
   text += fmt::format("  generated    {} by version {}: {}\n", table.provenance.created,

@@ -51,6 +51,8 @@ nlohmann::ordered_json description(const GeometryVerification& v) {
   j["searched_share"] = v.searched_share;
   j["patch_mismatch_share"] = v.patch_mismatch_share;
   j["finer_mismatch_share"] = v.finer_mismatch_share;
+  j["outline_mismatch_share"] = v.outline_mismatch_share;
+  j["outline_in_band_share"] = v.outline_in_band_share;
   j["error"] = errors_json(v);
   j["time_ns"] = {{"table", v.time_table_ns},
                   {"online", v.time_online_ns},
@@ -64,9 +66,12 @@ std::string text(const GeometryVerification& v) {
   std::string out = fmt::format(
       "{} random queries, {} served by the table (fallback {:.3f} %; {:.2f} % with a short search), {} patches "
       "compared with the online search\n"
-      "missed or spurious patches at {:.4f} % of the queries served ({:.4f} % against a finer search)\n\n",
+      "missed or spurious patches at {:.4f} % of the queries served ({:.4f} % against a finer search; against the "
+      "exact "
+      "overlap of the outlines {:.4f} %, and {:.4f} % with contacts shallower than 10 nm)\n\n",
       v.samples, v.answered_by_table, 100 * v.fallback_share, 100 * v.searched_share, v.patches_compared,
-      100 * v.patch_mismatch_share, 100 * v.finer_mismatch_share);
+      100 * v.patch_mismatch_share, 100 * v.finer_mismatch_share, 100 * v.outline_mismatch_share,
+      100 * v.outline_in_band_share);
   out += errors_text("error [m, rad, -]", v);
   out += fmt::format(
       "\ntime per query: table {:.0f} ns, online {:.0f} ns, table with fallback {:.0f} ns, "
