@@ -81,6 +81,19 @@ std::vector<KeyRow> report_keys() {
   };
 }
 
+std::vector<KeyRow> section_keys() {
+  return {
+      {"structure.sections", "m", "positions of sections across the bridge: moment and shear force",
+       NumberListKey{[](SceneDraft& d) -> std::vector<double>& { return import_of(d).sections; }, track_position}},
+      {"structure.axis_depth",
+       "m",
+       "depth of their centroid below the rail-head tops: moments are taken there",
+       OptionalNumberKey{[](SceneDraft& d) -> std::optional<double>& { return import_of(d).axis_depth; },
+                         {-100.0, 100.0}},
+       {&with_sections}},
+  };
+}
+
 template <NodeSelection ImportParameters::*selection>
 std::vector<KeyRow> selection_keys(const std::array<std::string_view, 4>& paths, std::string_view meaning) {
   return {
@@ -161,13 +174,16 @@ std::vector<KeyRow> import_keys() {
     return all_of({applying(with_imported_matrices, rayleigh_keys()), applying(with_imported_structure, ratio_keys()),
                    applying(with_imported_matrices, damping_frequency_keys())});
   };
-  return applying(with_any_structure,
-                  all_of({applying(with_matrices, matrix_keys()), applying(with_modes, mode_keys()), node_keys(),
-                          applying(with_imported_matrices, row_keys()),
-                          applying(with_imported_structure, applying(with_structure_nodes, model_keys())),
-                          report_keys(), applying(with_structure_nodes, damping()),
-                          applying(with_structure_nodes, applying(with_use_of_deck, deck)),
-                          applying(with_structure_nodes, applying(with_imported_rails, all_of({left, right})))}));
+  return applying(
+      with_any_structure,
+      all_of({applying(with_matrices, matrix_keys()), applying(with_modes, mode_keys()), node_keys(),
+              applying(with_imported_matrices, row_keys()),
+              applying(with_imported_structure, applying(with_structure_nodes, model_keys())), report_keys(),
+              applying(with_imported_matrices,
+                       applying(with_structure_nodes, applying(with_deck_envelope, section_keys()))),
+              applying(with_structure_nodes, damping()),
+              applying(with_structure_nodes, applying(with_use_of_deck, deck)),
+              applying(with_structure_nodes, applying(with_imported_rails, all_of({left, right})))}));
 }
 
 std::vector<KeyRow> held_node_keys() {

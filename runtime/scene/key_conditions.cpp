@@ -139,6 +139,9 @@ const Condition with_deck_envelope{"output.deck_envelope = true", [](At at) {
                                      return unless(at.scene.output.deck_envelope, "no output.deck_envelope = true");
                                    }};
 
+const Condition with_sections{
+    "structure.sections", [](At at) { return unless(!at.scene.structure.sections.empty(), "no structure.sections"); }};
+
 const Condition with_structure_to_reduce{
     "track.kind = \"flexible\" or \"imported\"", [](At at) {
       return unless(at.scene.reduction.kind == Reduction::none || at.scene.track_kind != TrackKind::rigid,

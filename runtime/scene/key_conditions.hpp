@@ -44,7 +44,7 @@ extern const Condition with_any_structure, with_flexible_track, with_ballast_on_
     with_structure_nodes, with_imported_rails, with_deck_nodes, with_use_of_deck, with_model_nodes, with_matrices,
     with_imported_matrices, with_modes;
 // Records.
-extern const Condition with_deck_envelope;
+extern const Condition with_deck_envelope, with_sections;
 // structure.reduction; "none", written out, is a reduction that was switched off, whose keys may stay.
 extern const Condition with_structure_to_reduce, with_window;
 

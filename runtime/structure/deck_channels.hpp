@@ -17,8 +17,8 @@ enum class DeckQuantity {
   horizontal_rotation,  ///< of the ends about the vertical axis [rad]
   joint_step,           ///< vertical offset of an end against the next deck or the ground, under the ballast [m]
   joint_gap,            ///< longitudinal, likewise [m]
-  bending_moment,       ///< about the lateral axis of built-in spans, positive: sagging [N m]
-  shear_force,          ///< vertical, of built-in spans [N]
+  bending_moment,       ///< about the lateral axis of a section, positive: sagging [N m]
+  shear_force,          ///< vertical, of a section: positive where what is behind it presses down on what is before [N]
 };
 [[nodiscard]] std::string_view quantity_name(DeckQuantity quantity) noexcept;  ///< "displacement", "end_rotation", …
 [[nodiscard]] std::string_view quantity_unit(DeckQuantity quantity) noexcept;  ///< SI

@@ -132,6 +132,21 @@ Eigen::AlignedBox3d box_around(const FeStructure& structure) {
   return box;
 }
 
+std::vector<double> row_positions(const FeStructure& structure) {
+  std::vector<double> x;
+  for (int node : structure.node_of_row)
+    x.push_back(node == no_node ? -INFINITY : structure.nodes.at(node).position[0]);
+  for (int r = 0; r < structure.dofs(); ++r) {
+    if (structure.node_of_row[static_cast<std::size_t>(r)] != no_node) continue;
+    double& own = x[static_cast<std::size_t>(r)];
+    for (Sparse::InnerIterator entry(structure.stiffness, r); entry; ++entry) {
+      const auto other = static_cast<std::size_t>(entry.row());
+      if (structure.node_of_row[other] != no_node) own = std::max(own, x[other]);
+    }
+  }
+  return x;
+}
+
 std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection, const std::string& key) {
   std::set<int> nodes;
   if (!selection.set.empty()) {

@@ -69,6 +69,7 @@ struct FeStructure {
   std::vector<int> motion;              ///< of each row: 0..5 for x, y, z, roll, pitch, yaw
   std::vector<int> node_of_row;         ///< no_node for an inner mode of an element, which rests in rigid motions
   std::map<int, FeNode> nodes;          ///< all nodes of the mesh that have a row or a position
+  std::vector<DeckRow> sections{};      ///< forces in sections, by its rows and the supports' translations
   FeMesh mesh;                          ///< as it was read, for selections
   std::string source;                   ///< name of the stiffness file, for messages
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(stiffness.rows()); }
@@ -82,6 +83,9 @@ struct FeStructure {
 
 /// Around all nodes, railtab's axes [m].
 [[nodiscard]] Eigen::AlignedBox3d box_around(const FeStructure& structure);
+
+/// Of every row along the track [m]; an element's inner mode stands where the last of its nodes does.
+[[nodiscard]] std::vector<double> row_positions(const FeStructure& structure);
 
 /// Numbers of the selected nodes, ascending. @throws InputError naming `key` where there is no such set or no node
 [[nodiscard]] std::vector<int> selected_nodes(const FeStructure& structure, const NodeSelection& selection,

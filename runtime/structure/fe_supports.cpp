@@ -9,6 +9,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
+#include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
 
@@ -224,6 +225,15 @@ FeStructure on_supports(FeStructure s, const std::vector<FeSupport>& supports) {
       std::erase_if(of_motion, [&](int row) { return rows[row] == held; });
       for (int& row : of_motion) row = rows[row];
     }
+  }
+  for (DeckRow& section : s.sections) {
+    DofSum moving;
+    for (const auto& [row, value] : section.sum) {
+      const auto column = column_of_row[static_cast<std::size_t>(row)];
+      if (column != RowSplit::resting)
+        moving.emplace_back(column == RowSplit::dof ? rows[row] : support_dof(column), value);
+    }
+    section.sum = std::move(moving);
   }
   return s;
 }

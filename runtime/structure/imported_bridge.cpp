@@ -17,6 +17,7 @@
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/structure/modal_bridge.hpp"
+#include "railtab/runtime/structure/section_forces.hpp"
 
 namespace railtab {
 
@@ -59,13 +60,14 @@ StructureNode reported(std::string name, const FeNode& node) {
   return result;
 }
 
-/// Vertical motion of every node of a deck.
-std::vector<DeckRow> deck_displacements(const FeStructure& structure, const std::vector<int>& deck) {
+/// Vertical motion of every node of a deck, and the forces in sections.
+std::vector<DeckRow> deck_channels(const FeStructure& structure, const std::vector<int>& deck) {
   std::vector<DeckRow> rows;
   for (const int number : deck) {
     const FeNode& node = structure.nodes.at(number);
     rows.push_back({{DeckQuantity::displacement, node.position[0], node.position[1]}, vertical_motion(node)});
   }
+  rows.insert(rows.end(), structure.sections.begin(), structure.sections.end());
   return rows;
 }
 
@@ -78,22 +80,6 @@ void fit_rotations(const FeStructure& structure, const std::vector<ReportedDeckN
     if (slopes.roll) bridge.fitted.push_back({n, roll_dof, *slopes.roll});
     if (slopes.pitch) bridge.fitted.push_back({n, pitch_dof, *slopes.pitch});
   }
-}
-
-/// Of every row along the track; an element's inner mode stands where the last of its nodes does.
-std::vector<double> positions(const FeStructure& structure) {
-  std::vector<double> x;
-  for (int node : structure.node_of_row)
-    x.push_back(node == no_node ? -INFINITY : structure.nodes.at(node).position[0]);
-  for (int r = 0; r < structure.dofs(); ++r) {
-    if (structure.node_of_row[static_cast<std::size_t>(r)] != no_node) continue;
-    double& own = x[static_cast<std::size_t>(r)];
-    for (Sparse::InnerIterator entry(structure.stiffness, r); entry; ++entry) {
-      const auto other = static_cast<std::size_t>(entry.row());
-      if (structure.node_of_row[other] != no_node) own = std::max(own, x[other]);
-    }
-  }
-  return x;
 }
 
 Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, DeckRecord record) {
@@ -112,7 +98,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, Deck
   append_supports(supports.damping, bridge.matrices.damping);
   bridge.support_x = supports.x;
   bridge.beyond_supports = supports.beyond;
-  bridge.dof_x = positions(structure);
+  bridge.dof_x = row_positions(structure);
   const DeckExtent extent = plausible_deck_extent(structure, deck);
   bridge.end = extent.end;
   const auto [low, high] = std::minmax_element(bridge.dof_x.begin(), bridge.dof_x.end());
@@ -127,7 +113,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, Deck
     fit_rotations(structure, named, bridge);
   }
   if (record == DeckRecord::everywhere) {
-    bridge.deck = deck_displacements(structure, deck);
+    bridge.deck = deck_channels(structure, deck);
     bridge.deck_ends = {{extent.begin, extent.end}};
   }
   return bridge;
@@ -220,7 +206,14 @@ void ImportParameters::validate() const {
 }
 
 FeStructure read_on_supports(const ImportParameters& parameters) {
-  return on_supports(read_fe_structure(parameters.files, parameters.frame), parameters.supports);
+  FeStructure structure = read_fe_structure(parameters.files, parameters.frame);
+  if (!parameters.sections.empty()) {
+    if (!parameters.axis_depth) {
+      throw input_error("structure.sections", "no structure.axis_depth", "the depth about which moments are taken");
+    }
+    structure.sections = section_forces(structure, parameters.sections, *parameters.axis_depth);
+  }
+  return on_supports(std::move(structure), parameters.supports);
 }
 
 FeDampingMatrix damping_matrix(const FeStructure& structure, const FeDamping& damping) {
@@ -292,7 +285,7 @@ StructureModel import_with_rails(const ImportParameters& parameters, DeckRecord 
       model.nodes.push_back(
           reported(fmt::format("deck-{}", x), structure.nodes.at(nearest_deck_node(structure, deck, x))));
     }
-    if (record == DeckRecord::everywhere) set_channels(deck_displacements(structure, deck), model);
+    if (record == DeckRecord::everywhere) set_channels(deck_channels(structure, deck), model);
   }
   return model;
 }

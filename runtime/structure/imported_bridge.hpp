@@ -30,7 +30,9 @@ struct ImportParameters {
   NodeSelection deck;                   ///< nodes that carry railtab's own track
   NodeSelection rail_left, rail_right;  ///< or nodes of beams that are rails in the model, with z and pitch
   std::vector<FeSupport> supports;      ///< none: the model is constrained, and its supports have no rows
-  std::vector<double> report;  ///< positions along the track at which the deck is reported [m]; empty: its middle
+  std::vector<double> report;      ///< positions along the track at which the deck is reported [m]; empty: its middle
+  std::vector<double> sections{};  ///< positions along the track of sections whose forces are followed [m]
+  std::optional<double> axis_depth{};  ///< of the axis of their moments below the rail-head tops [m]
 
   /// @throws InputError naming the keys: damping in no or more than one way, a file missing
   void validate() const;

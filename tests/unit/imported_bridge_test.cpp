@@ -11,14 +11,19 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/section_forces.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 
 namespace railtab {
@@ -267,6 +272,94 @@ TEST_P(ImportedSpan, WithoutItsSupportsRowsMovesAlike) {
   }
 }
 
+// Under a pull at the free end the moment about an axis half a metre above the beam's is half the force. A support that
+// sinks bends its element where the nodes rest, and turns the whole span without forces where they do not.
+TEST(ImportedBridge, SectionForcesOfAPullAndOfSinkingSupports) {
+  ImportParameters parameters = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
+  parameters.sections = {10.0, 2.0};
+  parameters.axis_depth = span().axis_depth;
+  const auto value = [&](const FeStructure& structure, const Eigen::VectorXd& u, const Eigen::VectorXd& supports) {
+    std::vector<double> values;
+    for (const DeckRow& row : structure.sections) {
+      double& sum = values.emplace_back(0.0);
+      for (const auto& [dof, factor] : row.sum) {
+        sum += factor * (dof < 0 ? supports[support_column(dof)] : u[dof]);
+      }
+    }
+    return values;
+  };
+  const FeStructure sunk = read_on_supports(parameters);
+  ASSERT_EQ(sunk.sections.size(), 4U);
+  EXPECT_EQ(sunk.sections[0].at.x, 2.0) << "in the order of x, moments first";
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(sunk.dofs()), down = Eigen::Vector4d(0.0, 1e-3, 0.0, 0.0);
+  const double EI = span().E * span().Iy, l = 4.0;
+  const std::vector<double> bent = value(sunk, still, down);
+  EXPECT_NEAR(bent[0], 0.0, 1e-9 * EI / (l * l)) << "in the middle of the element";
+  EXPECT_EQ(bent[1], 0.0);
+  EXPECT_NEAR(bent[2], -12.0 * EI / (l * l * l) * 1e-3, 1e-9 * EI / (l * l * l)) << "clamped ends, one of which sinks";
+  const Eigen::VectorXd turned =
+      StiffnessFactor(sunk.stiffness).solve(Eigen::VectorXd(-(sunk.supports.stiffness * down)));
+  for (const double force : value(sunk, turned, down))
+    EXPECT_NEAR(force, 0.0, 1e-9 * EI / (l * l)) << "statically determinate";
+
+  parameters.sections = {10.0};
+  parameters.axis_depth = 1.5;
+  const FeStructure pulled = read_on_supports(parameters);
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(pulled.dofs());
+  load[pulled.nodes.at(107).rows[0].front()] = 1e6;
+  const std::vector<double> drawn = value(pulled, StiffnessFactor(pulled.stiffness).solve(load), down);
+  EXPECT_NEAR(drawn[0], 0.5e6, 1e-3);
+  EXPECT_NEAR(drawn[1], 0.0, 1e-3);
+}
+
+TEST(ImportedBridge, RefusesSectionsThatAreNotExact) {
+  ImportParameters parameters = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
+  const auto message = [&](double x) -> std::string {
+    parameters.sections = {x};
+    try {
+      static_cast<void>(read_on_supports(parameters));
+    } catch (const InputError& wrong) {
+      return wrong.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message(10.0),
+            "structure.sections: found no structure.axis_depth, expected the depth about which moments are taken");
+  parameters.axis_depth = 1.5;
+  EXPECT_EQ(message(24.0),
+            "structure.sections: found 24 m, expected between 0 and 24 m, nodes with rows of the matrices");
+  EXPECT_EQ(message(-3.0),
+            "structure.sections: found -3 m, expected between 0 and 24 m, nodes with rows of the matrices");
+  const std::string strained = "structure.sections: x = 2 m: found elements with constrained nodes or prestress";
+  EXPECT_EQ(message(2.0).substr(0, strained.size()), strained) << "x of node 101 has no row";
+  parameters.axis_depth = 2.0;
+  EXPECT_EQ(message(2.0), "accepted") << "in the beam's axis that row has no part in it";
+  EXPECT_EQ(message(4.0), "accepted");
+  parameters = WrittenSpan(FeFormat::matrix_market).parameters;
+  parameters.axis_depth = 2.0;
+  for (const double x : {2.0, 4.0, 20.0, 23.0}) {
+    EXPECT_NE(message(x).find("with constrained nodes or prestress"), std::string::npos) << x << ", by the support";
+  }
+  for (const double x : {4.1, 12.0, 19.9}) EXPECT_EQ(message(x), "accepted");
+
+  FeStructure structure = read_fe_structure(parameters.files, parameters.frame);
+  structure.nodes.at(104).rows[2].push_back(0);
+  EXPECT_THROW(static_cast<void>(section_forces(structure, {12.0}, 2.0)), InputError) << "expanded";
+  EXPECT_NO_THROW(static_cast<void>(section_forces(structure, {6.0}, 2.0))) << "elsewhere";
+  structure = read_fe_structure(parameters.files, parameters.frame);
+  structure.stiffness.prune([&](int i, int j, double) {
+    const auto x = row_positions(structure);
+    return (x[static_cast<std::size_t>(i)] < 10.0) == (x[static_cast<std::size_t>(j)] < 10.0);
+  });
+  try {
+    static_cast<void>(section_forces(structure, {10.0}, 2.0));
+    ADD_FAILURE() << "two parts that nothing joins";
+  } catch (const InputError& wrong) {
+    EXPECT_NE(std::string(wrong.what()).find("x = 10 m: found no stiffness between"), std::string::npos)
+        << wrong.what();
+  }
+}
+
 // What supports leave free is named, with the axis it turns about, before anything is factorised.
 TEST(ImportedBridge, FreeMotionsAreNamed) {
   const auto refusal = [](const ImportParameters& parameters) -> std::string {
@@ -324,6 +417,54 @@ TEST(ImportedBridge, RefusesSupportsThatDoNotFit) {
   EXPECT_NE(
       message([](auto& p) { p.supports[0].nodes.set = "PIER"; }).find("[[support]] 1 of 2: found no set \"PIER\""),
       std::string::npos);
+}
+
+// A coach over the built-in span and over its matrices: moments at the nodes, shear forces in the elements' middles.
+TEST_P(ImportedSpan, HasTheSectionForcesOfTheBuiltInOneUnderACoach) {
+  SceneParameters scene;
+  scene.contact.normal = NormalContact::rigid;
+  scene.track = short_track();
+  scene.track.length_before = scene.track.length_after = 60.0;
+  scene.train.start = -1.0;
+  scene.train.speed = 70.0;
+  scene.integration.time_step = 1e-3;
+  scene.integration.duration = 0.7;
+  scene.output.deck_envelope = true;
+  SceneParameters with_matrices = scene;
+  scene.spans = {span()};
+  with_matrices.structure = WrittenSpan(GetParam(), SupportRows::kept).parameters;
+  with_matrices.structure.axis_depth = span().axis_depth;
+  for (int i = 1; i < 12; ++i) with_matrices.structure.sections.push_back(2.0 * i);
+  const auto extremes = [](const SceneParameters& run, std::string_view quantity) {
+    std::map<double, std::array<double, 2>> found;
+    ResultHeader header;
+    RunObserver observer;
+    observer.start = [&](const ResultHeader& of_run) { header = of_run; };
+    const RunSummary summary = run_scene(run, observer);
+    EXPECT_TRUE(summary.complete) << summary.message;
+    for (std::size_t q = 0; q < header.deck.size(); ++q) {
+      if (header.deck[q].quantity != quantity) continue;
+      for (std::size_t i = 0; i < header.deck[q].x.size(); ++i) {
+        found[header.deck[q].x[i]] = {summary.deck[q].smallest[i], summary.deck[q].largest[i]};
+      }
+    }
+    return found;
+  };
+  for (const auto& [quantity, first, least] :
+       {std::tuple{"bending_moment", 4.0, 1e6}, std::tuple{"shear_force", 2.0, 1e5}}) {
+    const auto built = extremes(scene, quantity), imported = extremes(with_matrices, quantity);
+    EXPECT_EQ(imported.size(), 11U);
+    double largest = 0.0;
+    for (const auto& [x, of_built] : built) {
+      for (const double value : of_built) largest = std::max(largest, std::abs(value));
+    }
+    EXPECT_GT(largest, least);
+    for (double x = first; x < 24.0; x += 4.0) {
+      for (std::size_t end = 0; end < 2; ++end) {
+        EXPECT_NEAR(imported.at(x)[end], built.at(x)[end], 1e-9 * largest) << quantity << " at " << x;
+      }
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, ImportedSpan, ::testing::Values(FeFormat::matrix_market, FeFormat::ansys),

@@ -123,6 +123,43 @@ TEST_F(BeamFiles, TwoContinuousSpans) {
   EXPECT_NEAR(slow.displacement.value, at_rest, 0.02 * at_rest);
 }
 
+/// A force P at a: M = Pb·x/L up to it and Pa(L − x)/L from it, with a + b = L. Two continuous spans, P in the middle
+/// of the first: 13PL/64 there, −6PL/64 over the pier, half of that in the middle of the second.
+TEST_F(BeamFiles, SectionForcesAreThoseOfStatics) {
+  constexpr double P = 250e3, L = span;
+  const auto forces = [&](int spans, double a, const std::vector<double>& sections) {
+    ImportParameters parameters = beam(spans);
+    parameters.sections = sections;
+    parameters.axis_depth = 1.0;
+    const FeStructure structure = read_on_supports(parameters);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs());
+    load[structure.nodes.at(static_cast<int>(a) + 1).rows[2].front()] = P;
+    const Eigen::VectorXd u = Eigen::MatrixXd(structure.stiffness).llt().solve(load);
+    std::vector<double> found;
+    for (const DeckRow& row : structure.sections) {
+      double& sum = found.emplace_back(0.0);
+      for (const auto& [dof, factor] : row.sum) sum += factor * u[dof];
+    }
+    return found;
+  };
+  constexpr double a = 7.0, b = L - a;
+  const std::vector<double> sections{1.5, 4.0, 7.0, 7.3, 12.0, 18.5};
+  const std::vector<double> one = forces(1, a, sections);
+  ASSERT_EQ(one.size(), 2 * sections.size());
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    const double x = sections[s], moment = x <= a ? P * b * x / L : P * a * (L - x) / L;
+    const double shear = x < a ? P * b / L : x > a ? -P * a / L : P * (b - a) / (2.0 * L);
+    EXPECT_NEAR(one[s], moment, 1e-9 * P * L) << x;
+    EXPECT_NEAR(one[sections.size() + s], shear, 1e-9 * P) << x;
+  }
+  const std::vector<double> two = forces(2, 0.5 * L, {0.5 * L, 1.5 * L});
+  EXPECT_NEAR(two[0], 13.0 / 64.0 * P * L, 1e-9 * P * L);
+  EXPECT_NEAR(two[1], -3.0 / 64.0 * P * L, 1e-9 * P * L);
+  EXPECT_NEAR(two[3], 3.0 / 32.0 * P, 1e-9 * P);
+  EXPECT_THROW(static_cast<void>(forces(2, a, {19.5})), InputError) << "beside the pier, whose row of z is left out";
+  EXPECT_THROW(static_cast<void>(forces(2, a, {20.0})), InputError) << "over it";
+}
+
 TEST_F(BeamFiles, ADeckIsNeeded) {
   ImportParameters parameters = beam(1);
   parameters.deck = {};

@@ -46,6 +46,11 @@ std::string companion(const std::string& key) {
     return "irregularity.spectrum = \"" + spectrum_names().front() + "\"\n" + both_waves;
   if (key.starts_with("structure.window")) return "structure.reduction = \"window\"\n";
   if (key.starts_with("structure.rail_")) return imported_with(key) + "structure.damping_ratio = 0.01\n";
+  if (key == "structure.axis_depth") {
+    return imported_with(key) +
+           "structure.damping_ratio = 0.01\nstructure.deck.set = \"DECK\"\nstructure.sections = [3.0]\n"
+           "output.deck_envelope = true\n";
+  }
   if (key.starts_with("structure.") && key.find("damping") != std::string::npos) return imported_with(key);
   return "";
 }
@@ -268,15 +273,24 @@ TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRejected) {
   };
   const std::string online_text = "contact.mode = \"online\"\n";
   for (const auto& [text, key, value] :
-       {Case{follow, "contact.table", "\"pair.h5\""}, Case{follow, "contact.mode", "\"online\""},
-        Case{follow, "contact.dimensions.track_gauge", "1.437"}, Case{follow, "train.initial_yaw", "0.001"},
-        Case{follow, "train.initial_lateral_shift", "0.001"}, Case{follow, "integration.contact_force", "\"energy\""},
-        Case{rigid, "track.length_before", "10.0"}, Case{rigid, "structure.mass", "\"pair.h5\""},
-        Case{rigid, "structure.window_ahead", "10.0"}, Case{online_text, "track.ballast_deck.kz", "1e8"},
+       {Case{follow, "contact.table", "\"pair.h5\""},
+        Case{follow, "contact.mode", "\"online\""},
+        Case{follow, "contact.dimensions.track_gauge", "1.437"},
+        Case{follow, "train.initial_yaw", "0.001"},
+        Case{follow, "train.initial_lateral_shift", "0.001"},
+        Case{follow, "integration.contact_force", "\"energy\""},
+        Case{rigid, "track.length_before", "10.0"},
+        Case{rigid, "structure.mass", "\"pair.h5\""},
+        Case{rigid, "structure.window_ahead", "10.0"},
+        Case{online_text, "track.ballast_deck.kz", "1e8"},
         Case{online_text + "contact.creep_law = \"polach\"\n", "contact.creep_table", "\"pair.h5\""},
-        Case{online_text, "structure.units", "\"m-N-kg\""}, Case{online_text, "structure.rail_left.set", "\"LEFT\""},
-        Case{rails, "track.length_before", "10.0"}, Case{rails, "structure.deck.set", "\"DECK\""},
-        Case{rails, "structure.report", "[3.0]"}, Case{follow, "integration.impact_step", "1e-4"},
+        Case{online_text, "structure.units", "\"m-N-kg\""},
+        Case{online_text, "structure.rail_left.set", "\"LEFT\""},
+        Case{rails, "track.length_before", "10.0"},
+        Case{rails, "structure.deck.set", "\"DECK\""},
+        Case{rails, "structure.report", "[3.0]"},
+        Case{rails, "structure.sections", "[3.0]"},
+        Case{follow, "integration.impact_step", "1e-4"},
         Case{"contact.mode = \"paper\"\n", "integration.impact_step", "1e-4"},
         Case{online_text + "integration.contact_force = \"energy\"\n", "integration.impact_step", "1e-4"}}) {
     const auto line = 1 + std::count(text.begin(), text.end(), '\n');
@@ -291,6 +305,9 @@ TEST_F(Scene, KeysOfWhatASceneDoesNotHaveAreRejected) {
   EXPECT_EQ(message(rigid + "structure.reduction = \"none\"\nstructure.window_ahead = 20\n"), "no error");
   EXPECT_EQ(message(online_text + "track.ballast_deck.kz = 1e8\n[[bridge]]\n"), "no error");
   EXPECT_EQ(message(rails + "structure.deck.set = \"DECK\"\nstructure.report = [3.0]\n"), "no error");
+  EXPECT_EQ(message(rails + "structure.deck.set = \"DECK\"\noutput.deck_envelope = true\nstructure.sections = [3.0]\n"
+                            "structure.axis_depth = 2.0\n"),
+            "no error");
 }
 
 }  // namespace

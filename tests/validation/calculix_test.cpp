@@ -14,10 +14,13 @@
 #include <numbers>
 #include <string>
 
+#include "../folder_fixture.hpp"
 #include "../measured.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/imported_bridge.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
@@ -158,6 +161,88 @@ TEST(Calculix, AStoutBridgeFollowsTimoshenko) {
     testing::measured("calculix.stout_" + std::to_string(n), 100 * (nearest / omega - 1));
     EXPECT_NEAR(nearest, omega, 5e-4 * omega) << n;
     EXPECT_GT(euler / omega - 1.0, 0.008 * n * n) << "the theories differ here";
+  }
+}
+
+/// A beam of 12 × 2 × 2 solids C3D8I of 1 m × 0.5 m × 0.5 m, whose inner modes have rows; x forward, y left, z up, held
+/// on the lower edges of both ends.
+class SolidBeam : public testing::InFolder {
+ protected:
+  static int number(int i, int j, int k) { return 9 * i + 3 * j + k + 1; }
+  [[nodiscard]] ImportParameters written() const {
+    std::ofstream input(folder_ / "solid.inp");
+    input << "*NODE, NSET=ALL\n";
+    for (int i = 0; i <= 12; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        for (int k = 0; k < 3; ++k) input << number(i, j, k) << ", " << i << ", " << 0.5 * j << ", " << 0.5 * k << "\n";
+      }
+    }
+    input << "*ELEMENT, TYPE=C3D8I, ELSET=ALL\n";
+    for (int i = 0; i < 12; ++i) {
+      for (const auto& [j, k] : {std::pair{0, 0}, {0, 1}, {1, 0}, {1, 1}}) {
+        input << 4 * i + 2 * j + k + 1;
+        for (const int z : {k, k + 1}) {
+          for (const auto& [x, y] : {std::pair{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}})
+            input << ", " << number(x, y, z);
+        }
+        input << "\n";
+      }
+    }
+    input << "*MATERIAL, NAME=CONCRETE\n*ELASTIC\n34.5e9, 0.2\n*DENSITY\n2500.\n"
+          << "*SOLID SECTION, ELSET=ALL, MATERIAL=CONCRETE\n*BOUNDARY\n";
+    for (int j = 0; j < 3; ++j) input << number(0, j, 0) << ", 1, 3\n" << number(12, j, 0) << ", 2, 3\n";
+    input << "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n2\n*END STEP\n";
+    input.close();
+    const std::string command = "cd '" + folder_.string() + "' && ccx solid > ccx.log 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    ImportParameters parameters;
+    parameters.files = {FeFormat::calculix,    folder_ / "solid.mas", folder_ / "solid.sti", {},
+                        folder_ / "solid.dof", folder_ / "solid.inp"};
+    return parameters;
+  }
+};
+
+// A force P = 1 MN at x = 7 m, beside the axis: statics, in planes of nodes and between them, about any axis.
+TEST_F(SolidBeam, SectionForcesAreThoseOfStatics) {
+  RAILTAB_NEEDS_CALCULIX();
+  ImportParameters parameters = written();
+  parameters.sections = {1.5, 3.0, 5.25, 7.0, 9.9};
+  for (const double depth : {-0.5, 0.0}) {
+    parameters.axis_depth = depth;
+    const FeStructure structure = read_on_supports(parameters);
+    EXPECT_GT(std::ranges::count(structure.node_of_row, no_node), 0);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs());
+    load[structure.nodes.at(number(7, 2, 2)).rows[2].front()] = 1e6;
+    const Eigen::VectorXd u = StiffnessFactor(structure.stiffness).solve(load);
+    double worst = 0.0;
+    ASSERT_EQ(structure.sections.size(), 10U);
+    for (const DeckRow& row : structure.sections) {
+      double found = 0.0;
+      for (const auto& [dof, factor] : row.sum) found += factor * u[dof];
+      const double x = row.at.x;
+      const double moment = 1e6 * std::min(x * 5.0, (12.0 - x) * 7.0) / 12.0;
+      const double shear = 1e6 * (x < 7.0 ? 5.0 : x > 7.0 ? -7.0 : -1.0) / 12.0;
+      const double error = row.at.quantity == DeckQuantity::shear_force ? found - shear : found - moment;
+      worst = std::max(worst, std::abs(error) / 1e6);
+    }
+    std::printf("sections of solids: %.1e of the force (times 1 m)\n", worst);
+    EXPECT_LT(worst, 1e-9);
+  }
+  parameters.sections = {0.5};
+  EXPECT_THROW(static_cast<void>(read_on_supports(parameters)), InputError) << "elements at the constraint";
+}
+
+TEST(Calculix, ExpandedBeamsHaveNoSections) {
+  RAILTAB_NEEDS_CALCULIX();
+  CalculixBeam written("sections", {25.0, 0.4, 0.2, 20}, "B32R", true);
+  ASSERT_TRUE(written.ran());
+  written.parameters.sections = {12.0};
+  written.parameters.axis_depth = 0.0;
+  try {
+    static_cast<void>(read_on_supports(written.parameters));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& wrong) {
+    EXPECT_NE(std::string(wrong.what()).find("expanded into solids"), std::string::npos) << wrong.what();
   }
 }
 

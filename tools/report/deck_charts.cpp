@@ -37,7 +37,7 @@ std::vector<DeckChart> all_charts() {
            "t [mm/3 m]",
            1e3,
            {{"twist", ""}}},
-          {"Bending moment of built-in spans",
+          {"Bending moment",
            "Largest and smallest of all steps; sagging is positive.",
            "M [MN m]",
            1e-6,
