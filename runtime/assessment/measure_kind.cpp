@@ -67,6 +67,8 @@ const std::vector<MeasureKind>& measure_kinds() {
        {contact},
        "largest rms of 5 s of a car body's longitudinal acceleration, weighted W_d"},
       {"mean_comfort", "-", {contact}, "mean comfort N_MV of a car body over 5 minutes at least"},
+      {"mean_comfort_seated", "-", {contact}, "mean comfort N_VA of seated passengers over 5 minutes at least"},
+      {"mean_comfort_standing", "-", {contact}, "mean comfort N_VD of standing passengers over 5 minutes at least"},
       {"running_rms_vertical", "m/s2", {contact}, "largest rms of 1 s of a car body's vertical acceleration, W_k"},
       {"running_rms_lateral", "m/s2", {contact}, "largest rms of 1 s of a car body's lateral acceleration, W_d"},
       {"vibration_dose_vertical", "m/s1.75", {contact}, "vibration dose of a car body's vertical acceleration, W_k"},

@@ -7,6 +7,11 @@
 #include "railtab/runtime/measures/percentile.hpp"
 
 namespace railtab {
+namespace {
+
+constexpr double median = 0.5, high = 0.95;  // shares of the windows [EN12299]
+
+}  // namespace
 
 WindowedRms::WindowedRms(double window, double step) : samples_(std::max(1L, std::lround(window / step))) {}
 
@@ -19,8 +24,18 @@ void WindowedRms::add(double weighted) {
 }
 
 double mean_comfort(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z) {
-  constexpr double share = 0.95, factor = 6.0;
-  return factor * std::hypot(percentile(x, share), percentile(y, share), percentile(z, share));
+  return 6.0 * std::hypot(percentile(x, high), percentile(y, high), percentile(z, high));
+}
+
+double mean_comfort_standing(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z) {
+  return 3.0 * std::hypot(4.0 * percentile(x, median), 2.0 * percentile(y, median), percentile(z, median)) +
+         5.0 * percentile(y, high);
+}
+
+double mean_comfort_seated(const std::vector<double>& z_floor, const std::vector<double>& y_pan,
+                           const std::vector<double>& z_pan, const std::vector<double>& x_back) {
+  return 4.0 * percentile(z_floor, high) + 2.0 * std::hypot(percentile(y_pan, high), percentile(z_pan, high)) +
+         4.0 * percentile(x_back, high);
 }
 
 VibrationDose::VibrationDose(double step, double window)

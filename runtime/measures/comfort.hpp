@@ -27,6 +27,17 @@ class WindowedRms {
 [[nodiscard]] double mean_comfort(const std::vector<double>& x, const std::vector<double>& y,
                                   const std::vector<double>& z);
 
+/// Mean comfort of standing passengers, N_VD = 3 √(16 a_x50² + 4 a_y50² + a_z50²) + 5 a_y95, of the percentiles of the
+/// same windows on the floor [EN12299]. @pre each has a value
+[[nodiscard]] double mean_comfort_standing(const std::vector<double>& x, const std::vector<double>& y,
+                                           const std::vector<double>& z);
+
+/// Mean comfort of seated passengers, N_VA = 4 a_zP + 2 √(a_yA² + a_zA²) + 4 a_xD, a the 95th percentiles of such
+/// windows on the floor P, the seat pan A and the seat back D: W_c for x, W_d for y, W_b for z [EN12299]. @pre each has
+/// a value
+[[nodiscard]] double mean_comfort_seated(const std::vector<double>& z_floor, const std::vector<double>& y_pan,
+                                         const std::vector<double>& z_pan, const std::vector<double>& x_back);
+
 /// Running root mean square over the last second and vibration dose of a weighted acceleration [ISO2631-1, 6.3].
 class VibrationDose {
  public:

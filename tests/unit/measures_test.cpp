@@ -6,6 +6,7 @@
 #include <complex>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -378,6 +379,53 @@ TEST(Comfort, RunningRmsWaitsForAFullSecond) {
 TEST(Comfort, MeanOfThreeDirections) {
   const Samples x(60, 0.03), y(60, 0.04), z(60, 0.12);
   EXPECT_NEAR(mean_comfort(x, y, z), 6.0 * 0.13, 1e-12);
+}
+
+/// 60 windows in any order, 40 of the lower value and 20 of the upper one: their median and 95th percentile.
+Samples two_levels(double lower, double upper, int first) {
+  Samples windows;
+  for (int k = 0; k < 60; ++k) windows.push_back((k + first) % 3 == 0 ? upper : lower);
+  return windows;
+}
+
+TEST(Comfort, StandingTakesMediansAndTheHighestLateralWindows) {
+  const Samples x = two_levels(0.01, 0.7, 0), y = two_levels(0.015, 0.2, 1), z = two_levels(0.12, 0.9, 2);
+  EXPECT_NEAR(mean_comfort_standing(x, y, z), 3.0 * 0.13 + 5.0 * 0.2, 1e-12) << "√(0.04² + 0.03² + 0.12²) = 0.13";
+}
+
+TEST(Comfort, SeatedTakesFloorSeatPanAndSeatBack) {
+  const Samples z_floor = two_levels(0.5, 0.7, 0), y_pan = two_levels(0.01, 0.03, 1), z_pan = two_levels(0.02, 0.04, 2),
+                x_back = two_levels(0.1, 0.11, 0);
+  EXPECT_NEAR(mean_comfort_seated(z_floor, y_pan, z_pan, x_back), 4.0 * 0.7 + 2.0 * 0.05 + 4.0 * 0.11, 1e-12);
+}
+
+// Sines of another amplitude in each window of 5 s, sample by sample: rms of a ladder of 60 steps, whose median is step
+// 30.5 and whose 95th percentile is step 57.05; and the same windows cut from the stored series.
+TEST(Comfort, StreamedWindowsOfSinesOfChangingAmplitude) {
+  constexpr double step = 1e-2, top = 0.6;
+  constexpr long length = 500;  // samples of a window
+  const auto amplitude = [](long window) { return top * static_cast<double>(1 + window * 7 % 60) / 60.0; };
+  std::array<WindowedRms, 3> streamed{WindowedRms(5.0, step), WindowedRms(5.0, step), WindowedRms(5.0, step)};
+  std::array<Samples, 3> series, stored;
+  for (long k = 0; k < 60 * length; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {  // 2, 3 and 4 Hz, along x three times as large
+      const double a = amplitude(k / length) * (i == 0 ? 3.0 : 1.0);
+      series[i].push_back(a * std::sin(2.0 * pi * static_cast<double>(2 + i) * step * static_cast<double>(k)));
+      streamed[i].add(series[i].back());
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (auto from = series[i].begin(); from != series[i].end(); from += length) {
+      stored[i].push_back(std::sqrt(std::inner_product(from, from + length, from, 0.0) / static_cast<double>(length)));
+    }
+    ASSERT_EQ(streamed[i].values().size(), 60U);
+    for (std::size_t k = 0; k < 60; ++k) ASSERT_NEAR(streamed[i].values()[k], stored[i][k], 1e-14) << i << ", " << k;
+  }
+  const double middle = top * 30.5 / 60.0 / std::numbers::sqrt2, high = top * 57.05 / 60.0 / std::numbers::sqrt2;
+  const Samples &x = streamed[0].values(), &y = streamed[1].values(), &z = streamed[2].values();
+  EXPECT_NEAR(mean_comfort_standing(x, y, z), 3.0 * middle * std::sqrt(16.0 * 9.0 + 4.0 + 1.0) + 5.0 * high, 1e-12);
+  EXPECT_NEAR(mean_comfort_seated(z, y, z, x), high * (4.0 + 2.0 * std::numbers::sqrt2 + 4.0 * 3.0), 1e-12);
+  EXPECT_NEAR(mean_comfort(x, y, z), 6.0 * high * std::sqrt(11.0), 1e-12);
 }
 
 TEST(Comfort, SperlingIndexOfTwoHarmonics) {

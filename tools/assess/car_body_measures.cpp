@@ -10,12 +10,14 @@ namespace railtab::assess {
 namespace {
 
 constexpr double car_body_cut_off = 6.0;  // [Hz]
+constexpr double comfort_window = 5.0;    // [s]
 
 /// Measures of car bodies, and why a run has none of them.
 struct BodyMeasure {
   std::string_view name, otherwise;
 };
 constexpr std::string_view too_short = "no car body is judged for as long as 5 s";
+constexpr std::string_view no_mean = "no car body is judged for as long as 5 minutes, 60 windows of 5 s";
 constexpr std::array body_measures{
     BodyMeasure{"car_body_vertical", "no car body is judged"},
     BodyMeasure{"car_body_lateral", "no car body is judged"},
@@ -24,7 +26,9 @@ constexpr std::array body_measures{
     BodyMeasure{"comfort_vertical", too_short},
     BodyMeasure{"comfort_lateral", too_short},
     BodyMeasure{"comfort_longitudinal", "car bodies have no longitudinal acceleration, or none for as long as 5 s"},
-    BodyMeasure{"mean_comfort", "no car body is judged for as long as 5 minutes, 60 windows of 5 s"},
+    BodyMeasure{"mean_comfort", no_mean},
+    BodyMeasure{"mean_comfort_seated", no_mean},
+    BodyMeasure{"mean_comfort_standing", no_mean},
     BodyMeasure{"running_rms_vertical", "no car body is judged for as long as 1 s"},
     BodyMeasure{"running_rms_lateral", "no car body is judged for as long as 1 s, or none moves laterally"},
     BodyMeasure{"vibration_dose_vertical", "no car body is judged"},
@@ -68,7 +72,13 @@ class CarBodyJudge : public RunJudge {
     const std::vector<double> y_rms = weighted(body, y, weighting_d, "lateral", weighting_d);
     const std::vector<double> z_rms = weighted(body, z, weighting_b, "vertical", weighting_k);
     constexpr std::size_t five_minutes = 60;  // windows
-    if (z_rms.size() >= five_minutes) raise("mean_comfort", mean_comfort(x_rms, y_rms, z_rms), std::nullopt, name);
+    if (z_rms.size() >= five_minutes) {
+      raise("mean_comfort", mean_comfort(x_rms, y_rms, z_rms), std::nullopt, name);
+      raise("mean_comfort_standing", mean_comfort_standing(x_rms, y_rms, z_rms), std::nullopt, name);
+      // rigid, without seats: pan and back move with the floor
+      const std::vector<double> x_back = window_rms(body, x, weighting_c);
+      raise("mean_comfort_seated", mean_comfort_seated(z_rms, y_rms, z_rms, x_back), std::nullopt, name);
+    }
     if (!samples_fast_enough(car_body_cut_off, step_)) return;
     const Series y_smooth = low_passed(y, car_body_cut_off, step_), z_smooth = low_passed(z, car_body_cut_off, step_);
     for (std::size_t k = 0; k < records_; ++k) {
@@ -76,6 +86,18 @@ class CarBodyJudge : public RunJudge {
       raise("car_body_lateral_6hz", y_smooth[k], at(k).time, name);
       raise("car_body_vertical_6hz", z_smooth[k], at(k).time, name);
     }
+  }
+
+  /// Of a car body's weighted acceleration at the judged places [m/s²].
+  [[nodiscard]] std::vector<double> window_rms(std::size_t body, const Series& acceleration,
+                                               const Weighting& weighting) const {
+    WeightedSeries series(weighting, step_);
+    WindowedRms rms(comfort_window, step_);
+    for (std::size_t k = 0; k < records_; ++k) {
+      const double a = series.add(acceleration[k]);
+      if (judged(body_position(body, k))) rms.add(a);
+    }
+    return rms.values();
   }
 
   /// Measures of a car body's acceleration in one direction; a direction in which it does not move has none.
@@ -87,7 +109,7 @@ class CarBodyJudge : public RunJudge {
     const bool moves = std::any_of(acceleration.begin(), acceleration.end(), [](double a) { return a != 0.0; });
     const bool sperling = direction != "longitudinal";
     WeightedSeries comfort_series(comfort, step_), dose_series(dose_weighting.value_or(comfort), step_);
-    WindowedRms rms(5.0, step_);
+    WindowedRms rms(comfort_window, step_);
     VibrationDose dose(step_);
     SperlingIndex index(direction == "lateral" ? SperlingDirection::lateral : SperlingDirection::vertical, step_);
     double end = 0.0;
