@@ -42,8 +42,8 @@ class TableContact {
 
 /// The patches to which the starts of a leaf's branches lead, added to `result`, empty at the call, in increasing
 /// y_rail. Where a branch begins or ends in a leaf, its start may lead nowhere, too far, or to the pair of another one:
-/// 0.5 mm of the wheel profile to both sides of it are searched then. `none` where that finds no patch at all, and where
-/// the wheel is lowered further than the leaf is trusted.
+/// 0.5 mm of the wheel profile to both sides of it are searched then. `none` where that finds no patch at all, and
+/// where the wheel is lowered further than the leaf is trusted.
 /// @param height branches that touch lower than this are left out [m]: pose.z, and what a gap of near_miss can be high
 [[nodiscard]] TableAnswer add_branch_patches(const ContactSearch& search, const GeometryLeaf& leaf,
                                              const WheelsetPose& pose, double height, double near_miss,
