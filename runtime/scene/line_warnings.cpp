@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "railtab/runtime/scene/judged_stretch.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
 
 // Deviations of the rails and speeds over time that the run does not meet, or that begin or end abruptly.
@@ -76,8 +78,18 @@ void steps_at_ends(const SceneCase& at, Warnings& list) {
           : "wheels meet a step there, whose force grows without bound as integration.time_step shrinks"));
 }
 
+void judged_beyond_run(const SceneCase& at, Warnings& list) {
+  const std::vector<double> judged = judged_stretch(at.scene);
+  if (judged.empty() || Interval{judged[0], judged[1]}.meets(at.wheels)) return;
+  list.push_back(
+      fmt::format("judging begins at x = {:.6g} m ({}), the wheels run at {}: no wheel and no car body is judged",
+                  judged[0], at.scene.assessment.begin ? "assessment.begin" : "train.start + irregularity.fade_in",
+                  text(at.wheels, "x", "m")));
+}
+
 }  // namespace
 
+const Warning judging_outside_run{"no wheel runs where it is judged", judged_beyond_run};
 const Warning speed_outside_run{"the speeds lie outside the run", speed_beyond_run};
 const Warning deviation_zero{"it is 0", [](const SceneCase& at, Warnings& list) {
                                if (!at.scene.span_deviation || at.scene.span_deviation->amplitude != 0.0) return;

@@ -99,6 +99,13 @@ TEST_F(SceneWarnings, OfLoadsAndSpeedsThatChangeNothing) {
   expect(plan("[irregularity]\nfile = \"flat.csv\"\n"), "flat.csv is zero throughout: the track is perfect");
 }
 
+TEST_F(SceneWarnings, OfARunThatEndsBeforeItIsJudged) {
+  const std::string track = "[irregularity]\nspectrum = \"german-low\"\n";
+  expect(plan(track), "warning: judging begins at x = 70 m (train.start + irregularity.fade_in), the wheels run at");
+  EXPECT_EQ(plan(track + "fade_in = 0\n").find("warning"), std::string::npos);
+  expect(plan("[assessment]\nbegin = 500\n"), "warning: judging begins at x = 500 m (assessment.begin)");
+}
+
 TEST_F(SceneWarnings, OfLoadsThatStepsMayPassBy) {
   const std::string wheelset = "[[load]]\nbody = \"wheelset-1\"\n";
   const auto gust = [&](const char* duration) {

@@ -24,14 +24,21 @@ using namespace railtab;
 
 constexpr std::size_t simulated = 6;  // cycles of a branch
 constexpr double disturbance = 1.02;  // of all displacements and velocities with which a simulation begins
-constexpr double duration = 30.0, counted_from = 25.0;  // s
+constexpr double counted = 5.0;       // s at the end of a simulation
+
+/// How long the largest multiplier takes to bring the disturbance down to a thousandth of the cycle [s].
+double settling_time(const LimitCycle& cycle) {
+  constexpr double least = 25.0, most = 600.0, remains = 1e-3 / (disturbance - 1.0);
+  const double periods = std::log(remains) / std::log(std::abs(cycle.multiplier));
+  return std::clamp(periods / cycle.frequency, least, most);
+}
 
 SceneParameters coach_scene(const std::string& table) {
   SceneParameters scene;
   scene.train.vehicle = "manchester-coach";
   scene.contact.table = table;
   scene.track_kind = TrackKind::rigid;
-  scene.integration.duration = duration;
+  scene.integration.duration = counted;  // a scene without bridge states one
   return scene;
 }
 
@@ -45,6 +52,7 @@ std::optional<Simulated> simulation(const VehicleFlow& flow, const LimitCycle& c
   VsiState state = flow.state_at(model, disturbance * cycle.motion.start);
   const int y =
       model.vehicle.dof[static_cast<std::size_t>(model.vehicle.wheelsets[static_cast<std::size_t>(wheelset)])][1];
+  const double counted_from = settling_time(cycle);
   double low = 0.0, high = 0.0, before = 0.0, first = 0.0, last = 0.0;
   int crossings = 0;
   RunObserver observer;
@@ -63,7 +71,7 @@ std::optional<Simulated> simulation(const VehicleFlow& flow, const LimitCycle& c
   IntegrationParameters integration;
   integration.time_step = time_step;
   integration.alpha = 0.0;
-  const RunSummary summary = simulate(model, integration, duration, 1000000, state, observer);
+  const RunSummary summary = simulate(model, integration, counted_from + counted, 1000000, state, observer);
   if (!summary.complete || crossings < 2) return {};
   return Simulated{0.5 * (high - low), (crossings - 1) / (last - first)};
 }
