@@ -48,18 +48,47 @@ std::string onset_in_words(const Assessment& assessment, const Verdict& verdict)
   const auto quantity = verdict.clause->measure == "deck_acceleration"   ? &PassagePeaks::acceleration
                         : verdict.clause->measure == "deck_displacement" ? &PassagePeaks::displacement
                                                                          : &PassagePeaks::end_rotation;
-  const PassagePeaks* first = nullptr;
+  const PassagePeaks *first = nullptr, *lowest = nullptr;
   std::string train;
   for (const DeckAssessment& deck : assessment.decks) {
     for (const TrainResponse& response : deck.responses) {
       for (const PassagePeaks& p : response.passages) {
+        if (!lowest || p.speed < lowest->speed) lowest = &p;
         if (!((p.*quantity).value > verdict.limit) || (first && p.speed >= first->speed)) continue;
         first = &p;
         train = deck.trains[response.train].name;
       }
     }
   }
-  return first ? fmt::format("exceeded from {:.0f} km/h on ({})", 3.6 * first->speed, train) : "";
+  if (!first) return {};
+  return fmt::format("{} at {:.0f} km/h{} ({})", first->speed > lowest->speed ? "first exceeded" : "exceeded already",
+                     3.6 * first->speed, first->speed > lowest->speed ? "" : ", the lowest speed computed", train);
+}
+
+std::string standing_in_words(const Assessment& assessment) {
+  int read = 0, unverified = 0;
+  for (const Verdict& v : assessment.verdicts) {
+    if (v.outcome == Outcome::pass || v.outcome == Outcome::fail) ++(v.clause->verified ? read : unverified);
+  }
+  if (read + unverified == 0) return {};
+  return fmt::format(
+      "Of the limits judged, {} were read in the source that is named; {} are unverified: check them in the "
+      "standard.",
+      read, unverified);
+}
+
+std::string need_in_words(const Assessment& assessment) {
+  const auto with = [&](DynamicNeed need) {
+    return std::find_if(assessment.decks.begin(), assessment.decks.end(),
+                        [&](const DeckAssessment& d) { return d.need.need == need; });
+  };
+  if (assessment.decks.empty()) return {};
+  if (with(DynamicNeed::required) != assessment.decks.end()) return "EN 1991-2, 6.4.4, asks for a dynamic analysis.";
+  const auto open = with(DynamicNeed::undecided);
+  if (open == assessment.decks.end()) {
+    return "EN 1991-2, 6.4.4, does not ask for a dynamic analysis here.";
+  }
+  return fmt::format("Whether EN 1991-2, 6.4.4, asks for a dynamic analysis is open: {}.", open->need.reason);
 }
 
 std::optional<UnloadingBeside> unloading_beside(const Assessment& assessment, const Verdict& verdict) {
@@ -83,11 +112,6 @@ std::string unloading_in_words(const UnloadingBeside& beside) {
   std::string text = amount_in_words(beside.value->value, "-") + ", " + beside.value->where;
   if (beside.value->time) text += fmt::format(", t = {:.3f} s", *beside.value->time);
   return text;
-}
-
-bool needs_no_dynamic_analysis(const Assessment& assessment) {
-  return std::all_of(assessment.decks.begin(), assessment.decks.end(),
-                     [](const DeckAssessment& d) { return d.need.need == DynamicNeed::not_required; });
 }
 
 std::string amount_in_words(double value, std::string_view unit) {

@@ -65,7 +65,7 @@ struct Assessment {
 [[nodiscard]] std::string verdict_in_words(const Assessment& assessment);
 /// "hslm-a8 at 200 km/h, span 1, x = 12.5 m, t = 3.2 s"
 [[nodiscard]] std::string place_in_words(const MeasuredValue& value);
-/// Where a limit that moving loads exceed is exceeded first: "exceeded from 158.2 km/h on (hslm-a9)"; empty for other
+/// Where a limit that moving loads exceed is exceeded first: "first exceeded at 158 km/h (hslm-a9)"; empty for other
 /// verdicts.
 [[nodiscard]] std::string onset_in_words(const Assessment& assessment, const Verdict& verdict);
 /// Wheel unloading of the run that a verdict on a deck stands for: research puts the safety of the train beside what
@@ -77,8 +77,10 @@ struct UnloadingBeside {
 [[nodiscard]] std::optional<UnloadingBeside> unloading_beside(const Assessment& assessment, const Verdict& verdict);
 /// "0.312, wheelset 2 left, t = 1.2 s", or "none: …".
 [[nodiscard]] std::string unloading_in_words(const UnloadingBeside& beside);
-/// Whether EN 1991-2 asks for a dynamic analysis of no deck.
-[[nodiscard]] bool needs_no_dynamic_analysis(const Assessment& assessment);
+/// How many of the limits judged are verified; empty where none is judged.
+[[nodiscard]] std::string standing_in_words(const Assessment& assessment);
+/// Whether EN 1991-2 asks for a dynamic analysis of any deck; empty without decks.
+[[nodiscard]] std::string need_in_words(const Assessment& assessment);
 /// A measure's value or limit with its unit as pages show it: "3.50 m/s²".
 [[nodiscard]] std::string amount_in_words(double value, std::string_view unit);
 /// Verdicts in the order of pages: failures, consequences, passes by how near they are, those not judged.

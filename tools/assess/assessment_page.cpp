@@ -91,7 +91,7 @@ std::string verdict_table(const Assessment& assessment, bool judged) {
   }
   if (rows.empty()) return "";
   return "<div class=\"scroll\"><table class=\"limits\"><tr><th>verdict</th><th>limit of</th><th class=\"n\">"
-         "value</th><th class=\"n\">limit</th><th class=\"n\">used</th><th>largest at</th>" +
+         "value</th><th class=\"n\">limit</th><th class=\"n\">of the limit</th><th>largest at</th>" +
          std::string(judged ? "<th>ΔQ/Q0 of that run</th>" : "<th></th>") + "</tr>" + rows + "</table></div>";
 }
 
@@ -101,17 +101,16 @@ std::string banner(const Assessment& assessment) {
       fmt::format("<div class=\"verdict {}\">{}", bad ? "bad" : "good", escaped(verdict_in_words(assessment)));
   for (const Verdict* v : ordered(assessment.verdicts)) {
     if (!v->failed()) break;
-    html += fmt::format("<p>{}: {}, {} {} {}; {}.</p>", escaped(v->clause->title),
+    html += fmt::format("<p>{}: {}, {} {} {} ({}); {}.</p>", escaped(v->clause->title),
                         amount_in_words(v->at->value, v->clause->unit), v->clause->limit.lower ? "at least" : "at most",
                         amount_in_words(v->limit, v->clause->unit), v->clause->limit.lower ? "required" : "permitted",
+                        v->clause->verified ? "limit read in its source" : "limit unverified",
                         escaped(place_in_words(*v->at)));
     const std::string onset = onset_in_words(assessment, *v);
     if (!onset.empty()) html += fmt::format("<p>It is {}.</p>", escaped(onset));
   }
-  if (bad && needs_no_dynamic_analysis(assessment)) {
-    html +=
-        "<p>By the flow chart of EN 1991-2, 6.4.4, no dynamic analysis is required here: what fails under moving loads "
-        "is resonance near or above the line speed.</p>";
+  for (const std::string& more : {need_in_words(assessment), standing_in_words(assessment)}) {
+    if (!more.empty()) html += "<p>" + escaped(more) + "</p>";
   }
   return html + "</div>";
 }
@@ -324,7 +323,7 @@ std::string assessment_page(const Assessment& assessment) {
   body += fmt::format("<h1>{}</h1><p class=\"lead\">Line speed {:.4g} km/h, {} track. {}.</p>",
                       escaped(assessment.scene_name), 3.6 * assessment.facts.line_speed, assessment.facts.track,
                       assessment.high_speed > 0.0
-                          ? fmt::format("Moving loads at {:.4g} to {:.4g} km/h, 1.2 times the line speed",
+                          ? fmt::format("Moving loads from {:.4g} km/h to {:.4g} km/h, 1.2 times the line speed",
                                         3.6 * assessment.low_speed, 3.6 * assessment.high_speed)
                           : "No moving loads");
   body += banner(assessment);

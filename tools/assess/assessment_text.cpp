@@ -40,7 +40,9 @@ void verdict_line(const Assessment& assessment, const Verdict& verdict, std::str
 }  // namespace
 
 std::string assessment_text(const Assessment& assessment) {
-  std::string text = fmt::format("{}\n{}\n\n", assessment.scene_name, verdict_in_words(assessment));
+  std::string text = fmt::format("{}\n{}\n", assessment.scene_name, verdict_in_words(assessment));
+  if (const std::string standing = standing_in_words(assessment); !standing.empty()) text += standing + "\n";
+  text += "\n";
   const auto out = std::back_inserter(text);
   for (const DeckAssessment& deck : assessment.decks) {
     fmt::format_to(out, "{}: {:.6g} m, first frequency {:.3f} Hz; dynamic analysis {}: {}\n", deck.deck.name,
