@@ -90,7 +90,7 @@ struct Files {
            << "branch,cycle,speed_kmh,amplitude_mm,frequency_Hz,stable,multiplier,residual,error_along_motion\n";
     folds << "# Folds of the branches" << made << "branch,fold,speed_kmh,amplitude_mm,frequency_Hz\n";
     simulations << "# Stable limit cycles and time simulations that begin near them" << made
-                << "branch,speed_kmh,rule,amplitude_mm,simulated_amplitude_mm,frequency_Hz,simulated_frequency_Hz\n";
+                << "branch,speed_kmh,amplitude_mm,endpoint_mm,automatic_mm,frequency_Hz,endpoint_Hz,automatic_Hz\n";
   }
 };
 
@@ -122,17 +122,17 @@ void compare(const HuntingBranch& branch, int number, const VehicleFlow& flow, d
   for (const LimitCycle* const cycle : stable) {
     if (cycle->speed < next) continue;
     next += step;
-    for (const std::optional<ContactForceRule> rule : {std::optional(ContactForceRule::endpoint), {}}) {
-      const std::optional<Simulated> run = simulation(flow, *cycle, branch.section_wheelset, time_step, rule);
-      if (!run) continue;
-      files.simulations << fmt::format("{},{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5f}\n", number, 3.6 * cycle->speed,
-                                       rule ? "endpoint" : "automatic", 1e3 * cycle->amplitudes[wheelset],
-                                       1e3 * run->amplitude, cycle->frequency, run->frequency);
-      files.simulations.flush();
-      if (rule) continue;
-      dots.x.push_back(3.6 * cycle->speed);
-      dots.y.push_back(1e3 * run->amplitude);
-    }
+    const auto with = [&](std::optional<ContactForceRule> rule) {
+      return simulation(flow, *cycle, branch.section_wheelset, time_step, rule);
+    };
+    const std::optional<Simulated> same = with(ContactForceRule::endpoint), by_default = with({});
+    if (!same || !by_default) continue;
+    files.simulations << fmt::format("{},{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", number,
+                                     3.6 * cycle->speed, 1e3 * cycle->amplitudes[wheelset], 1e3 * same->amplitude,
+                                     1e3 * by_default->amplitude, cycle->frequency, same->frequency,
+                                     by_default->frequency);
+    dots.x.push_back(3.6 * cycle->speed);
+    dots.y.push_back(1e3 * by_default->amplitude);
   }
 }
 

@@ -26,14 +26,17 @@ using assess::RunAssessment;
 void fade_in(ContactPlan& plan) {
   SceneParameters& scene = plan.scene;
   if (!scene.spectrum) return;
-  const double shortage = scene.train.start + scene.spectrum->fade_length();
-  if (!(shortage > 0.0)) return;
-  scene.train.start -= shortage;
-  scene.track.length_before += shortage;
-  plan.notes.push_back(fmt::format(
-      "The train starts {:g} m earlier, at x = {:g} m, so that the random track has risen where the bridge begins "
-      "(train.start, track.length_before).",
-      shortage, scene.train.start));
+  std::string note = fmt::format("The random track rises from zero over {:g} m (irregularity.fade_in).",
+                                 scene.spectrum->fade_length());
+  if (const double shortage = scene.train.start + scene.spectrum->fade_length(); shortage > 0.0) {
+    scene.train.start -= shortage;
+    scene.track.length_before += shortage;
+    note += fmt::format(
+        " The train starts {:g} m earlier, at x = {:g} m, so that it has risen where the bridge begins (train.start, "
+        "track.length_before).",
+        shortage, scene.train.start);
+  }
+  plan.notes.push_back(std::move(note));
 }
 
 /// The track goes on until the last wheelset has left the bridge.
