@@ -142,8 +142,8 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
       statistic(table.statistics, "certified.error.penetration.max"), table.tolerance);
   if (const double poses = statistic(table.statistics, "certified.outlines.poses"); poses > 0.0) {
     text += fmt::format(
-        "               on {:.0f} poses of all leaves by the exact overlap of the outlines; {:.0f} found missing "
-        "contacts, "
+        "               on {:.0f} poses of all leaves by the exact overlap of the outlines; missing contacts at "
+        "{:.0f}, "
         "whose leaves are limited\n",
         poses, statistic(table.statistics, "certified.outlines.mismatches"));
   }
