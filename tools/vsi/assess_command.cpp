@@ -188,8 +188,6 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
   report.notes.emplace_back(
       "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
       "accelerations by the modes up to the cut-off frequency of each deck.");
-  if (assess::needs_no_dynamic_analysis(assessment))
-    report.notes.emplace_back("EN 1991-2 does not ask for it here (stage check).");
 }
 
 /// Speeds of a train's runs: those asked for, or the line's and the critical one below it.
