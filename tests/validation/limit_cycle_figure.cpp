@@ -171,9 +171,12 @@ void compute(const std::string& folder, const std::string& table) {
     });
     write_branch(branch, number, files);
     compare(branch, number, flow, search.time_step, files, dots);
-    panel.lines.push_back(part(branch, true, fmt::format("branch {}, stable", number)));
-    panel.lines.push_back(part(branch, false, fmt::format("branch {}, unstable", number)));
-    panel.styles.insert(panel.styles.end(), {report::LineStyle::solid, report::LineStyle::dashed});
+    for (const bool stable : {true, false}) {
+      report::Series line = part(branch, stable, fmt::format("{}, {}", number, stable ? "stable" : "unstable"));
+      if (std::all_of(line.y.begin(), line.y.end(), [](double y) { return std::isnan(y); })) continue;
+      panel.lines.push_back(std::move(line));
+      panel.styles.push_back(stable ? report::LineStyle::solid : report::LineStyle::dashed);
+    }
   }
   panel.dots = {dots};
   std::ofstream(folder + "/limit_cycles.svg")
