@@ -208,7 +208,10 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
   ContactPatches table;
   const TableAnswer answer = add_branch_patches(search_, leaf, pose, pose.z, 0.0, table);
   trial.searched += static_cast<int>(answer != TableAnswer::looked_up);
-  if (answer == TableAnswer::none) return;
+  if (answer == TableAnswer::none) {  // the runtime searches the whole wheel
+    ++trial.wrong;
+    return;
+  }
   bool wrong = false;
   const auto missing = [&](const ContactPatches& from, const ContactPatches& in) {
     for (const ContactPatch& p : from) {
