@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "railtab/runtime/contact/table_contact.hpp"
+#include "railtab/tablegen/even_points.hpp"
+#include "railtab/tablegen/geometry_parts.hpp"
 
 namespace railtab {
 
@@ -20,12 +22,13 @@ constexpr int inside_checks = 16;       ///< points inside every cell
 constexpr int last_inside_checks = 64;  ///< points inside a leaf that is not perfect, for its limit
 constexpr int outline_checks = 4;       ///< points inside every leaf, against the outlines' exact overlap
 
-/// Fractions of the unit cube in four dimensions: the additive recurrence that fills it evenly.
-std::array<double, 4> check_point(int n) {
-  constexpr std::array<double, 4> step{0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101};
-  std::array<double, 4> point{};
-  for (std::size_t a = 0; a < 4; ++a) point[a] = std::fmod(0.5 + step[a] * (n + 1), 1.0);
-  return point;
+std::array<double, 4> check_point(int n) { return even_point(0.5, n + 1); }
+
+/// Height at which a wheel first touches on a branch of the leaf; infinite without one [m].
+double first_touch_of(const GeometryLeaf& leaf) {
+  double first = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < leaf.count; ++n) first = std::min(first, leaf.start(n, 0.0).z_touch);
+  return first;
 }
 
 }  // namespace
@@ -142,20 +145,12 @@ void CellRefinement::check_samples(const CellBox& box, const BoxSamples& samples
   }
 }
 
-WheelsetPose CellRefinement::pose_at(const CellBox& box, const std::array<double, 3>& local) const {
-  WheelsetPose pose;
-  pose.roll = box.at(2, local[2]);
-  pose.yaw = std::sqrt(box.at(1, local[1]));
-  pose.y = box.at(0, local[0]) + radius_ * pose.roll;
-  return pose;
-}
-
 void CellRefinement::check_inside(const CellBox& box, int first, int end, Trial& trial) const {
   for (int n = first; n < end; ++n) {
     const std::array<double, 4> fraction = check_point(n);
     std::array<double, 3> local{};
     for (std::size_t a = 0; a < 3; ++a) local[a] = axis_fixed(a) ? 0.0 : 2.0 * fraction[a] - 1.0;
-    WheelsetPose pose = pose_at(box, local);
+    WheelsetPose pose = pose_in(box, local, radius_);
     pose.z = search_.touch_height(pose.y, pose.roll, pose.yaw) + fraction[3] * options_.searched_lowering;
     if (std::isfinite(pose.z)) check_pose(box, local, pose, search_.patches(pose), trial);
   }
@@ -169,9 +164,8 @@ void CellRefinement::check_outlines(const CellBox& box, Trial& trial) const {
     std::array<double, 3> local{};
     for (std::size_t a = 0; a < 3; ++a) local[a] = axis_fixed(a) ? 0.0 : 2.0 * fraction[a] - 1.0;
     const GeometryLeaf leaf = leaf_at(box, local, trial);
-    WheelsetPose pose = pose_at(box, local);
-    double first_touch = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < leaf.count; ++k) first_touch = std::min(first_touch, leaf.start(k, 0.0).z_touch);
+    WheelsetPose pose = pose_in(box, local, radius_);
+    const double first_touch = first_touch_of(leaf);
     pose.z = first_touch + (n % 2 == 0 ? 1.0 : fraction[3]) * trial.trusted_lowering;
     ContactPatches patches;
     if (!std::isfinite(pose.z) || add_branch_patches(search_, leaf, pose, pose.z, 0.0, patches) == TableAnswer::none) {
@@ -203,8 +197,7 @@ void CellRefinement::check_pose(const CellBox& box, const std::array<double, 3>&
                                 const ContactPatches& online, Trial& trial) const {
   ++trial.checks;
   const GeometryLeaf leaf = leaf_at(box, local, trial);
-  double first_touch = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < leaf.count; ++n) first_touch = std::min(first_touch, leaf.start(n, pose.z).z_touch);
+  const double first_touch = first_touch_of(leaf);
   ContactPatches table;
   const TableAnswer answer = add_branch_patches(search_, leaf, pose, pose.z, 0.0, table);
   trial.searched += static_cast<int>(answer != TableAnswer::looked_up);

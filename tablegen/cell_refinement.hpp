@@ -36,7 +36,6 @@ class CellRefinement {
                   const ContactPatches& online, Trial& trial) const;
   void check_outlines(const CellBox& box, Trial& trial) const;
   [[nodiscard]] GeometryLeaf leaf_at(const CellBox& box, const std::array<double, 3>& local, const Trial& trial) const;
-  [[nodiscard]] WheelsetPose pose_at(const CellBox& box, const std::array<double, 3>& local) const;
   [[nodiscard]] bool in_range(const CellBox& box) const;
   [[nodiscard]] double share_of_queries(const CellBox& box) const;
   [[nodiscard]] std::size_t axis_to_halve(const BoxSamples& samples, const Trial& trial) const;

@@ -13,6 +13,9 @@ namespace railtab {
 /// The box of a root cell, root_cells() of them.
 [[nodiscard]] CellBox root_box(const GeometryTableData& table, std::int64_t root);
 
+/// The pose at fractions -1..1 of a box, z not set. @param radius nominal [m]
+[[nodiscard]] WheelsetPose pose_in(const CellBox& box, const std::array<double, 3>& local, double radius) noexcept;
+
 /// A leaf that has branches.
 struct TableLeaf {
   CellBox box;

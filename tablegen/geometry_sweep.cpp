@@ -123,6 +123,14 @@ CellBox root_box(const GeometryTableData& table, std::int64_t root) {
   return box;
 }
 
+WheelsetPose pose_in(const CellBox& box, const std::array<double, 3>& local, double radius) noexcept {
+  WheelsetPose pose;
+  pose.roll = box.at(2, local[2]);
+  pose.yaw = std::sqrt(box.at(1, local[1]));
+  pose.y = box.at(0, local[0]) + radius * pose.roll;
+  return pose;
+}
+
 std::vector<TableLeaf> leaves_below(const GeometryTableData& table, std::int64_t root) {
   std::vector<TableLeaf> leaves;
   std::vector<std::pair<std::uint32_t, CellBox>> open{{static_cast<std::uint32_t>(root), root_box(table, root)}};

@@ -1,25 +1,12 @@
 #include "railtab/tablegen/outline_certificate.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
+#include "railtab/tablegen/even_points.hpp"
 #include "railtab/tablegen/geometry_parts.hpp"
 #include "railtab/tablegen/intersection/outline_overlap.hpp"
 
 namespace railtab {
-
-namespace {
-
-/// Fractions 0..1 of the four dimensions, which fill them evenly.
-std::array<double, 4> fractions(std::int64_t n) {
-  constexpr std::array<double, 4> step{0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101};
-  std::array<double, 4> result{};
-  for (std::size_t a = 0; a < result.size(); ++a) result[a] = std::fmod(step[a] * static_cast<double>(n), 1.0);
-  return result;
-}
-
-}  // namespace
 
 OutlineCertificate certify_outlines(const TableContact& contact, int pass) {
   constexpr std::int64_t poses_per_leaf = 2, most_leaves = 100'000;  // of a root cell: for numbers of their own
@@ -37,12 +24,9 @@ OutlineCertificate certify_outlines(const TableContact& contact, int pass) {
       std::int64_t n = (root + pass * roots) * poses_per_leaf * most_leaves;
       for (const TableLeaf& leaf : leaves_below(data, root)) {
         for (std::int64_t k = 0; k < poses_per_leaf; ++k) {
-          const std::array<double, 4> part = fractions(++n);
-          const auto at = [&](std::size_t axis) { return leaf.box.at(axis, 2.0 * part[axis] - 1.0); };
-          WheelsetPose pose;
-          pose.roll = at(2);
-          pose.yaw = std::sqrt(at(1));
-          pose.y = at(0) + data.nominal_radius * pose.roll;
+          const std::array<double, 4> part = even_point(0.0, ++n);
+          WheelsetPose pose =
+              pose_in(leaf.box, {2.0 * part[0] - 1.0, 2.0 * part[1] - 1.0, 2.0 * part[2] - 1.0}, data.nominal_radius);
           const GeometryTable::Lookup lookup = table.lookup(pose.y, 0.0, pose.yaw, pose.roll);
           // The first as deep as the leaf is trusted, where most contacts exist.
           const double lowering = (k == 0 ? 1.0 : part[3]) * lookup.trusted_lowering;
