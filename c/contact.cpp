@@ -208,9 +208,7 @@ railtab_status status_of(const WheelContact& contact) noexcept {
   return contact.by_patches() && !contact.patches.from_table ? RAILTAB_SEARCHED : RAILTAB_OK;
 }
 
-void put_force(const railtab_contact& contact, const Query& query, const WheelContact& at,
-               railtab_wheel_force& result) noexcept {
-  const LoadedWheelForce force = wheel_force(contact.model, query.side, query.wheelset, query.rail, at);
+void put_force(const WheelContact& at, const WheelForce& force, railtab_wheel_force& result) noexcept {
   Eigen::Map<Vector6>(result.wheelset) = force.wheelset;
   Eigen::Map<Vector3>(result.rail) = force.rail;
   result.rail_x = force.rail_x;
@@ -319,7 +317,7 @@ railtab_status railtab_contact_force(const railtab_contact* contact, int side, c
     const auto query = railtab::query_of(side, wheelset, rail);
     if (!contact || !query || !force) return RAILTAB_INVALID_INPUT;
     const railtab::WheelContact at = railtab::wheel_contact(contact->table.geometry, pose_of(*contact, *query));
-    put_force(*contact, *query, at, *force);
+    railtab::put_force(at, wheel_force(contact->model, query->side, query->wheelset, query->rail, at), *force);
     return railtab::status_of(at);
   });
 }
@@ -331,12 +329,13 @@ railtab_status railtab_contact_force_and_tangent(const railtab_contact* contact,
   return railtab::guarded([&] {
     const auto query = railtab::query_of(side, wheelset, rail);
     if (!contact || !query || !force || !tangent || !std::isfinite(velocity_rate)) return RAILTAB_INVALID_INPUT;
-    const railtab::WheelContact at = railtab::wheel_contact(contact->table.geometry, pose_of(*contact, *query));
-    put_force(*contact, *query, at, *force);
     const railtab::StepRates rates{railtab::Vector6::Constant(velocity_rate), velocity_rate};
+    const railtab::WheelResponse response =
+        railtab::wheel_response(contact->model, query->side, query->wheelset, query->rail, rates);
+    railtab::put_force(response.contact, response.force, *force);
     Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> rows(tangent);
-    rows = wheel_force_tangent(contact->model, query->side, query->wheelset, query->rail, at, rates);
-    return railtab::status_of(at);
+    rows = response.tangent;
+    return railtab::status_of(response.contact);
   });
 }
 

@@ -63,26 +63,10 @@ class Motions {
   std::size_t q_ = 0, v_ = 0, rail_ = 0, rail_v_ = 0, yaw_ = 0, slope_ = 0, friction_ = 0;
 };
 
-struct Answer {
-  WheelsetMotion wheelset;
-  RailHeadMotion rail;
-  WheelContact contact;
-
-  Answer(const Wheel& wheel, const Motions& motions, py::ssize_t i)
-      : wheelset(motions.wheelset(i)),
-        rail(motions.rail(i)),
-        contact(wheel_contact(wheel.geometry->contact(),
-                              relative_pose(wheel.geometry->contact().pair(), motions.side(), wheelset, rail))) {}
-  void put_force(const Wheel& wheel, WheelSide side, double* out) const noexcept {
-    const WheelForce force = wheel_force(wheel.model, side, wheelset, rail, contact);
-    Eigen::Map<Vector9> all(out);
-    all << force.wheelset, force.rail;
-  }
-  void put_tangent(const Wheel& wheel, WheelSide side, const StepRates& rates, double* out) const noexcept {
-    Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> all(out);
-    all = wheel_force_tangent(wheel.model, side, wheelset, rail, contact, rates);
-  }
-};
+void put_force(const WheelForce& force, double* out) noexcept {
+  Eigen::Map<Vector9> all(out);
+  all << force.wheelset, force.rail;
+}
 
 py::array_t<double> force(const Wheel& wheel, const Motions::Arguments& arguments) {
   const Motions motions("WheelContact.force", arguments);
@@ -90,7 +74,11 @@ py::array_t<double> force(const Wheel& wheel, const Motions::Arguments& argument
   double* out = result.mutable_data();
   const py::gil_scoped_release release;
   for (py::ssize_t i = 0; i < motions.rows().count(); ++i, out += 9) {
-    Answer(wheel, motions, i).put_force(wheel, motions.side(), out);
+    const WheelsetMotion wheelset = motions.wheelset(i);
+    const RailHeadMotion rail = motions.rail(i);
+    const ContactGeometry& geometry = wheel.geometry->contact();
+    const WheelContact at = wheel_contact(geometry, relative_pose(geometry.pair(), motions.side(), wheelset, rail));
+    put_force(wheel_force(wheel.model, motions.side(), wheelset, rail, at), out);
   }
   return result;
 }
@@ -106,9 +94,11 @@ py::tuple force_and_tangent(const Wheel& wheel, const Motions::Arguments& argume
   {
     const py::gil_scoped_release release;
     for (py::ssize_t i = 0; i < motions.rows().count(); ++i, out += 9, slopes += 81) {
-      const Answer answer(wheel, motions, i);
-      answer.put_force(wheel, motions.side(), out);
-      answer.put_tangent(wheel, motions.side(), rates, slopes);
+      const WheelResponse response =
+          wheel_response(wheel.model, motions.side(), motions.wheelset(i), motions.rail(i), rates);
+      put_force(response.force, out);
+      Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> all(slopes);
+      all = response.tangent;
     }
   }
   return py::make_tuple(force, tangent);

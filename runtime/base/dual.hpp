@@ -8,14 +8,15 @@
 namespace railtab {
 
 /// A number with its derivatives in 4·packs directions: what is computed with dual numbers carries the exact derivative
-/// along.
+/// along. Like a double, `Dual x;` is not initialised and `Dual{}` is zero.
 template <std::size_t packs>
 struct Dual {
-  double value = 0.0;
-  Pack slope[packs]{};
+  double value;
+  Pack slope[packs];
 
   Dual() = default;
-  Dual(double constant) : value(constant) {}  // NOLINT(google-explicit-constructor): constants take part as they are
+  Dual(double constant)
+      : value(constant), slope{} {}  // NOLINT(google-explicit-constructor): constants take part as they are
 
   /// f(x) with f' at x, by the chain rule.
   [[nodiscard]] friend Dual chained(const Dual& x, double f, double slope) noexcept {

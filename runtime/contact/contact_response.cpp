@@ -69,13 +69,38 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
   if (contact.by_patches()) {
     tangent = (1.0 - share) * wheel_force_tangent(model, side, wheelset, rail, contact.patches, rates);
   }
-  if (rates.start && (share > 0.0 || rates.start->loaded.weight > 0.0)) {
-    // a mean, whose ends have their shares already
-    tangent += loaded_wheel_tangent(model, side, wheelset, rail, rates, &rates.start->loaded);
-  } else if (share > 0.0) {
-    tangent += share * loaded_wheel_tangent(model, side, wheelset, rail, rates, nullptr);
+  const LoadedMemory* start = rates.start ? &rates.start->loaded : nullptr;
+  if (share > 0.0 || (start && start->weight > 0.0)) {
+    LoadedSlopes slopes;
+    const WheelsetPose& p = contact.pose;
+    const LoadedLookup lookup = model.geometry->loaded()->lookup(p.y, p.z, p.roll, p.yaw, slopes);
+    // a mean has the shares of its ends already
+    tangent += (start ? 1.0 : share) *
+               loaded_wheel_response(model, side, wheelset, rail, lookup, slopes, rates, start).tangent;
   }
   return tangent;
+}
+
+WheelResponse wheel_response(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                             const RailHeadMotion& rail, const StepRates& rates) noexcept {
+  const ContactGeometry& geometry = *model.geometry;
+  WheelResponse result;
+  result.contact.pose = relative_pose(geometry.pair(), side, wheelset, rail);
+  const WheelsetPose& p = result.contact.pose;
+  if (geometry.loaded()) {
+    LoadedSlopes slopes;
+    result.contact.loaded = geometry.loaded()->lookup(p.y, p.z, p.roll, p.yaw, slopes);
+    if (!result.contact.by_patches()) {
+      const LoadedMemory* start = rates.start ? &rates.start->loaded : nullptr;
+      static_cast<LoadedWheelResponse&>(result) =
+          loaded_wheel_response(model, side, wheelset, rail, result.contact.loaded, slopes, rates, start);
+      return result;
+    }
+  }
+  result.contact = wheel_contact(geometry, p);
+  result.force = wheel_force(model, side, wheelset, rail, result.contact);
+  result.tangent = wheel_force_tangent(model, side, wheelset, rail, result.contact, rates);
+  return result;
 }
 
 }  // namespace railtab

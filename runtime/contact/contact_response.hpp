@@ -43,4 +43,14 @@ struct WheelContact {
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                           const WheelContact& contact, const StepRates& rates) noexcept;
 
+/// The contact of a wheel, its force and the derivative (wheel_force_tangent()).
+struct WheelResponse : LoadedWheelResponse {
+  WheelContact contact;
+};
+
+/// All three for about the price of the derivative: one look-up where the loaded table answers.
+[[nodiscard]] WheelResponse wheel_response(const WheelContactModel& model, WheelSide side,
+                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                           const StepRates& rates) noexcept;
+
 }  // namespace railtab

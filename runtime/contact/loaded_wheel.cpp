@@ -76,10 +76,20 @@ struct Wrench {
   }
 };
 
+template <class T>
+Wrench<double> numbers(const Wrench<T>& w) {
+  Wrench<double> result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.force[i] = number(w.force[i]);
+    result.moment[i] = number(w.moment[i]);
+  }
+  return result;
+}
+
 /// A part of the contact that bears load, or several as one.
 template <class T>
 struct Part {
-  T normal = T(0.0);       ///< with damping [N]
+  T normal;                ///< with damping [N]
   Vector<T> arm;           ///< [m]
   T cos_angle, sin_angle;  ///< of the contact angle
   T a, b, s;               ///< ellipse and place across the rail [m]
@@ -90,8 +100,9 @@ struct Part {
 using MotionSlope = Eigen::Matrix<double, 6, 7>;
 using MotionRow = Eigen::Matrix<double, 1, 7>;
 
-/// Forces of numbers, or of dual numbers whose first directions are those of the pose; derivatives with respect to
-/// velocities are summed up apart (motion_slope()), since every part answers to three components of slip only.
+/// Forces of numbers, or of dual numbers whose first directions are those of the pose and, where parts are damped,
+/// whose others are the parts' normal forces; derivatives with respect to velocities are summed up apart
+/// (motion_slope()), since every part answers to three components of slip only.
 template <class T>
 class LoadedContactForce {
  public:
@@ -135,7 +146,7 @@ class LoadedContactForce {
   }
   [[nodiscard]] const std::array<double, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
   [[nodiscard]] int outside_creep_table() const { return outside_; }
-  [[nodiscard]] double creep_power() const { return creep_power_; }  ///< WheelForce::creep_power, of numbers only
+  [[nodiscard]] double creep_power() const { return creep_power_; }  ///< WheelForce::creep_power
 
   /// Elastic forces on the wheel. The moment of the normal forces about the axle is zero.
   [[nodiscard]] Wrench<T> wrench(const std::array<T, 4>& on_rail) const {
@@ -145,13 +156,23 @@ class LoadedContactForce {
   }
 
   /// Generalised forces on wheelset (6) and rail head (3) in track axes: as WheelForce::patch, of the right wheel.
-  [[nodiscard]] Generalised<T> generalised(const Wrench<T>& w) const {
+  /// @param w with derivatives, or numbers alone
+  template <class U>
+  [[nodiscard]] Generalised<U> generalised(const Wrench<U>& w) const {
+    const auto of_pose = [](const T& x) {
+      if constexpr (std::is_same_v<U, T>)
+        return x;
+      else
+        return number(x);
+    };
     const double c = wheel_.rail_cos, s = wheel_.rail_sin;
-    const Vector<T>&f = w.force, &m = w.moment;
-    const T fy = c * f[1] - s * f[2], fz = s * f[1] + c * f[2];
-    const T about_axle = cos_yaw_ * (cos_roll_ * m[1] + sin_roll_ * m[2]) - sin_yaw_ * m[0];
-    return {
-        f[0], fy, fz, m[0], about_axle, s * m[1] + c * m[2], -fy, -fz, -(m[0] + centre_y_ * f[2] - centre_z_ * f[1])};
+    const Vector<U>&f = w.force, &m = w.moment;
+    const U fy = c * f[1] - s * f[2], fz = s * f[1] + c * f[2];
+    const U about_axle =
+        of_pose(cos_yaw_) * (of_pose(cos_roll_) * m[1] + of_pose(sin_roll_) * m[2]) - of_pose(sin_yaw_) * m[0];
+    return {f[0], fy,         fz,
+            m[0], about_axle, s * m[1] + c * m[2],
+            -fy,  -fz,        -(m[0] + of_pose(centre_y_) * f[2] - of_pose(centre_z_) * f[1])};
   }
 
  private:
@@ -246,7 +267,12 @@ class LoadedContactForce {
         if (last > first) within = T(within * merged[last]);
         if (number(within) == 0.0) break;
         const T weight = within * (1.0 - merged[first]) * (1.0 - merged[last + 1]);
-        if (number(weight) > 0.0) add_creep(together(parts, first, last), weight);
+        if (!(number(weight) > 0.0)) continue;
+        if (first == last) {
+          add_creep(parts[first], weight);
+        } else {
+          add_creep(together(parts, first, last), weight);
+        }
       }
     }
   }
@@ -266,8 +292,8 @@ class LoadedContactForce {
   static Part<T> together(const std::array<Part<T>, LoadedLookup::capacity>& parts, std::size_t first,
                           std::size_t last) {
     using std::sqrt;
-    if (first == last) return parts[first];
     Part<T> sum;
+    sum.normal = T(0.0);
     sum.arm.fill(T(0.0));
     T s = T(0.0), aa = T(0.0), bb = T(0.0), along = T(0.0), across = T(0.0);
     for (std::size_t p = first; p <= last; ++p) {
@@ -326,11 +352,12 @@ class LoadedContactForce {
       add_motion_slope(part, slope);
     } else {
       creep.jet.force = creep_force(model_.creep_law, ratio, at);
-      const auto* table = std::get_if<TableCreep>(&model_.creep_law);
-      if (table && table->share(ratio, at) < 1.0) ++outside_;
-      creep_power_ -= weight * bound / scale *
-                      (creep.jet.force.x * at.x + creep.jet.force.y * at.y + creep.jet.force.moment * at.spin);
     }
+    const CreepForce& local = creep.jet.force;
+    const auto* table = std::get_if<TableCreep>(&model_.creep_law);
+    if (table && table->share(number(ratio), at) < 1.0) ++outside_;
+    creep_power_ -=
+        number(weight) * number(bound) / number(scale) * (local.x * at.x + local.y * at.y + local.moment * at.spin);
     const std::array<T, 3> f = creep.of(ratio, creepage);
     const T across = f[1] * bound, spin = f[2] * bound * root;
     const Vector<T> force{f[0] * bound, across * part.cos_angle, across * part.sin_angle};
@@ -485,12 +512,32 @@ class DisplacementSlopes {
   const StepRates& rates_;
 };
 
-/// @param T dual numbers with a direction for every part's normal force where these are damped
 template <class T>
-Matrix9 tangent_on_right(const WheelContactModel& model, double friction, const WheelKinematics& wheel,
-                         const LoadedLookup& lookup, const LoadedSlopes& slopes, const StepRates& rates,
-                         const LoadedMemory* start) {
-  const LoadedContactForce<T> force(model, friction, wheel, lookup, &slopes);
+LoadedWheelForce force_of(const LoadedContactForce<T>& force, WheelSide side, const WheelKinematics& wheel,
+                          const LoadedLookup& lookup) {
+  LoadedWheelForce result;
+  const Vector9 total = in_track(side, force.generalised(numbers(force.total())));
+  result.wheelset = total.head<6>();
+  result.rail = total.tail<3>();
+  result.rail_x = -result.wheelset[0];
+  std::copy_n(force.part_normal().begin(), lookup.parts, result.normal.begin());
+  result.outside_creep_table = force.outside_creep_table();
+  result.creep_power = force.creep_power();
+  result.pressure = lookup.largest_pressure();
+  const Generalised<double> rest = force.generalised(numbers(force.rest()));
+  result.memory = {.weight = lookup.table_share,
+                   .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
+                   .energy = lookup.energy,
+                   .force = lookup.force,
+                   .rest = lookup.table_share * Eigen::Map<const Vector9>(rest.data()),
+                   .total = lookup.table_share * total};
+  return result;
+}
+
+/// Of the right wheel.
+template <class T>
+Matrix9 tangent_of(const LoadedContactForce<T>& force, const WheelContactModel& model, const WheelKinematics& wheel,
+                   const LoadedLookup& lookup, const StepRates& rates, const LoadedMemory* start) {
   Generalised<T> total;
   double of_motion = 1.0;
   Vector9 turned = Vector9::Zero();
@@ -530,29 +577,25 @@ Matrix9 tangent_on_right(const WheelContactModel& model, double friction, const 
   return DisplacementSlopes(wheel, rates).of(pose, motion, turned);
 }
 
+template <class T>
+LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelContactModel& model, WheelSide side,
+                                const WheelKinematics& wheel, const LoadedLookup& lookup, const StepRates& rates,
+                                const LoadedMemory* start) {
+  LoadedWheelResponse result{force_of(force, side, wheel, lookup),
+                             tangent_of(force, model, wheel, lookup, rates, start)};
+  if (side == WheelSide::left) {
+    const Vector9 sign = reflected(Vector9(Vector9::Ones()));
+    result.tangent = sign.asDiagonal() * result.tangent * sign.asDiagonal();
+  }
+  return result;
+}
+
 }  // namespace
 
 LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
-  LoadedWheelForce result;
   const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
-  const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
-  const Vector9 total = in_track(side, force.generalised(force.total()));
-  result.wheelset = total.head<6>();
-  result.rail = total.tail<3>();
-  result.rail_x = -result.wheelset[0];
-  std::copy_n(force.part_normal().begin(), lookup.parts, result.normal.begin());
-  result.outside_creep_table = force.outside_creep_table();
-  result.creep_power = force.creep_power();
-  result.pressure = lookup.largest_pressure();
-  const Generalised<double> rest = force.generalised(force.rest());
-  result.memory = {.weight = lookup.table_share,
-                   .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
-                   .energy = lookup.energy,
-                   .force = lookup.force,
-                   .rest = lookup.table_share * Eigen::Map<const Vector9>(rest.data()),
-                   .total = lookup.table_share * total};
-  return result;
+  return force_of(LoadedContactForce<double>(model, rail.friction, wheel, lookup, nullptr), side, wheel, lookup);
 }
 
 ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pose,
@@ -585,22 +628,17 @@ Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const 
   return in_track(side, force);
 }
 
-Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                             const RailHeadMotion& rail, const StepRates& rates, const LoadedMemory* start) noexcept {
+LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelSide side,
+                                          const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                          const LoadedLookup& lookup, const LoadedSlopes& slopes,
+                                          const StepRates& rates, const LoadedMemory* start) noexcept {
   constexpr std::size_t normal_packs = (LoadedLookup::capacity + 3) / 4;
   const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
-  LoadedSlopes slopes;
-  const LoadedLookup lookup = model.geometry->loaded()->lookup(wheel.y, wheel.z, wheel.roll, wheel.yaw, slopes);
-  if (!(lookup.energy > 0.0) && !start) return Matrix9::Zero();
-  Matrix9 tangent =
-      model.damping != 0.0
-          ? tangent_on_right<Dual<1 + normal_packs>>(model, rail.friction, wheel, lookup, slopes, rates, start)
-          : tangent_on_right<Dual<1>>(model, rail.friction, wheel, lookup, slopes, rates, start);
-  if (side == WheelSide::left) {
-    const Vector9 sign = reflected(Vector9(Vector9::Ones()));
-    tangent = sign.asDiagonal() * tangent * sign.asDiagonal();
-  }
-  return tangent;
+  const auto response = [&]<std::size_t packs>() {
+    const LoadedContactForce<Dual<packs>> force(model, rail.friction, wheel, lookup, &slopes);
+    return response_of(force, model, side, wheel, lookup, rates, start);
+  };
+  return model.damping != 0.0 ? response.operator()<1 + normal_packs>() : response.operator()<1>();
 }
 
 }  // namespace railtab

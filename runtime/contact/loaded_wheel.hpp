@@ -41,10 +41,19 @@ struct LoadedWheelForce : WheelForce {
                                         const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                         const LoadedLookup& lookup) noexcept;
 
-/// As wheel_force_tangent(), by the chain rule from the table's derivatives, the law's and those of the kinematics.
+/// Forces with their derivative in a time step.
+struct LoadedWheelResponse {
+  LoadedWheelForce force;
+  Matrix9 tangent;  ///< as wheel_force_tangent(): of the force, or of its mean over a step
+};
+
+/// Force and derivative from one look-up, by the chain rule from the table's derivatives, the law's and those of the
+/// kinematics.
+/// @param lookup, slopes at the pose that relative_pose() returns
 /// @param start of the mean force over a step, or null
-[[nodiscard]] Matrix9 loaded_wheel_tangent(const WheelContactModel& model, WheelSide side,
-                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
-                                           const StepRates& rates, const LoadedMemory* start) noexcept;
+[[nodiscard]] LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelSide side,
+                                                        const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                                        const LoadedLookup& lookup, const LoadedSlopes& slopes,
+                                                        const StepRates& rates, const LoadedMemory* start) noexcept;
 
 }  // namespace railtab

@@ -170,7 +170,8 @@ inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSumma
                                            SummaryEntry<long>{"outside_creep_table", &RunSummary::outside_creep_table},
                                            SummaryEntry<long>{"structure_dofs", &RunSummary::structure_dofs},
                                            SummaryEntry<long>{"vehicle_dofs", &RunSummary::vehicle_dofs}};
-inline constexpr std::array summary_seconds{SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},
+inline constexpr std::array summary_numbers{SummaryEntry<double>{"window_error", &RunSummary::window_error, false},
+                                            SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},
                                             SummaryEntry<double>{"seconds_setup", &RunSummary::seconds_setup},
                                             SummaryEntry<double>{"seconds_lookup", &RunSummary::seconds_lookup},
                                             SummaryEntry<double>{"seconds_contact", &RunSummary::seconds_contact},

@@ -173,7 +173,7 @@ RunSummary read_summary(const ArrayFileReader& in, std::size_t wheels) {
     if (!entry.in_all_files && std::find(names.begin(), names.end(), entry.name) == names.end()) continue;
     summary.*entry.value = in.whole_number(columns::summary_group, entry.name, 0, most_count);
   }
-  for (const auto& entry : columns::summary_seconds) {
+  for (const auto& entry : columns::summary_numbers) {
     summary.*entry.value = fields.number(columns::summary_group, entry.name);
   }
   const long impacts = in.whole_number(columns::summary_group, columns::contact_energy_impacts, -1, most_count);
@@ -277,7 +277,7 @@ void write_summary(ArrayFileWriter& out, const RunSummary& summary) {
   for (const auto& entry : columns::summary_counts) {
     out.attribute(columns::summary_group, entry.name, static_cast<std::int64_t>(summary.*entry.value));
   }
-  for (const auto& entry : columns::summary_seconds) {
+  for (const auto& entry : columns::summary_numbers) {
     out.attribute(columns::summary_group, entry.name, summary.*entry.value);
   }
   const ContactEnergy energy = summary.contact_energy.value_or(ContactEnergy{.impacts = -1});

@@ -73,7 +73,10 @@ void Integrator::prepare(VsiState& state) {
 }
 
 bool Integrator::step(VsiState& state) {
-  if (window_) active_ = window_->move(state);
+  if (window_) {
+    active_ = window_->move(state);
+    counts_.window_error = window_->error();
+  }
   counts_.active_dofs = std::max<long>(counts_.active_dofs, active_.count);
   if (!make_steps(state)) return false;
   if (window_) window_->step_inactive_spans(state);

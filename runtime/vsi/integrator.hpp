@@ -23,6 +23,7 @@ void record_stops(const VsiModel& model, VsiState& state);
 /// What an integrator has counted since it was made.
 struct StepCounts {
   long newton_iterations = 0, back_substitutions = 0, halved_steps = 0, impact_steps = 0, active_dofs = 0;
+  double window_error = 0.0;  ///< RunSummary
   ContactCounts contact;
 };
 

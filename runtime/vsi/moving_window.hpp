@@ -48,6 +48,8 @@ class MovingWindow {
   /// One time step of the spans behind, and where the ground moves of those ahead; their nodes of interest are written
   /// into the state.
   void step_inactive_spans(VsiState& state) const;
+  /// RunSummary::window_error, so far.
+  [[nodiscard]] double error() const noexcept { return error_; }
 
  private:
   struct Ends {
@@ -55,6 +57,7 @@ class MovingWindow {
     bool operator==(const Ends&) const = default;
   };
   [[nodiscard]] Ends ends(long step) const;
+  void note_error(const Ends& before, const Ends& now, const VsiState& state);
   void join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
             VsiState& state) const;
   void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;
@@ -63,7 +66,7 @@ class MovingWindow {
   HhtScheme scheme_;
   std::vector<std::vector<int>> nodes_;  // of every span, dofs of nodes of interest
   bool placed_ = false;
-  double from_ = 0.0, to_ = 0.0;
+  double from_ = 0.0, to_ = 0.0, error_ = 0.0;
 };
 
 }  // namespace railtab

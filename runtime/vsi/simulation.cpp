@@ -18,6 +18,7 @@ void add_counts(const StepCounts& counts, RunSummary& summary) {
   summary.halved_steps = counts.halved_steps;
   summary.impact_steps = counts.impact_steps;
   summary.active_dofs = counts.active_dofs;
+  summary.window_error = counts.window_error;
   summary.contact_queries = counts.contact.queries;
   summary.table_queries = counts.contact.table_queries;
   summary.outside_creep_table = counts.contact.outside_creep_table;

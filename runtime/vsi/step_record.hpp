@@ -156,6 +156,9 @@ struct RunSummary {
   long structure_dofs = 0, vehicle_dofs = 0;
   long active_dofs = 0;  ///< most of the structure's unknowns that a step had, all or those of the moving window; not
                          ///< in result files
+  /// Largest motion that the moving window put to rest behind the train or that reached its front end, relative to the
+  /// structure's largest then [-]; 0 without window.
+  double window_error = 0;
   std::string contact_mode;                     ///< table, online, paper
   std::optional<ContactEnergy> contact_energy;  ///< where output.energy asks for it
   std::optional<StopSummary> stops;             ///< where a bump stop of the vehicles was engaged

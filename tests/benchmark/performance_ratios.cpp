@@ -116,19 +116,13 @@ double loaded_table_to_patches() {
   options.contact.elements.across_narrowest = 14;
   const ContactGeometry loaded(table, std::make_shared<const LoadedTable>(sweep_loaded(search, options)));
   const ContactGeometry patches(table);
-  struct Query {
-    WheelsetMotion wheelset;
-    WheelsetPose pose;
-  };
-  std::vector<Query> queries(512);
+  std::vector<WheelsetMotion> queries(512);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> y(-0.0025, -0.001), yaw(-3e-3, 3e-3), lowering(4e-5, 8e-5), slip(-0.05, 0.05);
-  for (Query& q : queries) {
-    q.wheelset.displacement << 0.0, y(random), 0.0, 0.0, 0.0, yaw(random);
-    q.wheelset.displacement[2] =
-        search.touch_height(q.wheelset.displacement[1], 0.0, q.wheelset.displacement[5]) + lowering(random);
-    q.wheelset.velocity << slip(random), slip(random), 0.0, 0.0, slip(random), 0.0;
-    q.pose = relative_pose(search.pair(), WheelSide::right, q.wheelset, {});
+  for (WheelsetMotion& q : queries) {
+    q.displacement << 0.0, y(random), 0.0, 0.0, 0.0, yaw(random);
+    q.displacement[2] = search.touch_height(q.displacement[1], 0.0, q.displacement[5]) + lowering(random);
+    q.velocity << slip(random), slip(random), 0.0, 0.0, slip(random), 0.0;
   }
   const auto forces = [&](const ContactGeometry& of) {
     WheelContactModel model;
@@ -136,12 +130,11 @@ double loaded_table_to_patches() {
     model.creep_law = creep_law("table", 0.28);
     model.speed = 50.0;
     const StepRates rates{Vector6::Constant(2000.0), 2000.0, nullptr};
-    return [&queries, &of, model, rates] {
+    return [&queries, model, rates] {
       double sum = 0.0;
-      for (const Query& q : queries) {
-        const WheelContact contact = wheel_contact(of, q.pose);
-        sum += wheel_force(model, WheelSide::right, q.wheelset, {}, contact).wheelset[2];
-        sum += wheel_force_tangent(model, WheelSide::right, q.wheelset, {}, contact, rates)(2, 2);
+      for (const WheelsetMotion& wheelset : queries) {
+        const WheelResponse response = wheel_response(model, WheelSide::right, wheelset, {}, rates);
+        sum += response.force.wheelset[2] + response.tangent(2, 2);
       }
       return sum;
     };

@@ -27,14 +27,12 @@ void print_wheel(const CppContact& contact, WheelSide side) {
           .pose.z,
       0.0, 0.0, right.yaw;
   wheelset.velocity[1] = 0.01;
-  const WheelContact at = contact.at(side, wheelset, {});
-  const WheelForce force = wheel_force(contact.model, side, wheelset, {}, at);
-  print("on the wheelset", force.wheelset);
-  print("on the rail", force.rail);
-  const Matrix9 tangent = wheel_force_tangent(contact.model, side, wheelset, {}, at, {Vector6::Constant(200.0), 200.0});
-  for (int i = 0; i < 9; ++i) print("derivatives", Vector9(tangent.row(i)));
-  const ContactPatches patches = contact.table.patches.patches(at.pose, touch_rounding);
-  const auto loads = patch_loadings(contact.table.geometry, at.pose, patches);
+  const WheelResponse found = wheel_response(contact.model, side, wheelset, {}, {Vector6::Constant(200.0), 200.0});
+  print("on the wheelset", found.force.wheelset);
+  print("on the rail", found.force.rail);
+  for (int i = 0; i < 9; ++i) print("derivatives", Vector9(found.tangent.row(i)));
+  const ContactPatches patches = contact.table.patches.patches(found.contact.pose, touch_rounding);
+  const auto loads = patch_loadings(contact.table.geometry, found.contact.pose, patches);
   for (int i = 0; i < patches.count; ++i) {
     const ContactPatch& p = patches.patch[i];
     print("patch", std::vector<double>{p.y_rail, p.z_rail, p.angle, p.rolling_radius, loads[i].normal_force, loads[i].a,

@@ -50,14 +50,17 @@ int main(int argc, char** argv) {
   std::vector<Row> rows;
   const auto put_forces = [&] {
     for (std::size_t i = 0; i < n; ++i) {
-      const WheelsetPose pose = relative_pose(table.geometry.pair(), WheelSide::right, motions[i], rail);
-      const WheelContact contact = wheel_contact(table.geometry, pose);
-      const WheelForce force = wheel_force(model, WheelSide::right, motions[i], rail, contact);
       Eigen::Map<Vector9> all(&forces[9 * i]);
-      all << force.wheelset, force.rail;
-      if (!tangents_too) continue;
-      Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> slopes(&tangents[81 * i]);
-      slopes = wheel_force_tangent(model, WheelSide::right, motions[i], rail, contact, {Vector6::Zero(), 0.0});
+      const auto put = [&](const WheelForce& force) { all << force.wheelset, force.rail; };
+      if (tangents_too) {
+        const WheelResponse response =
+            wheel_response(model, WheelSide::right, motions[i], rail, {Vector6::Zero(), 0.0});
+        put(response.force);
+        Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>>(&tangents[81 * i]) = response.tangent;
+      } else {
+        const WheelsetPose pose = relative_pose(table.geometry.pair(), WheelSide::right, motions[i], rail);
+        put(wheel_force(model, WheelSide::right, motions[i], rail, wheel_contact(table.geometry, pose)));
+      }
     }
   };
   const auto put_contacts = [&] {

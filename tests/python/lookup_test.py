@@ -204,7 +204,8 @@ class Wheels(unittest.TestCase):
             v, rail, rail_v = numpy.zeros(6), numpy.zeros(3), numpy.zeros(3)
             rate = 500.0
             force, tangent = contact.force_and_tangent(q, v, rail, rail_v, velocity_rate=rate)
-            numpy.testing.assert_array_equal(force, contact.force(q, v, rail, rail_v))
+            alone = contact.force(q, v, rail, rail_v)
+            numpy.testing.assert_allclose(force, alone, rtol=1e-12, atol=1e-12 * numpy.abs(alone).max())
             step = 1e-8
             for k in range(9):
                 if k == 5 and file == LOADED_TABLE:

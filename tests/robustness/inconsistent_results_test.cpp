@@ -94,7 +94,7 @@ class ResultsFile {
     };
     number("complete", 1.0);
     for (const auto& entry : columns::summary_counts) number(entry.name, 1.0);
-    for (const auto& entry : columns::summary_seconds) number(entry.name, 1.0);
+    for (const auto& entry : columns::summary_numbers) number(entry.name, 1.0);
     number(columns::contact_energy_impacts, 1.0);
     for (const auto& entry : columns::summary_contact_energy) number(entry.name, 1.0);
     for (const auto& entry : columns::summary_wheel_extremes) {

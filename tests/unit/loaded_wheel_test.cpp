@@ -109,6 +109,27 @@ TEST(CreepForceJet, IsTheDerivativeOfEveryLaw) {
   }
 }
 
+TEST(LoadedWheel, OneLookUpGivesForceAndTangent) {
+  States states;
+  constexpr double rate = 2000.0;
+  const StepRates rates{Vector6::Constant(rate), rate, nullptr};
+  for (int n = 0; n < 40; ++n) {
+    const State s = states.next(n % 2 == 0 ? WheelSide::right : WheelSide::left);
+    WheelContactModel model = model_with(creep_law("table", 0.28), n % 3 == 0 ? 0.02 : 0.0);
+    if (n % 4 == 1) model.friction_law = {.limit = 0.4, .decay = 8.0, .initial_slope = 0.7};
+    const WheelContact contact = s.contact();
+    const WheelForce force = wheel_force(model, s.side, s.wheelset, s.rail, contact);
+    const WheelResponse found = wheel_response(model, s.side, s.wheelset, s.rail, rates);
+    EXPECT_EQ(found.contact.loaded.table_share, 1.0);
+    EXPECT_LT((total(found.force) - total(force)).norm(), 1e-12 * total(force).norm());
+    EXPECT_NEAR(found.force.creep_power, force.creep_power, 1e-12 * std::abs(force.creep_power));
+    EXPECT_NEAR(found.force.pressure, force.pressure, 1e-12 * force.pressure);
+    EXPECT_EQ(found.force.outside_creep_table, force.outside_creep_table);
+    const Matrix9 tangent = wheel_force_tangent(model, s.side, s.wheelset, s.rail, contact, rates);
+    EXPECT_LT((found.tangent - tangent).norm(), 1e-12 * tangent.norm());
+  }
+}
+
 TEST(LoadedWheel, TangentIsTheDerivativeInATimeStep) {
   States states;
   constexpr double rate = 2000.0, step = 2e-9;

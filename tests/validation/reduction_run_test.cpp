@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -33,6 +34,25 @@ TEST(ReducedRun, WindowIsWithinOnePercent) {
   EXPECT_LT(e.force_max, 0.01);
   EXPECT_LT(e.deck_max, 0.01);
   EXPECT_GT(e.force_max, 0.0) << "a window is an approximation: equal runs would be one run";
+  EXPECT_EQ(e.whole.window_error, 0.0);
+}
+
+// What a run states of its window follows what the window does to its results.
+TEST(ReducedRun, WindowStatesItsError) {
+  const auto error = [](double reach) {
+    SceneParameters scene = coach_on_spans(Reduction::window);
+    scene.reduction.behind = scene.reduction.ahead = reach;
+    const ReductionError e = check_reduction(scene, 0.8);
+    std::printf("window %2.0f m: stated %.2e, forces %.2e, deck %.2e\n", reach, e.reduced.window_error, e.force_max,
+                e.deck_max);
+    return e;
+  };
+  const ReductionError near = error(5.0), far = error(20.0);
+  for (const ReductionError* e : {&near, &far}) {
+    EXPECT_GT(e->reduced.window_error, 0.0);
+    EXPECT_LT(e->deck_max, 10.0 * e->reduced.window_error);
+  }
+  EXPECT_LT(far.reduced.window_error, near.reduced.window_error);
 }
 
 // The coach leaves the first spans, which vibrate on in their own modes: 44 m/s over four spans of 16 m, and on.

@@ -80,6 +80,10 @@ std::string headline_text(const Headline& headline, const RunSummary& summary) {
     fmt::format_to(std::back_inserter(text), "Contact ({}): {} queries, {:.4g} % served by the table\n",
                    summary.contact_mode, summary.contact_queries, 100.0 * headline.table_share);
   }
+  if (summary.window_error > 0.0) {
+    fmt::format_to(std::back_inserter(text), "Window: motion at its ends at most {:.2g} % of the structure's largest\n",
+                   100.0 * summary.window_error);
+  }
   if (summary.outside_creep_table > 0) {
     fmt::format_to(std::back_inserter(text), "Outside the creep table, by Polach: {} creep forces\n",
                    summary.outside_creep_table);
@@ -135,6 +139,7 @@ nlohmann::ordered_json headline_json(const Headline& headline, const RunSummary&
   json["table_queries"] = summary.table_queries;
   json["table_share"] = headline.table_share;
   json["outside_creep_table"] = summary.outside_creep_table;
+  json["window_error"] = summary.window_error;
   json["steps"] = summary.steps;
   json["counted_from_step"] = summary.counted_from;
   json["newton_iterations"] = summary.newton_iterations;

@@ -114,6 +114,9 @@ std::string run_table(const RunResults& results) {
   row("creep forces from outside the creep table", std::to_string(summary.outside_creep_table));
   row("degrees of freedom of the structure", std::to_string(summary.structure_dofs));
   row("degrees of freedom of the vehicles", std::to_string(summary.vehicle_dofs));
+  if (summary.window_error > 0.0) {
+    row("motion at the window's ends", fmt::format("{:.2g} % of the largest", 100.0 * summary.window_error));
+  }
   return "<table>" + rows + "</table></div>";
 }
 
