@@ -129,6 +129,7 @@ TEST(OverSpeed, OfRunsNothingIsInterpolated) {
   ASSERT_EQ(over.bands.size(), 2U);
   EXPECT_EQ(over.bands[0].from, 40.0);
   EXPECT_EQ(over.bands[0].to, 40.0);
+  EXPECT_FALSE(over.bands[0].from_lowest || over.bands[1].to_highest);
   EXPECT_EQ(over.bands[1].worst.value, 3.8) << "of two seeds";
   EXPECT_EQ(over_speed_in_words(a, verdict)[2], "runs at 144.0, 180.0, 216.0 km/h; between them nothing is known");
 }

@@ -33,8 +33,9 @@ std::vector<SpeedBand> bands_of(const Curve& curve) {
     if (!(beyond(curve, i) > 0.0)) continue;
     const MeasuredValue& value = curve.values[i];
     const bool begins = i == 0 || !(beyond(curve, i - 1) > 0.0), last = i + 1 == count;
-    if (begins)
+    if (begins) {
       bands.push_back({i == 0 ? *value.speed : crossing(curve, i - 1), 0.0, i == 0, false, value, {value.train}});
+    }
     SpeedBand& band = bands.back();
     if (value.value > band.worst.value) band.worst = value;
     band.to_highest = last;
@@ -185,7 +186,10 @@ std::optional<OverSpeed> over_speed(const Assessment& assessment, const Verdict&
       over.speeds.push_back(*curve.values[i].speed);
       if (i > 0) over.widest_step = std::max(over.widest_step, *curve.values[i].speed - *curve.values[i - 1].speed);
     }
-    for (SpeedBand& band : bands_of(curve)) bands.push_back(std::move(band));
+    for (SpeedBand& band : bands_of(curve)) {
+      if (over.runs) band.from_lowest = band.to_highest = false;
+      bands.push_back(std::move(band));
+    }
   }
   std::ranges::sort(over.speeds);
   const auto repeated = std::ranges::unique(over.speeds);
