@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
@@ -19,6 +20,14 @@ struct ClauseLimit {
   bool lower = false;  ///< the value must be at least the limit, not at most
 };
 
+/// Where the number of a limit was read.
+enum class ReadIn {
+  nothing,           ///< unverified: it is still to be read
+  secondary_source,  ///< in what another program or publication says of the standard
+  standard,          ///< in the standard itself, or in a national annex that makes it normative
+};
+[[nodiscard]] std::string_view read_in_name(ReadIn read_in) noexcept;  ///< "nothing", "secondary source", "standard"
+
 /// A requirement of a standard, or one that a user adds.
 struct Clause {
   std::string id;       ///< unique; a later file's replaces an earlier one's
@@ -29,9 +38,11 @@ struct Clause {
   std::string unit;
   ClauseLimit limit;
   std::string consequence;  ///< what follows where the limit is not met, if that is no failure; empty: a failure
-  std::string source;       ///< where the limit was read
+  std::string source;       ///< what was read, or why nothing was
   std::string note;
-  bool verified = false;  ///< read in that source; else the number is still to be checked
+  ReadIn read_in = ReadIn::nothing;
+  /// Its number was read in the standard.
+  [[nodiscard]] bool verified() const noexcept { return read_in == ReadIn::standard; }
 
   // Applies where all of these hold that are there:
   std::string rules;                                ///< whose they are: "Europe", "China", …

@@ -43,6 +43,19 @@ ClauseLimit read_limit(TomlSection& s, const std::string& unit) {
   return limit;
 }
 
+/// The standing that values of vehicles have does not tell a standard from what others say of it.
+ReadIn read_where(TomlSection& s) {
+  using enum ReadIn;
+  if (s.provenance().standing != Standing::assumed) {
+    throw s.error("standing", fmt::format("\"{}\"", standing_name(s.provenance().standing)),
+                  "read_in = \"standard\" or \"secondary source\"");
+  }
+  if (!s.has("read_in")) return nothing;
+  const std::string name =
+      s.text_of("read_in", {std::string(read_in_name(standard)), std::string(read_in_name(secondary_source))});
+  return name == read_in_name(standard) ? standard : secondary_source;
+}
+
 void read_conditions(TomlSection& s, Clause& clause) {
   std::optional<TomlSection> applies = s.find_section("applies");
   if (!applies) return;
@@ -65,11 +78,12 @@ Clause read_clause(TomlSection& s, const std::string& edition, const std::string
   clause.unit = s.text_of("unit", {unit});
   clause.limit = read_limit(s, unit);
   if (s.has("consequence")) clause.consequence = s.text("consequence");
-  clause.verified = s.flag("verified") || s.provenance().standing == Standing::verified;
+  clause.read_in = read_where(s);
   clause.source = s.provenance().source;
   clause.note = s.provenance().note;
-  if (clause.verified && clause.source.empty()) {
-    throw s.error("source", "nothing for a verified clause", "a text: where the limit was read");
+  if (clause.read_in != ReadIn::nothing && clause.source.empty()) {
+    throw s.error("source", fmt::format("nothing for a limit that was read in a {}", read_in_name(clause.read_in)),
+                  "a text: where the limit was read");
   }
   read_conditions(s, clause);
   s.reject_others();
@@ -101,6 +115,18 @@ void read_clauses(const toml::table& table, const std::filesystem::path& file, s
 }
 
 }  // namespace
+
+std::string_view read_in_name(ReadIn read_in) noexcept {
+  switch (read_in) {
+    case ReadIn::standard:
+      return "standard";
+    case ReadIn::secondary_source:
+      return "secondary source";
+    case ReadIn::nothing:
+      break;
+  }
+  return "nothing";
+}
 
 std::vector<Clause> library_clauses() {
   std::vector<const LibraryFile*> files;

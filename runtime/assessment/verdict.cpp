@@ -33,14 +33,6 @@ bool of_span(const Clause& clause, const MeasuredValue& value) {
   return !clause.span || (span != value.quantities.end() && within(span->second, *clause.span));
 }
 
-std::optional<double> limit_for(const ClauseLimit& limit, const MeasuredValue& value) {
-  if (limit.of.empty()) return limit.constant;
-  const auto quantity = value.quantities.find(limit.of);
-  if (quantity == value.quantities.end()) return std::nullopt;
-  const double found = limit.constant + limit.factor * std::pow(quantity->second, limit.exponent);
-  return limit.at_most ? std::min(found, *limit.at_most) : found;
-}
-
 std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasure>& missing) {
   std::string reasons;
   for (const MissingMeasure& m : missing) {
@@ -69,7 +61,7 @@ std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
       other_spans = true;
       continue;
     }
-    const std::optional<double> limit = limit_for(clause.limit, value);
+    const std::optional<double> limit = limit_for(clause, value);
     if (!limit) continue;
     Verdict next = verdict;
     next.at = value;
@@ -103,6 +95,16 @@ std::string_view outcome_name(Outcome outcome) noexcept {
       break;
   }
   return "not judged";
+}
+
+std::optional<double> limit_for(const Clause& clause, const MeasuredValue& value) {
+  const ClauseLimit& limit = clause.limit;
+  if (value.measure != clause.measure || !of_span(clause, value)) return std::nullopt;
+  if (limit.of.empty()) return limit.constant;
+  const auto quantity = value.quantities.find(limit.of);
+  if (quantity == value.quantities.end()) return std::nullopt;
+  const double found = limit.constant + limit.factor * std::pow(quantity->second, limit.exponent);
+  return limit.at_most ? std::min(found, *limit.at_most) : found;
 }
 
 double Verdict::utilisation() const noexcept {

@@ -16,7 +16,8 @@ struct MeasuredValue {
   std::string measure;  ///< a name of measure_kinds()
   AssessmentStage stage = AssessmentStage::check;
   double value = 0.0;           ///< [SI]
-  std::string where;            ///< "span 1, x = 12.5 m", "wheelset 2 left"
+  std::string where;            ///< "span 1", "wheelset 2 left"
+  std::optional<double> x, y;   ///< along the track, at that time; right of its centre [m]
   std::string train;            ///< empty: none
   std::optional<double> time;   ///< [s]
   std::optional<double> speed;  ///< [m/s]
@@ -57,6 +58,10 @@ struct Verdict {
   /// A fail that counts: no clause with a consequence.
   [[nodiscard]] bool failed() const noexcept { return outcome == Outcome::fail && clause->consequence.empty(); }
 };
+
+/// The limit of a clause for a value [SI]; none where the clause is about other measures or spans, or depends on a
+/// quantity that the value does not carry.
+[[nodiscard]] std::optional<double> limit_for(const Clause& clause, const MeasuredValue& value);
 
 /// All clauses against all values: a verdict per clause and stage that has values for it, one "not judged" where none
 /// has. A value whose measure is only partly known fails or is not judged. @param clauses outlive the verdicts

@@ -42,7 +42,7 @@ TEST_F(AssessCommand, ABridgeThatFailsUnderMovingLoads) {
   const std::string stages = "assess scene.toml --stage check --stage moving-load -o out ";
   const Outcome plain = vsi(stages);
   EXPECT_EQ(plain.exit_code, 0) << "without --fail-on\n" << plain.output;
-  EXPECT_NE(plain.output.find("FAILS: 1 limit not met"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("FAILS: 1 limit not met, worst with hslm-a"), std::string::npos) << plain.output;
   EXPECT_EQ(vsi(stages + "--fail-on any").exit_code, 3);
   EXPECT_EQ(vsi(stages + "--fail-on verified").exit_code, 3) << "the limit is verified";
   const Outcome asked = vsi(stages + "--json");
@@ -61,6 +61,53 @@ TEST_F(AssessCommand, ABridgeThatFailsUnderMovingLoads) {
   EXPECT_EQ(found["decks"][0]["trains"].size(), 11U) << "HSLM-A and the scene's train";
   EXPECT_EQ(text_of("out/assessment.html").find("<!DOCTYPE html>"), 0U);
   EXPECT_EQ(found["summary"]["fail"], 1);
+}
+
+/// Bands over speed hold the speeds at which the acceleration exceeds the limit, and no others.
+TEST_F(AssessCommand, TellsTheBandsOfSpeed) {
+  write("scene.toml", vertical + "[assessment]\nline_speed_kmh = 200\n" + light_span);
+  const json found = object(vsi("assess scene.toml --stage moving-load -o out --json"));
+  const json deck = verdict(found, "en1990.deck-acceleration.ballasted");
+  const json over = deck["over_speed"];
+  ASSERT_GE(over["bands"].size(), 2U) << "apart from each other: " << over;
+  const double line = 200.0 / 3.6, limit = deck["limit"];
+  double to_line = 0.0;
+  int exceeding = 0;
+  bool at_the_line = false;
+  for (const json& train : found["decks"][0]["trains"]) {
+    for (const json& passage : train["passages"]) {
+      const double speed = passage["speed"], acceleration = passage["acceleration"];
+      at_the_line = at_the_line || std::abs(speed - line) < 1e-9;
+      if (speed < line + 1e-9) to_line = std::max(to_line, acceleration);
+      if (!(acceleration > limit)) continue;
+      ++exceeding;
+      EXPECT_TRUE(std::any_of(over["bands"].begin(), over["bands"].end(),
+                              [&](const json& band) {
+                                const json& trains = band["trains"];
+                                return speed >= band["from"] && speed <= band["to"] &&
+                                       std::find(trains.begin(), trains.end(), train["train"]) != trains.end();
+                              }))
+          << speed << " m/s";
+    }
+  }
+  EXPECT_GT(exceeding, 20);
+  EXPECT_TRUE(at_the_line) << "the line's speed is one of those computed";
+  EXPECT_EQ(over["to_line_speed"]["value"], to_line);
+  EXPECT_LT(to_line, deck["value"].get<double>());
+  for (std::size_t i = 0; i + 1 < over["bands"].size(); ++i) {
+    const double from = over["bands"][i]["to"], to = over["bands"][i + 1]["from"];
+    ASSERT_LT(from, to);
+    for (const json& train : found["decks"][0]["trains"]) {
+      for (const json& passage : train["passages"]) {
+        const double speed = passage["speed"];
+        if (speed <= from || speed >= to) continue;
+        EXPECT_LE(passage["acceleration"].get<double>(), limit) << speed << " m/s";
+      }
+    }
+  }
+  EXPECT_LT(over["widest_step"].get<double>(), 2.0 / 3.6 + 1e-9);
+  const std::string page = text_of("out/assessment.html");
+  EXPECT_NE(page.find("; ends of bands interpolated"), std::string::npos);
 }
 
 /// The value of the verdict is that of vsi moving-load.
@@ -195,20 +242,24 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
       object(vsi("assess scene.toml --stage moving-load --stage contact --speed-kmh 160 -o named --json"));
   std::vector<std::string> trains;
   for (const json& train : found["decks"][0]["trains"]) trains.push_back(train["train"]);
-  EXPECT_EQ(trains, (std::vector<std::string>{"two.csv", "metro-gz18", "traxx-locomotive*2", "the scene's train"}));
+  EXPECT_EQ(trains, (std::vector<std::string>{"two.csv", "metro-gz18", "traxx-locomotive*2",
+                                              "the scene's train (manchester-coach)"}));
   ASSERT_EQ(found["runs"].size(), 1U) << "the heavy locomotive governs acceleration, displacement and rotation";
   EXPECT_EQ(found["runs"][0]["train"], "traxx-locomotive*2");
   EXPECT_EQ(found["runs"][0]["run"], "traxx-locomotive-2-v044.444");
   EXPECT_EQ(found["runs"][0]["complete"], true) << found["runs"][0];
   const std::string notes = found["stages"]["contact"]["notes"].dump();
-  EXPECT_NE(notes.find("No runs of metro-gz18, the scene's train: as moving loads"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("No runs of metro-gz18, the scene's train (manchester-coach): as moving loads"),
+            std::string::npos)
+      << notes;
   // another list by the command line
   const json asked =
       object(vsi("assess scene.toml --train hslm-a3 --train en15528-d2*4 --stage moving-load -o named "
                  "--json"));
   EXPECT_EQ(asked["decks"][0]["trains"].size(), 3U);
   EXPECT_EQ(asked["decks"][0]["trains"][1]["train"], "en15528-d2*4");
-  EXPECT_NE(asked["stages"]["moving-load"]["notes"].dump().find("hslm-a3, en15528-d2*4 and the scene's train"),
+  EXPECT_NE(asked["stages"]["moving-load"]["notes"].dump().find(
+                "hslm-a3, en15528-d2*4 and the scene's train (manchester-coach),"),
             std::string::npos);
   // vehicles of files, relative to the scene, and mixed trains
   std::filesystem::create_directory(folder_ / "below");

@@ -55,7 +55,9 @@ TEST_F(Clauses, OfTheLibraryAreWellFormed) {
   for (const Clause& clause : clauses) {
     EXPECT_TRUE(ids.insert(clause.id).second) << clause.id;
     EXPECT_FALSE(clause.source.empty()) << clause.id;
-    EXPECT_FALSE(clause.verified && clause.source.find("not checked") != std::string::npos) << clause.id;
+    const auto says = [&](std::string_view words) { return clause.source.find(words) != std::string::npos; };
+    EXPECT_FALSE(clause.read_in != ReadIn::nothing && says("not checked")) << clause.id;
+    EXPECT_FALSE(clause.verified() && says("program")) << clause.id << ": a program is no standard";
   }
 }
 
@@ -69,7 +71,7 @@ TEST_F(Clauses, OfAUsersFileAreAddedOrReplaceThoseOfTheSameId) {
                                      [](const Clause& c) { return c.id == "en1990.deck-acceleration.ballasted"; });
   EXPECT_EQ(replaced->limit.constant, 7.0);
   EXPECT_EQ(replaced->edition, "NA to test");
-  EXPECT_FALSE(replaced->verified);
+  EXPECT_EQ(replaced->read_in, ReadIn::nothing);
   EXPECT_TRUE(replaced->track.empty()) << "the whole clause is replaced";
 }
 
@@ -81,8 +83,15 @@ TEST_F(Clauses, WrongFilesAreRejectedWithTheirLine) {
   wrong_unit.replace(wrong_unit.find("\"N\""), 3, "\"kN\"");
   EXPECT_NE(message_of(wrong_unit).find("clause[1].unit: found the text \"kN\", expected one of N"), std::string::npos);
   EXPECT_NE(message_of(own_clause + "limit = 3\n").find("found limit and limit_by"), std::string::npos);
-  EXPECT_NE(message_of(own_clause + "verified = true\n").find("expected a text: where the limit was read"),
+  EXPECT_NE(message_of(own_clause + "read_in = \"standard\"\n").find("expected a text: where the limit was read"),
             std::string::npos);
+  EXPECT_NE(message_of(own_clause + "read_in = \"a book\"\n")
+                .find("clause[1].read_in: found the text \"a book\", expected one of standard, secondary source"),
+            std::string::npos);
+  EXPECT_NE(
+      message_of(own_clause + "standing = \"verified\"\n")
+          .find("clause[1].standing: found \"verified\", expected read_in = \"standard\" or \"secondary source\""),
+      std::string::npos);
   EXPECT_NE(message_of(own_clause + "limits = 3\n").find("unknown key 'clause[1].limits'; did you mean"),
             std::string::npos);
   EXPECT_NE(message_of("edition = \"x\"\n").find("expected at least one [[clause]]"), std::string::npos);
@@ -164,7 +173,8 @@ TEST_F(Clauses, OfEn1990AndEn14363Added) {
              value("car_body_lateral_6hz", contact, 3.1)},
             {});
   EXPECT_EQ(of(verdicts, "en1990.twist.total").outcome, Outcome::not_judged) << "the deck's twist alone is not it";
-  EXPECT_TRUE(of(verdicts, "en1990.twist.total").clause->verified);
+  EXPECT_EQ(of(verdicts, "en1990.twist.total").clause->read_in, ReadIn::standard);
+  EXPECT_EQ(of(verdicts, "en1990.comfort.good").clause->read_in, ReadIn::secondary_source);
   EXPECT_EQ(of(verdicts, "en1990.comfort.very-good").outcome, Outcome::fail);
   EXPECT_EQ(of(verdicts, "en1990.comfort.good").outcome, Outcome::pass);
   EXPECT_TRUE(of(verdicts, "en14363.car-body.lateral").failed());

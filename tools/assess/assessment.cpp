@@ -1,20 +1,68 @@
 #include "assessment.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace railtab::assess {
 
+namespace {
+
+/// How near the top of a page an outcome stands.
+int rank(const Verdict& verdict) {
+  switch (verdict.outcome) {
+    case Outcome::fail:
+      return verdict.failed() ? 0 : 1;
+    case Outcome::not_judged:
+      return 2;
+    case Outcome::pass:
+      return 3;
+    case Outcome::not_applicable:
+      break;
+  }
+  return 4;
+}
+
+}  // namespace
+
+const Verdict& LimitVerdicts::worst() const {
+  return **std::ranges::min_element(stages, {}, [](const Verdict* v) { return rank(*v); });
+}
+
+std::vector<LimitVerdicts> by_limit(const std::vector<Verdict>& verdicts) {
+  std::vector<LimitVerdicts> limits;
+  for (const Verdict& verdict : verdicts) {
+    const auto known = std::ranges::find(limits, verdict.clause, &LimitVerdicts::clause);
+    if (known == limits.end()) {
+      limits.push_back({verdict.clause, {&verdict}});
+    } else {
+      known->stages.push_back(&verdict);
+    }
+  }
+  const auto place = [](const LimitVerdicts& limit) {
+    double nearest = 0.0;
+    bool any = false;
+    for (const Verdict* v : limit.stages) {
+      nearest = std::max(nearest, v->utilisation());
+      any = any || v->at;
+    }
+    return std::pair(any ? std::min(2, rank(limit.worst())) : 3 + rank(limit.worst()), -nearest);
+  };
+  std::ranges::stable_sort(limits, {}, place);
+  return limits;
+}
+
 int Assessment::count(Outcome outcome) const {
-  return static_cast<int>(
-      std::count_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) { return v.outcome == outcome; }));
+  return static_cast<int>(std::ranges::count(by_limit(verdicts), outcome,
+                                             [](const LimitVerdicts& limit) { return limit.worst().outcome; }));
 }
 
 int Assessment::failures(bool verified_only) const {
-  return static_cast<int>(std::count_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
-    return v.failed() && (v.clause->verified || !verified_only);
+  return static_cast<int>(std::ranges::count_if(by_limit(verdicts), [&](const LimitVerdicts& limit) {
+    return limit.worst().failed() && (limit.clause->verified() || !verified_only);
   }));
 }
 
@@ -22,59 +70,74 @@ std::string verdict_in_words(const Assessment& assessment) {
   const int failed = assessment.failures(false), verified = assessment.failures(true),
             passed = assessment.count(Outcome::pass), open = assessment.count(Outcome::not_judged);
   const auto clauses = [](int n) { return fmt::format("{} limit{}", n, n == 1 ? "" : "s"); };
-  const std::string rest = fmt::format("{} met, {} not judged", passed, open);
   if (failed == 0 && passed == 0) return fmt::format("NOTHING JUDGED: {} not judged", open);
   if (failed == 0) return fmt::format("PASSES as far as it was judged: {} met, {} not judged", clauses(passed), open);
-  const std::string how = verified == failed ? "" : fmt::format(" ({} of them verified)", verified);
-  return fmt::format("FAILS: {} not met{}, {}", clauses(failed), how, rest);
+  std::vector<std::string> trains;
+  for (const Verdict& v : assessment.verdicts) {
+    const bool named = !v.failed() || v.at->train.empty() || std::ranges::count(trains, v.at->train) > 0;
+    if (!named) trains.push_back(v.at->train);
+  }
+  return fmt::format("FAILS: {} not met{}{}; {} met, {} not judged", clauses(failed),
+                     verified == failed ? "" : fmt::format(" ({} of them read in the standard)", verified),
+                     trains.empty() ? "" : fmt::format(", worst with {}", fmt::join(trains, " and ")), passed, open);
+}
+
+std::string spot_in_words(const MeasuredValue& value) {
+  std::vector<std::string> parts;
+  if (!value.where.empty()) parts.push_back(value.where);
+  if (value.x) parts.push_back(fmt::format("x = {:.2f} m", *value.x));
+  if (value.y) parts.push_back(fmt::format("y = {:.2f} m", *value.y));
+  if (value.time) parts.push_back(fmt::format("t = {:.3f} s", *value.time));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string place_in_words(const MeasuredValue& value) {
-  std::string text = value.train;
-  const auto add = [&](const std::string& part) {
-    if (part.empty()) return;
-    if (!text.empty()) text += ", ";
-    text += part;
-  };
-  if (value.speed) add(fmt::format("{:.1f} km/h", 3.6 * *value.speed));
-  if (value.seed) add(fmt::format("seed {}", *value.seed));
-  add(value.where);
-  if (value.time) add(fmt::format("t = {:.3f} s", *value.time));
-  return text;
+  std::vector<std::string> parts;
+  if (!value.train.empty()) parts.push_back(value.train);
+  if (value.speed) parts.push_back(fmt::format("{:.1f} km/h", 3.6 * *value.speed));
+  if (value.seed) parts.push_back(fmt::format("seed {}", *value.seed));
+  if (std::string spot = spot_in_words(value); !spot.empty()) parts.push_back(std::move(spot));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string onset_in_words(const Assessment& assessment, const Verdict& verdict) {
-  if (verdict.outcome != Outcome::fail || verdict.stage != AssessmentStage::moving_load) return {};
-  const auto quantity = verdict.clause->measure == "deck_acceleration"   ? &PassagePeaks::acceleration
-                        : verdict.clause->measure == "deck_displacement" ? &PassagePeaks::displacement
-                                                                         : &PassagePeaks::end_rotation;
-  const PassagePeaks *first = nullptr, *lowest = nullptr;
-  std::string train;
-  for (const DeckAssessment& deck : assessment.decks) {
-    for (const TrainResponse& response : deck.responses) {
-      for (const PassagePeaks& p : response.passages) {
-        if (!lowest || p.speed < lowest->speed) lowest = &p;
-        if (!((p.*quantity).value > verdict.limit) || (first && p.speed >= first->speed)) continue;
-        first = &p;
-        train = deck.trains[response.train].name;
-      }
-    }
+std::string_view stage_in_words(AssessmentStage stage) noexcept {
+  switch (stage) {
+    case AssessmentStage::moving_load:
+      return "moving forces";
+    case AssessmentStage::contact:
+      return "wheel–rail contact";
+    case AssessmentStage::check:
+      break;
   }
-  if (!first) return {};
-  return fmt::format("{} at {:.0f} km/h{} ({})", first->speed > lowest->speed ? "first exceeded" : "exceeded already",
-                     3.6 * first->speed, first->speed > lowest->speed ? "" : ", the lowest speed computed", train);
+  return "the bridge itself";
+}
+
+std::string_view standing_in_words(const Clause& clause) noexcept {
+  switch (clause.read_in) {
+    case ReadIn::standard:
+      return "read in the standard";
+    case ReadIn::secondary_source:
+      return "read in a secondary source";
+    case ReadIn::nothing:
+      break;
+  }
+  return "unverified";
 }
 
 std::string standing_in_words(const Assessment& assessment) {
-  int read = 0, unverified = 0;
-  for (const Verdict& v : assessment.verdicts) {
-    if (v.outcome == Outcome::pass || v.outcome == Outcome::fail) ++(v.clause->verified ? read : unverified);
+  int standard = 0, secondary = 0, nothing = 0;
+  for (const LimitVerdicts& limit : by_limit(assessment.verdicts)) {
+    const Outcome outcome = limit.worst().outcome;
+    if (outcome != Outcome::pass && outcome != Outcome::fail) continue;
+    ++(limit.clause->read_in == ReadIn::standard           ? standard
+       : limit.clause->read_in == ReadIn::secondary_source ? secondary
+                                                           : nothing);
   }
-  if (read + unverified == 0) return {};
+  if (standard + secondary + nothing == 0) return {};
   return fmt::format(
-      "Of the limits judged, {} were read in the source that is named; {} are unverified: check them in the "
-      "standard.",
-      read, unverified);
+      "Of the {} limits judged, {} were read in the standard or a national annex to it, {} in a secondary source "
+      "only, {} are unverified: check all but the first in the standard.",
+      standard + secondary + nothing, standard, secondary, nothing);
 }
 
 std::string need_in_words(const Assessment& assessment) {
@@ -107,9 +170,7 @@ std::optional<UnloadingBeside> unloading_beside(const Assessment& assessment, co
 
 std::string unloading_in_words(const UnloadingBeside& beside) {
   if (!beside.value) return "none: " + beside.reason;
-  std::string text = amount_in_words(beside.value->value, "-") + ", " + beside.value->where;
-  if (beside.value->time) text += fmt::format(", t = {:.3f} s", *beside.value->time);
-  return text;
+  return amount_in_words(beside.value->value, "-") + ", " + spot_in_words(*beside.value);
 }
 
 std::string amount_in_words(double value, std::string_view unit) {
@@ -117,22 +178,6 @@ std::string amount_in_words(double value, std::string_view unit) {
   const double amount = shown.factor * value;
   const int digits = std::abs(amount) >= 100.0 ? 1 : std::abs(amount) >= 10.0 ? 2 : 3;
   return fmt::format("{:.{}f}{}{}", amount, digits, shown.name.empty() ? "" : " ", shown.name);
-}
-
-std::vector<const Verdict*> ordered(const std::vector<Verdict>& verdicts) {
-  std::vector<const Verdict*> list;
-  for (const Verdict& verdict : verdicts) {
-    if (verdict.outcome != Outcome::not_applicable) list.push_back(&verdict);
-  }
-  const auto rank = [](const Verdict* v) {
-    if (v->failed()) return 0;
-    return v->outcome == Outcome::fail ? 1 : v->outcome == Outcome::pass ? 2 : 3;
-  };
-  std::stable_sort(list.begin(), list.end(), [&](const Verdict* a, const Verdict* b) {
-    if (rank(a) != rank(b)) return rank(a) < rank(b);
-    return rank(a) < 3 && a->utilisation() > b->utilisation();
-  });
-  return list;
 }
 
 }  // namespace railtab::assess

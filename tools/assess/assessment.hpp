@@ -49,25 +49,40 @@ struct Assessment {
   std::vector<StageReport> stages;
   std::vector<DeckAssessment> decks;
   std::vector<RunAssessment> runs;
-  RunSeries series;        ///< of the run with the largest unloading
-  std::string series_run;  ///< its name
-  RunWindow window;        ///< of all runs
+  WheelSeries wheel;                    ///< of the run with the largest unloading
+  std::string wheel_run;                ///< its name
+  std::vector<DeckSeries> deck_series;  ///< of acceleration and displacement, each of the run that governs it
+  RunWindow window;                     ///< of all runs
   std::vector<MeasuredValue> values;
   std::vector<MissingMeasure> missing;
   std::vector<Clause> clauses;
   std::vector<Verdict> verdicts;  ///< point into `clauses`
 
+  /// Limits of this outcome, see LimitVerdicts; one that is not met counts whatever follows from it.
   [[nodiscard]] int count(Outcome outcome) const;
-  [[nodiscard]] int failures(bool verified_only) const;  ///< clauses that fail and count
+  [[nodiscard]] int failures(bool verified_only) const;  ///< limits that fail and count
 };
 
-/// "fails: 2 clauses are not met", "passes …": in words, for text and page.
+/// One limit with its verdicts, one for each stage that has values for it. Its outcome is the worst of them: it fails,
+/// has a consequence, is not judged, passes, does not apply.
+struct LimitVerdicts {
+  const Clause* clause = nullptr;
+  std::vector<const Verdict*> stages;  ///< in the order of stages, one at least
+  [[nodiscard]] const Verdict& worst() const;
+};
+/// In the order of pages: failures, consequences, the others by how near they are, those without values.
+[[nodiscard]] std::vector<LimitVerdicts> by_limit(const std::vector<Verdict>& verdicts);
+
+/// "FAILS: 2 limits not met, worst with hslm-a2; …", "PASSES …": in words, for text and page.
 [[nodiscard]] std::string verdict_in_words(const Assessment& assessment);
-/// "hslm-a8 at 200 km/h, span 1, x = 12.5 m, t = 3.2 s"
+/// "hslm-a8, 200.0 km/h, span 1, x = 12.50 m, t = 3.200 s"
 [[nodiscard]] std::string place_in_words(const MeasuredValue& value);
-/// Where a limit that moving loads exceed is exceeded first: "first exceeded at 158 km/h (hslm-a9)"; empty for other
-/// verdicts.
-[[nodiscard]] std::string onset_in_words(const Assessment& assessment, const Verdict& verdict);
+/// The same without train, speed and seed.
+[[nodiscard]] std::string spot_in_words(const MeasuredValue& value);
+/// "moving forces"
+[[nodiscard]] std::string_view stage_in_words(AssessmentStage stage) noexcept;
+/// "read in the standard", "read in a secondary source", "unverified"
+[[nodiscard]] std::string_view standing_in_words(const Clause& clause) noexcept;
 /// Wheel unloading of the run that a verdict on a deck stands for: research puts the safety of the train beside what
 /// the deck does. None of verdicts on other things, and of decks without a value.
 struct UnloadingBeside {
@@ -75,15 +90,13 @@ struct UnloadingBeside {
   std::string reason;                  ///< why there is none
 };
 [[nodiscard]] std::optional<UnloadingBeside> unloading_beside(const Assessment& assessment, const Verdict& verdict);
-/// "0.312, wheelset 2 left, t = 1.2 s", or "none: …".
+/// "0.312, wheelset 2 left, x = 31.40 m, t = 1.200 s", or "none: …".
 [[nodiscard]] std::string unloading_in_words(const UnloadingBeside& beside);
-/// How many of the limits judged are verified; empty where none is judged.
+/// Where the limits judged were read, each kind with its number; empty where none is judged.
 [[nodiscard]] std::string standing_in_words(const Assessment& assessment);
 /// Whether EN 1991-2 asks for a dynamic analysis of any deck; empty without decks.
 [[nodiscard]] std::string need_in_words(const Assessment& assessment);
 /// A measure's value or limit with its unit as pages show it: "3.50 m/s²".
 [[nodiscard]] std::string amount_in_words(double value, std::string_view unit);
-/// Verdicts in the order of pages: failures, consequences, passes by how near they are, those not judged.
-[[nodiscard]] std::vector<const Verdict*> ordered(const std::vector<Verdict>& verdicts);
 
 }  // namespace railtab::assess

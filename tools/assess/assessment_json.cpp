@@ -1,5 +1,7 @@
 #include "assessment_json.hpp"
 
+#include "over_speed.hpp"
+
 namespace railtab::assess {
 namespace {
 
@@ -15,7 +17,26 @@ Json value_json(const MeasuredValue& value) {
   if (value.speed) json["speed"] = *value.speed;
   if (value.seed) json["seed"] = *value.seed;
   if (value.time) json["time"] = *value.time;
+  if (value.x) json["x"] = *value.x;
+  if (value.y) json["y"] = *value.y;
   if (!value.run.empty()) json["run"] = value.run;
+  return json;
+}
+
+Json over_speed_json(const OverSpeed& over) {
+  Json bands = Json::array();
+  for (const SpeedBand& band : over.bands) {
+    bands.push_back({{"from", band.from},
+                     {"to", band.to},
+                     {"from_lowest", band.from_lowest},
+                     {"to_highest", band.to_highest},
+                     {"worst", value_json(band.worst)},
+                     {"trains", band.trains}});
+  }
+  Json json{{"bands", bands}, {"computed", {over.speeds.front(), over.speeds.back()}}};
+  if (over.runs) json["speeds"] = over.speeds;
+  if (!over.runs) json["widest_step"] = over.widest_step;
+  if (over.to_the_line) json["to_line_speed"] = value_json(*over.to_the_line);
   return json;
 }
 
@@ -23,7 +44,7 @@ Json verdict_json(const Assessment& assessment, const Verdict& verdict) {
   const Clause& clause = *verdict.clause;
   Json json{{"id", clause.id},
             {"outcome", outcome_name(verdict.outcome)},
-            {"verified", clause.verified},
+            {"read_in", read_in_name(clause.read_in)},
             {"edition", clause.edition},
             {"clause", clause.clause},
             {"title", clause.title},
@@ -43,8 +64,7 @@ Json verdict_json(const Assessment& assessment, const Verdict& verdict) {
     if (const auto beside = unloading_beside(assessment, verdict)) {
       json["wheel_unloading"] = beside->value ? value_json(*beside->value) : Json{{"reason", beside->reason}};
     }
-    const std::string onset = onset_in_words(assessment, verdict);
-    if (!onset.empty()) json["onset"] = onset;
+    if (const auto over = over_speed(assessment, verdict)) json["over_speed"] = over_speed_json(*over);
   }
   return json;
 }

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
+#include <utility>
 
-#include "railtab/runtime/report/chart.hpp"
+#include "assessment_charts.hpp"
+#include "over_speed.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"
 
@@ -18,7 +21,8 @@ using report::escaped;
 constexpr const char* style = R"(<style>
 .verdict{border-left:6px solid;padding:12px 16px;margin:14px 0 18px;font-size:18px;font-weight:600}
 .verdict{background:#8795a61f}.verdict.bad{border-color:#c8442f;background:#c8442f1a}.verdict.good{border-color:#2e7d52;background:#2e7d521f}
-.verdict p{margin:4px 0 0;font-size:14px;font-weight:400}
+.verdict p,.verdict ul{margin:4px 0 0;font-size:14px;font-weight:400}
+.limits td.more{color:var(--soft)}
 .limits{width:100%}.limits td,.limits th{padding:6px 12px 6px 0;border-bottom:1px solid var(--line);font-size:13px}
 .limits th{color:var(--soft)}.limits th.n{text-align:right}.limits td.n{white-space:nowrap}.limits small{color:var(--soft)}
 .mark{display:inline-block;min-width:76px;border-radius:4px;padding:1px 8px;text-align:center;color:#fff;background:#8795a6}
@@ -42,14 +46,11 @@ std::string_view mark_text(const Verdict& v) {
 }
 
 std::string clause_cell(const Clause& clause) {
-  std::string cell = fmt::format("{}<br><small>{}, {}</small>", escaped(clause.title), escaped(clause.edition),
+  std::string cell = fmt::format("{}<br><small>{}, {}</small><br>", escaped(clause.title), escaped(clause.edition),
                                  escaped(clause.clause));
-  if (clause.verified) {
-    cell += fmt::format("<br><small>read in: {}</small>", escaped(clause.source));
-  } else {
-    cell += fmt::format("<br><span class=\"standing\">unverified</span> <small>{}</small>", escaped(clause.source));
-  }
-  return cell;
+  if (clause.verified()) return cell + fmt::format("<small>read in: {}</small>", escaped(clause.source));
+  return cell + fmt::format("<span class=\"standing\">{}</span> <small>{}</small>", standing_in_words(clause),
+                            escaped(clause.source));
 }
 
 /// Beside what a deck does stands what the wheels do.
@@ -58,56 +59,86 @@ std::string unloading_cell(const Assessment& assessment, const Verdict& v) {
   if (!beside) return "";
   if (!beside->value) return "<small>none: " + escaped(beside->reason) + "</small>";
   return fmt::format("<b>{}</b><br><small>{}</small>", amount_in_words(beside->value->value, "-"),
-                     escaped(beside->value->where));
+                     escaped(spot_in_words(*beside->value)));
 }
 
-std::string verdict_row(const Assessment& assessment, const Verdict& v) {
+std::string mark_cell(const Verdict& v) {
+  return fmt::format("<span class=\"mark {}\">{}</span>", mark_class(v), mark_text(v));
+}
+
+/// Rows of one stage of a limit, without the cells that all its stages share. @pre the stage has a value
+std::vector<std::string> stage_rows(const Assessment& assessment, const Verdict& v) {
   const Clause& clause = *v.clause;
-  std::string row = fmt::format("<tr><td><span class=\"mark {}\">{}</span></td><td>{}</td>", mark_class(v),
-                                mark_text(v), clause_cell(clause));
-  if (!v.at) return row + fmt::format("<td colspan=\"5\">{}</td></tr>\n", escaped(v.reason));
   const double share = 100.0 * v.utilisation();
-  row += fmt::format(
-      "<td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{:.0f} %<span class=\"bar {}\">"
-      "<i style=\"width:{:.0f}%\"></i></span></td><td>{}<br><small>stage {}{}</small></td><td>{}</td></tr>\n",
-      amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤", amount_in_words(v.limit, clause.unit),
-      share, mark_class(v), std::min(100.0, share), escaped(place_in_words(*v.at)), stage_name(v.at->stage),
-      v.at->run.empty() ? "" : ", run " + escaped(v.at->run), unloading_cell(assessment, v));
-  const std::string onset = onset_in_words(assessment, v);
-  if (!onset.empty()) row += fmt::format("<tr><td></td><td colspan=\"6\">→ {}</td></tr>\n", escaped(onset));
-  if (v.outcome == Outcome::fail && !clause.consequence.empty()) {
-    row += fmt::format("<tr><td></td><td colspan=\"6\">→ {}</td></tr>\n", escaped(clause.consequence));
+  std::vector<std::string> rows{fmt::format(
+      "<td>{}<br>{}</td><td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{:.0f} %"
+      "<span class=\"bar {}\"><i style=\"width:{:.0f}%\"></i></span></td><td>{}{}</td><td>{}</td>",
+      stage_in_words(*v.stage), mark_cell(v), amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤",
+      amount_in_words(v.limit, clause.unit), share, mark_class(v), std::min(100.0, share),
+      escaped(place_in_words(*v.at)), v.at->run.empty() ? "" : "<br><small>run " + escaped(v.at->run) + "</small>",
+      unloading_cell(assessment, v))};
+  std::vector<std::string> more = over_speed_in_words(assessment, v);
+  if (v.outcome == Outcome::fail && !clause.consequence.empty()) more.push_back(clause.consequence);
+  if (v.outcome == Outcome::not_judged) more.push_back("not judged: " + v.reason);
+  for (const std::string& words : more) {
+    rows.push_back(fmt::format("<td class=\"more\" colspan=\"6\">→ {}</td>", escaped(words)));
   }
-  if (v.outcome == Outcome::not_judged) {
-    row += fmt::format("<tr><td></td><td colspan=\"6\">not judged: {}</td></tr>\n", escaped(v.reason));
+  return rows;
+}
+
+std::string limit_rows(const Assessment& assessment, const LimitVerdicts& limit) {
+  const Verdict& worst = limit.worst();
+  std::vector<std::string> rows;
+  if (!worst.at) rows.push_back(fmt::format("<td colspan=\"6\">{}</td>", escaped(worst.reason)));
+  for (const Verdict* v : limit.stages) {
+    if (!v->at) continue;
+    for (std::string& row : stage_rows(assessment, *v)) rows.push_back(std::move(row));
   }
-  return row;
+  std::string html = fmt::format("<tr><td rowspan=\"{0}\">{1}</td><td rowspan=\"{0}\">{2}</td>", rows.size(),
+                                 mark_cell(worst), clause_cell(*limit.clause));
+  for (std::size_t i = 0; i < rows.size(); ++i) html += fmt::format("{}{}</tr>\n", i == 0 ? "" : "<tr>", rows[i]);
+  return html;
 }
 
 std::string verdict_table(const Assessment& assessment, bool judged) {
   std::string rows;
-  for (const Verdict* verdict : ordered(assessment.verdicts)) {
-    if (verdict->at.has_value() == judged) rows += verdict_row(assessment, *verdict);
+  for (const LimitVerdicts& limit : by_limit(assessment.verdicts)) {
+    const Verdict& worst = limit.worst();
+    if (worst.outcome == Outcome::not_applicable || worst.at.has_value() != judged) continue;
+    rows += limit_rows(assessment, limit);
   }
   if (rows.empty()) return "";
-  return "<div class=\"scroll\"><table class=\"limits\"><tr><th>verdict</th><th>limit of</th><th class=\"n\">"
-         "value</th><th class=\"n\">limit</th><th class=\"n\">of the limit</th><th>largest at</th>" +
-         std::string(judged ? "<th>ΔQ/Q0 of that run</th>" : "<th></th>") + "</tr>" + rows + "</table></div>";
+  const std::string_view columns =
+      judged ? "<th>stage</th><th class=\"n\">value</th><th class=\"n\">limit</th><th class=\"n\">of the limit</th>"
+               "<th>largest at</th><th>ΔQ/Q0 of that run</th>"
+             : "<th colspan=\"6\">why</th>";
+  return fmt::format(
+      "<div class=\"scroll\"><table class=\"limits\"><tr><th>verdict</th><th>limit of</th>{}</tr>{}</table></div>",
+      columns, rows);
+}
+
+/// A limit that fails, with the values of all its stages.
+std::string failure(const Assessment& assessment, const LimitVerdicts& limit) {
+  const Clause& clause = *limit.clause;
+  std::string html = fmt::format("<p><b>{}</b> ({} {}, limit {})</p><ul>", escaped(clause.title),
+                                 escaped(clause.edition), escaped(clause.clause), standing_in_words(clause));
+  for (const Verdict* v : limit.stages) {
+    html += fmt::format("<li>{}: {}, {} {} {}, {} {}", stage_in_words(*v->stage),
+                        amount_in_words(v->at->value, clause.unit), clause.limit.lower ? "at least" : "at most",
+                        amount_in_words(v->limit, clause.unit), clause.limit.lower ? "required" : "permitted",
+                        v->at->train.empty() ? "at" : "with", escaped(place_in_words(*v->at)));
+    for (const std::string& words : over_speed_in_words(assessment, *v)) html += "; " + escaped(words);
+    html += ".</li>";
+  }
+  return html + "</ul>";
 }
 
 std::string banner(const Assessment& assessment) {
   const bool bad = assessment.failures(false) > 0;
   std::string html =
       fmt::format("<div class=\"verdict {}\">{}", bad ? "bad" : "good", escaped(verdict_in_words(assessment)));
-  for (const Verdict* v : ordered(assessment.verdicts)) {
-    if (!v->failed()) break;
-    html += fmt::format("<p>{}: {}, {} {} {} ({}); {}.</p>", escaped(v->clause->title),
-                        amount_in_words(v->at->value, v->clause->unit), v->clause->limit.lower ? "at least" : "at most",
-                        amount_in_words(v->limit, v->clause->unit), v->clause->limit.lower ? "required" : "permitted",
-                        v->clause->verified ? "limit read in its source" : "limit unverified",
-                        escaped(place_in_words(*v->at)));
-    const std::string onset = onset_in_words(assessment, *v);
-    if (!onset.empty()) html += fmt::format("<p>It is {}.</p>", escaped(onset));
+  for (const LimitVerdicts& limit : by_limit(assessment.verdicts)) {
+    if (limit.worst().failed()) html += failure(assessment, limit);
   }
   for (const std::string& more : {need_in_words(assessment), standing_in_words(assessment)}) {
     if (!more.empty()) html += "<p>" + escaped(more) + "</p>";
@@ -129,77 +160,6 @@ std::string deck_table(const Assessment& assessment) {
         "<td><b>{}</b>: {}</td></tr></table>",
         escaped(deck.deck.name), deck.deck.length(), frequencies, 100.0 * deck.deck.damping[0], deck.cut_off,
         need_name(deck.need.need), escaped(deck.need.reason));
-  }
-  return html;
-}
-
-using Quantity = DeckPeak PassagePeaks::*;
-
-report::Series curve(const std::string& label, const TrainResponse& response, Quantity quantity, double factor) {
-  report::Series series{label, {}, {}};
-  for (const PassagePeaks& p : response.passages) {
-    series.x.push_back(3.6 * p.speed);
-    series.y.push_back(factor * (p.*quantity).value);
-  }
-  return series;
-}
-
-double largest(const TrainResponse& response, Quantity quantity) {
-  double value = 0.0;
-  for (const PassagePeaks& p : response.passages) value = std::max(value, (p.*quantity).value);
-  return value;
-}
-
-/// The three trains with the largest values, the last of the list (the scene's own train) always among them.
-std::vector<const TrainResponse*> shown_trains(const DeckAssessment& deck, Quantity quantity) {
-  std::vector<const TrainResponse*> list;
-  for (const TrainResponse& response : deck.responses) {
-    if (!response.passages.empty()) list.push_back(&response);
-  }
-  std::stable_sort(list.begin(), list.end(),
-                   [&](const auto* a, const auto* b) { return largest(*a, quantity) > largest(*b, quantity); });
-  constexpr std::size_t most = 4;
-  if (list.size() <= most) return list;
-  const std::size_t own = deck.trains.size() - 1;
-  const bool own_there = std::any_of(list.begin(), list.begin() + most, [&](const auto* r) { return r->train == own; });
-  const auto own_at = std::find_if(list.begin(), list.end(), [&](const auto* r) { return r->train == own; });
-  if (!own_there && own_at != list.end()) std::iter_swap(list.begin() + most - 1, own_at);
-  list.resize(most);
-  return list;
-}
-
-std::string deck_curves(const Assessment& assessment, const DeckAssessment& deck) {
-  struct Shown {
-    Quantity quantity;
-    const char *measure, *title, *label;
-    double factor;
-  };
-  std::string html;
-  for (const auto& [quantity, measure, title, label, factor] :
-       {Shown{&PassagePeaks::acceleration, "deck_acceleration", "largest acceleration", "m/s²", 1.0},
-        Shown{&PassagePeaks::displacement, "deck_displacement", "largest displacement", "mm", 1e3}}) {
-    report::Chart chart;
-    chart.title = fmt::format("{}: {} over the speed of moving loads", deck.deck.name, title);
-    chart.note = "Each train by itself; those with the largest values, and the scene's own train.";
-    chart.x_label = "speed [km/h]";
-    chart.y_label = label;
-    for (const TrainResponse* response : shown_trains(deck, quantity)) {
-      chart.series.push_back(curve(deck.trains[response->train].name, *response, quantity, factor));
-    }
-    for (const Verdict& v : assessment.verdicts) {
-      if (v.at && v.stage == AssessmentStage::moving_load && v.clause->measure == measure) {
-        chart.limits.push_back({factor * v.limit, fmt::format("{}, {}", v.clause->edition, v.clause->clause)});
-      }
-    }
-    html += chart_html(chart);
-  }
-  return html;
-}
-
-std::string resonance(const Assessment& assessment) {
-  std::string html;
-  for (const DeckAssessment& deck : assessment.decks) {
-    if (!deck.responses.empty()) html += deck_curves(assessment, deck);
   }
   return html;
 }
@@ -229,39 +189,6 @@ std::string run_table(const Assessment& assessment) {
     html += fmt::format("<td>{}</td></tr>", run.complete ? "" : escaped("ended early: " + run.message));
   }
   return html + "</table></div>";
-}
-
-std::string run_charts(const Assessment& assessment) {
-  const RunSeries& s = assessment.series;
-  std::string html;
-  if (!s.wheel.empty()) {
-    report::Chart chart;
-    chart.title = fmt::format("Unloading ΔQ/Q0 of {}, run {}", s.wheel, assessment.series_run);
-    chart.note =
-        "Over the wheel's own position; 1 is lift-off. What stands before the place where judging begins does "
-        "not count.";
-    chart.x_label = "x [m]";
-    chart.y_label = "ΔQ/Q0";
-    chart.series = {
-        {"unfiltered", s.position, s.unloading},
-        {fmt::format("low-pass {:g} Hz", assessment.window.wheel_cut_off), s.position, s.filtered_unloading}};
-    for (const Verdict& v : assessment.verdicts) {
-      if (v.at && v.clause->measure == "wheel_unloading") chart.limits.push_back({v.limit, v.clause->edition});
-    }
-    html += chart_html(chart);
-  }
-  if (!s.node.empty()) {
-    report::Chart chart;
-    chart.title = fmt::format("Vertical acceleration of {}, run {}", s.node, assessment.series_run);
-    chart.note = "Positive down.";
-    chart.x_label = "time [s]";
-    chart.y_label = "m/s²";
-    chart.series = {
-        {"unfiltered", s.time, s.acceleration},
-        {fmt::format("low-pass {:.4g} Hz", assessment.window.deck_cut_off), s.time, s.filtered_acceleration}};
-    html += chart_html(chart);
-  }
-  return html;
 }
 
 std::string measure_table(const Assessment& assessment) {
@@ -329,7 +256,7 @@ std::string assessment_page(const Assessment& assessment) {
   body += banner(assessment);
   body += report::html_section("Limits", verdict_table(assessment, true));
   body += report::html_section("Decks", deck_table(assessment));
-  body += report::html_section("Resonance of moving loads", resonance(assessment));
+  body += report::html_section("Resonance of moving loads", resonance_charts(assessment));
   body += report::html_section("Runs with wheel–rail contact", run_table(assessment) + run_charts(assessment));
   body += report::html_section("Not judged", verdict_table(assessment, false));
   body += report::html_section("All measures", measure_table(assessment));

@@ -4,6 +4,8 @@
 
 #include <iterator>
 
+#include "over_speed.hpp"
+
 namespace railtab::assess {
 namespace {
 
@@ -13,28 +15,37 @@ std::string_view mark(const Verdict& verdict) {
   return verdict.outcome == Outcome::pass ? "pass" : "  - ";
 }
 
-void verdict_line(const Assessment& assessment, const Verdict& verdict, std::string& text) {
+/// The verdict of one stage, below its limit.
+void stage_lines(const Assessment& assessment, const Verdict& verdict, std::string& text) {
   const Clause& clause = *verdict.clause;
   const auto out = std::back_inserter(text);
-  const char* standing = clause.verified ? "" : ", unverified";
-  if (!verdict.at) {
-    fmt::format_to(out, "   -   {} ({} {}): {}\n", clause.title, clause.edition, clause.clause, verdict.reason);
-    return;
-  }
-  fmt::format_to(out, " {}  {} = {} of {} {}\n", mark(verdict), clause.title,
+  fmt::format_to(out, "       {}  {}: {} of {} {}\n", mark(verdict), stage_in_words(verdict.at->stage),
                  amount_in_words(verdict.at->value, clause.unit), clause.limit.lower ? "at least" : "at most",
                  amount_in_words(verdict.limit, clause.unit));
-  fmt::format_to(out, "       {}; {} {}{} [{}]\n", place_in_words(*verdict.at), clause.edition, clause.clause, standing,
-                 stage_name(verdict.at->stage));
+  fmt::format_to(out, "             {}\n", place_in_words(*verdict.at));
+  for (const std::string& words : over_speed_in_words(assessment, verdict)) {
+    fmt::format_to(out, "             {}\n", words);
+  }
   if (const auto beside = unloading_beside(assessment, verdict)) {
-    fmt::format_to(out, "       wheel unloading ΔQ/Q0 of the run: {}\n", unloading_in_words(*beside));
+    fmt::format_to(out, "             wheel unloading ΔQ/Q0 of the run: {}\n", unloading_in_words(*beside));
   }
-  const std::string onset = onset_in_words(assessment, verdict);
-  if (!onset.empty()) fmt::format_to(out, "       {}\n", onset);
   if (verdict.outcome == Outcome::fail && !clause.consequence.empty()) {
-    fmt::format_to(out, "       {}\n", clause.consequence);
+    fmt::format_to(out, "             {}\n", clause.consequence);
   }
-  if (verdict.outcome == Outcome::not_judged) fmt::format_to(out, "       not judged: {}\n", verdict.reason);
+  if (verdict.outcome == Outcome::not_judged) fmt::format_to(out, "             not judged: {}\n", verdict.reason);
+}
+
+void limit_lines(const Assessment& assessment, const LimitVerdicts& limit, std::string& text) {
+  const Clause& clause = *limit.clause;
+  const auto out = std::back_inserter(text);
+  const Verdict& worst = limit.worst();
+  if (!worst.at) {
+    fmt::format_to(out, "   -   {} ({} {}): {}\n", clause.title, clause.edition, clause.clause, worst.reason);
+    return;
+  }
+  fmt::format_to(out, " {}  {}\n       {} {}, {}\n", mark(worst), clause.title, clause.edition, clause.clause,
+                 standing_in_words(clause));
+  for (const Verdict* verdict : limit.stages) stage_lines(assessment, *verdict, text);
 }
 
 }  // namespace
@@ -51,14 +62,16 @@ std::string assessment_text(const Assessment& assessment) {
   text += "\n";
   bool open = false;
   int elsewhere = 0;
-  for (const Verdict* verdict : ordered(assessment.verdicts)) {
-    if (!verdict->at && verdict->reason.starts_with("needs stage")) {
+  for (const LimitVerdicts& limit : by_limit(assessment.verdicts)) {
+    const Verdict& worst = limit.worst();
+    if (worst.outcome == Outcome::not_applicable) continue;
+    if (!worst.at && worst.reason.starts_with("needs stage")) {
       ++elsewhere;
       continue;
     }
-    if (!verdict->at && !open) text += "Not judged:\n";
-    open = open || !verdict->at;
-    verdict_line(assessment, *verdict, text);
+    if (!worst.at && !open) text += "Not judged:\n";
+    open = open || !worst.at;
+    limit_lines(assessment, limit, text);
   }
   if (elsewhere > 0) fmt::format_to(out, "{} limits need a stage that was not computed.\n", elsewhere);
   text += "\n";

@@ -73,18 +73,19 @@ class CarBodyJudge : public RunJudge {
     const std::vector<double> z_rms = weighted(body, z, weighting_b, "vertical", weighting_k);
     constexpr std::size_t five_minutes = 60;  // windows
     if (z_rms.size() >= five_minutes) {
-      raise("mean_comfort", mean_comfort(x_rms, y_rms, z_rms), std::nullopt, name);
-      raise("mean_comfort_standing", mean_comfort_standing(x_rms, y_rms, z_rms), std::nullopt, name);
+      raise("mean_comfort", mean_comfort(x_rms, y_rms, z_rms), {name});
+      raise("mean_comfort_standing", mean_comfort_standing(x_rms, y_rms, z_rms), {name});
       // rigid, without seats: pan and back move with the floor
       const std::vector<double> x_back = window_rms(body, x, weighting_c);
-      raise("mean_comfort_seated", mean_comfort_seated(z_rms, y_rms, z_rms, x_back), std::nullopt, name);
+      raise("mean_comfort_seated", mean_comfort_seated(z_rms, y_rms, z_rms, x_back), {name});
     }
     if (!samples_fast_enough(car_body_cut_off, step_)) return;
     const Series y_smooth = low_passed(y, car_body_cut_off, step_), z_smooth = low_passed(z, car_body_cut_off, step_);
     for (std::size_t k = 0; k < records_; ++k) {
-      if (!judged(body_position(body, k))) continue;
-      raise("car_body_lateral_6hz", y_smooth[k], at(k).time, name);
-      raise("car_body_vertical_6hz", z_smooth[k], at(k).time, name);
+      const Spot spot{name, at(k).time, body_position(body, k)};
+      if (!judged(*spot.x)) continue;
+      raise("car_body_lateral_6hz", y_smooth[k], spot);
+      raise("car_body_vertical_6hz", z_smooth[k], spot);
     }
   }
 
@@ -112,28 +113,32 @@ class CarBodyJudge : public RunJudge {
     WindowedRms rms(comfort_window, step_);
     VibrationDose dose(step_);
     SperlingIndex index(direction == "lateral" ? SperlingDirection::lateral : SperlingDirection::vertical, step_);
-    double end = 0.0;
+    Spot roughest;  // second that ends here
+    bool any = false;
     for (std::size_t k = 0; k < records_; ++k) {
       const double a = acceleration[k], of_comfort = comfort_series.add(a), of_dose = dose_series.add(a);
-      if (!judged(body_position(body, k))) continue;
-      end = at(k).time;
+      const Spot spot{name, at(k).time, body_position(body, k)};
+      if (!judged(*spot.x)) continue;
+      any = true;
       rms.add(of_comfort);
       if (!moves && !sperling) continue;
-      windows(rms, "comfort_" + direction, end, name);
+      windows(rms, "comfort_" + direction, spot);
       if (!sperling) continue;
-      raise("car_body_" + direction, a, end, name);
+      raise("car_body_" + direction, a, spot);
+      const double before = dose.largest_running_rms();
       dose.add(of_dose);
+      if (dose.largest_running_rms() > before) roughest = spot;
       index.add(a);
-      windows(index, "sperling_" + direction, end, name);
+      windows(index, "sperling_" + direction, spot);
     }
-    if (dose.largest_running_rms() > 0.0) raise("running_rms_" + direction, dose.largest_running_rms(), end, name);
-    if (sperling && end > 0.0) raise("vibration_dose_" + direction, dose.dose(), end, name);
+    if (dose.largest_running_rms() > 0.0) raise("running_rms_" + direction, dose.largest_running_rms(), roughest);
+    if (sperling && any) raise("vibration_dose_" + direction, dose.dose(), {name});
     return rms.values();
   }
 
   template <class Windows>
-  void windows(const Windows& of, const std::string& measure, double time, const std::string& name) {
-    if (!of.values().empty()) raise(measure, of.values().back(), time, name);
+  void windows(const Windows& of, const std::string& measure, const Spot& spot) {
+    if (!of.values().empty()) raise(measure, of.values().back(), spot);
   }
 };
 

@@ -23,11 +23,9 @@ constexpr std::array envelope_measures{EnvelopeMeasure{"filtered_acceleration", 
 const std::vector<std::string> of_envelope{"deck_twist",      "deck_end_rotation", "horizontal_rotation",
                                            "deck_joint_step", "deck_joint_gap",    "track_twist"};
 
-/// "x = 12.00 m, y = 2.20 m"; without y where all places have one.
-std::string place_on_deck(const DeckPlaces& places, std::size_t i) {
-  const bool one_line = std::ranges::all_of(places.y, [&](double y) { return y == places.y.front(); });
-  return one_line ? fmt::format("x = {:.2f} m", places.x[i])
-                  : fmt::format("x = {:.2f} m, y = {:.2f} m", places.x[i], places.y[i]);
+/// All at the same distance from the track's centre.
+bool one_line(const std::vector<double>& y) {
+  return std::ranges::all_of(y, [&](double other) { return other == y.front(); });
 }
 
 class DeckJudge : public RunJudge {
@@ -59,10 +57,11 @@ class DeckJudge : public RunJudge {
       }
       const DeckPlaces& places = header_.deck[q];
       const DeckExtremes& extremes = results_.summary.deck[q];
+      const bool line = one_line(places.y);
       for (std::size_t i = 0; i < places.x.size(); ++i) {
-        const std::string where = place_on_deck(places, i);
-        raise(std::string(measure->name), extremes.smallest[i], extremes.smallest_time[i], where);
-        raise(std::string(measure->name), extremes.largest[i], extremes.largest_time[i], where);
+        const std::optional<double> y = line ? std::nullopt : std::optional(places.y[i]);
+        raise(std::string(measure->name), extremes.smallest[i], {"deck", extremes.smallest_time[i], places.x[i], y});
+        raise(std::string(measure->name), extremes.largest[i], {"deck", extremes.largest_time[i], places.x[i], y});
       }
     }
     for (const EnvelopeMeasure& measure : envelope_measures) {
@@ -86,8 +85,17 @@ class DeckJudge : public RunJudge {
     const double deck = std::max(std::ranges::max(extremes.largest), -std::ranges::min(extremes.smallest));
     const auto [first, last] = std::ranges::minmax(twist->x);
     const double track = window_.track_twist(first, last);
-    raise("track_twist", deck + track, std::nullopt,
-          fmt::format("deck {:.2f} mm + track {:.2f} mm", 1e3 * deck, 1e3 * track));
+    raise("track_twist", deck + track, {fmt::format("deck {:.2f} mm + track {:.2f} mm", 1e3 * deck, 1e3 * track)});
+  }
+
+  /// Of a recorded node; without y where all of the deck have one, or it is not known.
+  [[nodiscard]] std::optional<double> y_of_node(std::size_t node) const {
+    if (header_.node_y.empty()) return std::nullopt;
+    std::vector<double> all;
+    for (std::size_t i = 0; i < header_.node_names.size(); ++i) {
+      if (is_deck(header_.node_names[i])) all.push_back(header_.node_y[i]);
+    }
+    return one_line(all) ? std::nullopt : std::optional(header_.node_y[node]);
   }
 
   void recorded_deck() {
@@ -104,11 +112,12 @@ class DeckJudge : public RunJudge {
       if (!is_deck(header_.node_names[i])) continue;
       const Series raw = of_records([&](const StepRecord& r) { return r.nodes[i].acceleration[vertical]; });
       const Series smooth = fast ? low_passed(raw, window_.deck_cut_off, step_) : Series{};
+      const std::optional<double> y = y_of_node(i);
       for (std::size_t k = 0; k < records_; ++k) {
-        const std::string& node = header_.node_names[i];
-        raise("deck_acceleration_unfiltered", raw[k], at(k).time, node);
-        if (fast) raise("deck_acceleration", smooth[k], at(k).time, node);
-        raise("deck_displacement", at(k).nodes[i].displacement[vertical], at(k).time, node);
+        const Spot spot{header_.node_names[i], at(k).time, header_.node_x[i], y};
+        raise("deck_acceleration_unfiltered", raw[k], spot);
+        if (fast) raise("deck_acceleration", smooth[k], spot);
+        raise("deck_displacement", at(k).nodes[i].displacement[vertical], spot);
       }
     }
     keep();

@@ -18,16 +18,17 @@ void RunJudge::miss(const std::vector<std::string>& measures, const std::string&
   }
 }
 
-void RunJudge::raise(const std::string& measure, double value, std::optional<double> time, const std::string& where,
-                     double group) {
+void RunJudge::raise(const std::string& measure, double value, const Spot& spot, double group) {
   const double amount = std::abs(value);
   MeasuredValue& best = best_[{measure, group}];
   if (!best.measure.empty() && !(amount > best.value)) return;
   best.measure = measure;
   best.stage = AssessmentStage::contact;
   best.value = amount;
-  best.time = time;
-  best.where = where;
+  best.where = spot.where;
+  best.time = spot.time;
+  best.x = spot.x;
+  best.y = spot.y;
   best.speed = header_.speed;
   best.quantities["axle_load"] = 2.0 * group;
   best.quantities["static_wheel_load"] = group;
@@ -37,8 +38,8 @@ void RunJudge::raise(const std::string& measure, double value, std::optional<dou
 void RunJudge::raise_sections(const std::string& measure, const SectionPercentiles& of, const std::string& name,
                               double group) {
   for (const SectionRange& section : of.sections()) {
-    raise(measure, section.extreme(), std::nullopt,
-          fmt::format("{}, x = {:.4g} to {:.4g} m", name, section.from, section.to), group);
+    raise(measure, section.extreme(), {fmt::format("{}, x = {:.4g} to {:.4g} m", name, section.from, section.to)},
+          group);
   }
 }
 

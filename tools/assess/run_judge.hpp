@@ -17,6 +17,12 @@ namespace railtab::assess {
 using Series = std::vector<double>;
 inline constexpr int longitudinal = 0, lateral = 1, vertical = 2;  // of MotionRecord's six
 
+/// Of a value within its run: x along the track, at that time; y right of the track's centre [m].
+struct Spot {
+  std::string_view where;
+  std::optional<double> time{}, x{}, y{};
+};
+
 /// Records of a run, and the largest values found in them: what deck, wheels and car bodies are judged with.
 class RunJudge {
  public:
@@ -26,8 +32,7 @@ class RunJudge {
  protected:
   void miss(const std::vector<std::string>& measures, const std::string& reason);
   /// Keeps the largest amount of a measure; `group` tells values with limits of their own, the static wheel load [N].
-  void raise(const std::string& measure, double value, std::optional<double> time, const std::string& where,
-             double group = 0.0);
+  void raise(const std::string& measure, double value, const Spot& spot, double group = 0.0);
   /// The largest percentile of a quantity in any of its sections.
   void raise_sections(const std::string& measure, const SectionPercentiles& of, const std::string& name,
                       double group = 0.0);

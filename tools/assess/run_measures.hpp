@@ -3,8 +3,10 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "deck_charts.hpp"
 #include "railtab/runtime/assessment/verdict.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 
@@ -34,14 +36,28 @@ struct RunMeasures {
 /// reason.
 [[nodiscard]] RunMeasures run_measures(const RunResults& results, const RunWindow& window);
 
-/// Deck acceleration of one node over time, unfiltered and filtered; unloading of one wheel over its position: for
-/// charts. Empty where there is none.
-struct RunSeries {
-  std::vector<double> time, acceleration, filtered_acceleration;  ///< of the node with the largest filtered one
-  std::string node;
-  std::vector<double> position, unloading, filtered_unloading;  ///< of the wheel with the largest filtered one
+/// Unloading of the wheel with the largest filtered one over its position, for charts. Empty where there is none.
+struct WheelSeries {
   std::string wheel;
+  std::vector<double> position, unloading, filtered_unloading;
 };
-[[nodiscard]] RunSeries run_series(const RunResults& results, const RunWindow& window);
+[[nodiscard]] WheelSeries wheel_series(const RunResults& results, const RunWindow& window);
+
+/// What a deck does in the run that governs one of its measures, for charts: the extremes along it, and the history of
+/// the recorded node that governs or is nearest to the one that does.
+struct DeckSeries {
+  MeasuredValue governing;        ///< the measure's largest value and where it stood
+  report::DeckEnvelope envelope;  ///< of that measure; empty where the deck is not followed
+  std::string node;               ///< recorded; empty: none
+  double node_x = 0.0;            ///< [m]
+  std::optional<double> node_y;   ///< right of the track's centre [m], where that of the governing place is told
+  bool node_governs = false;      ///< it is the one that governs, not a neighbour
+  std::vector<double> time;
+  std::vector<double> judged;      ///< the node's displacement or low-passed acceleration; empty: too slow records
+  std::vector<double> unfiltered;  ///< its acceleration; empty for a displacement
+};
+/// @param governing a value of deck_acceleration or deck_displacement of this run
+[[nodiscard]] DeckSeries deck_series(const RunResults& results, const RunWindow& window,
+                                     const MeasuredValue& governing);
 
 }  // namespace railtab::assess

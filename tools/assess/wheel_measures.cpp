@@ -82,8 +82,7 @@ class WheelJudge : public RunJudge {
       RailWear rail;
       for (std::size_t w = side; w < header_.wheel_x.size(); w += 2) wear_of_wheel(w, rail);
       const std::optional<RailWear::Metre> most = rail.largest();
-      const char* const name = side == 0 ? "left" : "right";
-      if (most) raise("rail_wear", most->energy, std::nullopt, fmt::format("{} rail, x = {:g} m", name, most->begin));
+      if (most) raise("rail_wear", most->energy, {side == 0 ? "left rail" : "right rail", {}, most->begin});
     }
     for (const std::string& measure : measures) {
       if (!has(measure))
@@ -99,14 +98,14 @@ class WheelJudge : public RunJudge {
       const double x = wheel_position(w, k);
       if (!judged(x)) continue;
       const WheelRecord& now = at(k).wheels[w];
-      raise("contact_pressure", now.pressure, at(k).time, name);
+      raise("contact_pressure", now.pressure, {name, at(k).time, x});
       if (k == 0 || !judged(wheel_position(w, k - 1))) continue;
       const double before = wheel_position(w, k - 1), wear = at(k - 1).wheels[w].wear_number;
       rail.add(before, wear, x, now.wear_number);
       energy += 0.5 * (wear + now.wear_number) * (x - before);
       way += x - before;
     }
-    if (way > 0.0) raise("wear_number", energy / way, std::nullopt, name);
+    if (way > 0.0) raise("wear_number", energy / way, {name});
   }
 
   void miss_unless_found(const std::string& measure) {
@@ -138,14 +137,15 @@ class WheelJudge : public RunJudge {
     const double Q0 = header_.static_wheel_load[left];
     const std::string name = fmt::format("wheelset {}", left / 2 + 1);
     for (std::size_t k = 0; k < records_; ++k) {
-      const double x = wheel_position(left, k), time = at(k).time, sum = Y[0][k] + Y[1][k];
+      const double x = wheel_position(left, k), sum = Y[0][k] + Y[1][k];
       if (!judged(x)) continue;
+      const Spot spot{name, at(k).time, x};
       if (const auto mean = shift.add(x, sum)) {
-        raise("track_shift_2m", *mean, time, name, Q0);
+        raise("track_shift_2m", *mean, spot, Q0);
         percentiles.add(x - averaged, *mean);  // by where its 2 m begin
       }
-      if (const auto mean = shift_5ft.add(x, sum)) raise("track_shift_5ft", *mean, time, name, Q0);
-      raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), time, name);
+      if (const auto mean = shift_5ft.add(x, sum)) raise("track_shift_5ft", *mean, spot, Q0);
+      raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), spot);
     }
     raise_sections("track_shift_percentile", percentiles, name, Q0);
   }
@@ -157,22 +157,24 @@ class WheelJudge : public RunJudge {
     SectionPercentiles percentiles = sections();
     Unloading raw(lasting);
     const std::string name = report::wheel_name(w);
-    bool any = false;
+    std::optional<Spot> most_unloaded;
     for (std::size_t k = 0; k < records_; ++k) {
-      const double x = wheel_position(w, k), time = at(k).time;
+      const double x = wheel_position(w, k);
       if (!judged(x)) continue;
-      any = true;
+      const Spot spot{name, at(k).time, x};
       const double unloading = (Q0 - Q[k]) / Q0;
-      raise("wheel_unloading", std::max(0.0, unloading), time, name);
+      raise("wheel_unloading", std::max(0.0, unloading), spot);
       const auto mean = unloading_5ft.add(x, unloading);
-      if (mean) raise("wheel_unloading_5ft", std::max(0.0, *mean), time, name);
-      raw.add(time, at(k).wheels[w].Q, Q0);
-      raise("wheel_force", Q[k], time, name, Q0);
+      if (mean) raise("wheel_unloading_5ft", std::max(0.0, *mean), spot);
+      const double before = raw.largest();
+      raw.add(at(k).time, at(k).wheels[w].Q, Q0);
+      if (!most_unloaded || raw.largest() > before) most_unloaded = spot;
+      raise("wheel_force", Q[k], spot, Q0);
       percentiles.add(x, Q[k]);
     }
-    if (!any) return;
-    raise("wheel_unloading_unfiltered", std::max(0.0, raw.largest()), raw.time(), name);
-    raise("unloading_duration", raw.longest_above(), raw.time(), name);
+    if (!most_unloaded) return;
+    raise("wheel_unloading_unfiltered", std::max(0.0, raw.largest()), *most_unloaded);
+    raise("unloading_duration", raw.longest_above(), *most_unloaded);
     raise_sections("wheel_force_percentile", percentiles, name, Q0);
   }
 
@@ -183,16 +185,17 @@ class WheelJudge : public RunJudge {
     SectionPercentiles quotients = sections(), forces = sections();
     const std::string name = report::wheel_name(w);
     for (std::size_t k = 0; k < records_; ++k) {
-      const double x = wheel_position(w, k), time = at(k).time;
+      const double x = wheel_position(w, k);
       if (!judged(x)) continue;
+      const Spot spot{name, at(k).time, x};
       forces.add(x, Y[k]);
       if (!(Q[k] > least_share * Q0)) continue;
-      raise("derailment", Y[k] / Q[k], time, name);
+      raise("derailment", Y[k] / Q[k], spot);
       if (const auto mean = quotient.add(x, Y[k] / Q[k])) {
-        raise("derailment_2m", *mean, time, name);
+        raise("derailment_2m", *mean, spot);
         quotients.add(x - averaged, *mean);
       }
-      if (const auto mean = quotient_5ft.add(x, Y[k] / Q[k])) raise("derailment_5ft", *mean, time, name);
+      if (const auto mean = quotient_5ft.add(x, Y[k] / Q[k])) raise("derailment_5ft", *mean, spot);
     }
     raise_sections("guiding_force_percentile", forces, name, Q0);
     raise_sections("derailment_percentile", quotients, name);

@@ -46,28 +46,37 @@ std::vector<DeckChart> all_charts() {
 
 /// Largest and smallest over x.
 void add_lines(const RunResults& run, const DeckLine& quantity, double factor, const std::string& label, Chart& chart) {
-  const auto places = std::ranges::find(run.header.deck, quantity.name, &DeckPlaces::quantity);
-  if (places == run.header.deck.end()) return;
+  const DeckEnvelope envelope = deck_envelope(run, quantity.name);
+  if (envelope.x.empty()) return;
+  for (const auto& [name, values] :
+       {std::pair("largest", &envelope.largest), std::pair("smallest", &envelope.smallest)}) {
+    Series series{label + quantity.label + name, envelope.x, *values};
+    for (double& y : series.y) y *= factor;
+    chart.series.push_back(std::move(series));
+  }
+}
+
+}  // namespace
+
+DeckEnvelope deck_envelope(const RunResults& run, std::string_view quantity) {
+  const auto places = std::ranges::find(run.header.deck, quantity, &DeckPlaces::quantity);
+  if (places == run.header.deck.end() || run.summary.deck.empty()) return {};
   const DeckExtremes& extremes = run.summary.deck[static_cast<std::size_t>(places - run.header.deck.begin())];
   std::map<double, std::pair<double, double>> at;
   for (std::size_t i = 0; i < places->x.size(); ++i) {
-    const double low = factor * extremes.smallest[i], high = factor * extremes.largest[i];
+    const double low = extremes.smallest[i], high = extremes.largest[i];
     const auto [entry, first] = at.try_emplace(places->x[i], low, high);
     if (first) continue;
     entry->second = {std::min(entry->second.first, low), std::max(entry->second.second, high)};
   }
-  Series largest{label + quantity.label + "largest", {}, {}}, smallest{label + quantity.label + "smallest", {}, {}};
+  DeckEnvelope envelope;
   for (const auto& [x, extreme] : at) {
-    smallest.x.push_back(x);
-    smallest.y.push_back(extreme.first);
-    largest.x.push_back(x);
-    largest.y.push_back(extreme.second);
+    envelope.x.push_back(x);
+    envelope.smallest.push_back(extreme.first);
+    envelope.largest.push_back(extreme.second);
   }
-  chart.series.push_back(std::move(largest));
-  chart.series.push_back(std::move(smallest));
+  return envelope;
 }
-
-}  // namespace
 
 bool has_deck_extremes(const RunResults& run) noexcept { return !run.summary.deck.empty(); }
 

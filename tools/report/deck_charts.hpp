@@ -2,12 +2,20 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "railtab/runtime/report/chart.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 
 namespace railtab::report {
+
+/// Extremes of a quantity over a run along the deck: at each x the smallest and largest of all y. [SI]
+struct DeckEnvelope {
+  std::vector<double> x, smallest, largest;
+};
+/// @param quantity of DeckPlaces @return empty where the run does not have it
+[[nodiscard]] DeckEnvelope deck_envelope(const RunResults& run, std::string_view quantity);
 
 /// Charts over x of the extremes that runs have of their whole decks (ResultHeader::deck), as HTML: displacement,
 /// acceleration with and without filter, twist, bending moment. At one x the extremes of all y. Empty where no run has

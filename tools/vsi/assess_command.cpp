@@ -54,7 +54,7 @@ po::options_description assess_options() {
       ("clauses", po::value<std::vector<std::string>>()->composing()->value_name("FILE.toml"),
        "further clauses, or others of the same id; may be given many times")  //
       ("fail-on", text_value()->value_name("any|verified"),
-       "exit code 3 where a limit is not met: any, or one that is verified")                                       //
+       "exit code 3 where a limit is not met: any, or one whose number was read in the standard")                  //
       ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs with contact, no verdict")  //
       ("output,o", text_value()->value_name("DIR"),
        "folder of assessment.html, assessment.json and runs; default: <scene>.assessment");
@@ -158,9 +158,9 @@ void stage(AssessmentStage which, const Request& request, Assessment& assessment
   assessment.stages.push_back(std::move(report));
 }
 
-/// "hslm-a, traxx-locomotive+ordinary-coach*8 and the scene's train"
-std::string names_of(const std::vector<std::string>& names) {
-  return fmt::format("{} and the scene's train", fmt::join(names, ", "));
+/// "hslm-a, traxx-locomotive+ordinary-coach*8 and the scene's train (manchester-coach*8)"
+std::string names_of(const std::vector<std::string>& names, const AssessTrain& own) {
+  return fmt::format("{} and {}", fmt::join(names, ", "), own.name);
 }
 
 /// Trains besides the scene's.
@@ -184,7 +184,7 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
   report.notes.push_back(
       fmt::format("Trains: {}, at {:.1f} to {:.1f} km/h, every 2 km/h or nearer, and at the critical "
                   "speeds.",
-                  names_of(names), 3.6 * assessment.low_speed, 3.6 * assessment.high_speed));
+                  names_of(names, trains.back()), 3.6 * assessment.low_speed, 3.6 * assessment.high_speed));
   report.notes.emplace_back(
       "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
       "accelerations by the modes up to the cut-off frequency of each deck.");
@@ -197,7 +197,7 @@ std::vector<double> contact_speeds(const AssessTrain& train, const Request& requ
   const double line = assessment.facts.line_speed;
   const double critical = std::round(1e3 * governing_speed(train.axles, assessment.decks, line)) / 1e3;
   constexpr double alike = 0.01;
-  const std::string of = train.name == own_train_name ? "the train" : train.name;
+  const std::string of = train.own ? "the train" : train.name;
   const std::string fastest = fmt::format("at the line speed, {:.1f} km/h", 3.6 * line);
   if (critical > (1.0 - alike) * line) {
     report.notes.push_back(fmt::format("Runs {}, at which {} as moving loads accelerates the deck most.", fastest, of));

@@ -170,16 +170,28 @@ void note_early_ends(Assessment& assessment) {
   }
 }
 
-void add_series(Assessment& assessment) {
-  const MeasuredValue* worst = nullptr;
+/// The largest value of all runs; null where they have none.
+const MeasuredValue* largest_of_runs(const Assessment& assessment, std::string_view measure) {
+  const MeasuredValue* largest = nullptr;
   for (const MeasuredValue& value : assessment.values) {
-    if (value.measure == "wheel_unloading" && (!worst || value.value > worst->value)) worst = &value;
+    if (value.measure != measure || value.stage != AssessmentStage::contact) continue;
+    if (!largest || value.value > largest->value) largest = &value;
   }
-  if (!worst) return;
-  for (const RunAssessment& run : assessment.runs) {
-    if (run.name != worst->run) continue;
-    assessment.series = assess::run_series(read_results(run.results), assessment.window);
-    assessment.series_run = run.name;
+  return largest;
+}
+
+/// Each chart is of the run that governs its measure.
+void add_series(Assessment& assessment) {
+  const auto results_of = [&](const MeasuredValue& value) {
+    return read_results(std::ranges::find(assessment.runs, value.run, &RunAssessment::name)->results);
+  };
+  if (const MeasuredValue* worst = largest_of_runs(assessment, "wheel_unloading")) {
+    assessment.wheel = assess::wheel_series(results_of(*worst), assessment.window);
+    assessment.wheel_run = worst->run;
+  }
+  for (const char* measure : {"deck_acceleration", "deck_displacement"}) {
+    const MeasuredValue* worst = largest_of_runs(assessment, measure);
+    if (worst) assessment.deck_series.push_back(assess::deck_series(results_of(*worst), assessment.window, *worst));
   }
 }
 
@@ -187,7 +199,7 @@ void add_series(Assessment& assessment) {
 
 ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::DeckAssessment>& decks,
                          const std::vector<double>& speeds, int seeds) {
-  ContactPlan plan{train.name, *train.scene, {}, {}, {}};
+  ContactPlan plan{train.name, train.own, *train.scene, {}, {}, {}};
   fade_in(plan);
   lengthen_track(train.axles, plan);
   record_what_is_judged(plan.scene);
@@ -220,7 +232,7 @@ ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::Dec
 void name_runs(std::vector<ContactPlan>& plans) {
   std::set<std::string> taken;
   for (ContactPlan& plan : plans) {
-    if (plan.train == own_train_name) continue;
+    if (plan.own) continue;
     std::string prefix;
     for (const char letter : plan.train) {
       const bool plain =

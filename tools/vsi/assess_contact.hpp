@@ -25,6 +25,7 @@ bool follow_deck(SceneParameters& scene, double cut_off);
 /// Runs with contact of one train of an assessment.
 struct ContactPlan {
   std::string train;
+  bool own = false;       ///< the scene's
   SceneParameters scene;  ///< that of the runs: with room for the fade-in, what is judged recorded, the whole crossing
   std::vector<SweepRun> runs;
   assess::RunWindow window;

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <numbers>
 
+#include "over_speed.hpp"
 #include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/moving_load/speed_search.hpp"
 #include "railtab/runtime/moving_load/static_deflection.hpp"
@@ -34,33 +37,27 @@ const BridgeParameters* span_at(const SceneParameters& scene, double start) {
   return nullptr;
 }
 
-MeasuredValue value_of_deck(const DeckAssessment& deck, std::string measure, AssessmentStage stage, double value) {
-  MeasuredValue result;
-  result.measure = std::move(measure);
-  result.stage = stage;
-  result.value = value;
-  result.where = deck.deck.name;
-  if (deck.span > 0.0) result.quantities["span"] = deck.span;
-  return result;
-}
-
 void check_span(const BridgeParameters& span, DeckAssessment& deck, Assessment& assessment) {
   using std::numbers::pi;
   deck.span = span.length;
   deck.lateral_frequency = 0.5 * pi / (span.length * span.length) * std::sqrt(span.E * span.Iz / span.mass);
   const double standing = largest_static_deflection(deck.deck, find_axle_train("lm71", deck.deck.length())).value;
   const auto add = [&](const char* measure, double value) {
-    assessment.values.push_back(value_of_deck(deck, measure, AssessmentStage::check, value));
+    assessment.values.push_back(assess::value_of_deck(deck, measure, AssessmentStage::check, value));
   };
   add("lateral_frequency", *deck.lateral_frequency);
   add("deflection_lm71", dynamic_factor_2(span.length) * standing);
 }
 
-std::vector<double> even_speeds(double low, double high) {
+/// With the line speed, up to which values are told apart.
+std::vector<double> even_speeds(double low, double high, double line_speed) {
   constexpr double step = 2.0 / 3.6;  // 2 km/h
   const int intervals = std::clamp(static_cast<int>(std::ceil((high - low) / step)), 40, 300);
   std::vector<double> speeds;
   for (int i = 0; i <= intervals; ++i) speeds.push_back(low + (high - low) * i / intervals);
+  constexpr double alike = 1e-9;
+  const auto place = std::ranges::lower_bound(speeds, line_speed * (1.0 - alike));
+  if (place == speeds.end() || *place > line_speed * (1.0 + alike)) speeds.insert(place, line_speed);
   return speeds;
 }
 
@@ -70,27 +67,6 @@ std::vector<PassagePeaks> merged(std::vector<PassagePeaks> a, const std::vector<
   std::sort(a.begin(), a.end(), [](const auto& x, const auto& y) { return x.speed < y.speed; });
   a.erase(std::unique(a.begin(), a.end(), [](const auto& x, const auto& y) { return x.speed == y.speed; }), a.end());
   return a;
-}
-
-void add_largest(const DeckAssessment& deck, const char* measure, DeckPeak PassagePeaks::*quantity,
-                 Assessment& assessment) {
-  const PassagePeaks* worst = nullptr;
-  const AxleTrain* train = nullptr;
-  for (const TrainResponse& response : deck.responses) {
-    for (const PassagePeaks& p : response.passages) {
-      if (worst && !((p.*quantity).value > (worst->*quantity).value)) continue;
-      worst = &p;
-      train = &deck.trains[response.train];
-    }
-  }
-  if (!worst) return;
-  const DeckPeak& peak = worst->*quantity;
-  MeasuredValue value = value_of_deck(deck, measure, AssessmentStage::moving_load, peak.value);
-  value.where = fmt::format("{}, x = {:.2f} m", deck.deck.name, peak.x);
-  value.train = train->name;
-  value.speed = worst->speed;
-  value.time = peak.time;
-  assessment.values.push_back(std::move(value));
 }
 
 }  // namespace
@@ -110,9 +86,20 @@ void check_decks(const SceneParameters& scene, Assessment& assessment) {
             {measure, AssessmentStage::check, "spans and lateral modes of an imported bridge are not known", false});
       }
     }
-    assessment.values.push_back(value_of_deck(deck, "first_frequency", AssessmentStage::check, first));
+    assessment.values.push_back(assess::value_of_deck(deck, "first_frequency", AssessmentStage::check, first));
     deck.need = dynamic_need(assessment.facts.line_speed, deck.span, first, span != nullptr);
   }
+}
+
+std::string own_train_name(const TrainParameters& train) {
+  std::string vehicles;
+  for (const ConsistEntry& entry : train.entries()) {
+    const std::filesystem::path vehicle(entry.vehicle);
+    fmt::format_to(std::back_inserter(vehicles), "{}{}{}{}", vehicles.empty() ? "" : "+", entry.reversed ? "-" : "",
+                   vehicle.extension() == ".toml" ? vehicle.stem().string() : entry.vehicle,
+                   entry.count > 1 ? fmt::format("*{}", entry.count) : "");
+  }
+  return fmt::format("the scene's train ({})", vehicles);
 }
 
 AxleTrain axle_train_of(const SceneParameters& scene) {
@@ -124,7 +111,7 @@ AxleTrain axle_train_of(const SceneParameters& scene) {
   }
   std::sort(axles.begin(), axles.end());
   AxleTrain train;
-  train.name = own_train_name;
+  train.name = own_train_name(scene.train);
   for (const auto& [behind, load] : axles) {
     train.behind.push_back(behind);
     train.load.push_back(load);
@@ -137,7 +124,7 @@ void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const s
   assessment.high_speed = 1.2 * assessment.facts.line_speed;
   assessment.low_speed = lowest_speed(assessment.high_speed);
   const SpeedRange search{assessment.low_speed, assessment.high_speed, {}};
-  const SpeedRange grid{search.low, search.high, even_speeds(search.low, search.high)};
+  const SpeedRange grid{search.low, search.high, even_speeds(search.low, search.high, assessment.facts.line_speed)};
   double done = 0.0;
   const double parts = 2.0 * static_cast<double>(assessment.decks.size());
   for (DeckAssessment& deck : assessment.decks) {
@@ -152,9 +139,9 @@ void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const s
     for (std::size_t t = 0; t < critical.size(); ++t) {
       deck.responses[t].passages = merged(std::move(deck.responses[t].passages), critical[t].passages);
     }
-    add_largest(deck, "deck_acceleration", &PassagePeaks::acceleration, assessment);
-    add_largest(deck, "deck_displacement", &PassagePeaks::displacement, assessment);
-    add_largest(deck, "deck_end_rotation", &PassagePeaks::end_rotation, assessment);
+    for (const assess::PassageMeasure& measure : assess::passage_measures) {
+      if (auto largest = largest_of_passages(deck, measure)) assessment.values.push_back(*std::move(largest));
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "assessment.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -12,13 +13,14 @@ namespace railtab::vsi {
 /// @throws InputError where the scene has no bridge
 void check_decks(const SceneParameters& scene, assess::Assessment& assessment);
 
-inline constexpr const char* own_train_name = "the scene's train";
+/// "the scene's train (manchester-coach*8)": its vehicles from front to rear.
+[[nodiscard]] std::string own_train_name(const TrainParameters& train);
 /// The scene's train as constant axle loads, from its wheelsets and their static loads.
 /// @throws InputError as train_model()
 [[nodiscard]] AxleTrain axle_train_of(const SceneParameters& scene);
 
 /// The trains on every deck from 40 m/s (or half the highest speed, if that is below 50 m/s) to 1.2 times the line
-/// speed: even steps for the curves, and the critical speeds. @param trains the scene's own last
+/// speed: even steps for the curves, the line speed, and the critical speeds. @param trains the scene's own last
 /// @param progress share done; may be empty @pre check_decks()
 void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const std::function<void(double)>& progress,
                       assess::Assessment& assessment);

@@ -52,7 +52,7 @@ SceneParameters with_train(const SceneParameters& scene, const std::string& name
 AssessTrain train_of_vehicles(const SceneParameters& scene, const std::string& name,
                               std::vector<ConsistEntry> entries) {
   try {
-    AssessTrain train{name, {}, with_train(scene, name, std::move(entries))};
+    AssessTrain train{name, {}, with_train(scene, name, std::move(entries)), false};
     train.axles = axle_train_of(*train.scene);
     train.axles.name = name;
     return train;
@@ -66,7 +66,8 @@ AssessTrain find_train(const SceneParameters& scene, const std::string& name, co
     return train_of_vehicles(scene, name, std::move(entries));
   }
   constexpr double any_deck = 1.0;  // static load models alone depend on it
-  AssessTrain train{name, find_axle_train(name.ends_with(".csv") ? (folder / name).string() : name, any_deck), {}};
+  AssessTrain train{
+      name, find_axle_train(name.ends_with(".csv") ? (folder / name).string() : name, any_deck), {}, false};
   train.axles.name = name;
   if (train.axles.only_static) {
     throw input_error("--train, assessment.trains", fmt::format("'{}', a load model at rest", name),
@@ -85,7 +86,7 @@ std::vector<AssessTrain> assess_trains(const SceneParameters& scene, const std::
     if (!known) trains.push_back(find_train(scene, name, folder));
   }
   const AxleTrain own = axle_train_of(scene);
-  trains.push_back({own.name, own, scene});
+  trains.push_back({own.name, own, scene, true});
   return trains;
 }
 

@@ -16,6 +16,7 @@ struct AssessTrain {
   AxleTrain axles;   ///< as moving forces
   /// The scene with this train, where it is one of vehicles: it can run with contact.
   std::optional<SceneParameters> scene;
+  bool own = false;  ///< the scene's
 };
 
 /// Trains by name: "hslm-a" for its ten, other axle trains and files as of find_axle_train(), or vehicles from front to
