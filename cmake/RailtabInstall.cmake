@@ -45,7 +45,7 @@ set(railtab_solver_headers
 
 set(railtab_contact_layers base tables profile contact)
 set(railtab_contact_files_layers table_files contact_files)
-set(railtab_solver_layers algebra fe measures reliability vehicle assessment structure moving_load line vsi start stability results scene solver)
+set(railtab_solver_layers algebra fe measures reliability vehicle assessment structure moving_load line vsi start stability drawing results scene solver)
 foreach(component contact contact_files solver)
   list(TRANSFORM railtab_${component}_layers PREPEND railtab_ OUTPUT_VARIABLE layers)
   install(TARGETS ${layers} EXPORT railtab_${component})

@@ -9,11 +9,12 @@ namespace railtab {
 
 /// What a run records, and how often.
 struct OutputParameters {
-  int every = 1;               ///< steps between records, >= 1
-  bool wheels = true;          ///< contact forces and positions
-  bool energy = false;         ///< RunSummary::contact_energy: some time for every step
-  bool deck_envelope = false;  ///< RunSummary::deck: likewise
-  double deck_cut_off = 30.0;  ///< of its filtered acceleration [Hz]
+  int every = 1;                ///< steps between records, >= 1
+  bool wheels = true;           ///< contact forces and positions
+  bool energy = false;          ///< RunSummary::contact_energy: some time for every step
+  bool deck_envelope = false;   ///< RunSummary::deck: likewise
+  double deck_cut_off = 30.0;   ///< of its filtered acceleration [Hz]
+  int paraview_instants = 100;  ///< most instants that results show in ParaView, beside the last; 0: none
   /// Patterns of names with * and ?; nothing is recorded of what none of them fits.
   std::vector<std::string> bodies{"*"}, nodes{"*"};
 };

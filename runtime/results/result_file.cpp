@@ -14,6 +14,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/results/checkpoint_slot.hpp"
 #include "railtab/runtime/results/result_columns.hpp"
+#include "railtab/runtime/results/vtkhdf_group.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/file_fields.hpp"
 
@@ -312,8 +313,8 @@ RunSummary unfinished(const ResultHeader& header) {
 struct ResultWriter::Impl {
   ArrayFileWriter out;
   int flush_every;
-  std::size_t wheels, bodies, nodes;
-  std::vector<DeckPlaces> deck;
+  ResultHeader header;
+  Grid grid = Grid::absent;
   int buffered = 0;
   /// Rows that wait for the next flush, by dataset.
   std::map<std::string, std::vector<double>> rows;
@@ -321,13 +322,8 @@ struct ResultWriter::Impl {
   bool finished = false;
   bool has_source = true;  // else an older file that is resumed
 
-  Impl(ArrayFileWriter&& writer, int every, const ResultHeader& header)
-      : out(std::move(writer)),
-        flush_every(every),
-        wheels(header.wheel_x.size()),
-        bodies(header.body_names.size()),
-        nodes(header.node_names.size()),
-        deck(header.deck) {
+  Impl(ArrayFileWriter&& writer, int every, ResultHeader of_run, Grid with_grid)
+      : out(std::move(writer)), flush_every(every), header(std::move(of_run)), grid(with_grid) {
     assert(every >= 1);
   }
 
@@ -341,10 +337,10 @@ struct ResultWriter::Impl {
   }
 };
 
-ResultWriter::ResultWriter(const std::filesystem::path& file, const ResultHeader& header, int flush_every)
+ResultWriter::ResultWriter(const std::filesystem::path& file, const ResultHeader& header, int flush_every, Grid grid)
     : impl_(std::make_unique<Impl>(
           ArrayFileWriter(file, results_filetype, columns::format_version, ArrayFileWriter::Mode::growing), flush_every,
-          header)) {
+          header, grid)) {
   write_header(impl_->out, header);
   create_histories(impl_->out, header);
   create_deck(impl_->out, header);
@@ -354,6 +350,7 @@ ResultWriter::ResultWriter(const std::filesystem::path& file, const ResultHeader
         slot, "1",
         "sequence, step, records, length of the state, checksum (upper and lower 32 bits), state of the solver");
   }
+  if (grid != Grid::absent) vtkhdf::create(impl_->out);
 }
 
 ResultWriter::ResultWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -362,11 +359,13 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
   ResultHeader header;
   long checkpoints = 0;
   bool has_source = true;
+  Grid grid = Grid::absent;
   {
     const ArrayFileReader in = open_results(file);
     FieldReader fields(in);
     header = read_header(in, fields);
     has_source = in.contains(source_field.path);
+    if (vtkhdf::is_in(in)) grid = Grid::at_the_end;
     header.contact_mode = in.text(columns::summary_group, "contact_mode");
     for (const CheckpointSlot& slot : whole_checkpoints(in)) checkpoints = std::max(checkpoints, slot.sequence);
   }
@@ -380,7 +379,8 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& file, const Check
     for (const auto& column : columns::deck_extremes) out.replace(path_of(column, places), {});
   }
   write_summary(out, unfinished(header));
-  auto impl = std::make_unique<Impl>(std::move(out), flush_every, header);
+  if (grid != Grid::absent) vtkhdf::invalidate(out);
+  auto impl = std::make_unique<Impl>(std::move(out), flush_every, std::move(header), grid);
   impl->checkpoints = checkpoints;
   impl->has_source = has_source;
   return ResultWriter(std::move(impl));
@@ -399,8 +399,9 @@ ResultWriter::~ResultWriter() {
 ResultWriter::ResultWriter(ResultWriter&&) noexcept = default;
 
 void ResultWriter::append(const StepRecord& record) {
-  assert(record.wheels.size() == impl_->wheels && record.bodies.size() == impl_->bodies &&
-         record.nodes.size() == impl_->nodes);
+  assert(record.wheels.size() == impl_->header.wheel_x.size() &&
+         record.bodies.size() == impl_->header.body_names.size() &&
+         record.nodes.size() == impl_->header.node_names.size());
   auto& rows = impl_->rows;
   for (const columns::StepColumn& column : columns::step) rows[column.path].push_back(record.*column.value);
   rows[columns::newton_iterations.path].push_back(record.newton_iterations);
@@ -447,9 +448,12 @@ std::optional<Checkpoint> ResultWriter::read_checkpoint(const std::filesystem::p
   return std::move(newest->checkpoint);
 }
 
-void ResultWriter::finish(const RunSummary& summary) {
+void ResultWriter::finish(const RunSummary& summary, std::span<const StepRecord> drawn) {
   impl_->flush();
-  write_deck(impl_->out, impl_->deck, summary.deck);
+  write_deck(impl_->out, impl_->header.deck, summary.deck);
+  if (impl_->grid != Grid::absent && !drawn.empty()) {
+    vtkhdf::write(impl_->out, drawing::moving_grid(impl_->header, drawn));
+  }
   write_summary(impl_->out, summary);
   impl_->out.close();
   impl_->finished = true;
@@ -529,6 +533,7 @@ RunResults read_results(const std::filesystem::path& file) {
     const std::vector<std::string>& names = results.header.*group.names;
     if (!names.empty()) read_motions(fields, group, names.size(), steps);
   }
+  if (vtkhdf::is_in(in)) vtkhdf::check(in, steps);
   return results;
 }
 

@@ -24,13 +24,17 @@ struct Checkpoint {
 /// last flush, marked incomplete. Records are kept in memory between flushes.
 class ResultWriter {
  public:
+  enum class Grid { absent, at_the_end };  ///< the group for ParaView (vtkhdf_group.hpp)
+  static constexpr int records_between_flushes = 200;
   /// The file has its name from the first flush on.
   /// @param flush_every records between flushes, >= 1
   /// @throws InputError where the file cannot be created, or another run is writing it.
-  ResultWriter(const std::filesystem::path& file, const ResultHeader& header, int flush_every = 200);
+  ResultWriter(const std::filesystem::path& file, const ResultHeader& header, int flush_every = records_between_flushes,
+               Grid grid = Grid::absent);
   /// Continue a run that ended early: its file is cut back to the records of the checkpoint.
   /// @throws InputError as read_results, and where another run is writing the file.
-  static ResultWriter resume(const std::filesystem::path& file, const Checkpoint& from, int flush_every = 200);
+  static ResultWriter resume(const std::filesystem::path& file, const Checkpoint& from,
+                             int flush_every = records_between_flushes);
   /// Without finish(): flushes what was appended; the file stays incomplete.
   ~ResultWriter();
   ResultWriter(ResultWriter&&) noexcept;
@@ -43,7 +47,8 @@ class ResultWriter {
   /// The newest whole checkpoint of a file, none where none was taken.
   /// @throws InputError as read_results.
   [[nodiscard]] static std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
-  void finish(const RunSummary& summary);
+  /// @param drawn records that the group for ParaView shows, where there is one; none: it stays empty
+  void finish(const RunSummary& summary, std::span<const StepRecord> drawn = {});
 
  private:
   struct Impl;

@@ -4,11 +4,31 @@
 #include <cmath>
 #include <vector>
 
+#include "railtab/runtime/drawing/drawn_records.hpp"
 #include "railtab/runtime/results/result_columns.hpp"
+#include "railtab/runtime/results/vtkhdf_group.hpp"
 
 namespace railtab {
 
-ResultSize result_size(const ResultHeader& header, double records, double state) {
+namespace {
+
+/// Records that are drawn are kept until the run ends, the last one too.
+void add_grid(ResultSize& size, const ResultHeader& header, double records, int most) {
+  if (most == 0 || !drawing::has_motion(header)) return;
+  const drawing::MovingGridSize grid = drawing::moving_grid_size(header);
+  const double instants = DrawnRecords::count(records, most);
+  const auto bytes = [](double record, std::size_t members) { return record * static_cast<double>(members); };
+  const double record = sizeof(StepRecord) + bytes(sizeof(WheelRecord), header.wheel_x.size()) +
+                        bytes(sizeof(MotionRecord), header.body_names.size() + header.node_names.size());
+  size.grid = vtkhdf::file_bytes(grid, instants);
+  size.file += size.grid;
+  const double kept = std::min(records, static_cast<double>(most)) + 1.0;
+  size.memory += record * kept + vtkhdf::memory_bytes(grid, instants);
+}
+
+}  // namespace
+
+ResultSize result_size(const ResultHeader& header, double records, double state, int instants) {
   namespace columns = result_columns;
   std::vector<double> row_sizes(columns::step.size() + 1, 1.0);  // numbers per record, of each history
   const auto wheels = static_cast<double>(header.wheel_x.size());
@@ -23,7 +43,7 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
   // HDF5 keeps chunks, and buffers for as many, of each dataset
   constexpr double cache = 2.0 * (1 << 20), library = 4e6;
   constexpr double between_flushes = 200.0;
-  ResultSize size{least, library};
+  ResultSize size{.file = least, .memory = library};
   for (double row : row_sizes) {
     const double chunk = std::max(fewest, std::floor(chunk_values / row));
     const double bytes = page * std::ceil(number * row * chunk / page) * std::ceil(records / chunk);
@@ -47,6 +67,7 @@ ResultSize result_size(const ResultHeader& header, double records, double state)
   constexpr double slots = 2.0, copies = 3.0;  // packed, with its counters, and HDF5's own
   size.file += slots * number * state;
   size.memory += copies * number * state;
+  add_grid(size, header, records, instants);
   return size;
 }
 

@@ -62,6 +62,8 @@ std::vector<KeyRow> output_keys() {
        "low-pass of the envelope's filtered acceleration",
        NumberKey{of_output<&OutputParameters::deck_cut_off>, {0.1, 1e4}},
        {&with_deck_envelope}},
+      {"output.paraview_instants", "1", "most instants that ParaView shows of the results, beside the last; 0: none",
+       IntegerKey{of_output<&OutputParameters::paraview_instants>, 0, 10000}},
       {"output.bodies", "", "names to record; * stands for any letters",
        TextListKey{of_output<&OutputParameters::bodies>}},
       {"output.nodes", "", "names to record; * stands for any letters",

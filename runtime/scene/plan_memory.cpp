@@ -61,9 +61,11 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
     envelope = static_cast<double>(deck.capacity());
   }
   const double state = checkpoints ? static_cast<double>(packed(VsiState(model)).size()) + envelope : 0.0;
-  ResultSize results = result_size(header, std::floor(steps / scene.output.every) + 2.0, state);
+  ResultSize results =
+      result_size(header, std::floor(steps / scene.output.every) + 2.0, state, scene.output.paraview_instants);
   results.memory += number * envelope;
   plan.results = results.file;
+  plan.grid = results.grid;
   const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);
   plan.undivided = allocator * std::max(peak, built + train + operators + results.memory);
   plan.most = plan.undivided + allocator * (most_operators - 1) * operators;

@@ -10,6 +10,7 @@ struct PlannedMemory {
   double undivided = 0.0;        ///< most that the process occupies while no step is divided
   double most = 0.0;             ///< where steps are divided: most_operators at once
   double results = 0.0;          ///< of the results file
+  double grid = 0.0;             ///< of it, the group for ParaView
   double step_reads = 0.0;       ///< what one step reads of the structure's factor and matrices
   double entries_per_dof = 0.0;  ///< of the factor that rail compliances come from
 };

@@ -10,6 +10,8 @@
 #include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/version.hpp"
+#include "railtab/runtime/drawing/drawn_records.hpp"
+#include "railtab/runtime/drawing/moving_grid.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
@@ -37,14 +39,23 @@ RunSummary RecordedRun::run(RunObserver observer, SharedSetUp* shared) {
   std::optional<ResultWriter> writer;
   ResultHeader header;
   std::optional<RunCheckpoint> from;
+  const int instants = scene_.output.paraview_instants;
+  std::optional<DrawnRecords> drawn;
+  if (instants > 0) drawn.emplace(instants);
+  const auto draw = [&](const StepRecord& record) {
+    if (drawn) drawn->add(record);
+  };
   if (checkpoint_) {
     writer.emplace(ResultWriter::resume(file_, *checkpoint_));
     from = RunCheckpoint{checkpoint_->step, checkpoint_->state};
+    for (const StepRecord& record : records_before()) draw(record);
     has_results_ = true;
   }
   const auto replace_results = [&] {
     if (writer) return;
-    writer.emplace(file_, header);
+    const bool shown = drawn && drawing::has_motion(header);
+    writer.emplace(file_, header, ResultWriter::records_between_flushes,
+                   shown ? ResultWriter::Grid::at_the_end : ResultWriter::Grid::absent);
     has_results_ = true;
   };
   RunObserver writing = observer;
@@ -58,6 +69,7 @@ RunSummary RecordedRun::run(RunObserver observer, SharedSetUp* shared) {
   };
   writing.record = [&](StepRecord& step) {
     writer->append(step);
+    draw(step);
     if (observer.record) observer.record(step);
   };
   writing.checkpoint = [&](long step, std::span<const double> state) {
@@ -71,7 +83,7 @@ RunSummary RecordedRun::run(RunObserver observer, SharedSetUp* shared) {
   }
   if (!writer && is_file(file_) && std::filesystem::file_size(file_) > 0) return summary;  // earlier results stay
   replace_results();  // with nothing but the reason, where no step was made
-  writer->finish(summary);
+  writer->finish(summary, drawn ? drawn->take() : std::vector<StepRecord>{});
   return summary;
 }
 

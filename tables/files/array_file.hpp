@@ -53,7 +53,7 @@ class ArrayFileWriter {
   using Shape = std::vector<std::size_t>;
   /// 32-bit numbers are for large tables; read() and read_integers() read them as any others.
   using Numbers = std::variant<std::span<const double>, std::span<const float>, std::span<const std::int64_t>,
-                               std::span<const std::uint32_t>>;
+                               std::span<const std::uint32_t>, std::span<const std::uint8_t>>;
   /// @param unit written as attribute "unit" ("m", "rad", "1" for dimensionless); @param description as "description".
   void write(std::string_view path, const Numbers& numbers, const Shape& shape, std::string_view unit,
              std::string_view description);
@@ -63,6 +63,9 @@ class ArrayFileWriter {
   /// overwrites another with less room is cut to it and ends in "...".
   void attribute(std::string_view path, std::string_view name,
                  const std::variant<double, std::int64_t, std::string_view>& value, std::size_t capacity = 0);
+  /// The same as other programs want them: a text in ASCII without room for a longer one, a row of whole numbers.
+  void ascii_attribute(std::string_view path, std::string_view name, std::string_view value);
+  void attribute(std::string_view path, std::string_view name, std::span<const std::int64_t> values);
 
   /// A dataset that grows along its first dimension; `row_shape` is the rest, no extent zero. Chunked.
   void create_growing(std::string_view path, const Shape& row_shape, std::string_view unit,
@@ -80,6 +83,15 @@ class ArrayFileWriter {
   /// Never becomes shorter: what is left of longer content is NaN.
   /// Not atomic: a process that ends midway leaves a mixture, so what matters needs two slots and a checksum.
   void replace(std::string_view path, std::span<const double> values);
+
+  /// A dataset of rows of `row_shape` and of the type of `none`, empty until write_late() gives it its content, any
+  /// number of rows, with a checksum. As slots, it is whole once nothing else was written after it: a process that
+  /// ends before leaves a mixture, so that its owner marks what is true afterwards, and takes the mark away before.
+  void create_late(std::string_view path, const Numbers& none, const Shape& row_shape, std::string_view unit,
+                   std::string_view description);
+  void write_late(std::string_view path, const Numbers& numbers);
+  /// Gives back the room of rows that are valid no more; nothing can be appended or written late after it.
+  void cut();
 
   /// Hand everything to the operating system and count the appended rows as records (growing files).
   void flush();
@@ -106,11 +118,15 @@ class ArrayFileReader {
   /// Of a growing dataset, the rows that were flushed.
   [[nodiscard]] Array read(std::string_view path) const;
   [[nodiscard]] std::vector<std::int64_t> read_integers(std::string_view path) const;
+  /// Of a dataset of numbers, as read() and read_integers() return them.
+  [[nodiscard]] std::vector<std::size_t> shape(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> read_strings(std::string_view path) const;
   [[nodiscard]] double number(std::string_view path, std::string_view name) const;
   /// An attribute that is a whole number, low to high.
   [[nodiscard]] std::int64_t whole_number(std::string_view path, std::string_view name, std::int64_t low,
                                           std::int64_t high) const;
+  /// An attribute that is a row of whole numbers.
+  [[nodiscard]] std::vector<std::int64_t> whole_numbers(std::string_view path, std::string_view name) const;
   [[nodiscard]] std::string text(std::string_view path, std::string_view name) const;
   /// In the order of their creation.
   [[nodiscard]] std::vector<std::string> attribute_names(std::string_view path) const;

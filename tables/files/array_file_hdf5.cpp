@@ -180,14 +180,15 @@ bool OpenFile::has(std::string_view path, const char* attribute) const {
   return H5Aexists(object(path).get(), attribute) > 0;
 }
 
-Attribute OpenFile::open_attribute(std::string_view path, const char* name) const {
+Attribute OpenFile::open_attribute(std::string_view path, const char* name, hssize_t most) const {
   const std::string at = place(path, name);
   if (!has(path, name)) throw input_error(at, "no such attribute", "one of that name");
   Attribute attribute(H5Aopen(object(path).get(), name, H5P_DEFAULT));
   require(attribute.valid(), at, "a readable attribute");
   const Space space(H5Aget_space(attribute.get()));
-  if (space.valid() && H5Sget_simple_extent_npoints(space.get()) == 1) return attribute;
-  throw input_error(at, "an array", "a single value");
+  const hssize_t values = space.valid() ? H5Sget_simple_extent_npoints(space.get()) : 0;
+  if (values >= 1 && values <= most) return attribute;
+  throw input_error(at, "an array", most == 1 ? "a single value" : fmt::format("a row of {} values at most", most));
 }
 
 template <typename Number>
@@ -203,6 +204,19 @@ Number OpenFile::number(std::string_view path, const char* name) const {
   const hid_t memory = integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
   require(H5Aread(attribute.get(), memory, &value) >= 0, place(path, name), "a readable attribute");
   return value;
+}
+
+std::vector<std::int64_t> OpenFile::integers(std::string_view path, const char* name) const {
+  constexpr hssize_t most = 16;
+  const Attribute attribute = open_attribute(path, name, most);
+  const Type type(H5Aget_type(attribute.get()));
+  const Space space(H5Aget_space(attribute.get()));
+  if (!type.valid() || H5Tget_class(type.get()) != H5T_INTEGER) {
+    throw input_error(place(path, name), "no integers", "integers");
+  }
+  std::vector<std::int64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
+  require(H5Aread(attribute.get(), H5T_NATIVE_INT64, values.data()) >= 0, place(path, name), "a readable attribute");
+  return values;
 }
 
 template std::int64_t OpenFile::number(std::string_view path, const char* name) const;
@@ -226,10 +240,10 @@ std::string OpenFile::text(std::string_view path, const char* name) const {
   return value;
 }
 
-Type text_type(std::size_t length) {
+Type text_type(std::size_t length, H5T_cset_t letters) {
   Type type(H5Tcopy(H5T_C_S1));
   const bool done = H5Tset_size(type.get(), length) >= 0 && H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0 &&
-                    H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0;
+                    H5Tset_cset(type.get(), letters) >= 0;
   require(done, "HDF5 text", "its type");
   return type;
 }

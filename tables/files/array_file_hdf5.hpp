@@ -101,10 +101,13 @@ class OpenFile {
   /// @tparam Number std::int64_t, of an integer attribute; double, of any number
   template <typename Number>
   [[nodiscard]] Number number(std::string_view path, const char* attribute) const;
+  /// One alone, or a row of a few.
+  [[nodiscard]] std::vector<std::int64_t> integers(std::string_view path, const char* attribute) const;
   [[nodiscard]] std::string text(std::string_view path, const char* attribute) const;
 
  private:
-  [[nodiscard]] Attribute open_attribute(std::string_view path, const char* attribute) const;
+  /// @param most values
+  [[nodiscard]] Attribute open_attribute(std::string_view path, const char* attribute, hssize_t most = 1) const;
 
   std::filesystem::path name_;
   File handle_;
@@ -118,7 +121,7 @@ class OpenFile {
 [[nodiscard]] std::string write_failure(hid_t file);
 
 /// Fixed length: HDF5 keeps variable-length text in a heap without checksums.
-[[nodiscard]] Type text_type(std::size_t length);
+[[nodiscard]] Type text_type(std::size_t length, H5T_cset_t letters = H5T_CSET_UTF8);
 
 /// Groups that keep their attributes in the order of creation, and in the object header, whose checksum covers them.
 [[nodiscard]] Properties group_properties(hid_t kind);

@@ -79,8 +79,10 @@ struct ArrayFileReader::Impl {
       throw input_error(source.at, class_name(found), fmt::format("{} of fixed length", class_name(expected)));
     }
     source.value_bytes = H5Tget_size(source.type.get());
-    if (found != H5T_STRING && source.value_bytes != sizeof(double) && source.value_bytes != sizeof(float)) {
-      throw input_error(source.at, fmt::format("numbers of {} bytes", source.value_bytes), "numbers of 4 or 8 bytes");
+    const bool byte = found == H5T_INTEGER && source.value_bytes == 1;
+    if (found != H5T_STRING && !byte && source.value_bytes != sizeof(double) && source.value_bytes != sizeof(float)) {
+      throw input_error(source.at, fmt::format("numbers of {} bytes", source.value_bytes),
+                        "numbers of 4 or 8 bytes, or whole ones of 1");
     }
     source.extent = hdf5::extent_of(dataset, source.at);
     source.grows = !source.extent.empty() && H5Aexists(dataset, hdf5::rows_attribute) > 0;
@@ -235,6 +237,16 @@ std::vector<std::int64_t> ArrayFileReader::read_integers(std::string_view path) 
   return impl_->read<std::int64_t>(impl_->open(path, H5T_INTEGER), H5T_NATIVE_INT64);
 }
 
+std::vector<std::size_t> ArrayFileReader::shape(std::string_view path) const {
+  const Section section;
+  const hdf5::Object dataset = impl_->file.object(path);
+  const std::string at = impl_->file.place(path);
+  if (H5Iget_type(dataset.get()) != H5I_DATASET) throw input_error(at, "a group", "a dataset");
+  std::vector<hsize_t> extent = hdf5::extent_of(dataset.get(), at);
+  if (!extent.empty() && H5Aexists(dataset.get(), hdf5::rows_attribute) > 0) extent[0] = impl_->records;
+  return {extent.begin(), extent.end()};
+}
+
 std::vector<std::string> ArrayFileReader::read_strings(std::string_view path) const {
   const Section section;
   const Source source = impl_->open(path, H5T_STRING);
@@ -264,6 +276,11 @@ std::int64_t ArrayFileReader::whole_number(std::string_view path, std::string_vi
   }
   throw input_error(impl_->file.place(path, name), fmt::format("{}", value),
                     fmt::format("a whole number, {} to {}", low, high));
+}
+
+std::vector<std::int64_t> ArrayFileReader::whole_numbers(std::string_view path, std::string_view name) const {
+  const Section section;
+  return impl_->file.integers(path, std::string(name).c_str());
 }
 
 std::string ArrayFileReader::text(std::string_view path, std::string_view name) const {

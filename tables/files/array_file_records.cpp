@@ -19,7 +19,7 @@ void ArrayFileWriter::Impl::begin_records() {
   if (temporary.name.empty()) return;
   if (histories > 0) {
     static_cast<void>(create_dataset(
-        hdf5::blocks_dataset, type_of<std::uint64_t>(), {0, 1 + histories}, true,
+        hdf5::blocks_dataset, type_of<std::uint64_t>(), {0, 1 + histories}, history_chunk,
         {"1",
          "records by the end of each block of rows, then the checksum of its rows in each growing dataset, in the "
          "column that its attribute checksum_column names"}));
@@ -102,6 +102,12 @@ void ArrayFileWriter::Impl::cut_to_rows(const std::string& path, Growing& datase
   require_written(H5Dset_extent(dataset.dataset.get(), dataset.extent.data()) >= 0, file.place(path));
 }
 
+void ArrayFileWriter::Impl::cut() {
+  for (auto& [path, entry] : growing) cut_to_rows(path, entry);
+  for (auto& [path, entry] : late) cut_to_rows(path, entry);
+  cut_to_rows(hdf5::blocks_dataset, blocks);
+}
+
 void ArrayFileWriter::Impl::append_block() {
   if (growing.empty()) return;
   const std::size_t rows = growing.begin()->second.rows;
@@ -141,7 +147,7 @@ void ArrayFileWriter::create_growing(std::string_view path, const Shape& row_sha
   const Section section;
   Shape shape{0};
   shape.insert(shape.end(), row_shape.begin(), row_shape.end());
-  static_cast<void>(impl_->create_dataset(path, type_of<double>(), shape, true, {unit, description}));
+  static_cast<void>(impl_->create_dataset(path, type_of<double>(), shape, history_chunk, {unit, description}));
   impl_->write_text(path, hdf5::rows_attribute, hdf5::records_dataset);
   impl_->write_attribute(path, hdf5::column_attribute, static_cast<std::int64_t>(++impl_->histories));
 }
@@ -183,7 +189,7 @@ std::size_t ArrayFileWriter::records() const { return impl_->records(); }
 void ArrayFileWriter::create_slot(std::string_view path, std::string_view unit, std::string_view description) {
   assert(impl_->mode == Mode::growing);
   const Section section;
-  static_cast<void>(impl_->create_dataset(path, type_of<double>(), {0}, true, {unit, description}));
+  static_cast<void>(impl_->create_dataset(path, type_of<double>(), {0}, history_chunk, {unit, description}));
 }
 
 void ArrayFileWriter::replace(std::string_view path, std::span<const double> values) {
@@ -199,6 +205,42 @@ void ArrayFileWriter::replace(std::string_view path, std::span<const double> val
       H5Dset_extent(dataset.get(), &extent) >= 0 &&
           H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.data()) >= 0,
       at);
+}
+
+void ArrayFileWriter::create_late(std::string_view path, const Numbers& none, const Shape& row_shape,
+                                  std::string_view unit, std::string_view description) {
+  assert(impl_->mode == Mode::growing && product(row_shape) > 0);
+  const Section section;
+  Shape shape{0};
+  shape.insert(shape.end(), row_shape.begin(), row_shape.end());
+  std::visit(
+      [&]<typename Number>(std::span<const Number>) {
+        const std::size_t chunk = product(row_shape) == 1 ? page : history_chunk;
+        static_cast<void>(impl_->create_dataset(path, type_of<Number>(), shape, chunk, {unit, description}));
+      },
+      none);
+  impl_->write_attribute(path, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum({})));
+}
+
+void ArrayFileWriter::write_late(std::string_view path, const Numbers& numbers) {
+  const Section section;
+  impl_->begin_records();
+  const std::string name(path);
+  Impl::Growing& entry = impl_->late[name];
+  entry = impl_->open_growing(name);
+  std::visit(
+      [&]<typename Number>(std::span<const Number> values) {
+        const std::size_t rows = values.size() / entry.row_size;
+        impl_->append_rows(name, entry, type_of<Number>(), values.data(), rows);
+        impl_->write_attribute(path, hdf5::checksum_attribute,
+                               static_cast<std::int64_t>(word_checksum(std::as_bytes(values))));
+      },
+      numbers);
+}
+
+void ArrayFileWriter::cut() {
+  const Section section;
+  impl_->cut();
 }
 
 void ArrayFileWriter::flush() {

@@ -29,6 +29,7 @@ void ArrayFileWriter::Impl::require_written(bool done, const std::string& place)
 
 void ArrayFileWriter::Impl::abandon() noexcept {
   growing.clear();
+  late.clear();
   blocks = {};
   static_cast<void>(file.close());
   temporary = {};
@@ -44,8 +45,8 @@ void ArrayFileWriter::Impl::create_groups_of(std::string_view path) {
   }
 }
 
-hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, const Shape& shape, bool grows,
-                                                   Statement statement) {
+hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t type, const Shape& shape,
+                                                   std::size_t chunk_bytes, Statement statement) {
   assert(!temporary.name.empty() && "nothing can be created once records have begun");
   create_groups_of(path);
   const int rank = static_cast<int>(shape.size());
@@ -53,12 +54,12 @@ hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t 
   std::vector<hsize_t> limit = extent, chunk = extent;
   const hdf5::Properties properties(H5Pcreate(H5P_DATASET_CREATE));
   bool done = properties.valid();
-  if (grows) {
+  if (chunk_bytes > 0) {
     limit[0] = H5S_UNLIMITED;
-    // Rows of a chunk: about 16 KiB, so that short runs stay small files; at least 8, so that the index of a long run
-    // stays small too (up to 8180 chunks each of its blocks fits in a page).
-    constexpr std::size_t chunk_values = 2048, fewest = 8;
-    chunk[0] = std::max(fewest, chunk_values / product(std::span(shape).subspan(1)));
+    // At least 8 rows, so that the index of a long run stays small (up to 8180 chunks each of its blocks fits in a
+    // page).
+    constexpr std::size_t fewest = 8;
+    chunk[0] = std::max(fewest, chunk_bytes / (H5Tget_size(type) * product(std::span(shape).subspan(1))));
     constexpr double missing = std::numeric_limits<double>::quiet_NaN();
     done = H5Pset_chunk(properties.get(), rank, chunk.data()) >= 0 &&
            (H5Tget_class(type) != H5T_FLOAT || H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing) >= 0);
@@ -74,14 +75,15 @@ hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t 
 
 void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t type, std::span<const std::byte> values,
                                           const Shape& shape, Statement statement) {
-  const hdf5::Object dataset = create_dataset(path, type, shape, false, statement);
+  const hdf5::Object dataset = create_dataset(path, type, shape, 0, statement);
   require_written(values.empty() || H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
                   file.place(path));
   if (mode != Mode::growing || path == hdf5::records_dataset) return;
   write_attribute(path, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum(values)));
 }
 
-hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std::string_view name, hid_t type) {
+hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std::string_view name, hid_t type,
+                                                      std::size_t values) {
   if (!path.empty()) create_groups_of(std::string(path) + "/");
   const hdf5::Object object = file.object(path);
   const std::string key(name);
@@ -90,7 +92,8 @@ hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std
     attribute = hdf5::Attribute(H5Aopen(object.get(), key.c_str(), H5P_DEFAULT));
   } else {
     assert(!temporary.name.empty() && "nothing can be created once records have begun");
-    const hdf5::Space space(H5Screate(H5S_SCALAR));
+    const hsize_t extent = values;
+    const hdf5::Space space(values == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &extent, nullptr));
     attribute = hdf5::Attribute(H5Acreate2(object.get(), key.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT));
   }
   require_written(attribute.valid(), file.place(path, name));
@@ -98,9 +101,9 @@ hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std
 }
 
 void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view name, std::string_view value,
-                                       std::size_t capacity) {
+                                       std::size_t capacity, H5T_cset_t letters) {
   const std::size_t wanted = std::max({value.size(), capacity, std::size_t{1}});
-  const hdf5::Attribute attribute = open_attribute(path, name, hdf5::text_type(wanted).get());
+  const hdf5::Attribute attribute = open_attribute(path, name, hdf5::text_type(wanted, letters).get());
   const hdf5::Type type(H5Aget_type(attribute.get()));
   const std::size_t room = H5Tget_size(type.get());
   std::string bytes(value);
@@ -170,12 +173,24 @@ void ArrayFileWriter::attribute(std::string_view path, std::string_view name,
   std::visit(write, value);
 }
 
+void ArrayFileWriter::ascii_attribute(std::string_view path, std::string_view name, std::string_view value) {
+  const Section section;
+  impl_->write_text(path, name, value, 0, H5T_CSET_ASCII);
+}
+
+void ArrayFileWriter::attribute(std::string_view path, std::string_view name, std::span<const std::int64_t> values) {
+  const Section section;
+  const hdf5::Attribute attribute = impl_->open_attribute(path, name, type_of<std::int64_t>(), values.size());
+  impl_->require_written(H5Awrite(attribute.get(), type_of<std::int64_t>(), values.data()) >= 0,
+                         impl_->file.place(path, name));
+}
+
 void ArrayFileWriter::close() {
   if (impl_->mode == Mode::growing) flush();
   const Section section;
-  for (auto& [path, entry] : impl_->growing) impl_->cut_to_rows(path, entry);
-  impl_->cut_to_rows(hdf5::blocks_dataset, impl_->blocks);
+  impl_->cut();
   impl_->growing.clear();
+  impl_->late.clear();
   impl_->blocks = {};
   // All that needs room first, while the file can still be abandoned.
   impl_->require_written(H5Fflush(impl_->file.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.place(""));

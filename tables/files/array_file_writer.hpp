@@ -26,7 +26,11 @@ template <typename Number>
   if constexpr (std::is_same_v<Number, std::int64_t>) return H5T_STD_I64LE;
   if constexpr (std::is_same_v<Number, std::uint64_t>) return H5T_STD_U64LE;
   if constexpr (std::is_same_v<Number, std::uint32_t>) return H5T_STD_U32LE;
+  if constexpr (std::is_same_v<Number, std::uint8_t>) return H5T_STD_U8LE;
 }
+
+/// Of chunks of growing datasets: small, so that short runs stay small files.
+inline constexpr std::size_t history_chunk = 16384, page = 4096;
 
 /// What is said about a dataset.
 struct Statement {
@@ -51,6 +55,7 @@ struct ArrayFileWriter::Impl {
   std::map<std::string, Growing, std::less<>> growing;  ///< once records have begun
   std::size_t histories = 0;                            ///< number of growing datasets that were created
   Growing blocks;                                       ///< checksums; its rows count blocks, not records
+  std::map<std::string, Growing, std::less<>> late;     ///< those that were written
   std::vector<std::size_t> flushes;                     ///< records by the end of each block
 
   explicit Impl(Mode how) : mode(how) {}
@@ -65,18 +70,20 @@ struct ArrayFileWriter::Impl {
 
   /// The groups before each '/'.
   void create_groups_of(std::string_view path);
-  /// @param grows along its first extent
-  hdf5::Object create_dataset(std::string_view path, hid_t type, const Shape& shape, bool grows, Statement statement);
+  /// @param chunk_bytes about so many of a dataset that grows along its first extent; 0: it does not
+  hdf5::Object create_dataset(std::string_view path, hid_t type, const Shape& shape, std::size_t chunk_bytes,
+                              Statement statement);
   void write_dataset(std::string_view path, hid_t type, std::span<const std::byte> values, const Shape& shape,
                      Statement statement);
-  /// Opens an attribute, created where there is none yet.
-  hdf5::Attribute open_attribute(std::string_view path, std::string_view key, hid_t type);
+  /// Opens an attribute, created where there is none yet: a row of `values`, one alone a scalar.
+  hdf5::Attribute open_attribute(std::string_view path, std::string_view key, hid_t type, std::size_t values = 1);
   template <typename Number>
   void write_attribute(std::string_view path, std::string_view key, Number value) {
     const hdf5::Attribute attribute = open_attribute(path, key, type_of<Number>());
     require_written(H5Awrite(attribute.get(), type_of<Number>(), &value) >= 0, file.place(path, key));
   }
-  void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0);
+  void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0,
+                  H5T_cset_t letters = H5T_CSET_UTF8);
 
   /// Gives a growing file its name and opens it for single-writer-multiple-reader writing.
   void begin_records();
@@ -89,8 +96,9 @@ struct ArrayFileWriter::Impl {
   void append_rows(const std::string& path, Growing& dataset, hid_t type, const void* values, std::size_t rows);
   /// The checksums of what came since the last block.
   void append_block();
-  /// Gives back what a shorter history left over; only before closing, when nothing more is allocated.
+  /// Gives back what shorter content left over; only before closing, when nothing more is allocated.
   void cut_to_rows(const std::string& path, Growing& dataset);
+  void cut();
   /// Counts the records of the blocks.
   void commit();
 };

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "headline.hpp"
+#include "railtab/runtime/drawing/body_names.hpp"
 #include "railtab/runtime/measures/comfort.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/measures/weighting.hpp"
@@ -43,7 +44,7 @@ class CarBodyJudge : public RunJudge {
   void find() {
     std::vector<std::size_t> cars;
     for (std::size_t i = 0; i < header_.body_names.size(); ++i) {
-      if (report::is_car_body(header_.body_names[i])) cars.push_back(i);
+      if (is_car_body(header_.body_names[i])) cars.push_back(i);
     }
     if (cars.empty()) {
       for (const BodyMeasure& measure : body_measures) miss({std::string(measure.name)}, "no car body is recorded");

@@ -10,11 +10,12 @@
 #include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/writer_lock.hpp"
-#include "run_parts.hpp"
+#include "railtab/runtime/drawing/run_parts.hpp"
 #include "vtu_file.hpp"
 
 namespace railtab::vtk {
 namespace fs = std::filesystem;
+using drawing::Part;
 namespace {
 
 constexpr std::string_view collection_ending = ".pvd";
@@ -131,8 +132,8 @@ void state_origin(Grid& grid, const RunResults& results, const StepRecord& step,
   grid.texts.emplace_back(
       "axes", std::vector<std::string>{options.z_up ? "x forward, y left, z up; m, s, N, rad; forces on the rails"
                                                     : "x forward, y right, z down; m, s, N, rad; forces on the rails"});
-  grid.texts.emplace_back("drawn_not_recorded", drawn_only(results.header));
-  grid.texts.emplace_back("not_recorded", not_recorded(results.header));
+  grid.texts.emplace_back("drawn_not_recorded", drawing::drawn_only(results.header));
+  grid.texts.emplace_back("not_recorded", drawing::not_recorded(results.header));
   if (!results.summary.complete) {
     grid.texts.emplace_back("run_ended_early", std::vector<std::string>{results.summary.message});
   }
@@ -158,10 +159,10 @@ ExportPlace export_place(const std::string& output) {
 }
 
 ExportSummary write_export(const RunResults& results, const ExportOptions& options, const ExportPlace& place) {
-  std::vector<Part> parts = structure_parts(results);
-  for (Part& part : train_parts(results)) parts.push_back(std::move(part));
+  std::vector<Part> parts = drawing::structure_parts(results.header, results.steps);
+  for (Part& part : drawing::train_parts(results.header, results.steps)) parts.push_back(std::move(part));
   ExportSummary summary;
-  summary.not_recorded = not_recorded(results.header);
+  summary.not_recorded = drawing::not_recorded(results.header);
   const bool inside = place.collection.parent_path() == place.folder;
   const std::string prefix = inside ? "" : fmt::format("{}/", place.folder.filename().string());
   std::vector<CollectionEntry> all;

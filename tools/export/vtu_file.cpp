@@ -86,12 +86,6 @@ std::string field_data(const Grid& grid) {
 
 }  // namespace
 
-void Grid::add_cell(Cell kind, std::span<const std::int64_t> corners) {
-  connectivity.insert(connectivity.end(), corners.begin(), corners.end());
-  offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-  types.push_back(static_cast<std::uint8_t>(kind));
-}
-
 std::string_view vtu_mark() noexcept { return "<?xml version=\"1.0\"?>\n<!-- railtab: vsi export, a part -->\n"; }
 std::string_view pvd_mark() noexcept { return "<?xml version=\"1.0\"?>\n<!-- railtab: vsi export -->\n"; }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/drawing/body_names.hpp"
 
 namespace railtab::report {
 namespace {
@@ -65,8 +66,6 @@ std::string extent_of_extremes(const ResultHeader& header, const RunSummary& sum
 std::string wheel_name(std::size_t wheel) {
   return fmt::format("wheelset {} {}", wheel / 2 + 1, wheel % 2 == 0 ? "left" : "right");
 }
-
-bool is_car_body(const std::string& body_name) { return body_name == "car-body" || body_name.ends_with("/car-body"); }
 
 std::string vehicle_of(const std::string& body_name) { return body_name.substr(0, body_name.find('/')); }
 

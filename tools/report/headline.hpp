@@ -72,8 +72,6 @@ class HeadlineCollector {
 [[nodiscard]] std::string extent_of_extremes(const ResultHeader& header, const RunSummary& summary);
 /// "wheelset 3 left" for a wheel's index in StepRecord::wheels.
 [[nodiscard]] std::string wheel_name(std::size_t wheel);
-/// Car bodies are named "<vehicle>/car-body".
-[[nodiscard]] bool is_car_body(const std::string& body_name);
 /// "coach-1" of "coach-1/car-body".
 [[nodiscard]] std::string vehicle_of(const std::string& body_name);
 

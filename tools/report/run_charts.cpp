@@ -12,6 +12,7 @@
 #include "deck_charts.hpp"
 #include "headline.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/drawing/body_names.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "wheel_band.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "headline.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/drawing/body_names.hpp"
 #include "railtab/runtime/report/history_store.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/report/html_text.hpp"

@@ -58,6 +58,7 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
                      {"memory_bytes", plan.memory.most},
                      {"memory_undivided_bytes", plan.memory.undivided},
                      {"results_bytes", plan.memory.results},
+                     {"paraview_bytes", plan.memory.grid},
                      {"step_reads_bytes", plan.memory.step_reads},
                      {"built", plan.built},
                      {"left_out", plan.left_out},
@@ -72,7 +73,8 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   print_formatted(
       "  at most {:.4g} MB of memory in all, {:.4g} MB where no step is divided; a step reads {:.3g} MB of it\n",
       1e-6 * plan.memory.most, 1e-6 * plan.memory.undivided, 1e-6 * plan.memory.step_reads);
-  print_formatted("  {:.4g} MB of results\n", 1e-6 * plan.memory.results);
+  print_formatted("  {:.4g} MB of results, {:.3g} MB of it for ParaView\n", 1e-6 * plan.memory.results,
+                  1e-6 * plan.memory.grid);
   for (const std::string& part : plan.built) print_formatted("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) print_formatted("  left out: {}\n", part);
   return 0;

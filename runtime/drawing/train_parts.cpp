@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "drawn_points.hpp"
-#include "headline.hpp"
-#include "run_parts.hpp"
+#include "railtab/runtime/drawing/body_names.hpp"
+#include "railtab/runtime/drawing/drawn_points.hpp"
+#include "railtab/runtime/drawing/run_parts.hpp"
 
-namespace railtab::vtk {
+namespace railtab::drawing {
 namespace {
 
 /// A body as it is drawn: its place at rest behind the first wheelset, and a box about it.
@@ -47,12 +47,12 @@ std::vector<DrawnBody> drawn_bodies(const ResultHeader& header) {
   const Eigen::Vector3d bogie(1.6, 1.1, 0.15);                   // half of its box [m]
   std::vector<std::size_t> car_bodies;
   for (std::size_t b = 0; b < header.body_names.size(); ++b) {
-    if (report::is_car_body(header.body_names[b])) car_bodies.push_back(b);
+    if (is_car_body(header.body_names[b])) car_bodies.push_back(b);
   }
   std::vector<DrawnBody> bodies;
   for (std::size_t b = 0; b < header.body_names.size(); ++b) {
     if (is_wheelset(header.body_names[b])) continue;
-    if (!report::is_car_body(header.body_names[b])) {
+    if (!is_car_body(header.body_names[b])) {
       bodies.push_back({b, rest_of(header, b, bogie_z), -bogie, bogie});
       continue;
     }
@@ -98,9 +98,9 @@ struct DrawnWheelset {
 };
 
 /// Height of a wheelset's centre above the rails, of files that do not say it: the rolling radius at the begin.
-double radius_of(const RunResults& results) {
+double radius_of(std::span<const StepRecord> records) {
   constexpr double standard = 0.46;  // [m]
-  for (const StepRecord& step : results.steps) {
+  for (const StepRecord& step : records) {
     for (const WheelRecord& wheel : step.wheels) {
       if (wheel.patches > 0 && wheel.rolling_radius > 0.0) return wheel.rolling_radius;
     }
@@ -108,9 +108,8 @@ double radius_of(const RunResults& results) {
   return standard;
 }
 
-std::vector<DrawnWheelset> drawn_wheelsets(const RunResults& results) {
-  const ResultHeader& header = results.header;
-  const double radius = radius_of(results);
+std::vector<DrawnWheelset> drawn_wheelsets(const ResultHeader& header, std::span<const StepRecord> records) {
+  const double radius = radius_of(records);
   std::vector<DrawnWheelset> wheelsets;
   for (std::size_t b = 0; b < header.body_x.size(); ++b) {
     if (!is_wheelset(header.body_names[b])) continue;
@@ -225,13 +224,10 @@ Part contact_forces_part(const ResultHeader& header, const Shared<DrawnWheelset>
 
 }  // namespace
 
-bool is_wheelset(std::string_view body_name) noexcept { return body_name.find("wheelset") != std::string_view::npos; }
-
-std::vector<Part> train_parts(const RunResults& results) {
-  const ResultHeader& header = results.header;
+std::vector<Part> train_parts(const ResultHeader& header, std::span<const StepRecord> records) {
   std::vector<Part> parts;
   const Shared<DrawnBody> bodies = shared(header.body_x.empty() ? std::vector<DrawnBody>{} : drawn_bodies(header));
-  const Shared<DrawnWheelset> wheelsets = shared(drawn_wheelsets(results));
+  const Shared<DrawnWheelset> wheelsets = shared(drawn_wheelsets(header, records));
   if (!bodies->empty()) parts.push_back(bodies_part(header, bodies));
   if (!wheelsets->empty()) parts.push_back(wheelsets_part(header, wheelsets));
   if (!header.wheel_x.empty()) parts.push_back(contact_forces_part(header, wheelsets));
@@ -267,4 +263,4 @@ std::vector<std::string> drawn_only(const ResultHeader& header) {
   return drawn;
 }
 
-}  // namespace railtab::vtk
+}  // namespace railtab::drawing

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <memory>
 
-#include "drawn_line.hpp"
-#include "drawn_points.hpp"
-#include "run_parts.hpp"
+#include "railtab/runtime/drawing/drawn_line.hpp"
+#include "railtab/runtime/drawing/drawn_points.hpp"
+#include "railtab/runtime/drawing/run_parts.hpp"
 
-namespace railtab::vtk {
+namespace railtab::drawing {
 namespace {
 
 constexpr double drawn_spacing = 1.0;  // of points between recorded nodes [m]
@@ -96,15 +96,14 @@ void add_deck(Grid& grid, DrawnPoints& points, const LinePiece& piece, const Ste
 }
 
 /// The track that the train has passed or will pass, at rest beside the bridge: nothing is recorded of it.
-std::array<double, 2> track_range(const RunResults& results) {
+std::array<double, 2> track_range(const ResultHeader& header, std::span<const StepRecord> records) {
   constexpr double margin = 5.0;  // [m]
   double low = INFINITY, high = -INFINITY;
-  const ResultHeader& header = results.header;
   double rear = 0.0;
   for (const auto* offsets : {&header.wheel_x, &header.body_x}) {
     for (const double x : *offsets) rear = std::min(rear, x);
   }
-  for (const StepRecord& step : results.steps) {
+  for (const StepRecord& step : records) {
     low = std::min(low, step.position + rear);
     high = std::max(high, step.position);
   }
@@ -144,8 +143,7 @@ Part bridge_part(const ResultHeader& header) {
           }};
 }
 
-Part rails_part(const RunResults& results) {
-  const ResultHeader& header = results.header;
+Part rails_part(const ResultHeader& header, std::span<const StepRecord> records) {
   struct Rail {
     std::vector<LinePiece> pieces;
     Eigen::Vector2d place;
@@ -159,7 +157,7 @@ Part rails_part(const RunResults& results) {
     rails->push_back({pieces_over_spans(header, nodes, standard_place),
                       {mean_of(header.node_y, nodes, standard_place[0]), mean_of(header.node_z, nodes, axis)}});
   }
-  return {"rails", [rails, range = track_range(results)](const StepRecord& step) {
+  return {"rails", [rails, range = track_range(header, records)](const StepRecord& step) {
             Grid grid;
             DrawnPoints points(grid);
             for (const Rail& rail : *rails) add_rail(grid, points, rail.pieces, range, rail.place, step);
@@ -199,13 +197,12 @@ double half_rail_distance(const ResultHeader& header) {
 bool is_left_rail(std::string_view node_name) noexcept { return node_name.starts_with("rail-left"); }
 bool is_right_rail(std::string_view node_name) noexcept { return node_name.starts_with("rail-right"); }
 
-std::vector<Part> structure_parts(const RunResults& results) {
-  const ResultHeader& header = results.header;
+std::vector<Part> structure_parts(const ResultHeader& header, std::span<const StepRecord> records) {
   std::vector<Part> parts;
   if (!header.span_from.empty() || nodes_with(header, &is_deck).size() > 1) parts.push_back(bridge_part(header));
-  if (!results.steps.empty()) parts.push_back(rails_part(results));
+  if (!records.empty()) parts.push_back(rails_part(header, records));
   if (!header.node_names.empty()) parts.push_back(nodes_part(header));
   return parts;
 }
 
-}  // namespace railtab::vtk
+}  // namespace railtab::drawing

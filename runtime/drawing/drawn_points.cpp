@@ -1,10 +1,10 @@
-#include "drawn_points.hpp"
+#include "railtab/runtime/drawing/drawn_points.hpp"
 
 #include <Eigen/Geometry>
 
 #include "railtab/runtime/base/motion_names.hpp"
 
-namespace railtab::vtk {
+namespace railtab::drawing {
 namespace {
 
 void append(std::vector<float>& values, const Eigen::Vector3d& vector) {
@@ -66,4 +66,4 @@ void DrawnPoints::write() {
   grid_.point_data.push_back({"recorded", 1, std::move(recorded_)});
 }
 
-}  // namespace railtab::vtk
+}  // namespace railtab::drawing

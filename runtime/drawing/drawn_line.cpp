@@ -1,11 +1,11 @@
-#include "drawn_line.hpp"
+#include "railtab/runtime/drawing/drawn_line.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 
-namespace railtab::vtk {
+namespace railtab::drawing {
 namespace {
 
 struct Knot {
@@ -84,4 +84,4 @@ DrawnLine drawn_line(const std::vector<double>& nodes, const std::vector<double>
   return line;
 }
 
-}  // namespace railtab::vtk
+}  // namespace railtab::drawing

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-namespace railtab::vtk {
+namespace railtab::drawing {
 
 /// A line along the track, a deck's axis or a rail, that passes through recorded nodes. Between them it is drawn as a
 /// natural cubic spline, at its ends at rest where it has some.
@@ -19,4 +19,4 @@ struct DrawnLine {
 /// @param spacing longest distance of its points [m]
 [[nodiscard]] DrawnLine drawn_line(const std::vector<double>& nodes, const std::vector<double>& rests, double spacing);
 
-}  // namespace railtab::vtk
+}  // namespace railtab::drawing

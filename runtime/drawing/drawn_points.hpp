@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
+#include "railtab/runtime/drawing/grid.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
-#include "vtu_file.hpp"
 
-namespace railtab::vtk {
+namespace railtab::drawing {
 
 /// Displacement, velocity and acceleration, each of x, y, z, roll, pitch, yaw [m, rad and per s, s²].
 struct Motion {
@@ -43,4 +43,4 @@ class DrawnPoints {
   std::vector<std::uint8_t> recorded_;
 };
 
-}  // namespace railtab::vtk
+}  // namespace railtab::drawing
