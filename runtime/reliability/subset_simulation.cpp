@@ -62,6 +62,15 @@ double chain_correlation(const LevelSamples& samples, double threshold, double p
   return std::max(0.0, 2.0 * sum);
 }
 
+/// Threshold of a level whose samples are in the order of their responses: just above the (seeds + 1)-th response, so
+/// that the sample which defines it is not among the seeds, and equal ones are not either. That response itself where
+/// fewer than two samples are beyond it.
+double level_threshold(const LevelSamples& samples, const std::vector<std::size_t>& order, std::size_t seeds) {
+  const double response = samples.responses[order[seeds]];
+  const double above = std::nextafter(response, INFINITY);
+  return count_beyond(samples, above) >= 2 ? above : response;
+}
+
 SubsetLevel level_of(const LevelSamples& samples, double threshold) {
   SubsetLevel level;
   const double count = static_cast<double>(samples.responses.size());
@@ -92,8 +101,9 @@ class Chains {
  public:
   Chains(const SubsetOptions& options, const ResponseOfPoints& response) : options_(options), response_(response) {}
 
-  /// From the samples beyond the threshold, `seeds` of them. @return share of the steps that moved
-  double run(std::size_t level, double threshold, const std::vector<std::size_t>& seeds, LevelSamples& samples) {
+  /// From these samples, all beyond the threshold. @param evaluations  most  @return share of the steps that moved
+  double run(std::size_t level, double threshold, const std::vector<std::size_t>& seeds, std::size_t evaluations,
+             LevelSamples& samples) {
     LevelSamples next;
     next.chains = seeds.size();
     for (const std::size_t i : seeds) {
@@ -101,13 +111,12 @@ class Chains {
       next.responses.push_back(samples.responses[i]);
     }
     const std::vector<double> spread = spread_of(next.points);
+    const std::size_t steps = evaluations / next.chains;
     double moved = 0.0;
-    for (std::size_t step = 1; next.points.size() < options_.samples; ++step) {
-      moved += advance(level, step, threshold, spread, next);
-    }
-    const std::size_t steps = next.points.size() - next.chains;
+    for (std::size_t step = 1; step <= steps; ++step) moved += advance(level, step, threshold, spread, next);
+    moved /= static_cast<double>(steps * next.chains);
     samples = std::move(next);
-    return moved / static_cast<double>(steps);
+    return moved;
   }
 
  private:
@@ -166,9 +175,9 @@ SubsetResult subset_simulation(const SubsetOptions& options, const ResponseOfPoi
   std::size_t evaluations = options.samples;
   for (std::size_t number = 1;; ++number) {
     std::vector<std::size_t> order = by_response(samples);
-    const double quantile = samples.responses[order[seeds - 1]];
-    const bool reached = quantile >= options.limit;
-    SubsetLevel& level = result.levels.emplace_back(level_of(samples, reached ? options.limit : quantile));
+    const bool reached = samples.responses[order[seeds]] >= options.limit;
+    const double threshold = reached ? options.limit : level_threshold(samples, order, seeds);
+    SubsetLevel& level = result.levels.emplace_back(level_of(samples, threshold));
     level.acceptance = acceptance;
     level.evaluations = evaluations;
     result.probability *= level.probability;
@@ -176,10 +185,10 @@ SubsetResult subset_simulation(const SubsetOptions& options, const ResponseOfPoi
     if (reached) break;
     result.outcome = level.probability < 1.0 ? SubsetOutcome::too_rare : SubsetOutcome::stalled;
     if (number == options.most_levels || level.probability == 1.0) break;
-    order.resize(seeds);
+    order.resize(std::min(seeds, count_beyond(samples, threshold)));
     std::sort(order.begin(), order.end());
-    acceptance = chains.run(number, quantile, order, samples);
-    evaluations = options.samples - seeds;
+    acceptance = chains.run(number, threshold, order, options.samples - seeds, samples);
+    evaluations = samples.points.size() - samples.chains;
     result.evaluations += evaluations;
     result.outcome = SubsetOutcome::found;
   }

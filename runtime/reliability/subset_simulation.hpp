@@ -17,7 +17,7 @@ using ResponseOfPoints = std::function<std::vector<double>(const std::vector<Nor
 struct SubsetOptions {
   std::size_t variables = 1;
   double limit = 0.0;              ///< the probability is that of y >= limit
-  std::size_t samples = 1000;      ///< per level; samples · level_probability is a whole number >= 2
+  std::size_t samples = 1000;      ///< per level, or some fewer; samples · level_probability is a whole number >= 2
   double level_probability = 0.1;  ///< p0; 1/p0 is a whole number
   std::size_t most_levels = 10;
   std::uint64_t seed = 1;
@@ -30,7 +30,7 @@ enum class SubsetOutcome {
 };
 
 struct SubsetLevel {
-  double threshold = 0.0;    ///< y of the level: that of its share `probability`, or the limit
+  double threshold = 0.0;    ///< y beyond which the share `probability` of the level is, or the limit
   double probability = 0.0;  ///< of threshold, given the last one
   double correlation = 0.0;  ///< γ of the chains, 0 for independent samples
   double variation = 0.0;    ///< coefficient of variation of `probability`
@@ -49,9 +49,14 @@ struct SubsetResult {
   std::vector<double> responses;
 };
 
-/// Probability of y >= limit by subset simulation [AuBeck2001]: P = Π P(y >= y_j | y >= y_(j−1)), each factor p0 but
-/// the last. Samples of a level come from Markov chains that begin at those of the last level beyond its threshold;
-/// a step is u' = ρu + √(1 − ρ²)·w per variable, w standard normal, kept where y(u') is beyond the threshold
+/// Probability of y >= limit by subset simulation [AuBeck2001]: P = Π P(y > y_j | y > y_(j−1)), each factor about p0
+/// but the last, with y >= limit. y_j is the (p0 N + 1)-th largest of the level's N responses. The sample that has it
+/// is not among those that go on: one at the threshold itself would make P too large by about 1/(p0 N) per level
+/// [BrehierEtAl2015]. Nor are samples of equal response, such as steps of a chain that did not move: fewer than p0 N
+/// may go on, with longer chains.
+///
+/// Samples of a level come from Markov chains that begin at those of the last level beyond its threshold; a step is
+/// u' = ρu + √(1 − ρ²)·w per variable, w standard normal, kept where y(u') is beyond the threshold
 /// [PapaioannouEtAl2015]. √(1 − ρ²) is the spread of the seeds per variable times a factor that all chains
 /// share, adapted after each step to an acceptance of 0.44. γ and the coefficient of variation: [AuBeck2001].
 ///

@@ -24,9 +24,7 @@ BranchTangent unit_tangent(const Shooting& shooting, const CycleSection& section
   BranchTangent tangent = shooting.tangent(normal);
   const BranchPoint direction = direction_of(tangent, section, unit);
   const double length = std::hypot(direction.height, direction.parameter);
-  tangent.start /= length;
-  tangent.duration /= length;
-  tangent.parameter /= length;
+  tangent.scale(1.0 / length);
   return tangent;
 }
 
@@ -36,16 +34,6 @@ PeriodicMotion moved(const PeriodicMotion& from, const BranchTangent& tangent, d
   to.period = stepped_time(from.period.duration + length * tangent.duration, time_step);
   to.parameter += length * tangent.parameter;
   return to;
-}
-
-// Rest is a periodic motion too, of any period and at any parameter, which Newton's method may fall to: no cycle below
-// the lowest height counts.
-std::optional<BranchCycle> cycle_at(Shooting& shooting, const CycleSection& section, const PeriodicMotion& guess,
-                                    const BranchLine& line, const BranchPoint& unit, double lowest_height) {
-  const std::optional<PeriodicMotion> motion = shooting.solve(guess, line);
-  if (!motion || motion->point(section).height < lowest_height || !shooting.differentiate(*motion)) return {};
-  return BranchCycle{*motion, shooting.floquet_multipliers(), unit_tangent(shooting, section, line.normal, unit),
-                     shooting.residual(), shooting.error_along_motion()};
 }
 
 std::optional<BranchEnd> end_at(const BranchPoint& point, const BranchSearch& search) {
@@ -62,17 +50,19 @@ BranchEnd end_before(const PeriodicMotion& guess, const CycleSection& section, c
   return low ? BranchEnd::height_range : BranchEnd::no_convergence;
 }
 
-// Where the parabola through three points has its extremum; none where they lie on a line.
-std::optional<double> extremum(const std::array<BranchPoint, 3>& p) {
-  const double left = (p[1].parameter - p[0].parameter) / (p[1].height - p[0].height);
-  const double right = (p[2].parameter - p[1].parameter) / (p[2].height - p[1].height);
-  const double bend = (right - left) / (p[2].height - p[0].height);
-  const double height = 0.5 * (p[0].height + p[1].height) - 0.5 * left / bend;
-  if (!std::isfinite(height)) return {};
-  return height;
-}
-
 }  // namespace
+
+std::optional<BranchCycle> cycle_near(Shooting& shooting, const CycleSection& section, const PeriodicMotion& guess,
+                                      const BranchLine& line, const BranchSearch& search) {
+  const std::optional<PeriodicMotion> motion = shooting.solve(guess, line);
+  if (!motion || motion->point(section).height < search.lowest_height || !shooting.differentiate(*motion)) return {};
+  return BranchCycle{*motion,
+                     shooting.floquet_multipliers(),
+                     unit_tangent(shooting, section, line.normal, search.unit),
+                     shooting.residual(),
+                     shooting.error_along_motion(),
+                     shooting.parameter_error(line.normal)};
+}
 
 SteppedTime stepped_time(double duration, double longest_step) {
   return {duration, std::max(1, static_cast<int>(std::ceil(duration / longest_step)))};
@@ -82,16 +72,13 @@ CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const C
                           const BranchSearch& search, const std::function<bool(const BranchCycle&)>& listener) {
   CycleBranch branch;
   Shooting shooting(flow, section, search.shooting);
-  std::optional<BranchCycle> cycle =
-      cycle_at(shooting, section, start.guess, start.line, search.unit, search.lowest_height);
+  std::optional<BranchCycle> cycle = cycle_near(shooting, section, start.guess, start.line, search);
   if (!cycle) return branch;
   const BranchPoint first = direction_of(cycle->tangent, section, search.unit);
   double length = search.first_step;
   double sense = first.height * start.forward.height + first.parameter * start.forward.parameter < 0.0 ? -1.0 : 1.0;
   for (;;) {
-    cycle->tangent.start *= sense;
-    cycle->tangent.duration *= sense;
-    cycle->tangent.parameter *= sense;
+    cycle->tangent.scale(sense);
     branch.cycles.push_back(*cycle);
     if (listener && !listener(*cycle)) return branch.end = BranchEnd::stopped, branch;
     if (const auto end = end_at(cycle->motion.point(section), search)) return branch.end = *end, branch;
@@ -103,7 +90,7 @@ CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const C
       const PeriodicMotion next = moved(last.motion, last.tangent, length, search.time_step);
       const BranchLine across{next.point(section),
                               {along.height / search.unit.height, along.parameter / search.unit.parameter}};
-      cycle = cycle_at(shooting, section, next, across, search.unit, search.lowest_height);
+      cycle = cycle_near(shooting, section, next, across, search);
       sense = 1.0;
       if (cycle) {
         const BranchPoint turned = direction_of(cycle->tangent, section, search.unit);
@@ -122,33 +109,6 @@ CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const C
       }
     }
   }
-}
-
-std::optional<BranchCycle> fold_near(const Flow& flow, const CycleSection& section, const CycleBranch& branch,
-                                     std::size_t cycle, const BranchSearch& search) {
-  std::array<BranchCycle, 3> around{branch.cycles[cycle - 1], branch.cycles[cycle], branch.cycles[cycle + 1]};
-  Shooting shooting(flow, section, search.shooting);
-  constexpr int most_parabolas = 12;
-  for (int i = 0; i < most_parabolas; ++i) {
-    const auto height =
-        extremum({around[0].motion.point(section), around[1].motion.point(section), around[2].motion.point(section)});
-    if (!height) return around[1];
-    PeriodicMotion guess = around[1].motion;
-    const double slope = around[1].tangent.start[section.coordinate];
-    const double length = slope != 0.0 ? (*height - guess.point(section).height) / slope : 0.0;
-    guess = moved(guess, around[1].tangent, length, search.time_step);
-    const BranchLine level{{*height, guess.parameter}, {1.0 / search.unit.height, 0.0}};
-    const auto found = cycle_at(shooting, section, guess, level, search.unit, search.lowest_height);
-    if (!found) return {};
-    const double change = std::abs(found->motion.parameter - around[1].motion.parameter);
-    const auto height_of = [&](std::size_t k) { return around[k].motion.point(section).height; };
-    const bool rises = height_of(2) > height_of(0);
-    const bool beyond = (*height > height_of(1)) == rises;  // between the middle and the last
-    if (beyond) around[0] = std::exchange(around[1], *found);
-    if (!beyond) around[2] = std::exchange(around[1], *found);
-    if (change < search.parameter_tolerance) return around[1];
-  }
-  return {};
 }
 
 }  // namespace railtab

@@ -14,6 +14,7 @@ struct BranchCycle {
   BranchTangent tangent;            ///< of length 1 in units of the branch, forward
   double residual = 0.0;            ///< Shooting::residual()
   double error_along_motion = 0.0;  ///< Shooting::error_along_motion()
+  double parameter_error = 0.0;     ///< Shooting::parameter_error()
 
   [[nodiscard]] bool is_stable() const { return std::abs(multipliers[0]) < 1.0; }
 };
@@ -54,16 +55,16 @@ struct CycleBranch {
 /// The steps that a period takes.
 [[nodiscard]] SteppedTime stepped_time(double duration, double longest_step);
 
+/// The periodic motion on a line. None: no convergence, or rest, which is a periodic motion too, of any period and at
+/// any parameter: no motion below the lowest height counts.
+[[nodiscard]] std::optional<BranchCycle> cycle_near(Shooting& shooting, const CycleSection& section,
+                                                    const PeriodicMotion& guess, const BranchLine& line,
+                                                    const BranchSearch& search);
+
 /// Follows the branch of a periodic motion by pseudo-arclength continuation [Keller1977].
 /// @param listener called with every motion found; false ends the search
 [[nodiscard]] CycleBranch follow_branch(const Flow& flow, const CycleSection& section, const CycleBranchStart& start,
                                         const BranchSearch& search,
                                         const std::function<bool(const BranchCycle&)>& listener);
-
-/// The fold of the parameter, a minimum or a maximum, between the neighbours of a cycle of the branch: by parabolas
-/// over the height. None where they do not converge.
-[[nodiscard]] std::optional<BranchCycle> fold_near(const Flow& flow, const CycleSection& section,
-                                                   const CycleBranch& branch, std::size_t cycle,
-                                                   const BranchSearch& search);
 
 }  // namespace railtab

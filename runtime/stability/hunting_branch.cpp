@@ -10,6 +10,7 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/stability/branch_folds.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 
@@ -123,24 +124,14 @@ std::optional<PeriodicMotion> last_cycle(const SettledMotion& motion, Eigen::Ind
   return PeriodicMotion{motion.state[farthest], stepped_time(period, time_step), speed};
 }
 
-// Whether the speed has an extremum at a cycle. Of small cycles, residuals leave it uncertain by some mm/s.
-bool is_fold(const CycleBranch& branch, std::size_t i) {
-  if (i == 0 || i + 1 >= branch.cycles.size()) return false;
-  constexpr double certain = 1e-2;  // m/s
-  const auto speed = [&](std::size_t k) { return branch.cycles[k].motion.parameter; };
-  const double before = speed(i) - speed(i - 1), after = speed(i + 1) - speed(i);
-  return before * after < 0.0 && std::max(std::abs(before), std::abs(after)) > certain;
-}
-
 }  // namespace
 
 double LimitCycle::amplitude() const { return *std::max_element(amplitudes.begin(), amplitudes.end()); }
 
 std::optional<double> HuntingBranch::nonlinear_critical_speed() const {
   double lowest = linear.critical ? linear.critical->speed : std::numeric_limits<double>::infinity();
-  for (const std::vector<LimitCycle>* group : {&cycles, &folds}) {
-    for (const LimitCycle& cycle : *group) lowest = std::min(lowest, cycle.speed);
-  }
+  for (const LimitCycle& cycle : cycles) lowest = std::min(lowest, cycle.speed);
+  for (const LimitCycleFold& fold : folds) lowest = std::min(lowest, fold.cycle.speed);
   if (!std::isfinite(lowest)) return {};
   return lowest;
 }
@@ -194,9 +185,10 @@ BranchSearch branch_search(const HuntingSearch& search) {
           .shooting = {}};
 }
 
-// One branch of two that begin with the same cycle, in the order of the first one.
+// One branch of two that begin with the same cycle, from the end of the first to that of the second.
 CycleBranch joined(CycleBranch first, const CycleBranch& second) {
   std::reverse(first.cycles.begin(), first.cycles.end());
+  for (BranchCycle& cycle : first.cycles) cycle.tangent.scale(-1.0);
   if (!second.cycles.empty()) first.cycles.insert(first.cycles.end(), second.cycles.begin() + 1, second.cycles.end());
   first.end = second.end;
   return first;
@@ -232,10 +224,11 @@ HuntingBranch hunting_branch(const VsiModel& linear, const VsiModel& model, cons
     result.bifurcation =
         branch.cycles.front().tangent.parameter < 0.0 ? Bifurcation::subcritical : Bifurcation::supercritical;
   }
-  for (std::size_t i = 0; i < branch.cycles.size(); ++i) {
-    result.cycles.push_back(limit_cycle(flow, branch.cycles[i]));
-    if (!is_fold(branch, i)) continue;
-    if (const auto fold = fold_near(flow, section, branch, i, along)) result.folds.push_back(limit_cycle(flow, *fold));
+  for (const BranchCycle& cycle : branch.cycles) result.cycles.push_back(limit_cycle(flow, cycle));
+  for (const BranchFold& fold : branch_folds(flow, section, branch, along)) {
+    const auto [before, after] = fold.bracket;
+    result.folds.push_back(
+        {limit_cycle(flow, fold.cycle), {limit_cycle(flow, before), limit_cycle(flow, after)}, fold.converged});
   }
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <complex>
 
 #include "railtab/runtime/stability/cycle_branch.hpp"
@@ -49,12 +50,19 @@ enum class Bifurcation {
   supercritical,  ///< to higher speeds: cycles are stable
 };
 
+/// Where cycles of two amplitudes meet: the speed has an extremum along the branch.
+struct LimitCycleFold {
+  LimitCycle cycle;                   ///< of the extreme speed found
+  std::array<LimitCycle, 2> bracket;  ///< before and after it, between which the extremum is
+  bool converged = false;             ///< the speeds of all three agree within 1e-4 m/s
+};
+
 struct HuntingBranch {
   LinearCriticalSpeed linear;
   std::optional<Bifurcation> bifurcation;  ///< of a branch that begins at the linear critical speed
   int section_wheelset = 0;                ///< whose lateral displacement is largest when a cycle begins
   std::vector<LimitCycle> cycles;
-  std::vector<LimitCycle> folds;  ///< where cycles of two amplitudes meet, in the order of the branch
+  std::vector<LimitCycleFold> folds;  ///< in the order of the branch
   BranchEnd end = BranchEnd::no_convergence;
 
   /// Lowest speed at which there is a limit cycle or rest is unstable [m/s]; none where there is neither. An upper

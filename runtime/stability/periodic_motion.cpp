@@ -95,6 +95,7 @@ std::optional<PeriodicMotion> Shooting::solve(const PeriodicMotion& guess, const
     residual_ = remains;
   }
   if (!(residual_ <= tolerance(motion))) return {};
+  remainder_ = *residual;
   return motion;
 }
 
@@ -114,6 +115,12 @@ BranchTangent Shooting::tangent(const BranchPoint& direction) const {
   set_line(direction, matrix);
   const Eigen::VectorXd t = dense_solution(matrix, Eigen::VectorXd::Unit(size() + 2, size() + 1));
   return {t.head(size()).cwiseProduct(flow_.unit()), t[size()], t[size() + 1]};
+}
+
+double Shooting::parameter_error(const BranchPoint& normal) const {
+  Eigen::MatrixXd matrix = matrix_;
+  set_line(normal, matrix);
+  return std::abs(dense_solution(matrix, remainder_)(size() + 1, 0));
 }
 
 double Shooting::error_along_motion() const {

@@ -55,6 +55,12 @@ struct PeriodicMotion {
 struct BranchTangent {
   Eigen::VectorXd start;
   double duration = 0.0, parameter = 0.0;
+
+  void scale(double factor) {
+    start *= factor;
+    duration *= factor;
+    parameter *= factor;
+  }
 };
 
 /// The line normal·(point − at) = 0 on which a periodic motion is sought.
@@ -95,6 +101,10 @@ class Shooting {
   /// time integration and derivatives.
   [[nodiscard]] double error_along_motion() const;
 
+  /// By how much Newton's next step on a line across `normal` would change the parameter, after solve() and
+  /// differentiate(): an estimate of its error.
+  [[nodiscard]] double parameter_error(const BranchPoint& normal) const;
+
   /// Largest component of the last residual in units of the flow.
   [[nodiscard]] double residual() const noexcept { return residual_; }
   [[nodiscard]] int iterations() const noexcept { return iterations_; }
@@ -109,7 +119,8 @@ class Shooting {
   CycleSection section_;
   ShootingLimits limits_;
   std::optional<FlowEnd> derivatives_;
-  Eigen::MatrixXd matrix_;  // of Newton's method, in units of the flow, but for its last row
+  Eigen::VectorXd remainder_;  // what solve() leaves of the equations
+  Eigen::MatrixXd matrix_;     // of Newton's method, in units of the flow, but for its last row
   double residual_ = 0.0;
   int iterations_ = 0;
 };

@@ -1,16 +1,19 @@
-// Shooting and continuation on a motion whose limit cycles are known in closed form: the normal form of a subcritical
-// bifurcation whose cycles come back [Strogatz2018, section 8.2],
-//     ṙ = r (μ + r² − r⁴),   θ̇ = 2 + r²,   ż = −z + x,      x = r cos θ, y = r sin θ,  μ = λ − 1
-// has cycles of radius r at μ = r⁴ − r², a fold at r² = ½, μ = −¼, periods 2π/(2 + r²) and the multipliers
-// exp(T (2r² − 4r⁴)) and exp(−T).
+// Shooting and continuation on a motion whose limit cycles are known in closed form:
+//     ṙ = r (λ − c(r)),   θ̇ = 2 + r²,   ż = −z + x,      x = r cos θ, y = r sin θ
+// has cycles of radius r at λ = c(r), folds where c'(r) = 0, periods T = 2π/(2 + r²) and the multipliers
+// exp(−T r c'(r)) and exp(−T). With c = 1 + r⁴ − r² it is the normal form of a subcritical bifurcation whose cycles
+// come back [Strogatz2018, section 8.2]: a fold at r² = ½, λ = ¾.
 
-#include "railtab/runtime/stability/cycle_branch.hpp"
+#include "railtab/runtime/stability/branch_folds.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <initializer_list>
 #include <numbers>
+#include <utility>
 
 #include "../validation/runge_kutta.hpp"
 
@@ -19,13 +22,19 @@ namespace {
 
 using State = std::array<double, 3>;
 
+using Curve = std::function<double(double)>;
+
+double subcritical(double r) { return 1.0 + std::pow(r, 4) - r * r; }
+
 class NormalForm : public Flow {
  public:
+  explicit NormalForm(Curve curve = subcritical) : curve_(std::move(curve)) {}
   [[nodiscard]] std::optional<Eigen::VectorXd> end(const Eigen::VectorXd& start, const SteppedTime& time,
                                                    double parameter) const override {
     State s{start[0], start[1], start[2]};
+    if (unknown_.first < start[0] && start[0] < unknown_.second) return {};
     const auto rate = [&](const State& at) {
-      const double r2 = at[0] * at[0] + at[1] * at[1], grows = parameter - 1.0 + r2 - r2 * r2, turns = 2.0 + r2;
+      const double r = std::hypot(at[0], at[1]), grows = parameter - curve_(r), turns = 2.0 + r * r;
       return State{grows * at[0] - turns * at[1], grows * at[1] + turns * at[0], at[0] - at[2]};
     };
     for (int i = 0; i < time.steps; ++i) runge_kutta_step(rate, time.duration / time.steps, s);
@@ -34,6 +43,7 @@ class NormalForm : public Flow {
   [[nodiscard]] std::optional<FlowEnd> end_with_derivatives(const Eigen::VectorXd& start, const SteppedTime& time,
                                                             double parameter) const override {
     constexpr double h = 1e-6;
+    if (!end(start, time, parameter)) return {};
     FlowEnd result;
     result.state = *end(start, time, parameter);
     result.by_state.resize(3, 3);
@@ -48,8 +58,12 @@ class NormalForm : public Flow {
     return result;
   }
   [[nodiscard]] const Eigen::VectorXd& unit() const override { return unit_; }
+  /// No motion that begins at these x is found.
+  void forget(double from, double to) { unknown_ = {from, to}; }
 
  private:
+  Curve curve_;
+  std::pair<double, double> unknown_{0.0, 0.0};
   Eigen::VectorXd unit_ = Eigen::VectorXd::Ones(3);
 };
 
@@ -95,18 +109,103 @@ TEST(CycleBranch, IsThatOfTheNormalForm) {
   }
 }
 
-TEST(CycleBranch, FindsItsFold) {
+// Branches of cycles with given radii, in their order.
+CycleBranch branch_of_radii(const NormalForm& flow, const Curve& curve, const BranchSearch& search,
+                            std::initializer_list<double> radii) {
+  CycleBranch branch;
+  Shooting shooting(flow, section, search.shooting);
+  for (const double r : radii) {
+    const PeriodicMotion guess{Eigen::Vector3d(r, 0.0, 0.3 * r),
+                               stepped_time(2.0 * std::numbers::pi / (2.0 + r * r), search.time_step), curve(r)};
+    auto cycle = cycle_near(shooting, section, guess, {{r, curve(r)}, {1.0, 0.0}}, search);
+    EXPECT_TRUE(cycle) << r;
+    if (cycle) branch.cycles.push_back(*cycle);
+  }
+  return branch;
+}
+
+double radius(const BranchCycle& cycle) { return cycle.motion.start[0]; }
+
+// Of these radii, within their brackets.
+void expect_folds(const std::vector<BranchFold>& folds, const std::vector<double>& radii, const Curve& curve) {
+  ASSERT_EQ(folds.size(), radii.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    EXPECT_TRUE(folds[i].converged);
+    EXPECT_NEAR(folds[i].cycle.motion.parameter, curve(radii[i]), 1e-7);
+    EXPECT_NEAR(radius(folds[i].cycle), radii[i], 1e-3);
+    EXPECT_LT(radius(folds[i].bracket[0]), radii[i]);
+    EXPECT_GT(radius(folds[i].bracket[1]), radii[i]);
+    EXPECT_NEAR(folds[i].cycle.multipliers[0].real(), 1.0, 1e-2);
+  }
+}
+
+TEST(BranchFolds, FindThatOfTheNormalForm) {
   const NormalForm flow;
   const BranchSearch search = search_of(0.01);
+  expect_folds(branch_folds(flow, section, branch_of(flow, search), search), {std::sqrt(0.5)}, subcritical);
+}
+
+// A branch with steps so short that none of those beside the fold changes the parameter by much.
+TEST(BranchFolds, AreFoundWhateverTheSteps) {
+  const NormalForm flow;
+  BranchSearch search = search_of(0.01);
+  search.largest_step = 0.01;
   const CycleBranch branch = branch_of(flow, search);
-  const auto lowest = std::min_element(branch.cycles.begin(), branch.cycles.end(), [](const auto& a, const auto& b) {
-    return a.motion.parameter < b.motion.parameter;
-  });
-  const auto fold = fold_near(flow, section, branch, static_cast<std::size_t>(lowest - branch.cycles.begin()), search);
-  ASSERT_TRUE(fold);
-  EXPECT_NEAR(fold->motion.parameter, 0.75, 1e-7);
-  EXPECT_NEAR(radius_squared(fold->motion), 0.5, 1e-3);
-  EXPECT_NEAR(fold->multipliers[0].real(), 1.0, 1e-2);
+  const auto parameter = [&](std::size_t i) { return branch.cycles[i].motion.parameter; };
+  std::size_t lowest = 0;
+  for (std::size_t i = 0; i < branch.cycles.size(); ++i) lowest = parameter(i) < parameter(lowest) ? i : lowest;
+  EXPECT_LT(std::max(parameter(lowest - 1), parameter(lowest + 1)) - parameter(lowest), 5e-4);
+  expect_folds(branch_folds(flow, section, branch, search), {std::sqrt(0.5)}, subcritical);
+}
+
+// c has a maximum at 0.5, a minimum at 0.7, a maximum at 0.9.
+double wave(double r) { return 1.0 + 0.05 * std::cos(5.0 * std::numbers::pi * (r - 0.5)); }
+
+TEST(BranchFolds, AreFoundWhateverTheSignsOfTheChanges) {
+  const NormalForm flow(wave);
+  const BranchSearch search = search_of(0.01);
+  const auto folds = [&](std::initializer_list<double> radii) {
+    return branch_folds(flow, section, branch_of_radii(flow, wave, search, radii), search);
+  };
+  expect_folds(folds({0.42, 0.49, 0.58, 0.66, 0.71, 0.8, 0.89, 1.0}), {0.5, 0.7, 0.9}, wave);
+  expect_folds(folds({0.45, 0.6, 0.75}), {0.5, 0.7}, wave);  // parameters fall throughout
+  expect_folds(folds({0.45, 0.56}), {0.5}, wave);            // in the only step
+  expect_folds(folds({0.45, 0.55, 0.6}), {0.5}, wave);       // beside two of one parameter
+  expect_folds(folds({0.4, 0.48, 0.5, 0.52}), {0.5}, wave);  // at one of the cycles
+  expect_folds(folds({0.47, 0.74}), {0.5, 0.7}, wave);       // two in one step
+  expect_folds(folds({0.52, 0.6, 0.68}), {}, wave);          // none
+}
+
+// Cycles of all radii at one parameter, as those of a linear vehicle: what errors leave of differences is no fold.
+TEST(BranchFolds, OfEqualParametersAreNone) {
+  const Curve curve = [](double) { return 1.0; };
+  const NormalForm flow(curve);
+  BranchSearch search = search_of(0.05);
+  search.shooting.tolerance = 1e-5;
+  const CycleBranch branch =
+      branch_of_radii(flow, curve, search, {0.1, 0.12, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9});
+  double largest = 0.0;
+  for (const BranchCycle& cycle : branch.cycles) largest = std::max(largest, std::abs(cycle.motion.parameter - 1.0));
+  EXPECT_GT(largest, search.parameter_tolerance) << "nothing to mistake";
+  EXPECT_TRUE(branch_folds(flow, section, branch, search).empty());
+}
+
+// Where no cycle is found about the fold, it is reported with the bracket that remains.
+TEST(BranchFolds, KeepTheirBracketsWithoutConvergence) {
+  NormalForm flow;
+  const BranchSearch search = search_of(0.01);
+  const double fold = std::sqrt(0.5);
+  for (const auto& radii :
+       {std::initializer_list<double>{0.5, 0.6, 0.68, 0.75, 0.9}, std::initializer_list<double>{0.6, 0.82}}) {
+    flow.forget(0.0, 0.0);
+    const CycleBranch branch = branch_of_radii(flow, subcritical, search, radii);
+    flow.forget(0.69, 0.73);
+    const std::vector<BranchFold> folds = branch_folds(flow, section, branch, search);
+    ASSERT_EQ(folds.size(), 1u);
+    EXPECT_FALSE(folds[0].converged);
+    EXPECT_LT(radius(folds[0].bracket[0]), fold);
+    EXPECT_GT(radius(folds[0].bracket[1]), fold);
+  }
 }
 
 // The branch goes back the way that it came.

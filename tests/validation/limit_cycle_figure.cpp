@@ -88,7 +88,9 @@ struct Files {
     const std::string made = ", Manchester coach on S1002 and 60E1 1:40, made by tests/validation/limit_cycle_figure\n";
     cycles << "# Limit cycles" << made
            << "branch,cycle,speed_kmh,amplitude_mm,frequency_Hz,stable,multiplier,residual,error_along_motion\n";
-    folds << "# Folds of the branches" << made << "branch,fold,speed_kmh,amplitude_mm,frequency_Hz\n";
+    folds << "# Folds of the branches" << made
+          << "branch,fold,speed_kmh,amplitude_mm,frequency_Hz,converged,bracket_low_mm,bracket_high_mm,"
+             "bracket_departure_kmh\n";
     simulations << "# Stable limit cycles and time simulations that begin near them" << made
                 << "branch,speed_kmh,amplitude_mm,endpoint_mm,automatic_mm,frequency_Hz,endpoint_Hz,automatic_Hz\n";
   }
@@ -102,9 +104,14 @@ void write_branch(const HuntingBranch& branch, int number, Files& files) {
                                 c.residual, c.error_along_motion);
   }
   for (std::size_t i = 0; i < branch.folds.size(); ++i) {
-    const LimitCycle& c = branch.folds[i];
-    files.folds << fmt::format("{},{},{:.4f},{:.5f},{:.5f}\n", number, i, 3.6 * c.speed, 1e3 * c.amplitude(),
-                               c.frequency);
+    const LimitCycleFold& fold = branch.folds[i];
+    const auto& [a, b] = fold.bracket;
+    const LimitCycle& c = fold.cycle;
+    const double departure = std::max(std::abs(a.speed - c.speed), std::abs(b.speed - c.speed));
+    files.folds << fmt::format("{},{},{:.4f},{:.5f},{:.5f},{},{:.5f},{:.5f},{:.5f}\n", number, i, 3.6 * c.speed,
+                               1e3 * c.amplitude(), c.frequency, fold.converged ? 1 : 0,
+                               1e3 * std::min(a.amplitude(), b.amplitude()),
+                               1e3 * std::max(a.amplitude(), b.amplitude()), 3.6 * departure);
   }
 }
 

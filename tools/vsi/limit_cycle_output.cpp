@@ -40,6 +40,28 @@ Json as_json(const std::vector<LimitCycle>& cycles) {
   return rows;
 }
 
+Json as_json(const LimitCycleFold& fold) {
+  Json row = as_json(fold.cycle);
+  row["converged"] = fold.converged;
+  row["bracket"] = as_json(std::vector<LimitCycle>(fold.bracket.begin(), fold.bracket.end()));
+  return row;
+}
+
+Json as_json(const std::vector<LimitCycleFold>& folds) {
+  Json rows = Json::array();
+  for (const LimitCycleFold& fold : folds) rows.push_back(as_json(fold));
+  return rows;
+}
+
+// What a table says of a fold.
+std::string note_of(const LimitCycleFold& fold) {
+  if (fold.converged) return "  fold";
+  const auto& [before, after] = fold.bracket;
+  return fmt::format("  fold, not located: between {:.4f} mm at {:.2f} km/h and {:.4f} mm at {:.2f} km/h",
+                     mm_per_m * before.amplitude(), kmh_per_ms * before.speed, mm_per_m * after.amplitude(),
+                     kmh_per_ms * after.speed);
+}
+
 // The parts of the branch that are stable, or those that are not, joined to what comes before.
 report::Series part(const HuntingBranch& branch, bool stable, const char* label) {
   report::Series series{label, {}, {}};
@@ -87,13 +109,13 @@ std::string branch_text(const HuntingBranch& branch) {
       branch.bifurcation ? fmt::format("{} bifurcation; ", name_of(*branch.bifurcation)) : "",
       kmh_per_ms * branch.nonlinear_critical_speed().value_or(missing), end_text(branch.end), "km/h", "amplitude mm",
       "Hz", "", "multiplier");
-  const auto row = [&](const LimitCycle& cycle, const char* note) {
+  const auto row = [&](const LimitCycle& cycle, const std::string& note) {
     fmt::format_to(std::back_inserter(text), "  {:8.2f} {:12.4f} {:8.4f} {:>9} {:12.4f}{}\n", kmh_per_ms * cycle.speed,
                    mm_per_m * cycle.amplitude(), cycle.frequency, stability_of(cycle), std::abs(cycle.multiplier),
                    note);
   };
   for (const LimitCycle& cycle : branch.cycles) row(cycle, "");
-  for (const LimitCycle& fold : branch.folds) row(fold, "  fold");
+  for (const LimitCycleFold& fold : branch.folds) row(fold.cycle, note_of(fold));
   return text;
 }
 
@@ -132,9 +154,9 @@ std::string branch_svg(const HuntingBranch& branch, const std::string& heading) 
     critical.x.push_back(kmh_per_ms * branch.linear.critical->speed);
     critical.y.push_back(0.0);
   }
-  for (const LimitCycle& fold : branch.folds) {
-    folds.x.push_back(kmh_per_ms * fold.speed);
-    folds.y.push_back(mm_per_m * fold.amplitude());
+  for (const LimitCycleFold& fold : branch.folds) {
+    folds.x.push_back(kmh_per_ms * fold.cycle.speed);
+    folds.y.push_back(mm_per_m * fold.cycle.amplitude());
   }
   panel.dots = {critical, folds};
   return report::svg_figure(heading, {panel}, 1);
