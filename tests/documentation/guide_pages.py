@@ -2,7 +2,7 @@
 import re
 from pathlib import Path
 
-# Pages whose commands others run and time as a whole: tests/python and tests/c, and for the packages tests/packages/run.
+# Pages whose commands others run, timed as a whole: tests/python and tests/c; of the packages, tests/packages/run.
 OWN_TESTS = ("python", "c")
 OWN_RECORD = ("install",)
 
@@ -29,8 +29,9 @@ LEFT_OUT = {
     "vsi critical-speed scene.toml --limit-cycles": "long without a table",
 }
 # What the tests leave to the record of times (tools/quoted_runs guide).
-SLOW = ("tablegen geometry", "tablegen verify", "tablegen conicity --wheel wheel.txt", "SLICES=", "vsi structure out/bridge",
-        "vsi assess docs/examples/hslm_beam.toml\n", "vsi study", "vsi critical-speed", "vsi vehicle manchester-coach --table",
+SLOW = ("tablegen geometry", "tablegen verify", "tablegen conicity --wheel wheel.txt", "SLICES=",
+        "vsi structure out/bridge", "vsi assess docs/examples/hslm_beam.toml\n", "vsi study speeds.toml -o",
+        "vsi study docs", "vsi critical-speed", "vsi vehicle manchester-coach --table",
         "vsi run docs/examples/wind.toml", "vsi run docs/examples/earthquake.toml")
 
 
