@@ -20,6 +20,7 @@ struct FeRow {
 struct FeMesh {
   std::map<int, Eigen::Vector3d> nodes;
   std::map<std::string, std::vector<int>> sets;
+  std::string turned{};  ///< "file:line" of the first *TRANSFORM, axes of nodes; empty: none
 };
 
 /// A real sparse matrix in Matrix Market's coordinate format, `general` or `symmetric`; entries of the same place add
@@ -52,7 +53,8 @@ struct FeMesh {
 
 /// Nodes from an input deck of CalculiX or Abaqus (*NODE, *NSET, *INCLUDE; all else is skipped), or from a plain table
 /// "node x y z" separated by blanks or commas, as ANSYS's NWRITE writes it (zeros at the end of a line may be missing).
-/// @throws InputError with file and line: a node twice, a rotated nodal coordinate system, a set of unknown nodes
+/// @throws InputError with file and line: a node twice, coordinates in another system or moved by *INSTANCE, a rotated
+///         nodal coordinate system in a table, a set of unknown nodes
 [[nodiscard]] FeMesh read_fe_mesh(const std::filesystem::path& file);
 
 }  // namespace railtab

@@ -57,16 +57,25 @@ class DeckReader {
         node(reader, line);
       } else if (block_ == Block::set) {
         members(reader, line);
+      } else if (block_ == Block::instance) {
+        instance(reader, line);
       }
     }
   }
 
  private:
-  enum class Block { other, node, set };
+  enum class Block { other, node, set, instance };
 
   void start(const LineReader& reader, const Keyword& keyword, const std::filesystem::path& file, int depth) {
     block_ = Block::other;
     const auto name = keyword.parameters.find("NSET");
+    const auto system = keyword.parameters.find("SYSTEM");
+    const bool turned =
+        keyword.name == "NODE" && system != keyword.parameters.end() && upper_case(system->second) != "R";
+    if (keyword.name == "SYSTEM" || turned) {
+      throw reader.error(fmt::format("*{} with a coordinate system of its own", keyword.name),
+                         "coordinates x, y, z along the model's axes");
+    }
     if (keyword.name == "NODE") {
       block_ = Block::node;
       set_ = name == keyword.parameters.end() ? nullptr : &mesh_.sets[upper_case(name->second)];
@@ -75,6 +84,10 @@ class DeckReader {
       block_ = Block::set;
       set_ = &mesh_.sets[upper_case(name->second)];
       generate_ = keyword.parameters.contains("GENERATE");
+    } else if (keyword.name == "INSTANCE") {
+      block_ = Block::instance;
+    } else if (keyword.name == "TRANSFORM") {
+      if (mesh_.turned.empty()) mesh_.turned = reader.place();
     } else if (keyword.name == "INCLUDE") {
       const auto input = keyword.parameters.find("INPUT");
       if (input == keyword.parameters.end()) throw reader.error("*INCLUDE without a file", "*INCLUDE, INPUT=FILE");
@@ -96,6 +109,17 @@ class DeckReader {
     }
     add_node(reader, number, position, mesh_);
     if (set_) set_->push_back(number);
+  }
+
+  /// Abaqus's shift and turn of a part in its assembly.
+  static void instance(const LineReader& reader, std::string_view line) {
+    std::array<std::string_view, 7> words;
+    const std::size_t count = std::min(split(line, words, comma), words.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      if (reader.number<double>(words[k], "a shift of the *INSTANCE") == 0.0) continue;
+      throw reader.error("an *INSTANCE that is moved",
+                         "an input without parts and assemblies, or parts at their places");
+    }
   }
 
   void members(const LineReader& reader, std::string_view line) {

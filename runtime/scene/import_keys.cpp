@@ -14,6 +14,7 @@ ChoiceKey formats() {
                           {{"matrix-market", FeFormat::matrix_market},
                            {"calculix", FeFormat::calculix},
                            {"ansys", FeFormat::ansys},
+                           {"abaqus", FeFormat::abaqus},
                            {"modes", FeFormat::modes}});
 }
 
@@ -53,7 +54,7 @@ std::vector<KeyRow> row_keys() {
   return {
       {"structure.damping", "", "matrix",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.damping; }}},
-      {"structure.dofs", "", "node and direction of each row",
+      {"structure.dofs", "", "node and direction of each row; not needed for Abaqus's MATRIX INPUT",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.dofs; }}},
   };
 }

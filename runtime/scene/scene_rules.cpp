@@ -87,7 +87,7 @@ Broken ground_under_modes(Scene scene) {
   if (!scene.structure.files.by_modes() || scene.ground_motion.empty()) return {};
   return Violation{entry("ground_motion", 0, scene.ground_motion.size()),
                    "ground motion under a structure by modes, whose supports are not known",
-                   "the structure's matrices (structure.format = \"calculix\", \"ansys\" or \"matrix-market\")"};
+                   "the structure's matrices in place of structure.format = \"modes\""};
 }
 
 Broken one_bridge_under_track(Scene scene) {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
+#include <utility>
 
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/fe/abaqus_files.hpp"
 #include "railtab/runtime/fe/fe_frame.hpp"
 #include "railtab/runtime/fe/fe_matrix.hpp"
 #include "railtab/runtime/fe/matrix_scales.hpp"
@@ -19,30 +22,42 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-Sparse read_matrix(const FeFiles& files, const std::filesystem::path& file, int rows) {
+/// What the rows are, and how a matrix over them is read.
+struct Reading {
+  std::vector<FeRow> rows;
+  std::function<Sparse(const std::filesystem::path&)> matrix;
+};
+
+Reading reading_of(const FeFiles& files) {
   switch (files.format) {
-    case FeFormat::calculix:
-      return read_calculix_matrix(file, rows);
-    case FeFormat::ansys:
-      return symmetric_mean(file, read_harwell_boeing(file), rows);
+    case FeFormat::calculix: {
+      std::vector<FeRow> rows = read_calculix_rows(files.dofs);
+      const int n = static_cast<int>(rows.size());
+      return {std::move(rows), [n](const auto& file) { return read_calculix_matrix(file, n); }};
+    }
+    case FeFormat::abaqus: {
+      AbaqusRows rows = read_abaqus_rows(files.stiffness, files.dofs);
+      std::vector<FeRow> free = rows.rows;
+      return {std::move(free), [rows = std::move(rows)](const auto& file) { return read_abaqus_matrix(file, rows); }};
+    }
+    case FeFormat::ansys: {
+      std::vector<FeRow> rows = read_ansys_rows(files.dofs);
+      const auto n = static_cast<Eigen::Index>(rows.size());
+      return {std::move(rows), [n](const auto& file) { return symmetric_mean(file, read_harwell_boeing(file), n); }};
+    }
     case FeFormat::matrix_market:
     case FeFormat::modes:  // has no matrices
       break;
   }
-  return symmetric_mean(file, read_matrix_market(file), rows);
+  std::vector<FeRow> rows = read_row_table(files.dofs);
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  return {std::move(rows), [n](const auto& file) { return symmetric_mean(file, read_matrix_market(file), n); }};
 }
 
-std::vector<FeRow> read_rows(const FeFiles& files) {
-  switch (files.format) {
-    case FeFormat::calculix:
-      return read_calculix_rows(files.dofs);
-    case FeFormat::ansys:
-      return read_ansys_rows(files.dofs);
-    case FeFormat::matrix_market:
-    case FeFormat::modes:  // has no matrices
-      break;
-  }
-  return read_row_table(files.dofs);
+/// Whether a row is an inner mode of an element, of a node that only the program knows: CalculiX numbers those of
+/// incompatible elements (C3D8I, B31, S4) after the mesh's own nodes, Abaqus gives them negative numbers.
+bool is_inner(const FeRow& row, FeFormat format, int last_node) {
+  return (format == FeFormat::calculix && row.node > last_node) || (format == FeFormat::abaqus && row.node < 0);
 }
 
 std::string row_text(const FeStructure& structure, Eigen::Index row) {
@@ -84,25 +99,28 @@ bool FeNode::expanded() const noexcept {
 
 FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
   const FrameConversion conversion(frame, "structure");
-  const std::vector<FeRow> rows = read_rows(files);
-  const int n = static_cast<int>(rows.size());
+  const Reading reading = reading_of(files);
+  const int n = static_cast<int>(reading.rows.size());
   FeStructure s;
   s.source = files.stiffness.string();
   s.mesh = read_fe_mesh(files.nodes);
-  s.stiffness = read_matrix(files, files.stiffness, n);
-  s.mass = read_matrix(files, files.mass, n);
-  if (!files.damping.empty()) s.damping = read_matrix(files, files.damping, n);
+  if (files.format == FeFormat::abaqus && !s.mesh.turned.empty()) {
+    throw input_error(s.mesh.turned, "*TRANSFORM", "nodes whose motions are along the model's axes");
+  }
+  s.stiffness = reading.matrix(files.stiffness);
+  s.mass = reading.matrix(files.mass);
+  if (!files.damping.empty()) s.damping = reading.matrix(files.damping);
 
   for (const auto& [node, position] : s.mesh.nodes) s.nodes[node].position = conversion.position(position);
   const int last_node = s.mesh.nodes.rbegin()->first;
   Eigen::VectorXd to_model(n);
   for (int r = 0; r < n; ++r) {
-    const FeRow& row = rows[static_cast<std::size_t>(r)];
+    const FeRow& row = reading.rows[static_cast<std::size_t>(r)];
     const auto node = s.nodes.find(row.node);
-    // CalculiX numbers the inner modes of its incompatible elements (C3D8I, B31, S4) after the mesh's own nodes
-    const bool inner = node == s.nodes.end() && files.format == FeFormat::calculix && row.node > last_node;
+    const bool inner = node == s.nodes.end() && is_inner(row, files.format, last_node);
     if (node == s.nodes.end() && !inner) {
-      throw input_error(row.line > 0 ? fmt::format("{}:{}", files.dofs.string(), row.line) : files.dofs.string(),
+      const std::string named = (files.dofs.empty() ? files.stiffness : files.dofs).string();
+      throw input_error(row.line > 0 ? fmt::format("{}:{}", named, row.line) : named,
                         fmt::format("node {} in row {}", row.node, r + 1),
                         fmt::format("a node of {}", files.nodes.string()));
     }

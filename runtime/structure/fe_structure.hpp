@@ -17,10 +17,10 @@
 namespace railtab {
 
 /// Which program's files these are.
-enum class FeFormat { matrix_market, calculix, ansys, modes };
+enum class FeFormat { matrix_market, calculix, ansys, abaqus, modes };
 
-/// Files of a finite-element model. `dofs` says what the rows are, `nodes` where the nodes stand. With
-/// FeFormat::modes natural modes take the place of matrices and rows.
+/// Files of a finite-element model. `dofs` says what the rows are (not needed where FeFormat::abaqus names nodes in
+/// each line), `nodes` where the nodes stand. With FeFormat::modes natural modes take the place of matrices and rows.
 struct FeFiles {
   FeFormat format = FeFormat::matrix_market;
   std::filesystem::path mass, stiffness;

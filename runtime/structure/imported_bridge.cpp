@@ -176,6 +176,7 @@ void ImportParameters::validate() const {
                                   {&files.stiffness, "structure.stiffness"},
                                   {&files.dofs, "structure.dofs"},
                                   {&files.nodes, "structure.nodes"}}) {
+    if (file == &files.dofs && files.format == FeFormat::abaqus) continue;
     if (file->empty()) throw input_error(key, "no file", "a file of the finite-element model");
   }
   const int ways = (files.damping.empty() ? 0 : 1) + (damping.mass_factor || damping.stiffness_factor ? 1 : 0) +

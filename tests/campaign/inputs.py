@@ -169,6 +169,7 @@ structure_files = [
                                                   "bridge_nodes.inp")],
     *[(name, "calculix.toml") for name in ("bridge.mas", "bridge.sti", "bridge.dof")],
     *[(name, "ansys.toml") for name in ("bridge_m.matrix", "bridge_k.matrix", "bridge_k.mapping", "bridge_nodes.txt")],
+    *[(name, "abaqus.toml") for name in ("bridge_MASS1.mtx", "bridge_STIF1.mtx")],
     *[(name, "modes.toml") for name in ("bridge_modes.csv", "bridge_shapes.csv")],
     *[(name, "imported_rails.toml") for name in ("rails_mass.mtx", "rails_damping.mtx", "rails_stiffness.mtx",
                                                  "rails_dofs.csv")]]

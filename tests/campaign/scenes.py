@@ -145,6 +145,8 @@ market = 'mass = "bridge_mass.mtx"\nstiffness = "bridge_stiffness.mtx"\ndofs = "
          'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
 calculix = 'format = "calculix"\nmass = "bridge.mas"\nstiffness = "bridge.sti"\ndofs = "bridge.dof"\n' \
            'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
+abaqus = 'format = "abaqus"\nmass = "bridge_MASS1.mtx"\nstiffness = "bridge_STIF1.mtx"\n' \
+         'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
 modes = 'format = "modes"\nmode_table = "bridge_modes.csv"\nmode_shapes = "bridge_shapes.csv"\n' \
         'nodes = "bridge_nodes.inp"\naxes = "x -y -z"\n'
 ansys = 'format = "ansys"\nmass = "bridge_m.matrix"\nstiffness = "bridge_k.matrix"\ndofs = "bridge_k.mapping"\n' \
@@ -186,6 +188,7 @@ scenes = {
     "calculix": imported_bridge % (calculix, deck_set, ends_set),
     "ansys": imported_bridge % (ansys, deck_box, ends_box)
              + '[[support]]\nfrom = [19, -1, -3]\nto = [21, 1, 0]\nholds = ["y", "z", "roll"]\n',
+    "abaqus": imported_bridge % (abaqus, deck_set, ends_set),
     "modes": imported_bridge.partition("[[support]]")[0].replace("damping_ratio = 0.01\n", "") % (modes, deck_set),
     "imported_rails": '[train]\nvehicle = "wagon.toml"\nspeed = 5.0\n[contact]\nnormal = "rigid"\n[track]\n'
                       'kind = "imported"\n[structure]\nmass = "rails_mass.mtx"\ndamping = "rails_damping.mtx"\n'
@@ -266,7 +269,7 @@ def harwell_boeing(entries, size):
 
 
 def write_bridge(folder):
-    """The bridge of the companions in the formats of CalculiX and ANSYS."""
+    """The bridge of the companions in the formats of CalculiX, ANSYS and Abaqus."""
     rows = [line.split(",") for line in (folder / "bridge_dofs.csv").read_text().split()[1:]]
     motions = ["x", "y", "z", "rotx", "roty", "rotz"]
     labels = dict(zip(motions, ["UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"]))
@@ -275,6 +278,9 @@ def write_bridge(folder):
         (folder / f"bridge{matrix}").write_text(
             "".join(f"{c} {r} {value!r}\n" for (r, c), value in sorted(entries.items())))
         (folder / f"bridge_{name[0] if name == 'mass' else 'k'}.matrix").write_text(harwell_boeing(entries, size))
+        names = [f"{node},{motions.index(motion) + 1}" for _, node, motion in rows]
+        (folder / f"bridge_{'MASS' if name == 'mass' else 'STIF'}1.mtx").write_text(
+            "".join(f"{names[r - 1]}, {names[c - 1]}, {value:.15e}\n" for (r, c), value in sorted(entries.items())))
     (folder / "bridge.dof").write_text("".join(f"{node}.{motions.index(motion) + 1}\n" for _, node, motion in rows))
     (folder / "bridge_k.mapping").write_text(
         "  Matrix Eqn     Node      DOF\n\n"

@@ -1,4 +1,5 @@
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/abaqus_files.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
 #include "railtab/runtime/fe/fe_matrix.hpp"
 #include "railtab/runtime/structure/fe_structure.hpp"
@@ -76,6 +77,13 @@ void take_vehicle(const Path& stiffness, const Path& dofs) {
 
 void read_matrix_market_file(const Path& file) { take_symmetric(file, read_matrix_market(file)); }
 void read_calculix_file(const Path& file) { take_symmetric(file, read_calculix_matrix(file, 3)); }
+
+void read_abaqus_file(const Path& file) { take_symmetric(file, read_abaqus_matrix(file, read_abaqus_rows(file, {}))); }
+
+void read_abaqus_numbers(const Path& file) {
+  take_symmetric(file, read_abaqus_matrix(file, read_abaqus_rows(file, beside(file, "bridge_dofs.csv"))));
+}
+
 void read_harwell_boeing_file(const Path& file) { take_symmetric(file, read_harwell_boeing(file)); }
 
 void read_structure_table(const Path& file) {

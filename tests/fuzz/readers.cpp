@@ -66,6 +66,8 @@ const std::vector<Reader>& readers() {
       {"matrix_market", ".mtx", read_matrix_market_file},
       {"calculix_matrix", ".sti", read_calculix_file},
       {"calculix_rows", ".dof", [](const Path& file) { static_cast<void>(read_calculix_rows(file)); }},
+      {"abaqus_matrix", ".mtx", read_abaqus_file},
+      {"abaqus_coordinates", ".mtx", read_abaqus_numbers},
       {"harwell_boeing", ".matrix", read_harwell_boeing_file},
       {"ansys_rows", ".mapping", [](const Path& file) { static_cast<void>(read_ansys_rows(file)); }},
       {"row_table", ".csv", read_row_file},

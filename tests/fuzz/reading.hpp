@@ -35,6 +35,8 @@ std::string scene_vocabulary();
 // model_files.cpp: structures and vehicles of other programs
 void read_matrix_market_file(const Path& file);
 void read_calculix_file(const Path& file);
+void read_abaqus_file(const Path& file);
+void read_abaqus_numbers(const Path& file);
 void read_harwell_boeing_file(const Path& file);
 /// Rails by the table of their rows; the matrices stay.
 void read_structure_table(const Path& file);

@@ -11,6 +11,8 @@
 
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/abaqus_files.hpp"
+#include "railtab/runtime/structure/fe_structure.hpp"
 
 namespace railtab {
 namespace {
@@ -124,6 +126,90 @@ TEST_F(FeFilesTest, CalculixMatrixAndRows) {
   EXPECT_TRUE(refused("1 1\n").starts_with("f:1: found '1 1'"));
   EXPECT_TRUE(message(read_calculix_rows, "1.1\n1.7\n").starts_with("f:2: found '1.7'"));
   EXPECT_TRUE(message(read_calculix_rows, "").starts_with("f: found no line"));
+}
+
+/// Lines as Abaqus writes them: its own node -1, nodes 5 and 7, of which 5 is held along y.
+const char* const abaqus_stiffness =
+    "** a comment\n-1,1, -1,1,  6.000000000000000e+05\n7,1, -1,1,  2.500000000000000e+02\n"
+    "5,1, 5,1,  4.000000000000000e+00\n7,1, 5,1, -1.500000000000000e+00\n5,2, 5,2,  1.000000000000000e+36\n"
+    "7,1, 5,2,  3.000000000000000e+00\n7,1, 7,1,  5.000000000000000e+00\n";
+
+TEST_F(FeFilesTest, AbaqusMatrixInput) {
+  const auto file = write("k.mtx", abaqus_stiffness);
+  const AbaqusRows rows = read_abaqus_rows(file, {});
+  ASSERT_EQ(rows.rows.size(), 3u);
+  EXPECT_EQ(rows.rows[0].node, 5);
+  EXPECT_EQ(rows.rows[0].motion, 0);
+  EXPECT_EQ(rows.rows[0].line, 4);
+  EXPECT_EQ(rows.rows[1].node, 7);
+  EXPECT_EQ(rows.rows[2].node, -1);
+  const Eigen::MatrixXd read(read_abaqus_matrix(file, rows));
+  EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
+  const Eigen::MatrixXd mass(read_abaqus_matrix(write("m.mtx", "5,2,5,2,9.\n7,1, 7,1, 2.\n"), rows));
+  EXPECT_TRUE(mass.isApprox(Eigen::Vector3d(0, 2, 0).asDiagonal().toDenseMatrix(), 0.0)) << mass;
+  const auto refused = [&](const std::string& text) {
+    return message([&](const auto& f) { return read_abaqus_matrix(f, rows); }, text);
+  };
+  EXPECT_EQ(refused("5,1, 7,1, 1.\n7,1, 5,1, 1.\n7,1, 7,1, 2.\n"), "accepted") << "both triangles";
+  EXPECT_TRUE(refused("5,1, 7,1, 1.\n7,1, 5,1, 3.\n7,1, 7,1, 2.\n").find("a symmetric matrix") != std::string::npos);
+  EXPECT_TRUE(
+      refused("7,2, 7,2, 1.\n").starts_with("f:1: found node 7, degree of freedom 2, expected a row of the stiffness"));
+  EXPECT_TRUE(refused("-2,3, 7,1, 1.\n").starts_with("f:1: found node -2, degree of freedom 3"));
+  EXPECT_TRUE(refused("7,1, 7,1, nan\n").starts_with("f:1: found 'nan'"));
+  EXPECT_TRUE(refused("7,1, 7,1\n").starts_with("f:1: found '7,1, 7,1', expected node, degree of freedom, node"));
+  EXPECT_TRUE(refused("7,1, 7,1, 1., 2.\n").starts_with("f:1: found '7,1, 7,1, 1., 2.'"));
+  EXPECT_TRUE(refused("1 1 4.0\n").find("for COORDINATE structure.dofs") != std::string::npos);
+  EXPECT_TRUE(refused("** nothing\n").starts_with("f: found no entry"));
+  const auto no_rows = [&](const std::string& text) {
+    return message([](const auto& f) { return read_abaqus_rows(f, {}); }, text);
+  };
+  EXPECT_TRUE(no_rows("0,1, 0,1, 1.\n").starts_with("f:1: found node 0, degree of freedom 1"));
+  EXPECT_TRUE(no_rows("3,8, 3,8, 1.\n").starts_with("f:1: found node 3, degree of freedom 8, expected 1 to 6"));
+  EXPECT_TRUE(no_rows("-3,1000, 3,1, 1.\n").starts_with("f:1: found node -3, degree of freedom 1000"));
+  EXPECT_TRUE(no_rows("99999999999,1, 3,1, 1.\n").starts_with("f:1: found '99999999999'"));
+  EXPECT_TRUE(no_rows("3,1, 3,1, 1e36\n").starts_with("f: found no free row"));
+}
+
+TEST_F(FeFilesTest, AbaqusCoordinateFormatNeedsATableOfRows) {
+  const auto table = write("rows.csv", "row,node,motion\n1,5,x\n2,5,y\n3,7,x\n4,-1,x\n");
+  const auto file =
+      write("k.mtx", "1 1 4.0\n2 2 1e36\n3 3 5.0\n4 4 6e5\n1 3 -1.5\n3 1 -1.5\n2 3 7\n3 2 7\n3 4 250\n4 3 250\n");
+  const AbaqusRows rows = read_abaqus_rows(file, table);
+  ASSERT_EQ(rows.rows.size(), 3u);
+  EXPECT_EQ(rows.rows[1].node, 7);
+  const Eigen::MatrixXd read(read_abaqus_matrix(file, rows));
+  EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
+  const auto refused = [&](const std::string& text) {
+    return message([&](const auto& f) { return read_abaqus_matrix(f, rows); }, text);
+  };
+  EXPECT_TRUE(refused("5 1 4.0\n").starts_with("f:1: found row 5, expected a row of structure.dofs"));
+  EXPECT_TRUE(refused("5,1, 5,1, 4.0\n").find("for MATRIX INPUT no structure.dofs") != std::string::npos);
+  EXPECT_TRUE(refused("1 1.5 4.0\n").starts_with("f:1: found '1.5', expected a column number"));
+}
+
+// What the mesh says of axes of nodes and of places of parts is not silently left out.
+TEST_F(FeFilesTest, AbaqusModelsWithOtherAxesAreRefused) {
+  FeFiles files;
+  files.format = FeFormat::abaqus;
+  files.stiffness = write("k.mtx", "1,1, 1,1, 4.0\n");
+  files.mass = write("m.mtx", "1,1, 1,1, 1.0\n");
+  const auto refused = [&](const std::string& nodes) {
+    return message(
+        [&](const auto& f) {
+          files.nodes = f;
+          return read_fe_structure(files, {});
+        },
+        nodes);
+  };
+  EXPECT_EQ(refused("*NODE\n1, 0., 0., 0.\n*INSTANCE, NAME=A, PART=B\n0., 0., 0.\n*END INSTANCE\n"), "accepted");
+  EXPECT_TRUE(
+      refused("*NODE\n1, 0., 0., 0.\n*TRANSFORM, NSET=S\n1, 1, 0, -1, 1, 0\n").starts_with("f:3: found *TRANSFORM"));
+  EXPECT_TRUE(refused("*NODE\n1, 0.\n*INSTANCE, NAME=A, PART=B\n5., 0., 0.\n")
+                  .starts_with("f:4: found an *INSTANCE that is moved"));
+  EXPECT_TRUE(refused("*NODE, SYSTEM=C\n1, 0.\n").starts_with("f:1: found *NODE with a coordinate system"));
+  EXPECT_TRUE(refused("*SYSTEM\n1, 0.\n*NODE\n1, 0.\n").starts_with("f:1: found *SYSTEM with a coordinate system"));
+  EXPECT_TRUE(refused("*NODE\n2, 0.\n").find("k.mtx:1: found node 1 in row 1, expected a node of ") !=
+              std::string::npos);
 }
 
 TEST_F(FeFilesTest, AnsysRowsComeInTheOrderOfTheEquations) {

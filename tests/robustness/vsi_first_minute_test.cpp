@@ -35,6 +35,8 @@ TEST_F(FirstMinute, EveryKindOfFileIsNamedWithItsCommands) {
   expect_said("v.toml", {"v.toml: a vehicle", "> vsi vehicle v.toml"});
   write("K.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 2.0\n");
   expect_said("K.mtx", {"a sparse matrix"});
+  write("K1.mtx", "1,1, 1,1, 2.0\n");
+  expect_said("K1.mtx", {"a matrix, of Abaqus if it is by *MATRIX OUTPUT", "structure.format = \"abaqus\""});
   write("wheel.prw", "header.begin\n");
   expect_said("wheel.prw", {"a wheel profile", "> tablegen geometry --wheel wheel.prw"});
   write("q.csv", "ratio,ux,uy,phi\n1,0,0,0\n");

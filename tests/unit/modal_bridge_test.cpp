@@ -6,6 +6,10 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -128,8 +132,8 @@ class ModesOfABridge : public testing::InFolder {
     return read_scene(folder_ / "s.toml");
   }
   /// Vertical displacement of the midspan over the run [m].
-  [[nodiscard]] std::vector<double> midspan(const std::string& bridge) const {
-    const SceneParameters parsed = scene(bridge);
+  [[nodiscard]] std::vector<double> midspan(const std::string& bridge) const { return midspan_of(scene(bridge)); }
+  [[nodiscard]] static std::vector<double> midspan_of(const SceneParameters& parsed) {
     const VsiModel model = build_model(parsed);
     EXPECT_EQ(model.structure->nodes.front().name, "deck-midspan-1");
     std::vector<double> history;
@@ -278,6 +282,45 @@ TEST_F(ModesOfABridge, WhatIsWrittenIsReadAgain) {
   const double other = at(30.0) * K.llt().solve(at(10.0).transpose());
   EXPECT_NEAR(own, std::pow(20.0, 3) / (48.0 * span.E * span.Iy), 0.02 * own);
   EXPECT_LT(std::abs(other), 1e-6 * own);
+}
+
+/// The demo's train and bridge on wheels that follow the rails, and the same on the modes that vsi structure exports.
+TEST_F(ModesOfABridge, TheDemosBridgeExportedAndImportedKeepsItsMidspanHistory) {
+  const std::filesystem::path examples = RAILTAB_SOURCE_DIR "/docs/examples";
+  std::filesystem::copy(examples / "demo_irregularity.csv", folder_ / "demo_irregularity.csv");
+  std::ifstream stream(examples / "demo.toml");
+  std::string demo((std::istreambuf_iterator<char>(stream)), {});
+  const auto replace = [&](const std::string& begin, const std::string& end, const std::string& by) {
+    const std::size_t at = demo.find(begin);
+    ASSERT_NE(at, std::string::npos) << begin;
+    demo.replace(at, demo.find(end, at) - at, by);
+  };
+  replace("[contact]", "[track]", "[contact]\nnormal = \"rigid\"\n\n");
+  replace("[integration]", "\n", "[integration]\nduration = 1.95");  // of both, whose tracks end at other sleepers
+  const auto history = [&](const std::string& text) {
+    write("demo.toml", text);
+    return midspan_of(read_scene(folder_ / "demo.toml"));
+  };
+  const std::vector<double> whole = history(demo);
+  const double peak = largest(whole);
+  ASSERT_GT(peak, 1e-4);
+  const std::vector<BridgeParameters> spans = read_scene(folder_ / "demo.toml").spans;
+  replace("[[bridge]]", "[irregularity]", "SECTION");
+  for (const int modes : {12, 40}) {
+    const std::string section = railtab::write_modes(modes_at_deck(spans, modes), folder_ / "demo");
+    std::string by_its_modes = demo;
+    by_its_modes.replace(by_its_modes.find("SECTION"), 7, section + "\n");
+    const std::vector<double> reduced = history(by_its_modes);
+    const ImportParameters import = read_scene(folder_ / "demo.toml").structure;
+    const double lost = static_flexibility(read_modal_structure(import), import).front().lost();
+    ASSERT_EQ(reduced.size(), whole.size());
+    double error = 0.0;
+    for (std::size_t i = 0; i < whole.size(); ++i) error = std::max(error, std::abs(reduced[i] - whole[i]));
+    constexpr double newton = 1e-5;  // of the contact forces' tolerance
+    std::printf("%d modes: midspan %.1e of %.2e m off, %.1e stated as lost\n", modes, error / peak, peak, lost);
+    EXPECT_LE(error / peak, lost + newton) << modes << " modes";
+    EXPECT_GT(error, 0.0) << "the same matrices have been compared";
+  }
 }
 
 /// By one axle at the middle that moves slowly: the deflection of all modes, and their damping.

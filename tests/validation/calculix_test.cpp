@@ -16,6 +16,7 @@
 
 #include "../folder_fixture.hpp"
 #include "../measured.hpp"
+#include "abaqus_rewriting.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
@@ -230,6 +231,35 @@ TEST_F(SolidBeam, SectionForcesAreThoseOfStatics) {
   }
   parameters.sections = {0.5};
   EXPECT_THROW(static_cast<void>(read_on_supports(parameters)), InputError) << "elements at the constraint";
+}
+
+void expect_same_bits(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b) {
+  ASSERT_TRUE(a.isCompressed() && b.isCompressed());
+  ASSERT_EQ(a.rows(), b.rows());
+  ASSERT_EQ(a.nonZeros(), b.nonZeros());
+  EXPECT_TRUE(std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.cols() + 1, b.outerIndexPtr()));
+  EXPECT_TRUE(std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr()));
+  EXPECT_TRUE(std::equal(a.valuePtr(), a.valuePtr() + a.nonZeros(), b.valuePtr()));
+}
+
+// CalculiX's matrices in Abaqus's two formats, by names of nodes in one triangle and by numbers of rows in both: the
+// same structure to the last bit, inner modes of the elements and constraints included.
+TEST_F(SolidBeam, ItsMatricesInAbaqussFormatsAreTheSameStructure) {
+  RAILTAB_NEEDS_CALCULIX();
+  const ImportParameters parameters = written();
+  const FeFrame frame{"mm-N-t", "x -y -z", {{6000.0, 500.0, 1500.0}}};
+  const FeStructure of_calculix = read_fe_structure(parameters.files, frame);
+  ASSERT_GT(std::ranges::count(of_calculix.node_of_row, no_node), 0);
+  for (const auto format : {testing::AbaqusFormat::matrix_input, testing::AbaqusFormat::coordinate}) {
+    const testing::AbaqusRewriting rewriting(parameters.files, format);
+    EXPECT_EQ(rewriting.held().size(), 15U) << "on the lower edges of both ends";
+    const FeStructure read = read_fe_structure(rewriting.written(), frame);
+    expect_same_bits(read.stiffness, of_calculix.stiffness);
+    expect_same_bits(read.mass, of_calculix.mass);
+    EXPECT_EQ(read.motion, of_calculix.motion);
+    EXPECT_EQ(read.node_of_row, of_calculix.node_of_row);
+    for (const auto& [number, node] : of_calculix.nodes) EXPECT_EQ(read.nodes.at(number).rows, node.rows) << number;
+  }
 }
 
 TEST(Calculix, ExpandedBeamsHaveNoSections) {

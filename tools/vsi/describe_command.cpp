@@ -115,6 +115,13 @@ Description of_text(const std::string& file, const std::string& first, const std
             {printable(first)},
             {fmt::format("a scene's structure.stiffness, structure.mass or structure.damping = \"{}\"", file)}};
   }
+  if (ending == ".mtx") {
+    return {"a matrix, of Abaqus if it is by *MATRIX OUTPUT",
+            {printable(first)},
+            {fmt::format("a scene's structure.stiffness, structure.mass or structure.damping = \"{}\", with "
+                         "structure.format = \"abaqus\"",
+                         file)}};
+  }
   for (const std::string_view kind : {"run report", "contact table"}) {
     if ((first + "\n").starts_with(report::html_first_line(kind))) {
       return {fmt::format("a page of railtab: {}", kind), {}, {"open it in a browser"}};
