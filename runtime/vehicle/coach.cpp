@@ -38,6 +38,7 @@ Suspension make_unit(std::string name, int body_a, int body_b, const Eigen::Vect
                      const SuspensionUnit& unit) {
   Suspension result{body_a, body_b, point, {unit.kx, unit.ky, unit.kz}, {unit.cx, unit.cy, unit.cz}};
   result.series_stiffness = {unit.series_kx, unit.series_ky, unit.series_kz};
+  result.couple_share = unit.couple_share;
   result.name = std::move(name);
   result.nonlinear = unit.nonlinear;
   return result;

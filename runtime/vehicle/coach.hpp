@@ -13,12 +13,14 @@ struct BodyInertia {
   double Jx = 0, Jy = 0, Jz = 0;  ///< [kg m²]
 };
 
-/// Stiffness and damping of one suspension unit along x, y, z; series_k in series with the damper, 0: none.
+/// Stiffness and damping of one suspension unit along x, y, z; series_k in series with the damper, 0: none;
+/// couple_share of the second (upper) body in the couple of its preload (Suspension), 0 … 1.
 struct SuspensionUnit {
   double kx = 0, ky = 0, kz = 0;                       ///< [N/m]
   double cx = 0, cy = 0, cz = 0;                       ///< [N s/m]
   double series_kx = 0, series_ky = 0, series_kz = 0;  ///< [N/m]
-  std::array<NonlinearUnit, 3> nonlinear{};            ///< along x, y, z
+  double couple_share = Suspension{}.couple_share;
+  std::array<NonlinearUnit, 3> nonlinear{};  ///< along x, y, z
 };
 
 /// A vehicle with two bogies, the template "two-bogie" of vehicle files (docs/file_formats/vehicle.md): car body, two

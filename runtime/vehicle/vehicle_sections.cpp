@@ -159,7 +159,6 @@ void read_connection(TomlSection& section, VehicleData& data) {
     turning.z() = section.number("k_yaw", bending_kind, 0.0);
   }
   turning.y() = section.number("k_pitch", bending_kind, 0.0);
-  const double couple_share = section.number("couple_share", ratio_kind, Suspension{}.couple_share);
   if (section.has("stand_in_for")) {
     const std::string stand_in = fmt::format("{}: a linear stand-in for {}", name, section.text("stand_in_for"));
     data.stand_ins.push_back(stand_in);
@@ -180,7 +179,7 @@ void read_connection(TomlSection& section, VehicleData& data) {
       joint.damping = {unit.cx, unit.cy, unit.cz};
       joint.rotational_stiffness = turning;
       joint.series_stiffness = {unit.series_kx, unit.series_ky, unit.series_kz};
-      joint.couple_share = couple_share;
+      joint.couple_share = unit.couple_share;
       joint.name = name;
       joint.nonlinear = unit.nonlinear;
       joint.yaw_friction = yaw_friction;
@@ -218,6 +217,7 @@ SuspensionUnit read_unit(TomlSection& section, const std::string& name, VehicleD
   unit.kx = k[0], unit.ky = k[1], unit.kz = k[2];
   unit.cx = c[0], unit.cy = c[1], unit.cz = c[2];
   unit.series_kx = series[0], unit.series_ky = series[1], unit.series_kz = series[2];
+  unit.couple_share = section.number("couple_share", ratio_kind, unit.couple_share);
   return unit;
 }
 

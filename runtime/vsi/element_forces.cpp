@@ -110,6 +110,18 @@ void ElementForces::evaluate() {
   }
 }
 
+// I + C ∂f/∂x. Slopes stay as they are while every element stays on its piece: so does the factor, which costs the
+// most.
+void ElementForces::factor(const ElementCompliance& compliance) {
+  const auto same = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a.rows() == b.rows() && a == b; };
+  if (same(slope_, factored_slope_) && same(compliance.own, factored_compliance_)) return;
+  jacobian_.setIdentity(x_.size(), x_.size());
+  jacobian_.noalias() += compliance.own * slope_;
+  solver_.compute(jacobian_);
+  factored_slope_ = slope_;
+  factored_compliance_ = compliance.own;
+}
+
 // Newton's method on x − x_free + C f(x) = 0. f is piecewise linear and, but for friction under a load that changes,
 // monotone: a few iterations end it exactly. A correction that makes the residual larger is halved.
 bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::VectorXd& free) {
@@ -123,9 +135,7 @@ bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::Vect
   };
   double size = residual();
   for (int iteration = 0; iteration < most_iterations && !(size <= rounding); ++iteration) {
-    jacobian_.setIdentity(x_.size(), x_.size());
-    jacobian_.noalias() += compliance.own * slope_;
-    solver_.compute(jacobian_);
+    factor(compliance);
     correction_ = solver_.solve(residual_);
     x_before_ = x_;
     const double before = size;

@@ -79,6 +79,7 @@ class ElementForces {
   };
   [[nodiscard]] Evaluated evaluated(std::size_t element) const;
   void evaluate();
+  void factor(const ElementCompliance& compliance);
 
   ForceElements elements_;
   Step step_;
@@ -89,6 +90,7 @@ class ElementForces {
   Eigen::VectorXd residual_, correction_, x_before_;
   Eigen::MatrixXd jacobian_;
   Eigen::PartialPivLU<Eigen::MatrixXd> solver_;
+  Eigen::MatrixXd factored_slope_, factored_compliance_;  // of solver_
 };
 
 /// The force elements of a train as the contacts' condensed system has them (ContactProblem::elements).

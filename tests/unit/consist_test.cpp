@@ -160,6 +160,43 @@ TEST(Consist, FallsToNoSideAndIsSymmetric) {
   for (std::size_t w = 0; w < ahead.size(); ++w) EXPECT_NEAR(ahead[w] / back[w], 1.0, 1e-9);
 }
 
+/// Velocities of a vehicle that moves ahead at 1 m/s, or turns at 1 rad/s about the vertical at x0, as a rigid body.
+enum class RigidMotion { ahead, turning };
+Eigen::VectorXd rigid_motion(const VehicleModel& train, int coach, RigidMotion motion, double x0) {
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(train.dofs());
+  for (std::size_t b = 0; b < train.bodies.size(); ++b) {
+    if (train.bodies[b].coach != coach) continue;
+    const DofIndices& dof = train.dof[b];
+    if (motion == RigidMotion::ahead) {
+      v[dof[0]] = 1.0;
+    } else {
+      v[dof[1]] = train.bodies[b].position.x() - x0;
+      v[dof[5]] = 1.0;
+    }
+  }
+  return v;
+}
+
+/// A coupler resists by kx and cx; two inter-car dampers by cx each, at the distance y from the middle also where a
+/// coach turns about its joint.
+TEST(Consist, CouplersAndInterCarDampersActBetweenCarBodies) {
+  const VehicleModel train = model_of(
+      {example("power-car"), example("end-coach"), example("end-coach", 1, true), example("power-car", 1, true)});
+  constexpr double coupler_k = 5e6, coupler_c = 50e3, damper_c = 100e3, damper_y = 0.9;
+  const auto power = [](const Eigen::MatrixXd& matrix, const Eigen::VectorXd& v) { return v.dot(matrix * v); };
+  const Eigen::VectorXd power_car = rigid_motion(train, 3, RigidMotion::ahead, 0.0);
+  EXPECT_NEAR(power(train.stiffness, power_car), coupler_k, 1e-6 * coupler_k);
+  EXPECT_NEAR(power(train.damping, power_car), coupler_c, 1e-6 * coupler_c);
+  const Eigen::VectorXd coach = rigid_motion(train, 2, RigidMotion::ahead, 0.0);
+  EXPECT_NEAR(power(train.damping, coach), 2.0 * damper_c + coupler_c, 1e-6 * damper_c);
+  double joint_x = 0.0;  // in the middle of the shared bogie
+  for (const VehicleBody& body : train.bodies) {
+    if (body.name == "joint-bogie") joint_x = body.position.x();
+  }
+  const Eigen::VectorXd turning = rigid_motion(train, 2, RigidMotion::turning, joint_x);
+  EXPECT_NEAR(power(train.damping, turning), 2.0 * damper_c * damper_y * damper_y, 1e-6 * damper_c);
+}
+
 class ConsistFiles : public testing::InFolder {};
 
 TEST_F(ConsistFiles, SayWhatIsWrong) {

@@ -304,6 +304,44 @@ TEST(Wedge, DecaysUnderAWeight) {
   }
 }
 
+/// m v̇ = −k z − f, ḟ = k_f v while it sticks, and f = ±r (W + k z) while it slides, held there against rounding.
+double wedge_error(double time_step, double alpha, ContactForceRule rule) {
+  constexpr double r = 0.2, weight = m * standard_gravity, slides_after = 4e-3, stiffness = r * weight / slides_after;
+  NonlinearUnit unit;
+  unit.friction = {0.0, r, slides_after};
+  Oscillator mass(mass_on(unit), {alpha, time_step, rule});
+  constexpr double released = 0.02;  // m: the wedge stays pressed
+  mass.begin(released, 0.0);
+  const Regime sticks{Eigen::MatrixXd{{0.0, 1.0, 0.0}, {-k / m, 0.0, -1.0 / m}, {0.0, stiffness, 0.0}},
+                      Eigen::Vector3d::Zero()};
+  const auto sliding_at = [](double limit) -> Regime {
+    constexpr double hold = 1e3;  // 1/s
+    return {Eigen::MatrixXd{{0.0, 1.0, 0.0}, {-k / m, 0.0, -1.0 / m}, {hold * limit * k, limit * k, -hold}},
+            Eigen::Vector3d(0.0, 0.0, hold * limit * weight)};
+  };
+  PiecewiseLinearMotion exact(
+      {sticks, sliding_at(r), sliding_at(-r)},
+      [](const Eigen::VectorXd& y) {
+        constexpr double rounding = 1e-9;
+        const double limit = r * (weight + k * y[0]);
+        const bool slides = std::abs(y[2]) >= limit * (1.0 - rounding) && y[2] * y[1] > 0.0;
+        return slides ? (y[2] > 0.0 ? 1 : 2) : 0;
+      },
+      Eigen::Vector3d(released, 0.0, 0.0), time_step);
+  return largest_error(mass, exact, time_step, 4.0);
+}
+
+TEST(Wedge, MeetsTheClosedFormWithSecondOrder) {
+  for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
+    for (const double alpha : {0.0, -0.05}) {
+      const double coarse = wedge_error(period / 500.0, alpha, rule), fine = wedge_error(period / 1000.0, alpha, rule);
+      EXPECT_LT(fine, 1e-3);
+      EXPECT_GT(coarse / fine, 3.0) << alpha;
+      EXPECT_LT(coarse / fine, 5.0) << alpha;
+    }
+  }
+}
+
 TEST(Wedge, NeedsALoad) {
   EXPECT_NO_THROW((void)mass_on(wedge(0.1)));
   NonlinearUnit with_force = wedge(0.1);

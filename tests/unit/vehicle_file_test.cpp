@@ -97,6 +97,26 @@ TEST(VehicleFile, OfBodiesAndConnectionsIsTheModelOfItsParts) {
   EXPECT_EQ(built.length, 9.0);
 }
 
+/// N e_y, the couple of a spring under N whose upper end has moved aside by e_y, turns the lower body by (1 − λ) N e_y
+/// and the upper one by λ N e_y.
+TEST(VehicleFile, CoupleShareDividesTheCoupleOfThePreload) {
+  const std::string half = manchester(), fifth = replaced(half, "[secondary]", "[secondary]\ncouple_share = 0.2");
+  const VehicleModel a = build_vehicle(parse_vehicle(half, "half.toml"), MotionPlane::spatial),
+                     b = build_vehicle(parse_vehicle(fifth, "fifth.toml"), MotionPlane::spatial);
+  const Eigen::MatrixXd K = b.stiffness - a.stiffness;
+  const double moved = 0.3 * 32000.0 * 9.81;  // of the couple per e_y, from the car body to its two bogies
+  const int car_y = a.dof[0][1], car_roll = a.dof[0][3];
+  EXPECT_NEAR(std::abs(K(car_roll, car_y)), moved, 1e-6 * moved);
+  for (const std::size_t bogie : {1U, 2U}) {
+    EXPECT_NEAR(K(a.dof[bogie][3], car_y), -0.5 * K(car_roll, car_y), 1e-6 * moved);
+  }
+  EXPECT_NEAR(b.stiffness(car_roll, car_y) - build_vehicle(parse_vehicle(half, "half.toml"), MotionPlane::spatial,
+                                                           {standard_gravity, GeometricStiffness::omitted})
+                                                 .stiffness(car_roll, car_y),
+              -0.2 / 0.3 * K(car_roll, car_y), 1e-6 * moved);
+  expect_rejected(replaced(half, "[primary]", "[primary]\ncouple_share = 1.2"), {"couple_share", "1.2"});
+}
+
 TEST(VehicleFile, TemplateIsShortForBodiesAndConnections) {
   const VehicleData coach = library_vehicle("manchester-coach");
   std::string text = R"(name = "manchester-coach"
