@@ -126,8 +126,9 @@ TEST_F(FreeMotion, RippleOfTheContactForces) {
     testing::measured("free_motion." + c.name + ".last_N", last);
   }
   // The lower modes pass energy on to the wheelsets: steps of a half show it by another rule.
-  EXPECT_NEAR(growth["automatic"], growth["short"], 0.05);
-  EXPECT_NEAR(growth["energy"], growth["short"], 0.05);
+  EXPECT_NEAR(growth["automatic"], growth["short"], 0.1);
+  EXPECT_NEAR(growth["energy"], growth["short"], 0.1);
+  EXPECT_GT(growth["short"], 1.15);
   EXPECT_NEAR(growth["automatic"], growth["energy"], 0.02);
   EXPECT_LT(growth["tolerance"], growth["short"]);  // what the tolerance leaves out takes energy
   EXPECT_LT(growth["damped"], 0.5);
