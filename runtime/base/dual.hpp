@@ -15,8 +15,8 @@ struct Dual {
   Pack slope[packs];
 
   Dual() = default;
-  Dual(double constant)
-      : value(constant), slope{} {}  // NOLINT(google-explicit-constructor): constants take part as they are
+  // NOLINTNEXTLINE(google-explicit-constructor): constants take part as they are
+  Dual(double constant) : value(constant), slope{} {}
 
   /// f(x) with f' at x, by the chain rule.
   [[nodiscard]] friend Dual chained(const Dual& x, double f, double slope) noexcept {

@@ -192,8 +192,7 @@ std::optional<OverSpeed> over_speed(const Assessment& assessment, const Verdict&
     }
   }
   std::ranges::sort(over.speeds);
-  const auto repeated = std::ranges::unique(over.speeds);
-  over.speeds.erase(repeated.begin(), repeated.end());
+  over.speeds.erase(std::unique(over.speeds.begin(), over.speeds.end()), over.speeds.end());
   if (over.speeds.size() < 2) return std::nullopt;
   over.bands = merged(std::move(bands), clause);
   over.to_the_line = worst_to_the_line(curves, assessment.facts.line_speed);
