@@ -170,11 +170,15 @@ RunSummary read_summary(const ArrayFileReader& in, std::size_t wheels) {
   summary.contact_mode = in.text(columns::summary_group, "contact_mode");
   summary.complete = in.whole_number(columns::summary_group, "complete", 0, 1) != 0;
   const std::vector<std::string> names = in.attribute_names(columns::summary_group);
+  const auto lacks = [&](const auto& entry) {
+    return !entry.in_all_files && std::find(names.begin(), names.end(), entry.name) == names.end();
+  };
   for (const auto& entry : columns::summary_counts) {
-    if (!entry.in_all_files && std::find(names.begin(), names.end(), entry.name) == names.end()) continue;
+    if (lacks(entry)) continue;
     summary.*entry.value = in.whole_number(columns::summary_group, entry.name, 0, most_count);
   }
   for (const auto& entry : columns::summary_numbers) {
+    if (lacks(entry)) continue;
     summary.*entry.value = fields.number(columns::summary_group, entry.name);
   }
   const long impacts = in.whole_number(columns::summary_group, columns::contact_energy_impacts, -1, most_count);
