@@ -1,4 +1,4 @@
-# RAILTAB_PYTHON: the module `import railtab` (python/). On where pybind11 and the headers of Python are found. Debian's
+# RAILTAB_PYTHON: the module `import railtab` (python/). AUTO: where pybind11 and the headers of Python are found. Debian's
 # packages are those of /usr/bin/python3, which is taken before another python3 of the PATH; -D Python_EXECUTABLE=…
 # names one.
 if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
@@ -10,10 +10,12 @@ set(railtab_python_found OFF)
 if(Python_FOUND AND RAILTAB_PYBIND11_INCLUDE)
   set(railtab_python_found ON)
 endif()
-option(RAILTAB_PYTHON "Build the Python module (needs pybind11, NumPy, h5py)" ${railtab_python_found})
-if(RAILTAB_PYTHON)
-  if(NOT railtab_python_found)
-    message(FATAL_ERROR "RAILTAB_PYTHON: found no pybind11, NumPy or headers of Python; expected Debian's packages, "
-      "which tools/install_dependencies --python installs; or -D RAILTAB_PYTHON=OFF")
-  endif()
+set(RAILTAB_PYTHON AUTO CACHE STRING
+  "Build the Python module (needs pybind11, NumPy, h5py): ON, OFF, or AUTO, where these are found")
+if(RAILTAB_PYTHON STREQUAL AUTO)
+  set(RAILTAB_PYTHON ${railtab_python_found})  # anew at every configuration: what is installed later counts
+endif()
+if(RAILTAB_PYTHON AND NOT railtab_python_found)
+  message(FATAL_ERROR "RAILTAB_PYTHON: found no pybind11, NumPy or headers of Python; expected Debian's packages, "
+    "which tools/install_dependencies --python installs; or -D RAILTAB_PYTHON=OFF")
 endif()

@@ -97,7 +97,7 @@ WheelResponse wheel_response(const WheelContactModel& model, WheelSide side, con
       return result;
     }
   }
-  result.contact = wheel_contact(geometry, p);
+  result.contact.patches = geometry.patches(p);
   result.force = wheel_force(model, side, wheelset, rail, result.contact);
   result.tangent = wheel_force_tangent(model, side, wheelset, rail, result.contact, rates);
   return result;

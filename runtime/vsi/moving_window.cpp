@@ -179,6 +179,7 @@ DofRange MovingWindow::move(VsiState& state) {
   if (placed_ && now == before) return range;
   LinearMotion& structure = state.structure;
   const std::array motions{&structure.displacement, &structure.velocity, &structure.acceleration};
+  Eigen::VectorXd lost = structure.displacement;  // what no mode keeps of it
   Eigen::Index first = 0;
   for (const SpanModes& span : model_.window->spans) {
     const Eigen::Index modes = span.omega2.size();
@@ -188,11 +189,12 @@ DofRange MovingWindow::move(VsiState& state) {
         const Eigen::VectorXd momentum = mass * span.dofs.of(*motions[static_cast<std::size_t>(derivative)]);
         of_span(state.left_behind, first, modes, derivative) = span.shape.transpose() * momentum;
       }
+      span.dofs.of(lost) -= span.shape * of_span(state.left_behind, first, modes, 0);
     }
     first += 3 * modes;
   }
-  if (placed_) note_error(before, now, state);
   const DofRange old = dofs_between(model_.structure->dof_x, before.from, before.to);
+  if (placed_) note_error(structure.displacement, lost, {old.begin, range.begin - old.begin}, before.to);
   const auto hold_outside = [&](const DofRange& inside) {  // where nodes of interest may have been written to
     to_rest(structure, 0, inside.begin);
     to_rest(structure, inside.end(), structure.displacement.size() - inside.end());
@@ -208,28 +210,15 @@ DofRange MovingWindow::move(VsiState& state) {
   return range;
 }
 
-// Spans that fall behind keep what their modes say of their motion, the rest of it is put to rest; at the front end it
-// is the cut that holds.
-void MovingWindow::note_error(const Ends& before, const Ends& now, const VsiState& state) {
+// Behind the train, what no mode keeps is put to rest; at the front end it is the cut that holds.
+void MovingWindow::note_error(const Eigen::VectorXd& motion, const Eigen::VectorXd& lost, const DofRange& behind,
+                              double front) {
   constexpr double at_the_cut = 1.0;  // m, of a window that reaches 5 m at least
-  const StructureModel& s = *model_.structure;
-  const Eigen::VectorXd& motion = state.structure.displacement;
-  Eigen::VectorXd lost = motion;
-  Eigen::Index first = 0;
-  for (const SpanModes& span : model_.window->spans) {
-    const Eigen::Index modes = span.omega2.size();
-    if (before.from < span.to && span.to <= now.from) {
-      span.dofs.of(lost) -= span.shape * state.left_behind.segment(first, modes);
-    }
-    first += 3 * modes;
-  }
   const auto largest = [](const auto& part) { return part.size() == 0 ? 0.0 : part.cwiseAbs().maxCoeff(); };
   const double whole = largest(motion);
   if (!(whole > 0.0)) return;
-  const Eigen::Index left = dofs_between(s.dof_x, before.from, before.to).begin;
-  const DofRange behind{left, dofs_between(s.dof_x, now.from, now.to).begin - left};
-  const DofRange front = dofs_between(s.dof_x, before.to - at_the_cut, before.to);
-  error_ = std::max({error_, largest(behind.of(lost)) / whole, largest(front.of(motion)) / whole});
+  const DofRange at_front = dofs_between(model_.structure->dof_x, front - at_the_cut, front);
+  error_ = std::max({error_, largest(behind.of(lost)) / whole, largest(at_front.of(motion)) / whole});
 }
 
 // Spans that come in while the ground shakes them meet with rails that each side had held to rest at the cut; joined as

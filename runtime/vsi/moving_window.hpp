@@ -57,7 +57,8 @@ class MovingWindow {
     bool operator==(const Ends&) const = default;
   };
   [[nodiscard]] Ends ends(long step) const;
-  void note_error(const Ends& before, const Ends& now, const VsiState& state);
+  /// @param lost what no mode keeps of the motion. @param behind that falls behind. @param front end of the window [m]
+  void note_error(const Eigen::VectorXd& motion, const Eigen::VectorXd& lost, const DofRange& behind, double front);
   void join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
             VsiState& state) const;
   void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;

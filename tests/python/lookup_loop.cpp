@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
         const WheelResponse response =
             wheel_response(model, WheelSide::right, motions[i], rail, {Vector6::Zero(), 0.0});
         put(response.force);
-        Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>>(&tangents[81 * i]) = response.tangent;
+        Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> tangent(&tangents[81 * i]);
+        tangent = response.tangent;
       } else {
         const WheelsetPose pose = relative_pose(table.geometry.pair(), WheelSide::right, motions[i], rail);
         put(wheel_force(model, WheelSide::right, motions[i], rail, wheel_contact(table.geometry, pose)));

@@ -16,26 +16,8 @@ except ImportError as missing:
     print(f"skipped: {missing} (Debian: python3-vtk9, python3-h5py)")
     sys.exit(77)
 
-SCENE = """
-[train]
-vehicle = "manchester-coach"
-speed_kmh = 200
-start = 2.0
-[contact]
-mode = "online"
-creep_law = "polach"
-[track]
-length_before = 30
-length_after = 10
-[[bridge]]
-length = 16
-elements = 8
-[structure]
-report = [4.0, 8.0, 12.0]
-[integration]
-duration = 0.02
-time_step = 1e-3
-"""
+sys.dont_write_bytecode = True
+from drawn_scene import SCENE  # noqa: E402
 
 
 def read(file):

@@ -25,27 +25,9 @@ try:
 except ImportError:
     VTK = None
 
-SCENE = """
-[train]
-vehicle = "manchester-coach"
-speed_kmh = 200
-start = 2.0
-[contact]
-mode = "online"
-creep_law = "polach"
-[track]
-length_before = 30
-length_after = 10
-[[bridge]]
-length = 16
-elements = 8
-[structure]
-report = [4.0, 8.0, 12.0]
-[integration]
-duration = 0.02
-time_step = 1e-3
-[output]
-"""
+sys.dont_write_bytecode = True
+from drawn_scene import SCENE  # noqa: E402
+
 PARTS = ("bridge", "rails", "bodies", "wheelsets")
 
 
@@ -251,7 +233,7 @@ def main():
 
         def run(name, output):
             with open(f"{name}.toml", "w") as scene:
-                scene.write(SCENE + output)
+                scene.write(SCENE + "[output]\n" + output)
             subprocess.run([vsi, "run", f"{name}.toml", "-o", f"{name}.h5", "-q"], check=True)
             return h5py.File(f"{name}.h5")
 

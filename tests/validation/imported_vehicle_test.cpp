@@ -7,30 +7,21 @@
 #include "../imported_vehicle.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/scene/scene_run.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
+#include "recorded_steps.hpp"
 
 namespace railtab {
 namespace {
 
 using testing::free_coach;
 using testing::FreeCoach;
+using testing::recorded_steps;
 using testing::Written;
 
 const std::string rough_track = "[irregularity]\nspectrum = \"german-low\"\nfade_in = 0\n";
 const std::string rigid_track = "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n[track]\nkind = \"rigid\"\n";
 const std::string flexible_track =
     "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n[track]\nlength_before = 27.0\nlength_after = 9.0\n";
-
-std::vector<StepRecord> run(const SceneParameters& scene) {
-  std::vector<StepRecord> records;
-  RunObserver observer;
-  observer.record = [&](const StepRecord& record) { records.push_back(record); };
-  const RunSummary summary = run_scene(scene, observer);
-  EXPECT_TRUE(summary.complete) << summary.message;
-  return records;
-}
 
 constexpr int pitch = 4;  // whose angle grows with the way of a rolling wheelset
 
@@ -101,29 +92,29 @@ TEST_F(ImportedVehicle, RunsAsTheBuiltCoach) {
   write("speed.csv", "t[s],V[m/s]\n0,55\n0.5,54.5\n");
   const std::string text =
       rigid_track + rough_track + "[integration]\nduration = 0.1\n[train]\ncount = 2\nspeed_file = \"speed.csv\"\n";
-  const std::vector<StepRecord> built = run(scene(text));
+  const std::vector<StepRecord> built = recorded_steps(scene(text));
   for (const Written how : {Written::as_railtab, turned}) {
     write(free_coach(), how);
-    expect_same(difference(built, run(scene(text + vehicle_section(how)))));
+    expect_same(difference(built, recorded_steps(scene(text + vehicle_section(how)))));
   }
   write(with_unnamed_bogies(), turned);
-  expect_same(difference(without_bogies(built), run(scene(text + vehicle_section(turned)))));
+  expect_same(difference(without_bogies(built), recorded_steps(scene(text + vehicle_section(turned)))));
 }
 
 // Inner unknowns go along.
 TEST_F(ImportedVehicle, IsSetAsideAsAWhole) {
   const std::string text =
       rigid_track + "[integration]\nduration = 0.05\n[train]\ncount = 2\ninitial_lateral_shift = 0.003\n";
-  const std::vector<StepRecord> built = run(scene(text));
+  const std::vector<StepRecord> built = recorded_steps(scene(text));
   write(with_unnamed_bogies(), turned);
-  expect_same(difference(without_bogies(built), run(scene(text + vehicle_section(turned)))));
+  expect_same(difference(without_bogies(built), recorded_steps(scene(text + vehicle_section(turned)))));
 }
 
 // At the default tolerance Newton's iterations of the two, from axes that are turned, may end up to five newtons apart.
 TEST_F(ImportedVehicle, RunsAsTheBuiltCoachOnFlexibleTrack) {
   const std::string text = flexible_track + rough_track + "[integration]\nduration = 0.04\ntolerance = 1e-7\n";
   write(free_coach(), turned);
-  expect_same(difference(run(scene(text)), run(scene(text + vehicle_section(turned)))));
+  expect_same(difference(recorded_steps(scene(text)), recorded_steps(scene(text + vehicle_section(turned)))));
 }
 
 TEST_F(ImportedVehicle, RunsAsTheBuiltCoachInTheVerticalPlane) {
@@ -132,7 +123,7 @@ TEST_F(ImportedVehicle, RunsAsTheBuiltCoachInTheVerticalPlane) {
   write(free_coach());
   const SceneParameters imported = scene(text + vehicle_section());
   EXPECT_EQ(build_model(imported).vehicle.dofs(), 16);
-  expect_same(difference(run(scene(text)), run(imported)));
+  expect_same(difference(recorded_steps(scene(text)), recorded_steps(imported)));
 }
 
 // An inner unknown on a stiff spring is mass of the car body; on a soft one it stays behind, and a sudden force meets
@@ -144,21 +135,21 @@ TEST_F(ImportedVehicle, InnerUnknownsTakePart) {
   CoachParameters heavy = coach_parameters("manchester-coach");
   heavy.car_body.mass += m;
   write(free_coach(heavy));
-  const std::vector<StepRecord> one_mass = run(scene(vehicle_section() + text));
+  const std::vector<StepRecord> one_mass = recorded_steps(scene(vehicle_section() + text));
 
   FreeCoach stiff = free_coach();
   stiff.hang_mass(m, m * std::pow(2.0 * std::numbers::pi * 400.0, 2));
   write(stiff, turned);
   const SceneParameters with_stiff = scene(vehicle_section(turned) + text);
   EXPECT_EQ(build_model(with_stiff).vehicle.dofs(), 42);
-  const Difference rigid = difference(one_mass, run(with_stiff));
+  const Difference rigid = difference(one_mass, recorded_steps(with_stiff));
   EXPECT_LT(rigid.force, 1e-3);
   EXPECT_LT(rigid.displacement, 1e-2);
 
   FreeCoach soft = free_coach();
   soft.hang_mass(m, m * std::pow(2.0 * std::numbers::pi * 1.0, 2));
   write(soft);
-  const std::vector<StepRecord> two_masses = run(scene(vehicle_section() + text));
+  const std::vector<StepRecord> two_masses = recorded_steps(scene(vehicle_section() + text));
   const double static_load = (44482.0 + m) * 9.81 / 8.0;
   EXPECT_NEAR(two_masses.front().wheels[0].Q, static_load, 1e-3 * static_load);
   constexpr std::size_t peak = 40;  // of the gust, at 0.02 s

@@ -12,9 +12,12 @@
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/stability/linear_stability.hpp"
+#include "recorded_steps.hpp"
 
 namespace railtab {
 namespace {
+
+using testing::recorded_steps;
 
 class MixedProfiles : public testing::InFolder {
  protected:
@@ -41,15 +44,6 @@ class MixedProfiles : public testing::InFolder {
   }
 };
 
-std::vector<StepRecord> run(const SceneParameters& scene) {
-  std::vector<StepRecord> records;
-  RunObserver observer;
-  observer.record = [&](const StepRecord& record) { records.push_back(record); };
-  const RunSummary summary = run_scene(scene, observer);
-  EXPECT_TRUE(summary.complete) << summary.message;
-  return records;
-}
-
 /// Largest difference of Q and Y between wheels of two runs [N].
 double difference(const std::vector<StepRecord>& a, std::size_t first_of_a, const std::vector<StepRecord>& b,
                   std::size_t first_of_b, std::size_t wheels) {
@@ -66,16 +60,18 @@ double difference(const std::vector<StepRecord>& a, std::size_t first_of_a, cons
 
 TEST_F(MixedProfiles, TheSameProfilesAgainChangeNothing) {
   const std::string train = "vehicle = \"manchester-coach\"\ncount = 2\n";
-  const std::vector<StepRecord> one = run(scene(train, "")),
-                                two = run(scene(train, "", "[[profiles]]\ncoach = 2\nwheel = \"S1002\"\n"));
+  const std::vector<StepRecord> one = recorded_steps(scene(train, "")),
+                                two = recorded_steps(scene(train, "", "[[profiles]]\ncoach = 2\nwheel = \"S1002\"\n"));
   EXPECT_EQ(difference(one, 0, two, 0, 16), 0.0);
 }
 
 // Coach 1 on S1002, coach 2 on cones: each as in a train that has its profile throughout.
 TEST_F(MixedProfiles, EveryCoachRunsOnItsOwnProfile) {
   const std::string train = "vehicle = \"manchester-coach\"\ncount = 2\n";
-  const std::vector<StepRecord> all = run(scene(train, "")), cones = run(scene(train, "wheel = \"cone-1:40\"\n")),
-                                mixed = run(scene(train, "", "[[profiles]]\ncoach = 2\nwheel = \"cone-1:40\"\n"));
+  const std::vector<StepRecord> all = recorded_steps(scene(train, "")),
+                                cones = recorded_steps(scene(train, "wheel = \"cone-1:40\"\n")),
+                                mixed = recorded_steps(
+                                    scene(train, "", "[[profiles]]\ncoach = 2\nwheel = \"cone-1:40\"\n"));
   EXPECT_EQ(difference(mixed, 0, all, 0, 8), 0.0);
   EXPECT_EQ(difference(mixed, 8, cones, 8, 8), 0.0);
   EXPECT_GT(difference(mixed, 8, all, 8, 8), 1.0) << "the profiles differ in what they do";
@@ -91,9 +87,9 @@ TEST_F(MixedProfiles, VehiclesOfUnlikeRadiusRunAsAlone) {
   EXPECT_EQ(train.geometry->pair().nominal_radius(), radius);
   EXPECT_EQ(train.geometry_of(9).pair().nominal_radius(), 0.46);
 
-  const std::vector<StepRecord> mixed = run(scene("consist = [\"c0c0-locomotive\", \"manchester-coach\"]\n", "",
-                                                  "[[profiles]]\nvehicle = \"c0c0-locomotive\"\n"));
-  const std::vector<StepRecord> locomotive = run(scene(
+  const std::vector<StepRecord> mixed = recorded_steps(scene("consist = [\"c0c0-locomotive\", \"manchester-coach\"]\n",
+                                                             "", "[[profiles]]\nvehicle = \"c0c0-locomotive\"\n"));
+  const std::vector<StepRecord> locomotive = recorded_steps(scene(
       "vehicle = \"c0c0-locomotive\"\n", "[contact.dimensions]\nnominal_radius = " + std::to_string(radius) + "\n"));
   ASSERT_EQ(mixed.front().wheels.size(), 20U);
   EXPECT_LT(difference(mixed, 0, locomotive, 0, 12), 1e-2);  // of 1e5 N: order of the sums, Newton's tolerance

@@ -5,17 +5,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "../folder_fixture.hpp"
 #include "../measured.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
+#include "recorded_steps.hpp"
 
 namespace railtab {
 namespace {
+
+using testing::recorded_steps;
 
 // Masses and springs of the Manchester coach, without a damper.
 constexpr const char* undamped_coach = R"(name = "undamped-coach"
@@ -61,15 +65,6 @@ height = 0.8275
 [roll_bar]
 stiffness = 0.94e6
 )";
-
-std::vector<StepRecord> run(const SceneParameters& scene) {
-  std::vector<StepRecord> steps;
-  RunObserver observer;
-  observer.record = [&](const StepRecord& step) { steps.push_back(step); };
-  const RunSummary summary = run_scene(scene, observer);
-  EXPECT_TRUE(summary.complete) << summary.message;
-  return steps;
-}
 
 using FreeMotion = testing::InFolder;
 
@@ -118,7 +113,7 @@ TEST_F(FreeMotion, RippleOfTheContactForces) {
     scene.integration.time_step = c.time_step;
     scene.integration.tolerance = c.tolerance;
     scene.integration.alpha = c.alpha;
-    const std::vector<StepRecord> steps = run(scene);
+    const std::vector<StepRecord> steps = recorded_steps(scene);
     const double first = ripple(steps, 0.05, 2.0), last = ripple(steps, 12.0, 13.95);
     growth[c.name] = last / first;
     std::printf("%-10s ripple %.1f N, at the end %.1f N\n", c.name.c_str(), first, last);
@@ -134,16 +129,16 @@ TEST_F(FreeMotion, RippleOfTheContactForces) {
   EXPECT_LT(growth["damped"], 0.5);
 }
 
-/// Two records of the same scene, and many.
+/// Of lateral positions of bodies in two runs [m]. @param first_above when it is more than a millimetre [s]; -1: never
 double largest_difference(const std::vector<StepRecord>& a, const std::vector<StepRecord>& b, double& first_above) {
-  constexpr double lateral_mm = 1e-3;
+  constexpr double millimetre = 1e-3;
   double largest = 0.0;
   first_above = -1.0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
     for (std::size_t body = 0; body < a[i].bodies.size(); ++body) {
       largest = std::max(largest, std::abs(a[i].bodies[body].displacement[1] - b[i].bodies[body].displacement[1]));
     }
-    if (first_above < 0.0 && largest > lateral_mm) first_above = a[i].time;
+    if (first_above < 0.0 && largest > millimetre) first_above = a[i].time;
   }
   return largest;
 }
@@ -200,8 +195,8 @@ SceneParameters coach_on_rough_rails(double speed_kmh, double shift) {
 constexpr double smallest_shift = 1e-15;  // m: rounding
 
 TEST(Difference, OfRoundingStaysBelowTheCriticalSpeed) {
-  const std::vector<StepRecord> a = run(coach_on_rough_rails(200.0, 0.0)),
-                                b = run(coach_on_rough_rails(200.0, smallest_shift));
+  const std::vector<StepRecord> a = recorded_steps(coach_on_rough_rails(200.0, 0.0)),
+                                b = recorded_steps(coach_on_rough_rails(200.0, smallest_shift));
   double above = 0.0;
   const double difference = largest_difference(a, b, above);
   const Statistics first(a), second(b);
@@ -218,7 +213,7 @@ TEST(Difference, OfRoundingGrowsWhereFlangesStrikeAndStatisticsStay) {
   std::vector<StepRecord> reference;
   double above = -1.0;
   for (int i = 0; i < 4; ++i) {
-    const std::vector<StepRecord> steps = run(coach_on_rough_rails(400.0, i * smallest_shift));
+    const std::vector<StepRecord> steps = recorded_steps(coach_on_rough_rails(400.0, i * smallest_shift));
     runs.emplace_back(steps);
     if (i == 0) reference = steps;
     if (i == 1) {

@@ -8,12 +8,13 @@
 #include <cstdio>
 
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/scene/scene_run.hpp"
-#include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
+#include "recorded_steps.hpp"
 
 namespace railtab {
 namespace {
+
+using testing::recorded_steps;
 
 constexpr double speed = 60.0;        // m/s
 constexpr int steps_per_bay = 20;     // of 0.6 m in steps of 0.5 ms
@@ -30,15 +31,6 @@ SceneParameters coach_on(TrackKind track) {
   scene.integration.time_step = 5e-4;
   scene.integration.duration = 1.2;
   return scene;
-}
-
-std::vector<StepRecord> run(const SceneParameters& scene) {
-  std::vector<StepRecord> steps;
-  RunObserver observer;
-  observer.record = [&](const StepRecord& step) { steps.push_back(step); };
-  const RunSummary summary = run_scene(scene, observer);
-  EXPECT_TRUE(summary.complete) << summary.message;
-  return steps;
 }
 
 // Q and Y of one wheel over one bay, the mean of the last bays of a long run.
@@ -85,9 +77,9 @@ TEST(StartTransient, FirstForcesOfASlowTrainDoNotDependOnTheTolerance) {
   scene.integration.time_step = 1e-3;
   scene.integration.duration = 1e-3;
   scene.integration.tolerance = 1e-9;
-  const StepRecord exact = run(scene).front();
+  const StepRecord exact = recorded_steps(scene).front();
   scene.integration.tolerance = IntegrationParameters{}.tolerance;
-  const StepRecord first = run(scene).front();
+  const StepRecord first = recorded_steps(scene).front();
   double largest = 0.0;
   for (std::size_t w = 0; w < first.wheels.size(); ++w) {
     largest = std::max(
@@ -99,7 +91,7 @@ TEST(StartTransient, FirstForcesOfASlowTrainDoNotDependOnTheTolerance) {
 
 TEST(StartTransient, RigidTrack) {
   SceneParameters scene = coach_on(TrackKind::rigid);
-  const std::vector<StepRecord> steps = run(scene);
+  const std::vector<StepRecord> steps = recorded_steps(scene);
   const double largest = transient(steps, steps, static_load(steps));
   std::printf("largest transient on a rigid track: %.2g of the wheel load\n", largest);
   EXPECT_LT(largest, 1e-3);
@@ -107,7 +99,7 @@ TEST(StartTransient, RigidTrack) {
 
 TEST(StartTransient, BallastedTrackAndBridgeApproach) {
   const SceneParameters open_track = coach_on(TrackKind::flexible);
-  const std::vector<StepRecord> plain = run(open_track);
+  const std::vector<StepRecord> plain = recorded_steps(open_track);
   const double load = static_load(plain);
   const double on_track = transient(plain, plain, load);
   double low = INFINITY, high = 0.0;
@@ -120,7 +112,7 @@ TEST(StartTransient, BallastedTrackAndBridgeApproach) {
   approach.spans.resize(1);
   approach.train.start = -69.0;
   approach.integration.duration = 1.0;
-  const double before_bridge = transient(run(approach), plain, load);
+  const double before_bridge = transient(recorded_steps(approach), plain, load);
   std::printf(
       "largest transient: ballasted track %.2g, bridge approach %.2g of the wheel load; the passage of the sleepers "
       "makes %.2g\n",
@@ -139,7 +131,7 @@ TEST(StartTransient, WheelsetsBeginAlongRoughRails) {
   scene.spectrum.emplace();
   scene.spectrum->name = "german-high";
   scene.spectrum->fade_in = 0.0;
-  const std::vector<StepRecord> steps = run(scene);
+  const std::vector<StepRecord> steps = recorded_steps(scene);
   const double load = static_load(steps);
   double first = 0.0, later = 0.0;  // largest change of Q
   for (const StepRecord& step : steps) {
@@ -157,7 +149,7 @@ TEST(StartTransient, TheCreepTableStartsFromRestOnBothTracks) {
     SceneParameters scene = coach_on(track);
     scene.contact.creep_law = "table";
     scene.integration.duration = 0.05;
-    const std::vector<StepRecord> steps = run(scene);
+    const std::vector<StepRecord> steps = recorded_steps(scene);
     ASSERT_GT(steps.size(), 50u);
     const double rest = steps.front().wheels.front().Q;
     for (const StepRecord& step : steps) EXPECT_NEAR(step.wheels.front().Q, rest, 0.02 * rest);

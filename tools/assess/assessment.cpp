@@ -82,11 +82,18 @@ std::string verdict_in_words(const Assessment& assessment) {
                      trains.empty() ? "" : fmt::format(", worst with {}", fmt::join(trains, " and ")), passed, open);
 }
 
+std::string position_in_words(const std::optional<double>& x, const std::optional<double>& y) {
+  std::vector<std::string> parts;
+  if (x) parts.push_back(fmt::format("x = {:.2f} m", *x));
+  if (y) parts.push_back(fmt::format("y = {:.2f} m", *y));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 std::string spot_in_words(const MeasuredValue& value) {
   std::vector<std::string> parts;
   if (!value.where.empty()) parts.push_back(value.where);
-  if (value.x) parts.push_back(fmt::format("x = {:.2f} m", *value.x));
-  if (value.y) parts.push_back(fmt::format("y = {:.2f} m", *value.y));
+  if (std::string position = position_in_words(value.x, value.y); !position.empty())
+    parts.push_back(std::move(position));
   if (value.time) parts.push_back(fmt::format("t = {:.3f} s", *value.time));
   return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -79,6 +79,8 @@ struct LimitVerdicts {
 [[nodiscard]] std::string place_in_words(const MeasuredValue& value);
 /// The same without train, speed and seed.
 [[nodiscard]] std::string spot_in_words(const MeasuredValue& value);
+/// "x = 12.50 m, y = 2.00 m", as far as known.
+[[nodiscard]] std::string position_in_words(const std::optional<double>& x, const std::optional<double>& y);
 /// "moving forces"
 [[nodiscard]] std::string_view stage_in_words(AssessmentStage stage) noexcept;
 /// "read in the standard", "read in a secondary source", "unverified"

@@ -126,11 +126,6 @@ std::vector<double> times(double factor, std::vector<double> values) {
   return values;
 }
 
-/// "x = 12.50 m, y = 2.00 m"
-std::string place_of(double x, const std::optional<double>& y) {
-  return y ? fmt::format("x = {:.2f} m, y = {:.2f} m", x, *y) : fmt::format("x = {:.2f} m", x);
-}
-
 std::string governing_in_words(const DeckSeries& s, const DeckDrawing& drawing) {
   return fmt::format("{} at t = {:.3f} s", amount_in_words(s.governing.value, drawing.unit),
                      s.governing.time.value_or(0.0));
@@ -148,14 +143,15 @@ std::string envelope_chart(const Assessment& assessment, const DeckSeries& s) {
   chart.title = fmt::format("Vertical {} along the deck, run {}", drawing.quantity, s.governing.run);
   chart.note =
       fmt::format("Largest and smallest of all nodes and steps{}, positive down. The node that governs: {}, {}.",
-                  drawing.judged == drawing.quantity ? "" : ", " + drawing.judged, place_of(x, s.governing.y),
+                  drawing.judged == drawing.quantity ? "" : ", " + drawing.judged, position_in_words(x, s.governing.y),
                   governing_in_words(s, drawing));
   chart.x_label = "x [m]";
   chart.y_label = drawing.label;
   chart.series = {{"largest", s.envelope.x, largest}, {"smallest", s.envelope.x, smallest}};
   if (at < static_cast<std::ptrdiff_t>(s.envelope.x.size())) {
     const auto i = static_cast<std::size_t>(at);
-    chart.series.push_back({"node that governs, " + place_of(x, s.governing.y), {x, x}, {smallest[i], largest[i]}});
+    chart.series.push_back(
+        {"node that governs, " + position_in_words(x, s.governing.y), {x, x}, {smallest[i], largest[i]}});
   }
   chart.limits = both_sides(limits_of_runs(assessment, s.governing.measure, drawing.factor));
   return chart_html(chart);
@@ -168,14 +164,14 @@ std::string node_chart(const Assessment& assessment, const DeckSeries& s) {
   double most = 0.0;
   for (const double value : s.judged) most = std::max(most, std::abs(value));
   report::Chart chart;
-  chart.title = fmt::format("Vertical {} of {} ({}), run {}", drawing.quantity, s.node, place_of(s.node_x, s.node_y),
-                            s.governing.run);
+  chart.title = fmt::format("Vertical {} of {} ({}), run {}", drawing.quantity, s.node,
+                            position_in_words(s.node_x, s.node_y), s.governing.run);
   chart.note = s.node_governs
                    ? fmt::format("The node that governs, {}; positive down.", governing_in_words(s, drawing))
                    : fmt::format(
                          "The recorded node nearest to the one that governs ({}, {}), whose history is not "
                          "recorded; this one reaches {}. Positive down.",
-                         place_of(s.governing.x.value_or(0.0), s.governing.y), governing_in_words(s, drawing),
+                         position_in_words(s.governing.x.value_or(0.0), s.governing.y), governing_in_words(s, drawing),
                          s.judged.empty() ? "an unknown value" : amount_in_words(most, drawing.unit));
   chart.x_label = "time [s]";
   chart.y_label = drawing.label;

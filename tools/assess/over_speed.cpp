@@ -157,13 +157,11 @@ MeasuredValue value_of_deck(const DeckAssessment& deck, std::string_view measure
   return result;
 }
 
-std::optional<MeasuredValue> largest_of_passages(const DeckAssessment& deck, const PassageMeasure& measure,
-                                                 double highest) {
+std::optional<MeasuredValue> largest_of_passages(const DeckAssessment& deck, const PassageMeasure& measure) {
   const TrainResponse* train = nullptr;
   const PassagePeaks* worst = nullptr;
   for (const TrainResponse& response : deck.responses) {
     for (const PassagePeaks& passage : response.passages) {
-      if (passage.speed > highest) continue;
       if (worst && !((passage.*measure.peak).value > (worst->*measure.peak).value)) continue;
       worst = &passage;
       train = &response;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,10 +22,9 @@ inline constexpr std::array passage_measures{PassageMeasure{"deck_acceleration",
 /// A value [SI] at a deck, with the span that limits depend on; the caller adds where on it.
 [[nodiscard]] MeasuredValue value_of_deck(const DeckAssessment& deck, std::string_view measure, AssessmentStage stage,
                                           double value);
-/// The largest of all trains of a deck at computed speeds up to `highest` [m/s]; none where there are none.
-[[nodiscard]] std::optional<MeasuredValue> largest_of_passages(
-    const DeckAssessment& deck, const PassageMeasure& measure,
-    double highest = std::numeric_limits<double>::infinity());
+/// The largest of all trains of a deck at computed speeds; none where there are none.
+[[nodiscard]] std::optional<MeasuredValue> largest_of_passages(const DeckAssessment& deck,
+                                                               const PassageMeasure& measure);
 
 /// Speeds [m/s] in which a limit is exceeded.
 struct SpeedBand {
