@@ -18,6 +18,14 @@ using std::numbers::pi;
 
 }  // namespace
 
+bool has_free_end(const ModalDeck& deck) {
+  constexpr double rounding = 1e-6;
+  for (const double x : {0.0, deck.length()}) {
+    if ((deck.shape_at(x).abs() > rounding * deck.largest_shape).head(deck.dynamic_modes).any()) return true;
+  }
+  return false;
+}
+
 std::size_t element_at(const ModalDeck& deck, double x) noexcept {
   return interval_at(deck.knots, std::clamp(x, 0.0, deck.length()));
 }

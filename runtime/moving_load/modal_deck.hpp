@@ -54,6 +54,9 @@ struct DynamicModes {
 /// @throws InputError, ComputationError
 [[nodiscard]] ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& modes = {});
 
+/// Whether an end of the line moves in a mode that vibrates: an axle load that comes on to the deck there acts at once.
+[[nodiscard]] bool has_free_end(const ModalDeck& deck);
+
 /// Element of the line that holds x, clamped to the line.
 [[nodiscard]] std::size_t element_at(const ModalDeck& deck, double x) noexcept;
 

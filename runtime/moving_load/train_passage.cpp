@@ -25,15 +25,6 @@ struct Candidate {
   std::vector<ModalMotion> motion;
 };
 
-/// Whether a force that comes on to the deck or leaves it makes a mode's force jump.
-bool has_free_end(const ModalDeck& deck) {
-  constexpr double rounding = 1e-6;
-  for (const double x : {0.0, deck.length()}) {
-    if ((deck.shape_at(x).abs() > rounding * deck.largest_shape).head(deck.dynamic_modes).any()) return true;
-  }
-  return false;
-}
-
 class Passage {
  public:
   Passage(const ModalDeck& deck, double speed) : deck_(deck), speed_(speed), modes_(deck.dynamic_modes) {

@@ -162,16 +162,20 @@ class TrainNewton {
     ws.inverse.resize(index(groups));
     ws.compliance.resize(index(groups));
     ws.group.resize(index(groups));
+    ws.tangent_error.resize(index(groups), 1.0);
     const bool known = forces == InitialForces::known;
     if (!known) assemble_compliances(problem, ws);
     ws.to_invert.clear();
     for (int g = 0; g < groups; ++g) {
       GroupNewton& n = ws.group[index(g)];
-      n = {.moved = !known, .new_tangent = fresh || n.new_tangent};
+      n = {.moved = !known, .new_tangent = fresh || n.new_tangent, .extrapolated = known ? n.extrapolated : 0.0};
       if (!n.new_tangent && !known) ws.to_invert.push_back(g);
     }
     invert(problem, ws.to_invert, ws);
-    if (forces == InitialForces::estimated) predict(ws.to_invert);
+    if (forces == InitialForces::estimated) {
+      predict(ws.to_invert);
+      ws.trend.add_to(s_.displacement, problem.velocity_rate[0]);
+    }
   }
 
   NewtonReport solve() {
@@ -225,6 +229,7 @@ class TrainNewton {
   }
 
   void evaluate_group(int g) {
+    ws_.group[index(g)].extrapolated = 0.0;
     const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
     report_.counts += evaluate(train_, problem_, searches ? Pairs::searched : Pairs::kept, wheelsets(g), s_, ws_);
   }
@@ -234,6 +239,7 @@ class TrainNewton {
   // and Morrison's formula.
   void learn(int g) {
     constexpr double nearly_singular = 0.1;
+    constexpr double kept_error = 0.7;    // of the last estimate, at least
     constexpr double least_change = 1.0;  // N, N m: well above the rounding of forces, from which nothing is learnt
     if (problem_.wheelsets_per_group > 1) return;
     Matrix12& tangent = ws_.tangent[index(g)];
@@ -242,7 +248,10 @@ class TrainNewton {
     const double square = weighted.dot(move);
     const Vector12 change = part_of(s_.force, g) - part_of(ws_.start_force, g);
     if (!(square > 0.0) || change.cwiseAbs().maxCoeff() < least_change) return;
-    const Vector12 unexplained = change - tangent * move;
+    const Vector12 explained = tangent * move;
+    const Vector12 unexplained = change - explained;
+    double& error = ws_.tangent_error[index(g)];
+    error = std::max(unexplained.cwiseAbs().maxCoeff() / explained.cwiseAbs().maxCoeff(), kept_error * error);
     Eigen::Map<Matrix12> inverse(ws_.inverse[index(g)].data());
     const Vector12 v = weighted / square;
     const Vector12 responded = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()) * unexplained;
@@ -268,9 +277,11 @@ class TrainNewton {
       differentiate(train_, problem_, wheelsets(g), s_, ws_);
       ws_.to_invert.push_back(g);
       n.new_tangent = false;
+      ws_.tangent_error[index(g)] = 1.0;
     } else if (n.moved && n.previous < std::numeric_limits<double>::infinity()) {
       learn(g);
     }
+    if (n.extrapolated > 0.0) return;
     n.gains = size < 0.5 * n.previous;
     n.previous = size;
     n.part = 1.0;
@@ -294,7 +305,9 @@ class TrainNewton {
     correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
-    if (change < first_order_ && force_change(ws_, wheelsets(g)) < limits_.force_tolerance) return true;
+    const double of_forces = force_change(ws_, wheelsets(g));
+    if (change < first_order_ && of_forces < limits_.force_tolerance) return true;
+    if (extrapolates(g, of_forces)) return false;
     // A correction so small ends the iteration, and is made: the forces then are those of a far smaller one.
     n.last = change < limits_.tolerance || (!n.gains && change < limits_.rounding);
     if (n.last && !moved) return true;
@@ -304,6 +317,43 @@ class TrainNewton {
     displacement += correction;
     n.moved = true;
     return false;
+  }
+
+  // Makes a small correction by the tangent, of the forces too. The estimate of its error grows with every step that
+  // does so, and an evaluation follows in the end.
+  bool extrapolates(int g, double of_forces) {
+    constexpr double most = 20.0, accepted_error = 0.5;  // of the force tolerance
+    constexpr double growth = 1.2;
+    if (problem_.start || problem_.wheelsets_per_group > 1 || !ws_.found.empty()) return false;
+    GroupNewton& n = ws_.group[index(g)];
+    double& error = ws_.tangent_error[index(g)];
+    const double sum = n.extrapolated + of_forces;
+    if (sum >= most * limits_.force_tolerance || error * sum >= accepted_error * limits_.force_tolerance ||
+        largest_approach(g) > first_order_) {
+      return false;
+    }
+    if (n.extrapolated == 0.0) error *= growth;
+    n.extrapolated = sum;
+    const Vector12 change = ws_.tangent[index(g)] * part_of(ws_.correction, g);
+    part_of(s_.displacement, g) += part_of(ws_.correction, g);
+    part_of(s_.force, g) += change;
+    part_of(s_.end_force, g) += change;
+    return true;
+  }
+
+  // How much closer a correction brings wheel and rail at most [m]. Up to first_order_, a patch that it makes bears no
+  // more than the force tolerance.
+  [[nodiscard]] double largest_approach(int g) const {
+    const auto c = ws_.correction.segment<wheelset_unknowns>(wheelset_unknowns * g);
+    const WheelRailPair& pair = train_[g].geometry->pair();
+    double largest = 0.0;
+    for (int side = 0; side < 2; ++side) {
+      const int r = 6 + 3 * side;
+      const double across = side == 0 ? -pair.tape_circle_offset() : pair.tape_circle_offset();
+      const double y = c[1] - pair.nominal_radius() * c[3] - c[r], z = c[2] + across * c[3] - c[r + 1];
+      largest = std::max(largest, std::hypot(y, z));
+    }
+    return largest;
   }
 
   const TrainContact& train_;
@@ -317,6 +367,24 @@ class TrainNewton {
 };
 
 }  // namespace
+
+void CorrectionTrend::add_to(Eigen::VectorXd& displacement, double velocity_rate) {
+  if (velocity_rate != velocity_rate_) known_ = 0;
+  velocity_rate_ = velocity_rate;
+  estimate_ = displacement;
+  if (known_ < 2) return;
+  for (Eigen::Index k = 0; k < displacement.size(); k += wheelset_unknowns) {
+    const auto last = last_.segment<wheelset_unknowns>(k);
+    const auto before = before_last_.segment<wheelset_unknowns>(k);
+    if ((last - before).squaredNorm() < last.squaredNorm()) displacement.segment<wheelset_unknowns>(k) += last;
+  }
+}
+
+void CorrectionTrend::learn(const Eigen::VectorXd& displacement) {
+  before_last_.swap(last_);
+  last_ = displacement - estimate_;
+  known_ = std::min(known_ + 1, 2);
+}
 
 void contact_residual(const ContactProblem& problem, const ContactSolution& s, Eigen::VectorXd& r) {
   r = problem.free - s.displacement;

@@ -93,6 +93,23 @@ struct NewtonLimits {
   double rounding = 0.0;
 };
 
+/// What Newton's method adds to the estimated displacements of a step. It is nearly the same as in the step before,
+/// since the track passes smoothly under the wheels.
+class CorrectionTrend {
+ public:
+  void forget() noexcept { known_ = 0; }
+  /// Adds the correction of the step before to the estimate, for each wheelset that this would have helped then.
+  /// @param velocity_rate of the step; where that has changed, the step has another length and other corrections
+  void add_to(Eigen::VectorXd& displacement, double velocity_rate);
+  /// @param displacement the solution of the step that add_to() was called for
+  void learn(const Eigen::VectorXd& displacement);
+
+ private:
+  int known_ = 0;  ///< corrections of steps before, up to two
+  double velocity_rate_ = 0.0;
+  Eigen::VectorXd estimate_, last_, before_last_;
+};
+
 /// Where the iteration of one group of wheelsets is.
 struct GroupNewton {
   bool moved = true;                                                  ///< since its forces were computed
@@ -103,6 +120,8 @@ struct GroupNewton {
   double previous = std::numeric_limits<double>::infinity();  ///< largest residual before the last correction [m, rad]
   double part = 1.0;                                          ///< of the last correction that is made
   int evaluations = 0;
+  /// Change of the forces by the tangent since they were computed, a sum of amounts [N, N m].
+  double extrapolated = 0.0;
 };
 
 /// What a solution's forces are when its iteration begins.
@@ -115,7 +134,11 @@ enum class InitialForces {
 /// Tangents and inverses, reused from step to step so that Newton allocates nothing.
 struct NewtonWorkspace {
   /// The next solution makes its tangents anew: nothing then depends on earlier ones.
-  void forget_tangents() { inverse.clear(); }
+  void forget_tangents() {
+    inverse.clear();
+    tangent_error.clear();
+    trend.forget();
+  }
 
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
   std::vector<Matrix12> tangent;            ///< per wheelset, df/dq
@@ -125,7 +148,9 @@ struct NewtonWorkspace {
   std::vector<int> to_invert;  ///< groups whose inverse is to be made
   Eigen::VectorXd residual, correction;
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
-  std::vector<ContactPatches> found;   ///< per wheel, by the last search, and where: of the published method only
+  std::vector<double> tangent_error;   ///< per group, estimate: of a change of forces by the tangent, relative
+  CorrectionTrend trend;
+  std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
 };
 
@@ -146,7 +171,11 @@ NewtonReport evaluate_contact(const TrainContact& train, const ContactProblem& p
 /// Each group keeps its tangent while it halves the residual per iteration, from one step to the next too: a tangent
 /// costs five evaluations of the forces. Where a group is one wheelset, the tangent learns from every correction what
 /// that has changed the forces by [Broyden1965]. Without inverses in the workspace it is made first of all. A group
-/// that has converged rests while others iterate, unless its neighbours disturb it. The published method's pairs jump
+/// that has converged rests while others iterate, unless its neighbours disturb it. A correction that changes forces
+/// little is made by the tangent alone, without a further evaluation, if its error is less than half the force
+/// tolerance by the errors that the tangent has shown in the last evaluations. What else the solution holds of the
+/// contacts, such as the patches' normal forces, then belongs to a displacement at which forces differ by at most 20
+/// tolerances. The published method's pairs jump
 /// as a wheel moves: they are searched in the first evaluations and then held, each moving with its bodies' particles,
 /// so that Newton ends on forces that are smooth. Converged: the residual is below the tolerance or the next correction
 /// below one of the limits; the forces are those at the displacement.

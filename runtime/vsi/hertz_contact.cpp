@@ -147,6 +147,7 @@ class HertzContacts : public ContactLaw {
       }
       update(hht, prediction_[index(v)], increment, motion);
     }
+    newton_.trend.learn(ws.solution.displacement);
     ws.solution.step_load = state.contact.step_load;
     close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
     std::swap(state.contact, ws.solution);

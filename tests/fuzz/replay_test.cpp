@@ -70,6 +70,14 @@ TEST_P(FuzzedReader, AcceptsOrRefuses) {
   EXPECT_GT(refused, runs() / 10);
 }
 
+/// docs/validation/fuzzing.csv has a row of every reader: tests/fuzz/run SECONDS READER adds one.
+TEST(FuzzingRecord, NamesEveryReader) {
+  const std::string record = contents(RAILTAB_SOURCE_DIR "/docs/validation/fuzzing.csv");
+  for (const Reader& reader : readers()) {
+    EXPECT_NE(record.find("\n" + reader.name + ","), std::string::npos) << reader.name;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, FuzzedReader, ::testing::ValuesIn(readers()),
                          [](const auto& value) { return value.param.name; });
 

@@ -251,6 +251,8 @@ TEST(TrainPassage, AForceComesOnToAFreeEnd) {
   deck.point_shape = Eigen::MatrixXd::Constant(2, 1, 1.0 / std::sqrt(M));
   deck.points_on_line = 2;
   deck.largest_shape = Eigen::ArrayXd::Constant(1, 1.0 / std::sqrt(M));
+  EXPECT_TRUE(has_free_end(deck));
+  EXPECT_FALSE(has_free_end(simply_supported_deck(span())));
   AxleTrain axle;
   axle.behind = {0.0};
   axle.load = {100e3};

@@ -1,13 +1,17 @@
-// What the division of steps at impacts costs where there are none: a train on ordinary rough track.
+// A train on ordinary rough track: what the division of steps at impacts costs where there are none, and what forces
+// that follow the tangent without an evaluation differ by.
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "../measured.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
+#include "recorded_steps.hpp"
 
 namespace railtab {
 namespace {
@@ -17,9 +21,9 @@ struct RoughRun {
   double largest_Q = 0.0;  // [N]
 };
 
-TEST(RoughTrack, StepsAreDividedForImpactsOnly) {
+SceneParameters rough_track(int coaches) {
   SceneParameters scene;
-  scene.train.count = 8;
+  scene.train.count = coaches;
   scene.train.speed = 200.0 / 3.6;
   scene.contact.mode = ContactMode::online;
   scene.track.length_before = 240.0;
@@ -30,6 +34,11 @@ TEST(RoughTrack, StepsAreDividedForImpactsOnly) {
   scene.spectrum->fade_in = 0.0;
   scene.integration.time_step = 1e-3;
   scene.integration.duration = 0.3;
+  return scene;
+}
+
+TEST(RoughTrack, StepsAreDividedForImpactsOnly) {
+  SceneParameters scene = rough_track(8);
   const auto run = [&](std::optional<ContactForceRule> rule) {
     scene.integration.contact_force = rule;
     VsiModel model = build_model(scene);
@@ -50,6 +59,47 @@ TEST(RoughTrack, StepsAreDividedForImpactsOnly) {
   EXPECT_LT(iterations, 1.15);
   EXPECT_LT(solutions, 1.15);
   EXPECT_NEAR(automatic.largest_Q, endpoint.largest_Q, 2e-3 * endpoint.largest_Q);
+}
+
+/// Forces at the default tolerance, where small corrections are made by the tangent alone, against converged ones.
+TEST(RoughTrack, ForcesByTheTangentKeepTheTolerance) {
+  SceneParameters scene = rough_track(2);
+  scene.output.every = 1;
+  const std::vector<StepRecord> steps = testing::recorded_steps(scene);
+  scene.integration.tolerance = 1e-9;
+  const std::vector<StepRecord> converged = testing::recorded_steps(scene);
+  ASSERT_EQ(steps.size(), converged.size());
+  const std::size_t wheels = steps.front().wheels.size();
+  double load = 0.0, largest = 0.0, squares = 0.0;
+  for (const WheelRecord& wheel : steps.front().wheels) load += wheel.Q / static_cast<double>(wheels);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    for (std::size_t w = 0; w < wheels; ++w) {
+      const WheelRecord &a = steps[i].wheels[w], &b = converged[i].wheels[w];
+      const double difference = std::hypot(a.Q - b.Q, a.Y - b.Y) / (1e-4 * load);
+      largest = std::max(largest, difference);
+      squares += difference * difference;
+    }
+  }
+  const double rms = std::sqrt(squares / static_cast<double>(steps.size() * wheels));
+  std::printf("forces against converged ones, in tolerances: rms %.2f, largest %.2f\n", rms, largest);
+  testing::measured("rough.tangent.rms", rms);
+  testing::measured("rough.tangent.largest", largest);
+  EXPECT_LT(rms, 1.0);
+  EXPECT_LT(largest, 6.0);
+}
+
+/// Evaluations of the contact per wheel and step, pre-roll apart.
+TEST(RoughTrack, OneEvaluationIsMostlyEnough) {
+  SceneParameters scene = rough_track(2);
+  const auto queries = [&](double duration) {
+    scene.integration.duration = duration;
+    return static_cast<double>(run_scene(scene, {}).contact_queries);
+  };
+  const double steps = 0.3 / scene.integration.time_step, wheels = 16.0;
+  const double evaluations = (queries(0.6) - queries(0.3)) / (steps * wheels);
+  std::printf("%.2f evaluations per wheel and step\n", evaluations);
+  testing::measured("rough.evaluations", evaluations);
+  EXPECT_LT(evaluations, 1.8);
 }
 
 }  // namespace

@@ -188,6 +188,14 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
   report.notes.emplace_back(
       "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
       "accelerations by the modes up to the cut-off frequency of each deck.");
+  for (const assess::DeckAssessment& deck : assessment.decks) {
+    if (!has_free_end(deck.deck)) continue;
+    report.notes.push_back(fmt::format(
+        "An end of deck {} is free to move: an axle load that comes on accelerates it at once, while rails, "
+        "sleepers and ballast would spread the load. The acceleration there is overestimated; runs with "
+        "contact have the track.",
+        deck.deck.name));
+  }
 }
 
 /// Speeds of a train's runs: those asked for, or the line's and the critical one below it.
