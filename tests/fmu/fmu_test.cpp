@@ -1,0 +1,124 @@
+// An FMU of the demo's track and bridge against the run that its wheel loads come from: driven by the importer in
+// importer.py, which shares no code with railtab.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../measured.hpp"
+#include "../robustness/vsi_fixture.hpp"
+#include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
+#include "railtab/runtime/vsi/simulation.hpp"
+
+namespace railtab {
+namespace {
+
+// docs/examples/demo.toml with contacts that need no table, and forces at the ends of undivided steps.
+std::string demo_scene() {
+  const std::string examples = RAILTAB_SOURCE_DIR "/docs/examples/";
+  std::ifstream in(examples + "demo.toml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    const std::size_t place = text.find(what);
+    ASSERT_NE(place, std::string::npos) << what;
+    text.replace(place, what.size(), by);
+  };
+  replace("mode = \"table\"\ntable = ", "mode = \"online\"  # ");
+  replace("demo_irregularity.csv", examples + "demo_irregularity.csv");
+  replace("[integration]\n", "[integration]\ncontact_force = \"endpoint\"\n");
+  return text;
+}
+
+// Loads and motions of a state, by the names of the FMU's variables.
+class Record {
+ public:
+  Record(const VsiModel& model, const std::filesystem::path& file) : model_(model), out_(file, std::ios::binary) {}
+
+  void add(const VsiState& state) {
+    row_.clear();
+    const std::vector<RailContact> contacts = place_wheels(model_, state.time);
+    for (int wheel = 0; wheel < 2 * model_.wheelsets(); ++wheel) {
+      const std::string wheelset = "wheelset[" + std::to_string(wheel / 2 + 1) + "]";
+      if (wheel % 2 == 0) value(wheelset + ".x", model_.wheelset_x(wheel / 2, state.time));
+      const std::string name = wheelset + (wheel % 2 == 0 ? ".left." : ".right.");
+      const Eigen::Vector3d load = state.contact.end_force.segment<3>(rail_unknown(wheel));
+      const RailContact& contact = contacts[static_cast<std::size_t>(wheel)];
+      const LinearMotion& motion = state.structure;
+      values(name, {"Y", "Q", "Mx"}, load);
+      values(name + "rail_", {"y", "z", "roll"}, rail_head(contact, motion.displacement));
+      values(name + "rail_", {"y_rate", "z_rate", "roll_rate"}, rail_head(contact, motion.velocity));
+      values(name + "rail_", {"yaw", "pitch"}, rail_slopes(contact, motion.displacement));
+    }
+    StepRecord record;
+    fill_record(model_, state, record);
+    for (std::size_t n = 0; n < record.nodes.size(); ++n) {
+      const std::string name = "node[" + std::to_string(n + 1) + "].";
+      value(name + "y", record.nodes[n].displacement[1]);
+      value(name + "z", record.nodes[n].displacement[2]);
+      value(name + "y_acceleration", record.nodes[n].acceleration[1]);
+      value(name + "z_acceleration", record.nodes[n].acceleration[2]);
+    }
+    if (!named_) out_ << names_ << '\n';
+    named_ = true;
+    out_.write(reinterpret_cast<const char*>(row_.data()), static_cast<std::streamsize>(row_.size() * sizeof(double)));
+  }
+
+ private:
+  void value(const std::string& name, double number) {
+    if (!named_) names_ += (names_.empty() ? "" : " ") + name;
+    row_.push_back(number);
+  }
+  void values(const std::string& prefix, const std::vector<const char*>& names, const Eigen::VectorXd& numbers) {
+    for (std::size_t i = 0; i < names.size(); ++i) value(prefix + names[i], numbers[static_cast<Eigen::Index>(i)]);
+  }
+
+  const VsiModel& model_;
+  std::ofstream out_;
+  std::string names_;
+  bool named_ = false;
+  std::vector<double> row_;
+};
+
+using FmuOfTheDemo = VsiCommand;
+
+// The run starts where an FMU does, from the static equilibrium under the loads of the wheels, without pre-roll.
+TEST_F(FmuOfTheDemo, ReproducesTheRailMotionsOfTheRun) {
+  write("demo.toml", demo_scene());
+  const SceneParameters scene = read_scene(folder_ / "demo.toml");
+  const VsiModel model = build_model(scene);
+  VsiState state(model);
+  ASSERT_TRUE(static_equilibrium(model, state).converged);
+  Record record(model, folder_ / "record");
+  RunObserver observer;
+  observer.state = [&](const VsiState& at) { record.add(at); };
+  const RunSummary summary = simulate(model, scene.integration, run_duration(scene, model), 1, state, observer);
+  ASSERT_TRUE(summary.complete) << summary.message;
+  ASSERT_EQ(summary.halved_steps + summary.impact_steps, 0) << "steps are undivided";
+
+  ASSERT_EQ(vsi("fmu demo.toml -o track.fmu -q").exit_code, 0);
+  const Outcome compared = run("PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 " RAILTAB_SOURCE_DIR
+                               "/tests/fmu/compare_run.py track.fmu record");
+  ASSERT_EQ(compared.exit_code, 0) << compared.output;
+  std::istringstream lines(compared.output);
+  std::string kind;
+  double difference = 0.0, amount = 0.0;
+  std::map<std::string, double> differences;
+  while (lines >> kind >> difference >> amount) {
+    EXPECT_GT(amount, 0.0) << kind;
+    differences[kind] = difference;
+  }
+  ASSERT_EQ(differences.size(), 12u) << compared.output;
+  for (const auto& [of, relative] : differences) {
+    std::printf("%s: %.2g\n", of.c_str(), relative);
+    EXPECT_LT(relative, 1e-6) << of;
+  }
+}
+
+}  // namespace
+}  // namespace railtab
