@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -41,16 +42,20 @@ class Reader {
   Reader(std::string_view bytes, std::string_view place) : bytes_(bytes), place_(place) {}
   template <class Number>
   void values(Number* data, std::size_t count) {
-    if (bytes_.size() / sizeof(Number) < count) fail();
-    std::memcpy(data, bytes_.data(), count * sizeof(Number));
+    require(count, sizeof(Number));
+    if (count > 0) std::memcpy(data, bytes_.data(), count * sizeof(Number));
     bytes_.remove_prefix(count * sizeof(Number));
+  }
+  /// @throws InputError where so many entries of `bytes` each are more than what is left
+  void require(std::uint64_t count, std::size_t bytes) const {
+    if (count > bytes_.size() / bytes) fail();
   }
   /// Every entry of a list takes a byte or more.
   template <class List>
   void size(List& list) {
     std::uint64_t count = 0;
     values(&count, 1);
-    if (count > bytes_.size()) fail();
+    require(count, 1);
     list.resize(count);
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
@@ -83,24 +88,36 @@ void exchange_matrix(Writer& archive, Eigen::SparseMatrix<double>& matrix) {
   archive.values(matrix.valuePtr(), static_cast<std::size_t>(matrix.nonZeros()));
 }
 
+// Whether rows increase within every column.
+bool are_columns(const std::vector<int>& begin, const std::vector<int>& row) {
+  const auto rows = static_cast<int>(begin.size()) - 1;
+  if (begin.front() != 0 || begin.back() != static_cast<int>(row.size())) return false;
+  for (std::size_t j = 0; j + 1 < begin.size(); ++j) {
+    if (begin[j + 1] < begin[j]) return false;
+  }
+  for (std::size_t j = 0; j + 1 < begin.size(); ++j) {
+    int before = -1;
+    for (auto p = static_cast<std::size_t>(begin[j]); p < static_cast<std::size_t>(begin[j + 1]); ++p) {
+      if (row[p] <= before || row[p] >= rows) return false;
+      before = row[p];
+    }
+  }
+  return true;
+}
+
 void exchange_matrix(Reader& archive, Eigen::SparseMatrix<double>& matrix) {
   std::int64_t extent[2] = {};
   archive.values(extent, 2);
   const auto [rows, nonzeros] = extent;
-  constexpr std::int64_t most = std::int64_t{1} << 31;
-  if (rows < 0 || nonzeros < 0 || rows >= most || nonzeros >= most) archive.fail();
+  if (rows < 0 || nonzeros < 0) archive.fail();
+  archive.require(static_cast<std::uint64_t>(rows) + 1, sizeof(int));
+  archive.require(static_cast<std::uint64_t>(nonzeros), sizeof(double));
   std::vector<int> begin(static_cast<std::size_t>(rows + 1)), row(static_cast<std::size_t>(nonzeros));
   std::vector<double> value(static_cast<std::size_t>(nonzeros));
   archive.values(begin.data(), begin.size());
   archive.values(row.data(), row.size());
   archive.values(value.data(), value.size());
-  if (begin.front() != 0 || begin.back() != nonzeros) archive.fail();
-  for (std::size_t j = 0; j + 1 < begin.size(); ++j) {
-    if (begin[j + 1] < begin[j]) archive.fail();
-  }
-  for (int i : row) {
-    if (i < 0 || i >= rows) archive.fail();
-  }
+  if (!are_columns(begin, row)) archive.fail();
   matrix = Eigen::Map<const Eigen::SparseMatrix<double>>(rows, rows, nonzeros, begin.data(), row.data(), value.data());
 }
 
@@ -135,14 +152,24 @@ bool are_dofs(const DofIndices& dofs, int count) {
   return true;
 }
 
-// Whether indices and counts of what was read fit each other.
+bool increases(const std::vector<double>& x) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || (i > 0 && x[i] <= x[i - 1])) return false;
+  }
+  return true;
+}
+
+// Whether indices and counts of what was read fit each other, and it can be stepped.
 bool is_consistent(const DrivenTrack& track) {
   const StructureModel& s = track.structure;
   const int n = s.dofs();
+  constexpr double smallest_alpha = -1.0 / 3.0;
   bool fits = n > 0 && s.damping.rows() == n && s.stiffness.rows() == n && !track.wheelset_x.empty() &&
-              (s.dof_x.empty() || s.dof_x.size() == static_cast<std::size_t>(n)) && s.dof_line.size() == s.dof_x.size();
+              (s.dof_x.empty() || s.dof_x.size() == static_cast<std::size_t>(n)) &&
+              s.dof_line.size() == s.dof_x.size() && track.scheme.time_step > 0.0 &&
+              track.scheme.alpha >= smallest_alpha && track.scheme.alpha <= 0.0;
   for (const RailLine& rail : s.rail) {
-    fits = fits && rail.x.size() >= 2 && rail.dof.size() == rail.x.size();
+    fits = fits && rail.x.size() >= 2 && rail.dof.size() == rail.x.size() && increases(rail.x);
     for (const DofIndices& dofs : rail.dof) fits = fits && are_dofs(dofs, n);
   }
   for (const StructureNode& node : s.nodes) fits = fits && are_dofs(node.dof, n);

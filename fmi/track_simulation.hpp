@@ -26,6 +26,7 @@ class TrackSimulation {
 
   [[nodiscard]] const std::vector<TrackVariable>& variables() const noexcept { return variables_; }
   [[nodiscard]] std::size_t inputs() const noexcept { return state_.input.size(); }
+  [[nodiscard]] double time_step() const noexcept { return track_.scheme.time_step; }  ///< [s]
   [[nodiscard]] double time() const noexcept {
     return state_.begin + static_cast<double>(state_.steps) * track_.scheme.time_step;
   }
