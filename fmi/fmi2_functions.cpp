@@ -172,11 +172,11 @@ void do_step(Instance& instance, double time, double step) {
   constexpr double rounding = 1e-3;  // of a step, by an importer that sums up steps
   require_phase(instance, {Phase::stepping});
   const double now = instance.track.time();
-  if (!(std::abs(time - now) <= rounding * std::abs(step))) {
+  if (!(std::abs(time - now) <= rounding * instance.track.time_step())) {
     throw input_error("currentCommunicationPoint", fmt::format("{} s", time),
                       fmt::format("{} s, the end of the last step", now));
   }
-  if (instance.stop && time + step > *instance.stop + rounding * step) {
+  if (instance.stop && time + step > *instance.stop + rounding * instance.track.time_step()) {
     throw input_error("communicationStepSize", fmt::format("a step to {} s", time + step),
                       fmt::format("none beyond the stop time, {} s", *instance.stop));
   }

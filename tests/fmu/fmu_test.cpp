@@ -1,4 +1,4 @@
-// An FMU of the demo's track and bridge against the run that its wheel loads come from: driven by the importer in
+// FMUs of track and bridge against the runs that their wheel loads come from: driven by the importer in
 // importer.py, which shares no code with railtab.
 
 #include <gtest/gtest.h>
@@ -88,8 +88,30 @@ class Record {
   std::vector<double> row_;
 };
 
-class FmuOfTheDemo : public VsiCommand {
+class FmuAgainstRun : public VsiCommand {
  protected:
+  // Runs scene.toml and writes its FMU, track.fmu, and two records: with wheelsets where the steps put them (by_step),
+  // and where they are at the times of the records (by_time).
+  void record_run() const {
+    const SceneParameters scene = read_scene(folder_ / "scene.toml");
+    const VsiModel model = build_model(scene);
+    VsiState state(model);
+    ASSERT_TRUE(static_equilibrium(model, state).converged);
+    const double time_step = scene.integration.time_step;
+    double before = -time_step;
+    Record by_time(model, folder_ / "by_time"), by_step(model, folder_ / "by_step");
+    RunObserver observer;
+    observer.state = [&](const VsiState& at) {
+      by_time.add(at, at.time);
+      by_step.add(at, before + time_step);
+      before = at.time;
+    };
+    const RunSummary summary = simulate(model, scene.integration, run_duration(scene, model), 1, state, observer);
+    ASSERT_TRUE(summary.complete) << summary.message;
+    ASSERT_EQ(summary.halved_steps + summary.impact_steps, 0) << "steps are undivided";
+    ASSERT_EQ(vsi("fmu scene.toml -o track.fmu -q").exit_code, 0);
+  }
+
   // Differences of a record from the FMU that it drives, relative to the largest amounts, by kinds of outputs.
   [[nodiscard]] std::map<std::string, double> differences(const std::string& record) const {
     const Outcome compared =
@@ -119,28 +141,9 @@ double largest(const std::map<std::string, double>& differences) {
 }
 
 // The run starts where an FMU does, from the static equilibrium under the loads of the wheels, without pre-roll.
-TEST_F(FmuOfTheDemo, ReproducesTheMotionsOfTheRun) {
-  write("demo.toml", demo_scene());
-  const SceneParameters scene = read_scene(folder_ / "demo.toml");
-  const VsiModel model = build_model(scene);
-  VsiState state(model);
-  ASSERT_TRUE(static_equilibrium(model, state).converged);
-  const double time_step = scene.integration.time_step;
-  double before = -time_step;
-  {
-    Record by_time(model, folder_ / "by_time"), by_step(model, folder_ / "by_step");
-    RunObserver observer;
-    observer.state = [&](const VsiState& at) {
-      by_time.add(at, at.time);
-      by_step.add(at, before + time_step);
-      before = at.time;
-    };
-    const RunSummary summary = simulate(model, scene.integration, run_duration(scene, model), 1, state, observer);
-    ASSERT_TRUE(summary.complete) << summary.message;
-    ASSERT_EQ(summary.halved_steps + summary.impact_steps, 0) << "steps are undivided";
-  }
-  ASSERT_EQ(vsi("fmu demo.toml -o track.fmu -q").exit_code, 0);
-
+TEST_F(FmuAgainstRun, ReproducesTheMotionsOfTheDemo) {
+  write("scene.toml", demo_scene());
+  record_run();
   // The FMU's step is that of the run. Rounding is what is left: compilers may contract products and sums of the same
   // formula in other ways, an ulp per operation that 4000 steps do not enlarge.
   const double of_steps = largest(differences("by_step"));
@@ -151,6 +154,22 @@ TEST_F(FmuOfTheDemo, ReproducesTheMotionsOfTheRun) {
   const double of_times = largest(differences("by_time"));
   EXPECT_LT(of_times, 1e-9);
   testing::measured("fmu.by_time", of_times);
+}
+
+// An imported bridge: its matrices are not factored in sections.
+TEST_F(FmuAgainstRun, ReproducesTheMotionsOfABridgeByItsModes) {
+  const std::string head =
+      "[train]\nvehicle = \"manchester-coach\"\nstart = -1.0\n[contact]\nmode = \"online\"\n"
+      "[track]\nkind = \"flexible\"\nlength_before = 30\nlength_after = 10\n";
+  write("beam.toml", head + "[[bridge]]\nlength = 16\nelements = 8\n");
+  const Outcome modes = vsi("structure beam.toml --modes 6 -o few");
+  ASSERT_EQ(modes.exit_code, 0) << modes.output;
+  const std::size_t place = modes.output.find("[structure]");
+  ASSERT_NE(place, std::string::npos) << modes.output;
+  write("scene.toml", head + modes.output.substr(place) +
+                          "[integration]\ntime_step = 1e-3\nduration = 0.3\ncontact_force = \"endpoint\"\n");
+  record_run();
+  EXPECT_LT(largest(differences("by_step")), 1e-12);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
     moving_loads.py TRACK.fmu [SPEED in m/s]
 """
+import atexit
 import ctypes
 import sys
 import tempfile
@@ -55,33 +56,47 @@ class Slave:
     def get(self, names):
         return self.exchange("GetReal", names, [0.0] * len(names))
 
+    def begin(self, inputs):
+        """At time 0 in the static equilibrium under the inputs."""
+        zero, false = ctypes.c_double(0.0), ctypes.c_int(0)
+        self.call("SetupExperiment", false, zero, zero, false, zero)
+        self.call("EnterInitializationMode")
+        self.set(inputs)
+        self.call("ExitInitializationMode")
+
+    def step(self, time):
+        """From `time` on, with the inputs as values at the end of the step."""
+        self.call("DoStep", ctypes.c_double(time), ctypes.c_double(self.time_step), ctypes.c_int(0))
+
+    def free(self):
+        self.library.fmi2FreeInstance(self.component)
+
+
+def unpacked(fmu):
+    """The folder with the content of an FMU, which stays until the program ends."""
+    folder = tempfile.TemporaryDirectory()
+    atexit.register(folder.cleanup)
+    zipfile.ZipFile(fmu).extractall(folder.name)
+    return Path(folder.name)
+
 
 def main():
     speed = float(sys.argv[2]) if len(sys.argv) > 2 else 200 / 3.6
-    with tempfile.TemporaryDirectory() as name:
-        zipfile.ZipFile(sys.argv[1]).extractall(name)
-        track = Slave(Path(name))
-    places = {name: x for name, x in track.start.items() if name.endswith(".x")}
+    track = Slave(unpacked(sys.argv[1]))
+    start = {name: x for name, x in track.start.items() if name.endswith(".x")}
     decks = [name for name in track.decks if name.endswith(".z")]
     rails = [name for name in track.reference if name.endswith(".rail_z")]
-
-    zero, false = ctypes.c_double(0.0), ctypes.c_int(0)
-    track.call("SetupExperiment", false, zero, zero, false, zero)
-    track.call("EnterInitializationMode")
-    track.set({name: Q for name in track.start if name.endswith(".Q")})
-    track.call("ExitInitializationMode")
-
-    step, largest_deck, largest_rail = 0, 0.0, 0.0
-    while min(places.values()) + speed * step * track.time_step < 40.0:
-        time = step * track.time_step
-        step += 1
-        # inputs are those at the end of the step
-        track.set({name: x + speed * step * track.time_step for name, x in places.items()})
-        track.call("DoStep", ctypes.c_double(time), ctypes.c_double(track.time_step), false)
+    dt = track.time_step
+    track.begin({name: Q for name in track.start if name.endswith(".Q")})
+    steps, largest_deck, largest_rail = 0, 0.0, 0.0
+    while min(start.values()) + speed * steps * dt < 40.0:
+        track.set({name: x + speed * (steps + 1) * dt for name, x in start.items()})
+        track.step(steps * dt)
+        steps += 1
         largest_deck = max(largest_deck, *track.get(decks))
         largest_rail = max(largest_rail, *track.get(rails))
-    print(f"{step} steps: deck {1e3 * largest_deck:.2f} mm, rail under a wheel {1e3 * largest_rail:.2f} mm")
-    track.library.fmi2FreeInstance(track.component)
+    print(f"{steps} steps: deck {1e3 * largest_deck:.2f} mm, rail under a wheel {1e3 * largest_rail:.2f} mm")
+    track.free()
 
 
 if __name__ == "__main__":
