@@ -127,7 +127,8 @@ std::vector<double> packed(const TrackState& state) {
 TrackState unpacked(const std::vector<double>& numbers, const TrackState& like) {
   TrackState state = like;
   const std::size_t expected = packed(like).size();
-  if (numbers.size() != expected) {
+  constexpr double most_steps = 1e15;
+  if (numbers.size() != expected || !(numbers[0] >= 0.0 && numbers[0] < most_steps)) {
     throw input_error("serialized state", fmt::format("{} numbers", numbers.size()),
                       fmt::format("{}, a state of this FMU", expected));
   }

@@ -60,9 +60,10 @@ class TrackSimulation {
   std::vector<RailLoad> loads_;  ///< of state_.applied
 };
 
-/// A state as bytes, and back. @param like a state of the same track
+/// A state as numbers.
 [[nodiscard]] std::vector<double> packed(const TrackState& state);
-/// @throws InputError where the count is not that of `like`
+/// The inverse. @param like a state of the same track
+/// @throws InputError where the count is not that of `like`, or the first number none of steps
 [[nodiscard]] TrackState unpacked(const std::vector<double>& numbers, const TrackState& like);
 
 }  // namespace railtab::fmi

@@ -231,6 +231,10 @@ def archive(vsi, folder):
         assert b"Apache License" in content.read("documentation/licenses/LICENSE")
         assert all(entry.date_time == (1980, 1, 1, 0, 0, 0) for entry in content.infolist())
     assert "FMI 2.0" in run(vsi, folder, "track.fmu").stdout
+    (folder / "window.toml").write_text(SCENE + "[structure]\nreduction = \"window\"\n")
+    assert run(vsi, folder, "fmu", "window.toml", "-o", "window.fmu", "-q").returncode == 0
+    with zipfile.ZipFile(folder / "track.fmu") as whole, zipfile.ZipFile(folder / "window.fmu") as window:
+        assert whole.read("resources/track") == window.read("resources/track"), "the whole structure takes part"
     shutil.make_archive(folder / "foreign", "zip", folder, "scene.toml")
     (folder / "foreign.zip").rename(folder / "foreign.fmu")
     before = (folder / "foreign.fmu").read_bytes()
