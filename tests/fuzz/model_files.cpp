@@ -1,3 +1,9 @@
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "railtab/fmi/driven_track.hpp"
+#include "railtab/fmi/track_simulation.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/fe/abaqus_files.hpp"
 #include "railtab/runtime/fe/fe_files.hpp"
@@ -6,6 +12,7 @@
 #include "railtab/runtime/structure/imported_bridge.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/vehicle_file.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
@@ -115,6 +122,28 @@ void read_vehicle_toml(const Path& file) {
   const VehicleModel vehicle = build_vehicle(data, data.motion);
   static_cast<void>(closing_checks(data));
   for (const VehicleMode& mode : natural_modes(vehicle, 3)) require_finite({mode.frequency, mode.damping}, "a mode");
+}
+
+void read_fmu_track(const Path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  fmi::DrivenTrack track = fmi::track_of_bytes(bytes, file.string());
+  constexpr int small = 2000;
+  if (track.structure.dofs() > small) return;
+  try {
+    fmi::TrackSimulation simulation(std::move(track));
+    simulation.set(2, 6e4);
+    simulation.step(simulation.time_step());
+    static_cast<void>(simulation.value(simulation.inputs()));
+  } catch (const ComputationError&) {  // of matrices that are not positive definite
+  }
+}
+
+void write_fmu_track_seed(const Path& file) {
+  TrackParameters rails;
+  rails.length_before = rails.length_after = 2.0;
+  fmi::DrivenTrack track{"seed", {-0.05, 1e-3}, {0.5, 1.0}, build_track_bridge(rails, {})};
+  std::ofstream(file, std::ios::binary) << fmi::track_bytes(track);
 }
 
 }  // namespace railtab::fuzz

@@ -78,6 +78,7 @@ const std::vector<Reader>& readers() {
       {"vehicle_dofs", ".csv", read_vehicle_file},
       {"vehicle_stiffness", ".mtx", read_vehicle_stiffness},
       {"vehicle_file", ".toml", read_vehicle_toml},
+      {"fmu_track", "", read_fmu_track, write_fmu_track_seed},
       {"clauses", ".toml", read_clause_file},
       {"irregularity", ".csv", read_irregularity_file},
       {"load_history", ".csv", read_load_file},

@@ -51,6 +51,9 @@ void read_vehicle_file(const Path& file);
 void read_vehicle_stiffness(const Path& file);
 /// A vehicle's TOML file, its model and modes.
 void read_vehicle_toml(const Path& file);
+/// What an FMU has of a scene, and the motion of it where it is small.
+void read_fmu_track(const Path& file);
+void write_fmu_track_seed(const Path& file);
 
 // table_files.cpp: HDF5
 void read_geometry_file(const Path& file);

@@ -18,6 +18,7 @@ int study_command(const Arguments& arguments);
 int assess_command(const Arguments& arguments);
 int moving_load_command(const Arguments& arguments);
 int export_command(const Arguments& arguments);
+int fmu_command(const Arguments& arguments);
 int report_command(const Arguments& arguments);
 int structure_command(const Arguments& arguments);
 int vehicle_command(const Arguments& arguments);

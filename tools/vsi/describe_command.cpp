@@ -11,6 +11,7 @@
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "commands.hpp"
+#include "fmu_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/printable_text.hpp"
 #include "railtab/runtime/base/text_file.hpp"
@@ -84,6 +85,7 @@ Description of_toml(const std::string& file) {
     if (has_any(table, {"bridge", "structure"})) {
       d.commands.push_back(fmt::format("vsi structure {}", file));
       d.commands.push_back(fmt::format("vsi moving-load {} --speed LO:HI", file));
+      d.commands.push_back(fmt::format("vsi fmu {} -o track.fmu", file));
     }
     return d;
   }
@@ -151,6 +153,9 @@ Description of_text(const std::string& file, const std::string& first, const std
 
 Description describe(const std::string& file) {
   if (is_array_file(file)) return of_array_file(file);
+  if (fmu::is_fmu(file)) {
+    return {"track and bridges as an FMU (FMI 2.0, co-simulation)", {}, {"docs/guide/fmu.md says how to drive it"}};
+  }
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".toml") return of_toml(file);

@@ -23,6 +23,7 @@ const CommandTable& commands() {
        {"study", "PLAN.toml -o DIR", "runs over any keys, probabilities, fragility curves", study_command},
        {"report", "RESULTS.h5... -o REPORT.html", "results as one page; several: compared", report_command},
        {"export", "RESULTS.h5 [-o FILE.pvd]", "results as files for ParaView", export_command},
+       {"fmu", "SCENE.toml -o TRACK.fmu", "its track and bridges as an FMU, for other programs", fmu_command},
        {"structure", "SCENE.toml [--modes N]", "mass, extent and natural frequencies of its bridge", structure_command},
        {"moving-load", "SCENE.toml --speed LO:HI[:STEP]", "its deck under HSLM-A or other axle loads, without contact",
         moving_load_command},

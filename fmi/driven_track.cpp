@@ -1,0 +1,207 @@
+#include "railtab/fmi/driven_track.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "railtab/runtime/base/file_checksum.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/printable_text.hpp"
+#include "railtab/runtime/base/version.hpp"
+
+namespace railtab::fmi {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are stored as they are in memory");
+
+std::string mark() { return fmt::format("railtab track {}\n", version()); }
+
+class Writer {
+ public:
+  explicit Writer(std::string& bytes) : bytes_(bytes) {}
+  template <class Number>
+  void values(Number* data, std::size_t count) {
+    bytes_.append(reinterpret_cast<const char*>(data), count * sizeof(Number));
+  }
+  template <class List>
+  void size(List& list) {
+    std::uint64_t count = list.size();
+    values(&count, 1);
+  }
+
+ private:
+  std::string& bytes_;
+};
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, std::string_view place) : bytes_(bytes), place_(place) {}
+  template <class Number>
+  void values(Number* data, std::size_t count) {
+    require(count, sizeof(Number));
+    if (count > 0) std::memcpy(data, bytes_.data(), count * sizeof(Number));
+    bytes_.remove_prefix(count * sizeof(Number));
+  }
+  /// @throws InputError where so many entries of `bytes` each are more than what is left
+  void require(std::uint64_t count, std::size_t bytes) const {
+    if (count > bytes_.size() / bytes) fail();
+  }
+  /// Every entry of a list takes a byte or more.
+  template <class List>
+  void size(List& list) {
+    std::uint64_t count = 0;
+    values(&count, 1);
+    require(count, 1);
+    list.resize(count);
+  }
+  [[nodiscard]] bool at_end() const { return bytes_.empty(); }
+  [[noreturn]] void fail() const {
+    throw input_error(place_, "a file that has been changed", "resources/track as vsi fmu writes it");
+  }
+
+ private:
+  std::string_view bytes_, place_;
+};
+
+template <class Archive, class Number>
+void exchange_list(Archive& archive, std::vector<Number>& list) {
+  archive.size(list);
+  archive.values(list.data(), list.size());
+}
+
+template <class Archive>
+void exchange_text(Archive& archive, std::string& text) {
+  archive.size(text);
+  archive.values(text.data(), text.size());
+}
+
+void exchange_matrix(Writer& archive, Eigen::SparseMatrix<double>& matrix) {
+  matrix.makeCompressed();
+  std::int64_t extent[2] = {matrix.rows(), matrix.nonZeros()};
+  archive.values(extent, 2);
+  archive.values(matrix.outerIndexPtr(), static_cast<std::size_t>(matrix.outerSize() + 1));
+  archive.values(matrix.innerIndexPtr(), static_cast<std::size_t>(matrix.nonZeros()));
+  archive.values(matrix.valuePtr(), static_cast<std::size_t>(matrix.nonZeros()));
+}
+
+// Whether rows increase within every column.
+bool are_columns(const std::vector<int>& begin, const std::vector<int>& row) {
+  const auto rows = static_cast<int>(begin.size()) - 1;
+  if (begin.front() != 0 || begin.back() != static_cast<int>(row.size())) return false;
+  for (std::size_t j = 0; j + 1 < begin.size(); ++j) {
+    if (begin[j + 1] < begin[j]) return false;
+  }
+  for (std::size_t j = 0; j + 1 < begin.size(); ++j) {
+    int before = -1;
+    for (auto p = static_cast<std::size_t>(begin[j]); p < static_cast<std::size_t>(begin[j + 1]); ++p) {
+      if (row[p] <= before || row[p] >= rows) return false;
+      before = row[p];
+    }
+  }
+  return true;
+}
+
+void exchange_matrix(Reader& archive, Eigen::SparseMatrix<double>& matrix) {
+  std::int64_t extent[2] = {};
+  archive.values(extent, 2);
+  const auto [rows, nonzeros] = extent;
+  if (rows < 0 || nonzeros < 0) archive.fail();
+  archive.require(static_cast<std::uint64_t>(rows) + 1, sizeof(int));
+  archive.require(static_cast<std::uint64_t>(nonzeros), sizeof(double));
+  std::vector<int> begin(static_cast<std::size_t>(rows + 1)), row(static_cast<std::size_t>(nonzeros));
+  std::vector<double> value(static_cast<std::size_t>(nonzeros));
+  archive.values(begin.data(), begin.size());
+  archive.values(row.data(), row.size());
+  archive.values(value.data(), value.size());
+  if (!are_columns(begin, row)) archive.fail();
+  matrix = Eigen::Map<const Eigen::SparseMatrix<double>>(rows, rows, nonzeros, begin.data(), row.data(), value.data());
+}
+
+// All members in their order, into or out of an archive.
+template <class Archive>
+void exchange(Archive& archive, DrivenTrack& track) {
+  exchange_text(archive, track.name);
+  archive.values(&track.scheme.alpha, 1);
+  archive.values(&track.scheme.time_step, 1);
+  exchange_list(archive, track.wheelset_x);
+  StructureModel& structure = track.structure;
+  for (auto* matrix : {&structure.mass, &structure.damping, &structure.stiffness}) exchange_matrix(archive, *matrix);
+  for (RailLine& rail : structure.rail) {
+    exchange_list(archive, rail.x);
+    exchange_list(archive, rail.dof);
+    archive.values(&rail.head_height, 1);
+  }
+  archive.size(structure.nodes);
+  for (StructureNode& node : structure.nodes) {
+    exchange_text(archive, node.name);
+    archive.values(&node.x, 1);
+    archive.values(node.dof.data(), node.dof.size());
+  }
+  exchange_list(archive, structure.dof_x);
+  exchange_list(archive, structure.dof_line);
+}
+
+bool are_dofs(const DofIndices& dofs, int count) {
+  for (int dof : dofs) {
+    if (dof != held && (dof < 0 || dof >= count)) return false;
+  }
+  return true;
+}
+
+bool increases(const std::vector<double>& x) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || (i > 0 && x[i] <= x[i - 1])) return false;
+  }
+  return true;
+}
+
+// Whether indices and counts of what was read fit each other, and it can be stepped.
+bool is_consistent(const DrivenTrack& track) {
+  const StructureModel& s = track.structure;
+  const int n = s.dofs();
+  constexpr double smallest_alpha = -1.0 / 3.0;
+  bool fits = n > 0 && s.damping.rows() == n && s.stiffness.rows() == n && !track.wheelset_x.empty() &&
+              (s.dof_x.empty() || s.dof_x.size() == static_cast<std::size_t>(n)) &&
+              s.dof_line.size() == s.dof_x.size() && track.scheme.time_step > 0.0 &&
+              track.scheme.alpha >= smallest_alpha && track.scheme.alpha <= 0.0;
+  for (const RailLine& rail : s.rail) {
+    fits = fits && rail.x.size() >= 2 && rail.dof.size() == rail.x.size() && increases(rail.x);
+    for (const DofIndices& dofs : rail.dof) fits = fits && are_dofs(dofs, n);
+  }
+  for (const StructureNode& node : s.nodes) fits = fits && are_dofs(node.dof, n);
+  return fits;
+}
+
+}  // namespace
+
+std::string track_bytes(const DrivenTrack& track) {
+  std::string bytes = mark();
+  Writer writer(bytes);
+  DrivenTrack written = track;  // exchange() is of both directions
+  exchange(writer, written);
+  return bytes;
+}
+
+DrivenTrack track_of_bytes(std::string_view bytes, std::string_view place) {
+  const std::string expected = mark();
+  if (!bytes.starts_with(expected)) {
+    throw input_error(place, printable(bytes.substr(0, bytes.find('\n')), 60), expected.substr(0, expected.size() - 1));
+  }
+  Reader reader(bytes.substr(expected.size()), place);
+  DrivenTrack track;
+  exchange(reader, track);
+  if (!reader.at_end() || !is_consistent(track)) reader.fail();
+  return track;
+}
+
+std::string track_guid(std::string_view bytes) {
+  const auto all = std::as_bytes(std::span(bytes));
+  const std::uint64_t first = word_checksum(all);
+  return fmt::format("{:016x}{:016x}", first, word_checksum(all, first ^ bytes.size()));
+}
+
+}  // namespace railtab::fmi

@@ -1,0 +1,144 @@
+#include "railtab/fmi/track_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "railtab/runtime/base/input_error.hpp"
+
+namespace railtab::fmi {
+namespace {
+
+double entry(const Eigen::VectorXd& dofs, int dof) { return dof == held ? 0.0 : dofs[dof]; }
+
+// Steps of `time_step` in `length`; 0 where it is no multiple of it.
+long steps_in(double length, double time_step) {
+  constexpr double most = 1e9, rounding = 1e-6;  // of a step
+  const double steps = length / time_step;
+  if (!(steps > 0.5 && steps < most) || std::abs(steps - std::round(steps)) > rounding * std::round(steps)) return 0;
+  return std::lround(steps);
+}
+
+}  // namespace
+
+TrackSimulation::TrackSimulation(DrivenTrack track)
+    : track_(std::move(track)), variables_(track_variables(track_)), response_(track_.structure, track_.scheme) {
+  reset();
+}
+
+void TrackSimulation::reset() {
+  state_ = TrackState();
+  for (const TrackVariable& variable : variables_) {
+    if (variable.causality == Causality::input) state_.input.push_back(variable.start);
+  }
+  state_.applied = state_.input;
+  state_.motion = LinearMotion(track_.structure.dofs());
+  loads_ = loads(state_.applied);
+}
+
+void TrackSimulation::set(std::size_t input, double value) {
+  if (!std::isfinite(value)) throw input_error(variables_[input].name, fmt::format("{}", value), "a finite number");
+  state_.input[input] = value;
+}
+
+std::vector<RailLoad> TrackSimulation::loads(const std::vector<double>& input) const {
+  std::vector<RailLoad> loads;
+  for (std::size_t w = 0; w < track_.wheelset_x.size(); ++w) {
+    const double* const of = &input[inputs_per_wheelset * w];
+    for (const RailSide side : {RailSide::left, RailSide::right}) {
+      const double* const load = of + 1 + 3 * static_cast<int>(side);
+      loads.push_back({rail_contact(track_.structure, side, of[0]), {load[0], load[1], load[2]}});
+    }
+  }
+  return loads;
+}
+
+void TrackSimulation::rest() {
+  state_.applied = state_.input;
+  loads_ = loads(state_.applied);
+  state_.motion = rest_under(track_.structure, loads_);
+}
+
+void TrackSimulation::step(double length) {
+  const double time_step = track_.scheme.time_step;
+  const long steps = steps_in(length, time_step);
+  if (steps == 0) {
+    throw input_error("communicationStepSize", fmt::format("{} s", length),
+                      fmt::format("{} s, integration.time_step of the scene, or a multiple of it", time_step));
+  }
+  const std::vector<double> before = state_.applied;
+  for (long k = 1; k <= steps; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(steps);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      state_.applied[i] = k == steps ? state_.input[i] : before[i] + share * (state_.input[i] - before[i]);
+    }
+    loads_ = loads(state_.applied);
+    advance_structure(response_, track_.scheme, loads_, state_.motion, workspace_);
+    ++state_.steps;
+  }
+}
+
+double TrackSimulation::value(std::size_t variable) const {
+  if (variable < inputs()) return state_.input[variable];
+  const LinearMotion& motion = state_.motion;
+  const std::size_t output = variable - inputs(), wheel = output / outputs_per_wheel;
+  if (wheel < loads_.size()) {
+    const RailContact& place = loads_[wheel].place;
+    const std::size_t k = output % outputs_per_wheel;
+    if (k < 3) return rail_head(place, motion.displacement)[static_cast<Eigen::Index>(k)];
+    if (k < 6) return rail_head(place, motion.velocity)[static_cast<Eigen::Index>(k - 3)];
+    return rail_slopes(place, motion.displacement)[static_cast<Eigen::Index>(k - 6)];
+  }
+  const std::size_t of_nodes = output - outputs_per_wheel * loads_.size(), k = of_nodes % outputs_per_node;
+  constexpr std::size_t y = 1;
+  const int dof = track_.structure.nodes[of_nodes / outputs_per_node].dof[y + k % 2];
+  return entry(k < 2 ? motion.displacement : motion.acceleration, dof);
+}
+
+void TrackSimulation::set_state(const TrackState& state) {
+  state_ = state;
+  loads_ = loads(state_.applied);
+}
+
+namespace {
+
+// Every number of a state but the steps, in a fixed order.
+template <class State, class Visitor>
+void visit_numbers(State& state, Visitor&& visit) {
+  visit(&state.begin, 1);
+  visit(state.input.data(), state.input.size());
+  visit(state.applied.data(), state.applied.size());
+  auto& m = state.motion;
+  for (auto* vector : {&m.displacement, &m.velocity, &m.acceleration, &m.contact_load}) {
+    visit(vector->data(), static_cast<std::size_t>(vector->size()));
+  }
+}
+
+}  // namespace
+
+std::vector<double> packed(const TrackState& state) {
+  std::vector<double> numbers{static_cast<double>(state.steps)};
+  visit_numbers(state, [&](const double* data, std::size_t n) { numbers.insert(numbers.end(), data, data + n); });
+  return numbers;
+}
+
+TrackState unpacked(const std::vector<double>& numbers, const TrackState& like) {
+  TrackState state = like;
+  const std::size_t expected = packed(like).size();
+  constexpr double most_steps = 1e15;
+  if (numbers.size() != expected || !(numbers[0] >= 0.0 && numbers[0] < most_steps)) {
+    throw input_error("serialized state", fmt::format("{} numbers", numbers.size()),
+                      fmt::format("{}, a state of this FMU", expected));
+  }
+  std::size_t next = 0;
+  state.steps = std::lround(numbers[next++]);
+  visit_numbers(state, [&](double* data, std::size_t n) {
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(next), n, data);
+    next += n;
+  });
+  return state;
+}
+
+}  // namespace railtab::fmi

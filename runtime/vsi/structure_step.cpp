@@ -1,0 +1,39 @@
+#include "railtab/runtime/vsi/structure_step.hpp"
+
+namespace railtab {
+
+namespace {
+
+// The transpose of rail_head over all loads.
+void add_loads(std::span<const RailLoad> loads, Eigen::VectorXd& sum) {
+  for (const RailLoad& rail : loads) add_rail_load(rail.place, rail.load, sum);
+}
+
+}  // namespace
+
+LinearMotion rest_under(const StructureModel& structure, std::span<const RailLoad> loads) {
+  LinearMotion motion(structure.dofs());
+  add_loads(loads, motion.contact_load);
+  // Without a load there is nothing to solve.
+  if (!motion.contact_load.isZero(0.0)) motion.displacement = StructureResponse(structure).solve(motion.contact_load);
+  return motion;
+}
+
+void advance_structure(const StructureResponse& response, const HhtScheme& scheme, std::span<const RailLoad> loads,
+                       LinearMotion& motion, StructureStepWorkspace& ws) {
+  const DofRange all{0, motion.displacement.size()};
+  predict(scheme, motion, all, ws.prediction);
+  past_contact_load(scheme, motion, all, ws.increment);
+  ws.rail_dofs.clear();
+  for (const RailLoad& rail : loads) append_dofs(rail.place, ws.rail_dofs);
+  ws.load.setZero(all.count);
+  ws.response.resize(all.count);
+  add_loads(loads, ws.load);
+  response.begin_step(ws.prediction, ws.increment, ws.rail_dofs, ws.solution);
+  ws.solution.substitution.respond(response.factor(), scheme.load_weight(), ws.load, ws.response);
+  ws.solution.substitution.finish(response.factor(), ws.increment);
+  motion.contact_load.swap(ws.load);
+  update(scheme, ws.prediction, ws.increment, motion);
+}
+
+}  // namespace railtab

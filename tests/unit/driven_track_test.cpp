@@ -1,0 +1,83 @@
+// What an FMU has of a scene: stored to the last bit, damaged content refused; and its steps.
+#include "railtab/fmi/driven_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "railtab/fmi/track_simulation.hpp"
+#include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/structure/track_bridge.hpp"
+
+namespace railtab::fmi {
+namespace {
+
+DrivenTrack short_bridge(double time_step = 1e-3, double alpha = -0.05) {
+  TrackParameters track;
+  track.length_before = track.length_after = 3.0;
+  BridgeParameters span;
+  span.length = 3.0;
+  span.elements = 6;
+  return {"short", {alpha, time_step}, {2.0, -0.5}, build_track_bridge(track, {span})};
+}
+
+TEST(DrivenTrack, IsStoredToTheLastBit) {
+  const DrivenTrack track = short_bridge();
+  const std::string bytes = track_bytes(track);
+  const DrivenTrack read = track_of_bytes(bytes, "track");
+  EXPECT_EQ(track_bytes(read), bytes);
+  EXPECT_EQ(read.name, "short");
+  EXPECT_EQ(read.wheelset_x, track.wheelset_x);
+  EXPECT_EQ(read.scheme.alpha, -0.05);
+  EXPECT_EQ((read.structure.stiffness - track.structure.stiffness).norm(), 0.0);
+  EXPECT_EQ((read.structure.mass - track.structure.mass).norm(), 0.0);
+  EXPECT_EQ(read.structure.rail[1].dof, track.structure.rail[1].dof);
+  EXPECT_EQ(read.structure.dof_line, track.structure.dof_line);
+  EXPECT_EQ(read.structure.nodes.size(), track.structure.nodes.size());
+  EXPECT_EQ(track_guid(bytes).size(), 32u);
+}
+
+TEST(DrivenTrack, OtherContentIsRefusedAndHasAnotherGuid) {
+  const std::string bytes = track_bytes(short_bridge());
+  const auto expect_refused = [](std::string_view content) {
+    EXPECT_THROW(static_cast<void>(track_of_bytes(content, "track")), InputError) << content.size();
+  };
+  expect_refused("");
+  expect_refused("railtab track of another version\n");
+  for (std::size_t length = 0; length < bytes.size(); length += 97) expect_refused(bytes.substr(0, length));
+  expect_refused(bytes + "x");
+  for (std::size_t place = 0; place < bytes.size(); place += 101) {
+    std::string changed = bytes;
+    changed[place] = static_cast<char>(changed[place] ^ 0x10);
+    EXPECT_NE(track_guid(changed), track_guid(bytes)) << place;
+  }
+}
+
+// Displacement under the wheel of a load that grows as 1 - cos and moves, at the end of some time, by steps of a
+// length.
+double deflection(double time_step, double alpha) {
+  constexpr double duration = 0.02, load = 6e4;
+  TrackSimulation track(short_bridge(time_step, alpha));
+  const auto steps = std::lround(duration / time_step);
+  for (long k = 1; k <= steps; ++k) {
+    const double t = static_cast<double>(k) * time_step;
+    track.set(2, load * (1.0 - std::cos(300.0 * t)));
+    track.step(time_step);
+  }
+  constexpr std::size_t rail_z = 1;
+  return track.value(track.inputs() + rail_z);
+}
+
+TEST(DrivenTrack, StepsAreOfSecondOrder) {
+  for (const double alpha : {0.0, -0.1}) {
+    const double exact = deflection(2.5e-6, alpha);
+    const double coarse = std::abs(deflection(1e-4, alpha) - exact), fine = std::abs(deflection(5e-5, alpha) - exact);
+    const double order = std::log2(coarse / fine);
+    EXPECT_GT(order, 1.8) << alpha;
+    EXPECT_LT(order, 2.3) << alpha;
+  }
+}
+
+}  // namespace
+}  // namespace railtab::fmi
