@@ -16,6 +16,7 @@
 #include "railtab/runtime/scene/unused_keys.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
+#include "railtab/runtime/vehicle/vehicle_file.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 
 namespace railtab::scene {
@@ -169,6 +170,14 @@ struct Assign {
     return vehicle_named(text(expected_vehicle(names)), names);
   }
 
+  // False where it is there already.
+  bool add_file(const std::filesystem::path& named) const {
+    std::vector<std::filesystem::path>& files = draft.parameters.files;
+    if (std::find(files.begin(), files.end(), named) != files.end()) return false;
+    files.push_back(named);
+    return true;
+  }
+
   static std::string expected_vehicle(const std::vector<std::string>& names) {
     return fmt::format("a vehicle's TOML file, relative to the scene, or one of {}", joined(names));
   }
@@ -180,8 +189,12 @@ struct Assign {
     const std::filesystem::path named = file.parent_path() / name;
     if (!name.ends_with(".toml")) throw leaf_error(file, leaf, fmt::format("the text \"{}\"", name), expected);
     if (!is_file(named)) throw leaf_error(file, leaf, fmt::format("no file {}", named.string()), expected);
-    std::vector<std::filesystem::path>& files = draft.parameters.files;
-    if (std::find(files.begin(), files.end(), named) == files.end()) files.push_back(named);
+    if (add_file(named)) {
+      const VehicleData data = read_vehicle_file(named);
+      for (const std::filesystem::path& joint : {data.joint_front, data.joint_rear}) {
+        if (!joint.empty()) add_file(joint);
+      }
+    }
     return named.string();
   }
 

@@ -60,6 +60,16 @@ TEST(ConsistEntry, HasSignNameAndCount) {
   }
 }
 
+/// Results hold checksums of all files that a scene reads: of vehicles, and of the joints that these name.
+TEST(Consist, JointsAreAmongTheFilesOfAScene) {
+  const SceneParameters scene = read_scene(RAILTAB_SOURCE_DIR "/docs/examples/articulated.toml");
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : scene.files) names.push_back(file.filename().string());
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"coach.toml", "coupler.toml", "end-coach.toml", "jacobs-bogie.toml",
+                                             "power-car.toml"}));
+}
+
 /// Wheels of docs/examples/eurostar.toml carry the shares of their coaches by the law of the lever, with bogies and
 /// wheelsets of their own; the two halves of the train mirror each other.
 TEST(Eurostar, WheelsCarryTheSharesOfTheirCoaches) {

@@ -89,7 +89,7 @@ TEST(RoughTrack, ForcesByTheTangentKeepTheTolerance) {
 }
 
 /// Evaluations of the contact per wheel and step, pre-roll apart.
-TEST(RoughTrack, OneEvaluationIsMostlyEnough) {
+TEST(RoughTrack, FewEvaluationsAreEnough) {
   SceneParameters scene = rough_track(2);
   const auto queries = [&](double duration) {
     scene.integration.duration = duration;
@@ -99,7 +99,7 @@ TEST(RoughTrack, OneEvaluationIsMostlyEnough) {
   const double evaluations = (queries(0.6) - queries(0.3)) / (steps * wheels);
   std::printf("%.2f evaluations per wheel and step\n", evaluations);
   testing::measured("rough.evaluations", evaluations);
-  EXPECT_LT(evaluations, 1.8);
+  EXPECT_LT(evaluations, 2.8);  // 3.3 with an evaluation after every correction
 }
 
 }  // namespace
