@@ -251,7 +251,8 @@ class TrainNewton {
     const Vector12 explained = tangent * move;
     const Vector12 unexplained = change - explained;
     double& error = ws_.tangent_error[index(g)];
-    error = std::max(unexplained.cwiseAbs().maxCoeff() / explained.cwiseAbs().maxCoeff(), kept_error * error);
+    const double now = unexplained.cwiseAbs().maxCoeff() / explained.cwiseAbs().maxCoeff();
+    error = std::min(std::max(now, kept_error * error), 1.0);
     Eigen::Map<Matrix12> inverse(ws_.inverse[index(g)].data());
     const Vector12 v = weighted / square;
     const Vector12 responded = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()) * unexplained;
@@ -307,7 +308,7 @@ class TrainNewton {
     report_.correction = std::max(report_.correction, change);
     const double of_forces = force_change(ws_, wheelsets(g));
     if (change < first_order_ && of_forces < limits_.force_tolerance) return true;
-    if (extrapolates(g, of_forces)) return false;
+    if (corrects_by_tangent(g, of_forces)) return false;
     // A correction so small ends the iteration, and is made: the forces then are those of a far smaller one.
     n.last = change < limits_.tolerance || (!n.gains && change < limits_.rounding);
     if (n.last && !moved) return true;
@@ -319,9 +320,9 @@ class TrainNewton {
     return false;
   }
 
-  // Makes a small correction by the tangent, of the forces too. The estimate of its error grows with every step that
-  // does so, and an evaluation follows in the end.
-  bool extrapolates(int g, double of_forces) {
+  // Makes a correction of displacements and forces where the tangent is good enough for both. The estimate of its error
+  // grows with every step that does so, until forces are evaluated again.
+  bool corrects_by_tangent(int g, double of_forces) {
     constexpr double most = 20.0, accepted_error = 0.5;  // of the force tolerance
     constexpr double growth = 1.2;
     if (problem_.start || problem_.wheelsets_per_group > 1 || !ws_.found.empty()) return false;
