@@ -50,6 +50,7 @@ Matrix least_squares_solution(const Matrix& A, const Matrix& B) { return A.compl
 Matrix orthonormal_basis(const Matrix& A) { return orthogonal_factor(A, Matrix::Identity(A.rows(), A.cols())); }
 
 Matrix orthogonal_complement(const Matrix& A) {
+  if (A.rows() == A.cols()) return {A.rows(), 0};
   Matrix last = Matrix::Zero(A.rows(), A.rows() - A.cols());
   last.bottomRows(last.cols()).setIdentity();
   return orthogonal_factor(A, last);

@@ -83,6 +83,7 @@ class BoundsCheck {
       if (!many_lines && (text_[end] == quote || text_[end] == '\n')) break;
       if (many_lines && text_.substr(end, 3) == three) break;
     }
+    end = std::min(end, text_.size());  // of a string without an end
     if (many_lines) end += 2;
     at_ = !many_lines && text_.substr(end, 1) == "\n" ? end - 1 : end;  // the end of the line ends the key too
   }
