@@ -325,12 +325,14 @@ class TrainNewton {
   bool corrects_by_tangent(int g, double of_forces) {
     constexpr double most = 20.0, accepted_error = 0.5;  // of the force tolerance
     constexpr double growth = 1.2;
+    constexpr double least_load = 10.0;  // of the change: the tangent of a wheel about to lift holds no further
     if (problem_.start || problem_.wheelsets_per_group > 1 || !ws_.found.empty()) return false;
     GroupNewton& n = ws_.group[index(g)];
     double& error = ws_.tangent_error[index(g)];
     const double sum = n.extrapolated + of_forces;
-    if (sum >= most * limits_.force_tolerance || error * sum >= accepted_error * limits_.force_tolerance ||
-        largest_approach(g) > first_order_) {
+    const double lighter = std::min(s_.end_force[rail_unknown(2 * g) + 1], s_.end_force[rail_unknown(2 * g + 1) + 1]);
+    if (lighter < least_load * sum || sum >= most * limits_.force_tolerance ||
+        error * sum >= accepted_error * limits_.force_tolerance || largest_approach(g) > first_order_) {
       return false;
     }
     if (n.extrapolated == 0.0) error *= growth;
