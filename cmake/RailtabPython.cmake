@@ -1,6 +1,6 @@
-# RAILTAB_PYTHON: the module `import railtab` (python/). AUTO: where pybind11 and the headers of Python are found. Debian's
-# packages are those of /usr/bin/python3, which is taken before another python3 of the PATH; -D Python_EXECUTABLE=…
-# names one.
+# RAILTAB_PYTHON: the module `import railtab` (python/). AUTO: where pybind11 and the headers of Python are found.
+# Debian's packages are those of /usr/bin/python3, which is taken before another python3 of the PATH;
+# -D Python_EXECUTABLE=… names one.
 if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3)
 endif()

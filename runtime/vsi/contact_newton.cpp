@@ -282,7 +282,7 @@ class TrainNewton {
     } else if (n.moved && n.previous < std::numeric_limits<double>::infinity()) {
       learn(g);
     }
-    if (n.extrapolated > 0.0) return;
+    if (n.extrapolated > 0.0) return;  // the residual is not that of evaluated forces
     n.gains = size < 0.5 * n.previous;
     n.previous = size;
     n.part = 1.0;
