@@ -1,12 +1,12 @@
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <numeric>
 #include <string>
 
-#include "railtab/runtime/algebra/nested_dissection.hpp"
+#include "railtab/runtime/algebra/multifrontal.hpp"
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -14,71 +14,18 @@ namespace railtab {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-using LowestTree = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, NestedDissection>;
-
-/// Columns [begin, end) of the factor and what storing them as one dense block costs.
-struct Columns {
-  int begin, end;
-  int below;    // rows below the triangle, those of the last column
-  long stored;  // entries of the factor in them
-
-  [[nodiscard]] int count() const { return end - begin; }
-  [[nodiscard]] long dense() const {
-    const long n = count();
-    return n * (n - 1) / 2 + n * below;
-  }
-};
-
-// Zeros that a block may store for being larger: they cost traffic, small blocks cost indices and loop overhead.
-bool worth_merging(const Columns& merged) {
-  constexpr int small = 8;                            // columns: one register of doubles
-  constexpr double share = 0.10, small_share = 0.30;  // of zeros
-  const double zeros = 1.0 - static_cast<double>(merged.stored) / static_cast<double>(std::max(1L, merged.dense()));
-  return zeros <= (merged.count() <= small ? small_share : share);
-}
-
-// Neighbouring columns that become one block: every column's structure, less its first row, lies in that of the
-// column which this first row names; where that is the next one, both can share their rows.
-std::vector<Columns> supernodes(const Sparse& L) {
-  const int* const begin = L.outerIndexPtr();
-  std::vector<Columns> blocks;
-  for (int j = 0; j < L.outerSize(); ++j) {
-    const int count = begin[j + 1] - begin[j];
-    Columns block{j, j + 1, count, count};
-    while (!blocks.empty()) {
-      const Columns& before = blocks.back();
-      const int last = before.end - 1;
-      const bool hangs = begin[last + 1] > begin[last] && L.innerIndexPtr()[begin[last]] < block.end;
-      const Columns merged{before.begin, block.end, block.below, before.stored + block.stored};
-      if (!hangs || !worth_merging(merged)) break;
-      block = merged;
-      blocks.pop_back();
-    }
-    blocks.push_back(block);
-  }
-  return blocks;
-}
-
 // Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
 // on leaves only, and so on.
-std::vector<Columns> by_height(const std::vector<Columns>& blocks, const Sparse& L) {
-  std::vector<std::size_t> block_of(static_cast<std::size_t>(L.outerSize()));
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (int j = blocks[b].begin; j < blocks[b].end; ++j) block_of[static_cast<std::size_t>(j)] = b;
+std::vector<int> by_height(const EliminationTree& tree) {
+  std::vector<int> height(tree.parent.size(), 0), order(tree.parent.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (const int b : order) {
+    if (tree.parent[index(b)] < 0) continue;
+    int& parent = height[index(tree.parent[index(b)])];
+    parent = std::max(parent, height[index(b)] + 1);
   }
-  std::vector<int> height(blocks.size(), 0);
-  std::vector<std::size_t> order(blocks.size());
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    order[b] = b;
-    if (blocks[b].below == 0) continue;
-    int& parent = height[block_of[static_cast<std::size_t>(L.innerIndexPtr()[L.outerIndexPtr()[blocks[b].end - 1]])]];
-    parent = std::max(parent, height[b] + 1);
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return height[a] < height[b]; });
-  std::vector<Columns> sorted;
-  sorted.reserve(blocks.size());
-  for (std::size_t b : order) sorted.push_back(blocks[b]);
-  return sorted;
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return height[index(a)] < height[index(b)]; });
+  return order;
 }
 
 // Rows are taken four at a time; what lacks to a multiple of four is stored as zeros in a row that nobody reads.
@@ -156,20 +103,10 @@ void add_columns(const double* column, int height, int begin, const double* fact
   }
 }
 
-/// Numbers and rows of all blocks, see SparseLdlt::store().
-struct Room {
-  std::size_t values = 0, rows = 0;
-};
-
-Room room_of(const std::vector<Columns>& blocks) {
-  Room room;
-  for (const Columns& columns : blocks) {
-    const int n = columns.count(), below = in_fours(columns.below);
-    room.rows += static_cast<std::size_t>(below);
-    room.values +=
-        static_cast<std::size_t>(n > narrow ? in_fours(n + columns.below) * n : triangle_room(n) + below * n);
-  }
-  return room;
+// Numbers of a block, see SparseLdlt::store().
+std::size_t numbers_of(int columns, int below) {
+  return index(columns > narrow ? in_fours(columns + below) * columns
+                                : triangle_room(columns) + in_fours(below) * columns);
 }
 
 /// result <- columnsᵀ · vector, from row `begin` on.
@@ -188,102 +125,83 @@ void products(const double* column, int height, int begin, const double* vector,
 
 }  // namespace
 
-SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_view message, EliminationOrder order)
+SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_view message, EliminationOrder order,
+                       std::span<const int> node)
     : first_(static_cast<int>(range.begin)) {
-  const Sparse& part =
-      range.count == matrix.rows() ? matrix : Sparse(matrix.block(range.begin, range.begin, range.count, range.count));
-  if (order == EliminationOrder::lowest_tree) {
-    factorise<LowestTree>(part, message);
-  } else {
-    factorise<Eigen::SimplicialLDLT<Sparse>>(part, message);
-  }
-}
-
-std::size_t SparseLdlt::entries_of_lowest_tree(const Sparse& matrix) {
-  struct Symbolic : LowestTree {
-    [[nodiscard]] Eigen::Index entries() const { return m_matrix.nonZeros(); }
-  };
-  Symbolic symbolic;
-  symbolic.analyzePattern(matrix);
-  return static_cast<std::size_t>(symbolic.entries());
-}
-
-template <class Simplicial>
-void SparseLdlt::factorise(const Sparse& matrix, std::string_view message) {
-  const Simplicial simplicial(matrix);
-  if (simplicial.info() != Eigen::Success || !(simplicial.vectorD().minCoeff() > 0.0)) {
+  const EliminationTree tree(matrix, range, elimination_order(matrix, range, order, node));
+  const std::vector<int> stored_at = place(tree);
+  if (!factorise(matrix, range, tree,
+                 [&](int b, const EliminatedBlock& block) { store(blocks_[index(stored_at[index(b)])], block); })) {
     throw ComputationError(std::string(message));
   }
-  inverse_D_ = simplicial.vectorD().cwiseInverse();
-  const auto& order = simplicial.permutationP().indices();
-  position_.assign(order.data(), order.data() + order.size());
-  const Sparse& L = simplicial.matrixL().nestedExpression();  // below the diagonal, compressed, rows ascending
-  assert(L.isCompressed());
-  entries_ = static_cast<std::size_t>(L.nonZeros());
+}
 
-  const std::vector<Columns> found = by_height(supernodes(L), L);
-  const Room room = room_of(found);  // growing by themselves, vectors are there twice
-  values_.reserve(room.values);
-  rows_.reserve(room.rows);
-  blocks_.reserve(found.size());
+SparseLdlt::Memory SparseLdlt::memory(const Sparse& matrix, const DofRange& range, EliminationOrder order,
+                                      std::span<const int> node) {
+  const EliminationTree tree(matrix, range, elimination_order(matrix, range, order, node));
+  const std::size_t n = tree.unknown.size(), blocks = tree.parent.size(), nonzeros = matrix.nonZeros();
+  Memory memory{.stored = blocks * sizeof(Block) + n * (2 * sizeof(int) + sizeof(double)), .entries = tree.entries};
+  for (int b = 0; b < tree.blocks(); ++b) {
+    const auto below = static_cast<int>(tree.rows(b).size());
+    memory.stored += index(in_fours(below)) * sizeof(int) + numbers_of(tree.columns(b), below) * sizeof(double);
+  }
+  // METIS works on six copies of the pattern, Eigen's minimum degree on 13.
+  const std::size_t patterns = order == EliminationOrder::nested_dissection ? 6 : 13;
+  const std::size_t of_tree = (tree.row.size() + 8 * n) * sizeof(int) + blocks * sizeof(std::size_t);
+  const std::size_t front = index(tree.largest_front) * index(tree.largest_front);
+  memory.made = std::max(patterns * nonzeros * sizeof(int), of_tree + (front + tree.waiting) * sizeof(double));
+  return memory;
+}
+
+// Everything but the numbers. @return where each block of the tree is in blocks_
+std::vector<int> SparseLdlt::place(const EliminationTree& tree) {
+  const auto n = static_cast<int>(tree.unknown.size());
+  position_.resize(tree.unknown.size());
+  for (int k = 0; k < n; ++k) position_[index(tree.unknown[index(k)])] = k;
+  inverse_D_.resize(n);
   block_of_.resize(position_.size());
-  for (const Columns& columns : found) {
-    Block block{columns.begin, columns.count(), columns.below, static_cast<int>(rows_.size()), values_.size(), -1};
-    const int last = columns.end - 1;
-    const int* const begin = L.innerIndexPtr() + L.outerIndexPtr()[last];
-    rows_.insert(rows_.end(), begin, begin + columns.below);
-    // The triangle's inverse in its place, and the rows below times that: substituting in a block is a product with
-    // no column waiting for another.
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(block.columns + block.below, block.columns);
-    for (int j = columns.begin; j < columns.end; ++j) {
-      int place = 0;
-      for (Sparse::InnerIterator entry(L, j); entry; ++entry) {
-        const int row = static_cast<int>(entry.row());
-        if (row < columns.end) {
-          dense(row - columns.begin, j - columns.begin) = entry.value();
-          continue;
-        }
-        while (rows_[static_cast<std::size_t>(block.rows + place)] != row) ++place;
-        dense(block.columns + place, j - columns.begin) = entry.value();
-      }
-      block_of_[static_cast<std::size_t>(j)] = static_cast<int>(blocks_.size());
-    }
-    const Eigen::MatrixXd inverse = dense.topRows(block.columns)
-                                        .triangularView<Eigen::UnitLower>()
-                                        .solve(Eigen::MatrixXd::Identity(block.columns, block.columns));
-    dense.topRows(block.columns) = inverse;
-    dense.bottomRows(block.below) = (dense.bottomRows(block.below) * inverse).eval();
-    store(dense, block);
-    rows_.resize(static_cast<std::size_t>(block.rows + in_fours(block.below)), static_cast<int>(position_.size()));
+  std::vector<int> stored_at(tree.parent.size());
+  const std::vector<int> order = by_height(tree);
+  std::size_t rows = 0, values = 0;
+  for (const int b : order) rows += index(in_fours(static_cast<int>(tree.rows(b).size())));
+  rows_.reserve(rows);
+  blocks_.reserve(order.size());
+  for (const int b : order) {
+    const std::span<const int> below = tree.rows(b);
+    const Block block{tree.first[index(b)],           tree.columns(b), static_cast<int>(below.size()),
+                      static_cast<int>(rows_.size()), values,          -1};
+    rows_.insert(rows_.end(), below.begin(), below.end());
+    rows_.resize(static_cast<std::size_t>(block.rows + in_fours(block.below)), n);
+    values += numbers_of(block.columns, block.below);
+    if (block.columns > narrow) most_height_ = std::max(most_height_, in_fours(block.columns + block.below));
+    stored_at[index(b)] = static_cast<int>(blocks_.size());
+    for (int j = 0; j < block.columns; ++j) block_of_[index(block.first + j)] = stored_at[index(b)];
     blocks_.push_back(block);
   }
   for (Block& block : blocks_) {
-    if (block.below > 0) {
-      block.parent = block_of_[static_cast<std::size_t>(rows_[static_cast<std::size_t>(block.rows)])];
-    }
+    if (block.below > 0) block.parent = block_of_[index(rows_[index(block.rows)])];
   }
+  values_.resize(values);
+  return stored_at;
 }
 
 // The block's numbers as its substitution reads them.
-void SparseLdlt::store(const Eigen::MatrixXd& dense, const Block& block) {
+void SparseLdlt::store(const Block& block, const EliminatedBlock& from) {
   const int n = block.columns;
-  const auto append = [&](int room) {
-    values_.resize(values_.size() + static_cast<std::size_t>(room), 0.0);
-    return values_.data() + values_.size() - room;
-  };
+  inverse_D_.segment(block.first, n) = from.D.cwiseInverse();
+  double* to = values_.data() + block.value;
   if (n > narrow) {
-    const int height = in_fours(n + block.below);
-    most_height_ = std::max(most_height_, height);
-    Eigen::Map<Eigen::MatrixXd>(append(height * n), height, n).topRows(dense.rows()) = dense;
+    Eigen::Map<Eigen::MatrixXd> dense(to, in_fours(n + block.below), n);
+    dense.topRows(n) = from.inverse;
+    dense.middleRows(n, block.below) = from.below;
     return;
   }
-  double* triangle = append(triangle_room(n));
   for (int j = 1; j < n; ++j) {
-    for (int k = 0; k < j; ++k) *triangle++ = dense(j, k);
+    for (int k = 0; k < j; ++k) *to++ = from.inverse(j, k);
   }
-  double* const below = append(in_fours(block.below) * n);
+  double* const below = values_.data() + block.value + triangle_room(n);
   for (int i = 0; i < block.below; ++i) {
-    for (int k = 0; k < n; ++k) below[(i & ~3) * n + 4 * k + (i & 3)] = dense(n + i, k);
+    for (int k = 0; k < n; ++k) below[(i & ~3) * n + 4 * k + (i & 3)] = from.below(i, k);
   }
 }
 

@@ -5,16 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/substitution_factor.hpp"
-#include "railtab/runtime/base/dof_range.hpp"
 
 namespace railtab {
 
-/// Which unknowns a factor eliminates first.
-enum class EliminationOrder {
-  fewest_entries,  ///< minimum degree: for whole substitutions
-  lowest_tree,     ///< nested dissection: for few entries of a solution, whose paths are then short
-};
+struct EliminatedBlock;
+struct EliminationTree;
 
 /// Factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
@@ -23,23 +20,29 @@ class SparseLdlt final : public SubstitutionFactor {
  public:
   static constexpr std::string_view not_positive_definite = "the matrix of a linear system is not positive definite";
 
-  /// @param matrix lower triangle or full; @throws ComputationError where it is not positive definite
+  /// @param matrix both triangles; @throws ComputationError where it is not positive definite
   explicit SparseLdlt(const Eigen::SparseMatrix<double>& matrix, std::string_view message = not_positive_definite)
       : SparseLdlt(matrix, {0, matrix.rows()}, message) {}
   /// The rows and columns in `range` alone: all other unknowns are held. Unknowns keep their numbers.
+  /// @param order, node as of elimination_order()
   SparseLdlt(const Eigen::SparseMatrix<double>& matrix, const DofRange& range,
              std::string_view message = not_positive_definite,
-             EliminationOrder order = EliminationOrder::fewest_entries);
-  /// Entries of L below the diagonal in the order of the lowest tree, counted without making them.
-  [[nodiscard]] static std::size_t entries_of_lowest_tree(const Eigen::SparseMatrix<double>& matrix);
+             EliminationOrder order = EliminationOrder::minimum_degree, std::span<const int> node = {});
+
+  /// Counted without making the factor.
+  struct Memory {
+    std::size_t stored = 0;   ///< stored_bytes()
+    std::size_t made = 0;     ///< most that there is besides while it is made [bytes]
+    std::size_t entries = 0;  ///< of L below the diagonal
+  };
+  [[nodiscard]] static Memory memory(const Eigen::SparseMatrix<double>& matrix, const DofRange& range,
+                                     EliminationOrder order, std::span<const int> node = {});
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
   /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
   [[nodiscard]] Eigen::Index room() const noexcept override { return size() + 1; }
   [[nodiscard]] std::size_t bytes() const noexcept override;
   [[nodiscard]] std::size_t stored_bytes() const noexcept override;
-  /// Entries of L below the diagonal, which are there in column form too while the factor is made.
-  [[nodiscard]] std::size_t entries() const noexcept { return entries_; }
 
   /// Of an unknown in the factor's order.
   [[nodiscard]] int position(int unknown) const noexcept {
@@ -76,9 +79,8 @@ class SparseLdlt final : public SubstitutionFactor {
       visitor(blocks_[static_cast<std::size_t>(b)].first, blocks_[static_cast<std::size_t>(b)].columns);
     }
   }
-  template <class Simplicial>
-  void factorise(const Eigen::SparseMatrix<double>& matrix, std::string_view message);
-  void store(const Eigen::MatrixXd& dense, const Block& block);
+  std::vector<int> place(const EliminationTree& tree);
+  void store(const Block& block, const EliminatedBlock& from);
   void forward(double* y, const Block& block, double* scratch) const;
   void backward(double* x, const Block& block, double* scratch) const;
   void backward(const Vector& y, Vector& x, const Block& block, double* scratch) const;
@@ -92,7 +94,6 @@ class SparseLdlt final : public SubstitutionFactor {
   Vector inverse_D_;
   int first_ = 0;  // the unknown that the range begins with
   int most_height_ = 0;
-  std::size_t entries_ = 0;
 };
 
 }  // namespace railtab

@@ -14,4 +14,10 @@ SubstitutionFactor::Vector SubstitutionFactor::solve(const Vector& load) const {
   return natural;
 }
 
+Eigen::MatrixXd SubstitutionFactor::solve_columns(const Eigen::MatrixXd& loads) const {
+  Eigen::MatrixXd result(loads.rows(), loads.cols());
+  for (Eigen::Index k = 0; k < loads.cols(); ++k) result.col(k) = solve(loads.col(k));
+  return result;
+}
+
 }  // namespace railtab

@@ -48,6 +48,8 @@ class SubstitutionFactor {
 
   /// Full solution in the natural order, of all unknowns of the system; 0 where they are held.
   [[nodiscard]] Vector solve(const Vector& load) const;
+  /// Of every column of loads.
+  [[nodiscard]] Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& loads) const;
 
  protected:
   SubstitutionFactor() = default;

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "railtab/runtime/structure/stiffness_factor.hpp"
+
 namespace railtab {
 
 namespace {
@@ -41,13 +43,13 @@ Columns node_rows(const std::vector<StructureNode>& nodes, const Columns& carrie
 
 // Some columns at a time. A support under one sleeper carries a few metres of track: what is zero but for rounding is
 // not kept.
-Sparse carried_by_supports(const StiffnessFactor& factor, const Columns& of_supports) {
+Sparse carried_by_supports(const SubstitutionFactor& factor, const Columns& of_supports) {
   constexpr Eigen::Index at_a_time = 16;
   const Sparse columns = of_supports;
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index first = 0; first < columns.cols(); first += at_a_time) {
     const Eigen::Index count = std::min(at_a_time, columns.cols() - first);
-    const Eigen::MatrixXd answer = factor.solve(Eigen::MatrixXd(columns.middleCols(first, count)));
+    const Eigen::MatrixXd answer = factor.solve_columns(columns.middleCols(first, count));
     for (Eigen::Index j = 0; j < count; ++j) {
       const double least = relative_rounding * answer.col(j).cwiseAbs().maxCoeff();
       for (Eigen::Index i = 0; i < answer.rows(); ++i) {
@@ -62,7 +64,7 @@ Sparse carried_by_supports(const StiffnessFactor& factor, const Columns& of_supp
 }
 
 Sparse carried_by_supports(const Sparse& stiffness, const Columns& of_supports) {
-  return carried_by_supports(positive_definite_factor(stiffness), of_supports);
+  return carried_by_supports(stiffness_factor(stiffness), of_supports);
 }
 
 StructureModel relative_to_supports(StructureModel structure) {

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 
 namespace railtab {
+
+class SubstitutionFactor;
 
 /// The same structure in displacements relative to what its supports carry along at rest [CloughPenzien1993, ch. 26],
 ///
@@ -15,7 +16,7 @@ namespace railtab {
 [[nodiscard]] StructureModel relative_to_supports(StructureModel structure);
 
 /// ι = −K⁻¹ K_s, dofs × 2 per support. @throws ComputationError where K is not positive definite
-[[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const StiffnessFactor& factor,
+[[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const SubstitutionFactor& factor,
                                                               const StructureSupports::Columns& of_supports);
 [[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const Eigen::SparseMatrix<double>& stiffness,
                                                               const StructureSupports::Columns& of_supports);

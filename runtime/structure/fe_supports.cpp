@@ -10,6 +10,7 @@
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
 #include "railtab/runtime/structure/matrix_assembly.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 
 namespace railtab {
 
@@ -92,9 +93,9 @@ struct LeftBehind {
   Eigen::Index row = 0;
 };
 
-LeftBehind left_behind(const StiffnessFactor& factor, const Eigen::MatrixXd& resistance,
+LeftBehind left_behind(const SparseLdlt& factor, const Eigen::MatrixXd& resistance,
                        const Eigen::MatrixXd& translation) {
-  const Eigen::MatrixXd answer = factor.solve(resistance);
+  const Eigen::MatrixXd answer = factor.solve_columns(resistance);
   LeftBehind most;
   for (Eigen::Index i = 0; i < answer.rows(); ++i) {
     if (translation.row(i).isZero(0.0)) continue;
@@ -143,7 +144,7 @@ std::string settle_declared_supports(const FeMatrices& m, const Eigen::MatrixXd&
   constexpr double undamped = 1e-6;  // [m per m/s]: 1e-4 of the translation at 100 rad/s
   constexpr double rounding = 1e-9;  // of what the damping's entries add up to
   std::string beyond;
-  const StiffnessFactor factor = positive_definite_factor(m.stiffness);
+  const SparseLdlt factor = stiffness_factor(m.stiffness);
   auto& [missing, braking] = resistances;
   const LeftBehind strained = left_behind(factor, missing, translation);
   if (strained.size <= rigid) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -14,7 +15,6 @@
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
-#include "railtab/runtime/structure/stiffness_factor.hpp"
 
 namespace railtab {
 
@@ -205,7 +205,7 @@ std::optional<Eigen::VectorXd> motion_without_stiffness(const Sparse& stiffness)
   Sparse shifted(stiffness.rows(), stiffness.cols());
   shifted.setIdentity();
   shifted = stiffness + Sparse(shift * weight.asDiagonal() * shifted);
-  const StiffnessFactor factor(shifted);
+  const Eigen::SimplicialLDLT<Sparse> factor(shifted);  // by rounding, pivots may be negative
   std::mt19937_64 generator(1);
   Eigen::VectorXd v(diagonal.size());
   for (double& value : v) value = std::uniform_real_distribution<double>(-1.0, 1.0)(generator);

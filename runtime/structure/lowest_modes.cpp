@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 
 namespace railtab {
 
@@ -21,12 +21,10 @@ using Sparse = Eigen::SparseMatrix<double>;
 class BlockLanczos {
  public:
   BlockLanczos(const Sparse& stiffness, const Sparse& mass, Eigen::Index block)
-      : mass_(mass),
-        factor_(stiffness, "the structure's stiffness is not positive definite: check supports and stiffnesses"),
-        block_(block) {
+      : mass_(mass), factor_(stiffness_factor(stiffness)), block_(block) {
     Matrix start(mass.rows(), block);
     for (double& value : start.reshaped()) value = random();
-    append(solved(start), nullptr);
+    append(factor_.solve_columns(mass * start), nullptr);
   }
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
@@ -35,8 +33,7 @@ class BlockLanczos {
   bool extend() {
     if (added_ == 0) return false;  // no mass at all, or none that a number can hold
     const Eigen::Index last = size_ - added_, columns = added_;
-    Matrix next(mass_.rows(), columns);
-    for (Eigen::Index k = 0; k < columns; ++k) next.col(k) = factor_.solve(mass_basis_.col(last + k));
+    const Matrix next = factor_.solve_columns(mass_basis_.middleCols(last, columns));
     Matrix projected = Matrix::Zero(size_, columns);
     append(next, &projected);
     projection_.conservativeResize(size_, size_);
@@ -70,13 +67,6 @@ class BlockLanczos {
 
  private:
   double random() { return std::uniform_real_distribution<double>(-1.0, 1.0)(generator_); }
-
-  Matrix solved(const Matrix& load) const {
-    Matrix result(load.rows(), load.cols());
-    const Matrix weighted = mass_ * load;
-    for (Eigen::Index k = 0; k < load.cols(); ++k) result.col(k) = factor_.solve(weighted.col(k));
-    return result;
-  }
 
   // Takes the block's components in the basis out (twice: once loses digits), then orthonormalises it column by column.
   void append(Matrix block, Matrix* projected) {

@@ -49,8 +49,8 @@ void set_flexibility(const std::vector<NodeMotion>& motions, const std::vector<i
   const int softest = softest_node(result, deck);
   for (const NodeMotion& m : motions) {
     if (m.node != softest || m.motion != z_dof || m.rows.nonZeros() == 0) continue;
-    const Eigen::MatrixXd load = m.rows;
-    result.whole_flexibility[softest] = m.rows.dot(positive_definite_factor(stiffness).solve(load).col(0));
+    const Eigen::VectorXd load = m.rows;
+    result.whole_flexibility[softest] = m.rows.dot(stiffness_factor(stiffness).solve(load));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <string_view>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
@@ -105,13 +106,6 @@ struct StructureResponse::FewEntries {
   }
 };
 
-struct StructureResponse::Selected : FewEntries {
-  SparseLdlt factor;
-
-  Selected(const Sparse& effective, Eigen::Index dofs)
-      : FewEntries(dofs), factor(effective, {0, dofs}, not_positive_definite, EliminationOrder::lowest_tree) {}
-};
-
 struct StructureResponse::Divisible {
   MirrorPairs pairs;
   UnknownPlaces places;
@@ -133,16 +127,31 @@ MirrorPairs rail_pairs(const StructureModel& structure) {
   return pairs;
 }
 
+// Unknowns of one node of the track or of a beam bridge stand on lines six by six at one place; others are on their
+// own.
+std::vector<int> mesh_nodes(const StructureModel& structure) {
+  std::map<std::pair<double, int>, int> known;
+  std::vector<int> node(structure.dof_line.size());
+  int nodes = 0;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    constexpr int per_node = 6;
+    const int line = structure.dof_line[i];
+    node[i] = line < 0 ? nodes : known.try_emplace({structure.dof_x[i], line / per_node}, nodes).first->second;
+    nodes += node[i] == nodes;
+  }
+  return node;
+}
+
 }  // namespace
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : StructureResponse(structure, scheme, {0, structure.dofs()}) {}
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active)
-    : dofs_(structure.dofs()) {
+    : node_(mesh_nodes(structure)), dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
-  set_divisible(structure);
+  set_divisible(structure, active);
   if (divisible_) {
     divisible_->stiffness = by_sums_and_differences(structure.stiffness, divisible_->pairs);
     divisible_->damping = by_sums_and_differences(structure.damping, divisible_->pairs);
@@ -151,17 +160,18 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   if (active.count > 0) activate(active);
 }
 
-StructureResponse::StructureResponse(const StructureModel& structure) : dofs_(structure.dofs()) {
+StructureResponse::StructureResponse(const StructureModel& structure) : at_rest_(true), dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  set_divisible(structure);
+  set_divisible(structure, {0, dofs_});
   activate({0, dofs_});
 }
 
 StructureResponse::~StructureResponse() = default;
 
-void StructureResponse::set_divisible(const StructureModel& structure) {
-  if (structure.dof_line.empty()) return;
+void StructureResponse::set_divisible(const StructureModel& structure, const DofRange& active) {
+  const auto without_line = std::find(structure.dof_line.begin(), structure.dof_line.end(), -1);
+  if (structure.dof_line.empty() || (active.count == dofs_ && without_line != structure.dof_line.end())) return;
   divisible_ = std::make_unique<Divisible>();
   divisible_->pairs = rail_pairs(structure);
   divisible_->places = {structure.dof_x, structure.dof_line};
@@ -201,11 +211,13 @@ void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
   factor_.reset();  // not two at a time
+  factored_in_sections_ = false;
   product_.reset();
   if (divisible_) {
     if (auto layout = divide(divisible_->effective, divisible_->places, divisible_->pairs, dofs)) {
       const auto shared = std::make_shared<const SectionLayout>(std::move(*layout));
       factor_ = std::make_unique<SectionedLdlt>(divisible_->effective, shared, not_positive_definite);
+      factored_in_sections_ = true;
       if (divisible_->stiffness.rows() > 0) {
         product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
       }
@@ -216,12 +228,23 @@ void StructureResponse::activate(const DofRange& dofs) {
       set_entries(back(divisible_->stiffness), back(divisible_->damping));
     }
   }
-  factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite);
+  factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite, order_of(dofs), node_);
 }
 
-StructureResponse::Selected& StructureResponse::selected() {
-  if (!selected_) selected_ = std::make_unique<Selected>(effective_, dofs_);
-  return *selected_;
+// The whole's factor serves the compliances, too, whose paths should be short; one at rest or of a window soon goes.
+EliminationOrder StructureResponse::order_of(const DofRange& dofs) const noexcept {
+  return dofs.count == dofs_ && !at_rest_ ? EliminationOrder::nested_dissection : EliminationOrder::minimum_degree;
+}
+
+bool StructureResponse::factor_is_whole() const noexcept {
+  return factor_ && !factored_in_sections_ && active_.count == dofs_;
+}
+
+const SubstitutionFactor& StructureResponse::whole_factor() {
+  if (factor_is_whole()) return *factor_;
+  const DofRange all{0, dofs_};
+  if (!whole_) whole_ = std::make_unique<SparseLdlt>(effective_, all, not_positive_definite, order_of(all), node_);
+  return *whole_;
 }
 
 StructureResponse::Memory StructureResponse::memory() const {
@@ -235,13 +258,23 @@ StructureResponse::Memory StructureResponse::memory() const {
       memory.kept += entry * static_cast<double>(matrix->nonZeros()) + sizeof(int) * n;
     }
   }
-  // The ordering works on four copies of the pattern; then there are the permuted upper triangle and L by columns.
-  const double ordering = 4.0 * entry * nonzeros;
-  memory.setup = std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->bytes()) / sizeof(double)));
-  constexpr double per_entry = 12.5, per_dof = 6.0 * sizeof(double);  // stored in blocks; vectors of a substitution
-  memory.low_entries = static_cast<double>(SparseLdlt::entries_of_lowest_tree(effective_));
-  memory.low = per_entry * memory.low_entries + per_dof * n;
-  memory.low_setup = entry * (0.5 * nonzeros + memory.low_entries);
+  const SparseLdlt::Memory whole = SparseLdlt::memory(effective_, {0, dofs_}, order_of({0, dofs_}), node_);
+  memory.low_entries = static_cast<double>(whole.entries);
+  memory.low = 6.0 * sizeof(double) * n;  // vectors of a substitution
+  if (factor_is_whole()) {
+    memory.setup = static_cast<double>(whole.made);
+    return memory;
+  }
+  memory.low += static_cast<double>(whole.stored);
+  memory.low_setup = static_cast<double>(whole.made);
+  if (factored_in_sections_) {
+    // The ordering works on four copies of the pattern; then there are the permuted upper triangle and L by columns.
+    const double ordering = 4.0 * entry * nonzeros;
+    memory.setup =
+        std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->bytes()) / sizeof(double)));
+  } else {
+    memory.setup = static_cast<double>(SparseLdlt::memory(effective_, active_, order_of(active_), node_).made);
+  }
   return memory;
 }
 
@@ -325,7 +358,8 @@ std::size_t StructureResponse::load_bytes() const noexcept {
 
 StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double reach, std::size_t side,
                                                        std::size_t node, const std::array<std::size_t, 2>& room) {
-  Selected& s = selected();
+  const SubstitutionFactor& factor = whole_factor();
+  FewEntries& s = *few_;
   const RailLine& rail = structure.rail[side];
   Column column;
   std::vector<int> involved;
@@ -344,12 +378,12 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     column.rows[other].assign(static_cast<std::size_t>(end - begin), Block::Zero());
     for (auto n = begin; n < end; ++n) involve(to.dof[static_cast<std::size_t>(n)]);
   }
-  s.solution.begin(s.factor, involved);
+  s.solution.begin(factor, involved);
   for (std::size_t load = 0; load < 6; ++load) {
     const int loaded = rail.dof[node][load];
     if (loaded == held) continue;
     s.load[loaded] = 1.0;
-    const Eigen::VectorXd& moved = s.respond(s.factor);
+    const Eigen::VectorXd& moved = s.respond(factor);
     s.load[loaded] = 0.0;
     for (std::size_t other = 0; other < 2; ++other) {
       const DofIndices* const dofs = &structure.rail[other].dof[static_cast<std::size_t>(column.first[other])];
@@ -366,6 +400,7 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
 
 void StructureResponse::tabulate_compliance(const StructureModel& structure, double window, double from, double to) {
   constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes
+  if (!few_) few_ = std::make_unique<FewEntries>(dofs_);
   const RailLine& line = structure.rail[0];
   const bool keeps = keeps_compliances_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
   const auto visit = [&](auto&& visitor) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "railtab/runtime/algebra/divided_substitution.hpp"
+#include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
@@ -52,7 +53,7 @@ class StructureResponse {
 
   [[nodiscard]] const SubstitutionFactor& factor() const noexcept { return *factor_; }
   /// Whether the active unknowns are factored in sections.
-  [[nodiscard]] bool in_sections() const noexcept { return product_ != nullptr; }
+  [[nodiscard]] bool in_sections() const noexcept { return factored_in_sections_; }
 
   /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
   void activate(const DofRange& dofs);
@@ -119,7 +120,7 @@ class StructureResponse {
 
   /// Matrices by sums and differences of the rails, for a division into sections.
   struct Divisible;
-  void set_divisible(const StructureModel& structure);
+  void set_divisible(const StructureModel& structure, const DofRange& active);
   void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
 
   Eigen::SparseMatrix<double> effective_;  ///< K̄
@@ -133,12 +134,15 @@ class StructureResponse {
   };
   std::vector<Entry> entry_;
   std::vector<int> entry_row_, entry_begin_;
-  /// Gives few entries of solutions, with a factor of its own in the order of the lowest tree: three times as large as
-  /// that of the steps.
+  [[nodiscard]] EliminationOrder order_of(const DofRange& dofs) const noexcept;
+  [[nodiscard]] bool factor_is_whole() const noexcept;
+  /// Of all unknowns, for few entries of solutions: that of the steps, or one of its own.
+  [[nodiscard]] const SubstitutionFactor& whole_factor();
+  std::unique_ptr<SubstitutionFactor> whole_;  ///< made when first needed
   struct FewEntries;
-  struct Selected;
-  [[nodiscard]] Selected& selected();
-  std::unique_ptr<Selected> selected_;  ///< made when first needed
+  std::unique_ptr<FewEntries> few_;
+  bool factored_in_sections_ = false, at_rest_ = false;
+  std::vector<int> node_;  ///< of every unknown, for the order of elimination
   Eigen::Index dofs_ = 0;
   std::array<std::vector<Column>, 2> column_;  ///< per rail and node
   bool keeps_compliances_ = false;

@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/carried_motion.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 
 namespace railtab {
 namespace {
@@ -157,7 +158,7 @@ TEST(DeckChannels, PointLoadOnASimpleSpan) {
   constexpr double P = 250e3;
   Eigen::VectorXd load = Eigen::VectorXd::Zero(model.dofs());
   load += P * Eigen::VectorXd(model.deck.rows.row(10).transpose());
-  const Eigen::VectorXd u = StiffnessFactor(model.stiffness).solve(load);
+  const Eigen::VectorXd u = stiffness_factor(model.stiffness).solve(load);
   const Eigen::VectorXd found = model.deck.rows * u;
   const double EI = parameters.E * parameters.Iy;
   EXPECT_NEAR(found[10], P * std::pow(length, 3) / (48.0 * EI), 1e-10 * found[10]);

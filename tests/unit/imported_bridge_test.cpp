@@ -298,7 +298,7 @@ TEST(ImportedBridge, SectionForcesOfAPullAndOfSinkingSupports) {
   EXPECT_EQ(bent[1], 0.0);
   EXPECT_NEAR(bent[2], -12.0 * EI / (l * l * l) * 1e-3, 1e-9 * EI / (l * l * l)) << "clamped ends, one of which sinks";
   const Eigen::VectorXd turned =
-      StiffnessFactor(sunk.stiffness).solve(Eigen::VectorXd(-(sunk.supports.stiffness * down)));
+      stiffness_factor(sunk.stiffness).solve(Eigen::VectorXd(-(sunk.supports.stiffness * down)));
   for (const double force : value(sunk, turned, down))
     EXPECT_NEAR(force, 0.0, 1e-9 * EI / (l * l)) << "statically determinate";
 
@@ -307,7 +307,7 @@ TEST(ImportedBridge, SectionForcesOfAPullAndOfSinkingSupports) {
   const FeStructure pulled = read_on_supports(parameters);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(pulled.dofs());
   load[pulled.nodes.at(107).rows[0].front()] = 1e6;
-  const std::vector<double> drawn = value(pulled, StiffnessFactor(pulled.stiffness).solve(load), down);
+  const std::vector<double> drawn = value(pulled, stiffness_factor(pulled.stiffness).solve(load), down);
   EXPECT_NEAR(drawn[0], 0.5e6, 1e-3);
   EXPECT_NEAR(drawn[1], 0.0, 1e-3);
 }

@@ -3,7 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseLU>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "substitution_check.hpp"
 
@@ -16,12 +22,53 @@ Eigen::SparseMatrix<double> short_track() {
   return effective_matrix(build_track_bridge(track, {BridgeParameters{}, BridgeParameters{}}));
 }
 
+/// Laplace's operator on a cube of n³ points: fronts as wide as a cross-section, unlike those of a track.
+Eigen::SparseMatrix<double> cube(int n) {
+  const auto at = [&](int x, int y, int z) { return x + n * (y + n * z); };
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) {
+        entries.emplace_back(at(x, y, z), at(x, y, z), 6.0 + 0.01 * x);
+        for (const auto& [i, j, k] : {std::array{x + 1, y, z}, std::array{x, y + 1, z}, std::array{x, y, z + 1}}) {
+          if (std::max({i, j, k}) == n) continue;
+          entries.emplace_back(at(x, y, z), at(i, j, k), -1.0);
+          entries.emplace_back(at(i, j, k), at(x, y, z), -1.0);
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(n * n * n, n * n * n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
 TEST(SparseLdlt, SolvesAsAFactorisationWithoutSymmetryDoes) {
-  const Eigen::SparseMatrix<double> matrix = short_track();
-  const SparseLdlt factor(matrix);
-  const Eigen::VectorXd load = Eigen::VectorXd::Random(matrix.rows());
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
-  EXPECT_LT(difference(factor.solve(load), lu.solve(load)), 1e-10);
+  for (const auto& [matrix, bound] : {std::pair{short_track(), 1e-10}, std::pair{cube(12), 1e-13}}) {
+    const Eigen::VectorXd load = Eigen::VectorXd::Random(matrix.rows());
+    const Eigen::VectorXd expected = Eigen::SparseLU<Eigen::SparseMatrix<double>>(matrix).solve(load);
+    for (const EliminationOrder order : {EliminationOrder::minimum_degree, EliminationOrder::nested_dissection}) {
+      EXPECT_LT(difference(SparseLdlt(matrix, {0, matrix.rows()}, "", order).solve(load), expected), bound);
+    }
+  }
+}
+
+TEST(SparseLdlt, AMatrixThatIsNotPositiveDefiniteIsRejected) {
+  Eigen::SparseMatrix<double> matrix = cube(8);
+  for (const double entry : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    matrix.coeffRef(200, 200) = entry;
+    EXPECT_THROW(SparseLdlt(matrix, "not positive definite"), ComputationError) << entry;
+  }
+}
+
+// What a factor says of its memory before it is made is what it takes.
+TEST(SparseLdlt, CountsItsMemory) {
+  for (const auto& matrix : {short_track(), cube(12)}) {
+    for (const EliminationOrder order : {EliminationOrder::minimum_degree, EliminationOrder::nested_dissection}) {
+      const DofRange all{0, matrix.rows()};
+      EXPECT_EQ(SparseLdlt::memory(matrix, all, order).stored, SparseLdlt(matrix, all, "", order).stored_bytes());
+    }
+  }
 }
 
 TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "railtab/runtime/algebra/nested_dissection.hpp"
+#include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 
@@ -98,20 +98,20 @@ TEST(StructureResponse, VerticalComplianceHasTheLinesSlopeAndCurvature) {
   }
 }
 
-TEST(NestedDissection, OrdersEveryUnknownOnce) {
+TEST(EliminationOrder, EliminatesEveryUnknownOfTheRangeOnce) {
   const StructureModel structure = short_bridge();
-  Eigen::SparseMatrix<double> full = structure.stiffness;
-  full.makeCompressed();
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  NestedDissection{}(full, order);
-  std::vector<int> seen(order.indices().data(), order.indices().data() + order.size());
-  std::sort(seen.begin(), seen.end());
-  ASSERT_EQ(static_cast<int>(seen.size()), structure.dofs());
-  for (int i = 0; i < structure.dofs(); ++i) EXPECT_EQ(seen[static_cast<std::size_t>(i)], i);
+  for (const DofRange& range : {DofRange{0, structure.dofs()}, DofRange{100, 250}}) {
+    for (const EliminationOrder order : {EliminationOrder::minimum_degree, EliminationOrder::nested_dissection}) {
+      std::vector<int> seen = elimination_order(structure.stiffness, range, order);
+      std::sort(seen.begin(), seen.end());
+      ASSERT_EQ(static_cast<Eigen::Index>(seen.size()), range.count);
+      for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], static_cast<int>(i));
+    }
+  }
 }
 
 // Nodes of beam elements 250 m long, on which hundreds of sleepers hang, leave the track's order alone.
-TEST(NestedDissection, HubsDoNotFillTheFactor) {
+TEST(EliminationOrder, HubsDoNotFillTheFactor) {
   const auto entries_per_unknown = [](int elements) {
     TrackParameters track;
     track.length_before = track.length_after = 12.0;

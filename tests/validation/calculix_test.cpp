@@ -214,7 +214,7 @@ TEST_F(SolidBeam, SectionForcesAreThoseOfStatics) {
     EXPECT_GT(std::ranges::count(structure.node_of_row, no_node), 0);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs());
     load[structure.nodes.at(number(7, 2, 2)).rows[2].front()] = 1e6;
-    const Eigen::VectorXd u = StiffnessFactor(structure.stiffness).solve(load);
+    const Eigen::VectorXd u = stiffness_factor(structure.stiffness).solve(load);
     double worst = 0.0;
     ASSERT_EQ(structure.sections.size(), 10U);
     for (const DeckRow& row : structure.sections) {

@@ -1,0 +1,138 @@
+#include "railtab/runtime/algebra/multifrontal.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "railtab/runtime/base/index.hpp"
+
+namespace railtab {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Matrix = Eigen::MatrixXd;
+using MatrixMap = Eigen::Map<Matrix>;
+
+class Elimination {
+ public:
+  Elimination(const Sparse& matrix, const DofRange& range, const EliminationTree& tree)
+      : matrix_(matrix),
+        first_(static_cast<int>(range.begin)),
+        tree_(tree),
+        position_(tree.unknown.size()),
+        place_(tree.unknown.size()),
+        child_(index(tree.blocks()), -1),
+        sibling_(child_),
+        front_(index(tree.largest_front) * index(tree.largest_front)),
+        waiting_(tree.waiting) {
+    for (std::size_t k = 0; k < tree.unknown.size(); ++k) position_[index(tree.unknown[k])] = static_cast<int>(k);
+  }
+
+  /// @return false where a pivot is not positive
+  [[nodiscard]] bool eliminate(int b, EliminatedBlock& block) {
+    const Eigen::Index n = tree_.columns(b), below = static_cast<Eigen::Index>(tree_.rows(b).size());
+    MatrixMap front(front_.data(), n + below, n + below);
+    assemble(b, front);
+    auto own = front.topLeftCorner(n, n);
+    auto beside = front.bottomLeftCorner(below, n);
+    auto rest = front.bottomRightCorner(below, below);
+    // With the root of D in the triangle, C Cᵀ, products need no factor between them.
+    if (!take_root(own)) return false;
+    const auto C = own.template triangularView<Eigen::Lower>();
+    block.inverse.setIdentity(n, n);
+    C.solveInPlace(block.inverse);
+    block.below.noalias() = beside * block.inverse.transpose().template triangularView<Eigen::Upper>();
+    // Small products are faster whole than as a triangle.
+    constexpr Eigen::Index small = 32;
+    if (below <= small) {
+      rest.noalias() -= block.below.lazyProduct(block.below.transpose());
+    } else {
+      rest.template selfadjointView<Eigen::Lower>().rankUpdate(block.below, -1.0);
+    }
+    beside.noalias() = block.below * block.inverse.template triangularView<Eigen::Lower>();
+    block.below = beside;
+    block.D = own.diagonal().array().square();
+    block.inverse = own.diagonal().asDiagonal() * block.inverse;
+    if (below == 0) return true;
+    MatrixMap(waiting_.data() + top_, below, below).template triangularView<Eigen::Lower>() = rest;
+    top_ += index(static_cast<int>(below * below));
+    int& child = child_[index(tree_.parent[index(b)])];
+    sibling_[index(b)] = std::exchange(child, b);
+    return true;
+  }
+
+ private:
+  // The matrix's entries in the block's columns and what its children have left for its rows; lower triangle.
+  void assemble(int b, MatrixMap& front) {
+    const int begin = tree_.first[index(b)], n = tree_.columns(b);
+    const std::span<const int> rows = tree_.rows(b);
+    for (int j = 0; j < n; ++j) place_[index(begin + j)] = j;
+    for (std::size_t k = 0; k < rows.size(); ++k) place_[index(rows[k])] = n + static_cast<int>(k);
+    for (Eigen::Index j = 0; j < front.cols(); ++j) front.col(j).tail(front.rows() - j).setZero();
+    for (int j = 0; j < n; ++j) {
+      for (Sparse::InnerIterator entry(matrix_, first_ + tree_.unknown[index(begin + j)]); entry; ++entry) {
+        const auto unknown = static_cast<int>(entry.row()) - first_;
+        if (unknown < 0 || unknown >= static_cast<int>(position_.size())) continue;
+        const int i = position_[index(unknown)];
+        if (i >= begin + j) front(place_[index(i)], j) += entry.value();
+      }
+    }
+    for (int c = child_[index(b)]; c >= 0; c = sibling_[index(c)]) {  // the last one waits on top
+      const std::span<const int> from = tree_.rows(c);
+      top_ -= from.size() * from.size();
+      const double* column = waiting_.data() + top_;
+      for (std::size_t j = 0; j < from.size(); ++j, column += from.size()) {
+        double* const to = &front(0, place_[index(from[j])]);
+        for (std::size_t i = j; i < from.size(); ++i) to[place_[index(from[i])]] += column[i];
+      }
+    }
+  }
+
+  // A = C Cᵀ in the lower triangle.
+  template <class Block>
+  [[nodiscard]] static bool take_root(Block&& A) {
+    constexpr Eigen::Index small = 8;
+    if (A.rows() > small) {
+      Eigen::Ref<Matrix> there(A);
+      return Eigen::LLT<Eigen::Ref<Matrix>>(there).info() == Eigen::Success && A.diagonal().minCoeff() > 0.0;
+    }
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      const double pivot = A(j, j) - A.row(j).head(j).squaredNorm();
+      if (!(pivot > 0.0)) return false;
+      A(j, j) = std::sqrt(pivot);
+      for (Eigen::Index i = j + 1; i < A.rows(); ++i) {
+        A(i, j) = (A(i, j) - A.row(i).head(j).dot(A.row(j).head(j))) / A(j, j);
+      }
+    }
+    return true;
+  }
+
+  const Sparse& matrix_;
+  int first_;
+  const EliminationTree& tree_;
+  std::vector<int> position_;         // of an unknown in the order of elimination
+  std::vector<int> place_;            // of a row in the front
+  std::vector<int> child_, sibling_;  // of blocks that wait
+  std::vector<double> front_;
+  std::vector<double> waiting_;  // lower triangles in square matrices, one on top of the other
+  std::size_t top_ = 0;
+};
+
+}  // namespace
+
+bool factorise(const Sparse& matrix, const DofRange& range, const EliminationTree& tree,
+               const std::function<void(int, const EliminatedBlock&)>& store) {
+  Elimination elimination(matrix, range, tree);
+  EliminatedBlock block;
+  for (int b = 0; b < tree.blocks(); ++b) {
+    if (!elimination.eliminate(b, block)) return false;
+    store(b, block);
+  }
+  return true;
+}
+
+}  // namespace railtab
