@@ -23,7 +23,11 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   const Eigen::MatrixXd effective = effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness);
   const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
   inverse_bb_ = b_.empty() ? effective_bb : effective_inverse(effective_bb);
-  if (!vehicle.elements.empty()) elements_.emplace(vehicle, b_, inverse_bb_, load_weight_);
+  if (!vehicle.elements.empty()) {
+    for (const SeparateSystem& system : separate_systems(vehicle)) {
+      elements_.emplace_back(vehicle, system, b_, inverse_bb_, load_weight_);
+    }
+  }
   E_inverse_ = effective(c_, b_) * inverse_bb_;
   K_bc_ = vehicle.stiffness(b_, c_);
   C_bc_ = damping(b_, c_);

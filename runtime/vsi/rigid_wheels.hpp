@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "railtab/runtime/vsi/contact_newton.hpp"
@@ -44,14 +43,14 @@ class RigidWheelResponse {
   [[nodiscard]] const Eigen::MatrixXd& stiffness() const noexcept { return Z_; }
   [[nodiscard]] const Eigen::MatrixXd& damping() const noexcept { return W_; }
   [[nodiscard]] const Eigen::MatrixXd& mass() const noexcept { return A_; }
-  /// Of force elements while the wheelsets' heave is held; none where the vehicle has none.
-  [[nodiscard]] const std::optional<ElementCompliance>& elements() const noexcept { return elements_; }
+  /// Of force elements while the wheelsets' heave is held, per separate system; none where the vehicle has none.
+  [[nodiscard]] const std::vector<ElementCompliance>& elements() const noexcept { return elements_; }
 
  private:
   [[nodiscard]] Eigen::VectorXd increment(const Eigen::VectorXd& R, const WheelsetHeave& heave) const;
 
   double load_weight_;
-  std::optional<ElementCompliance> elements_;
+  std::vector<ElementCompliance> elements_;
   std::vector<int> b_, c_;                  // other dofs, heave of the wheelsets
   Eigen::MatrixXd inverse_bb_, E_inverse_;  // K̄_bb⁻¹; K̄_cb K̄_bb⁻¹
   Eigen::MatrixXd K_bc_, C_bc_, M_bc_, Z_, W_, A_;
