@@ -67,9 +67,7 @@ Eigen::VectorXd VehicleResponse::free_increment(const HhtScheme& scheme, const E
                                                 const LinearMotion& motion, const Prediction& prediction) const {
   Eigen::VectorXd known;
   past_contact_load(scheme, motion, {0, motion.contact_load.size()}, known);
-  known += load;
-  damping_.add_product(-1.0, prediction.weighted_velocity, known);
-  stiffness_.add_product(-1.0, prediction.weighted_displacement, known);
+  known += load - damping_ * prediction.weighted_velocity - stiffness_ * prediction.weighted_displacement;
   return displacement(known);
 }
 
