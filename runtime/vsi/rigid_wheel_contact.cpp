@@ -90,8 +90,7 @@ class RigidWheels : public ContactLaw {
       Eigen::VectorXd& R = remainder_[index(v)];
       const LinearMotion& motion = state.vehicle[index(v)];
       vehicle_step_load(step.model, step.hht, v, step.begin, motion, ws.vehicle_load);
-      R = wheels(step).remainder(step.model.vehicle, step.operators.vehicle_damping, step.hht, ws.vehicle_load, motion,
-                                 prediction_[index(v)]);
+      R = wheels(step).remainder(step.hht, ws.vehicle_load, motion, prediction_[index(v)]);
       free_force_.segment(per_vehicle_ * v, per_vehicle_) = wheels(step).free_force(R);
     }
     state_ = &state;

@@ -25,8 +25,7 @@ class RigidWheelResponse {
   /// R of the step: loads, damping and stiffness forces known before the wheelsets' heave. Changes the prediction of
   /// the wheelsets' heave, which is prescribed.
   /// @param load of the step on the vehicle besides the contacts: vehicle_step_load()
-  [[nodiscard]] Eigen::VectorXd remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
-                                          const HhtScheme& scheme, const Eigen::VectorXd& load,
+  [[nodiscard]] Eigen::VectorXd remainder(const HhtScheme& scheme, const Eigen::VectorXd& load,
                                           const LinearMotion& motion, Prediction& prediction) const;
   /// Contact forces on the wheelsets (down) [N] where these end the step with no heave, velocity and acceleration.
   [[nodiscard]] Eigen::VectorXd free_force(const Eigen::VectorXd& R) const;
@@ -51,8 +50,10 @@ class RigidWheelResponse {
 
   double load_weight_;
   std::vector<ElementCompliance> elements_;
-  std::vector<int> b_, c_;                  // other dofs, heave of the wheelsets
-  Eigen::MatrixXd inverse_bb_, E_inverse_;  // K̄_bb⁻¹; K̄_cb K̄_bb⁻¹
+  std::vector<int> b_, c_;     // other dofs, heave of the wheelsets
+  SeparateMatrix inverse_bb_;  // K̄_bb⁻¹
+  SeparateMatrix damping_, stiffness_;
+  Eigen::MatrixXd E_inverse_;  // K̄_cb K̄_bb⁻¹
   Eigen::MatrixXd K_bc_, C_bc_, M_bc_, Z_, W_, A_;
 };
 
