@@ -268,16 +268,22 @@ class RigidWheels : public ContactLaw {
       const int a = i % per_vehicle_, b = k % per_vehicle_;
       return Vector3d(response.stiffness()(a, b), response.damping()(a, b), response.mass()(a, b));
     };
+    // Wheelsets of the train that a vehicle's springs couple with one of them.
+    const auto coupled = [&](int i) {
+      const int first = i - i % per_vehicle_;
+      const WheelsetRange of_vehicle = step.operators.vehicle.coupled()[index(i - first)];
+      return WheelsetRange{first + of_vehicle.first, first + of_vehicle.end};
+    };
     system_.setIdentity(wheelsets, wheelsets);
     force_ = free_force_;
     for (int i = 0; i < wheelsets; ++i) {
-      const int first = i - i % per_vehicle_;
-      for (int k = first; k < first + per_vehicle_; ++k) force_[i] += impedance(i, k).dot(free[index(k)]);
+      const auto [first, end] = coupled(i);
+      for (int k = first; k < end; ++k) force_[i] += impedance(i, k).dot(free[index(k)]);
     }
     for (const LineCoupling& c : couplings_) {
       const Vector3d motion = followed(c.line, rate * c.line, step.hht.acceleration_rate() * c.line[0], running_);
-      const int first = c.i - c.i % per_vehicle_;
-      for (int i = first; i < first + per_vehicle_; ++i) system_(i, c.j) += impedance(i, c.i).dot(motion);
+      const auto [first, end] = coupled(c.i);
+      for (int i = first; i < end; ++i) system_(i, c.j) += impedance(i, c.i).dot(motion);
     }
     force_ = system_.partialPivLu().solve(force_).eval();
   }
