@@ -42,15 +42,18 @@ constexpr int pitch = 4;
 // The linear parts at rest, made once.
 struct RestOperators {
   TrainContact contact;
+  std::vector<SeparateSystem> systems;
   VehicleResponse vehicle;
-  std::optional<ElementCompliance> elements;
+  std::vector<ElementCompliance> elements;  // per system; none where the vehicle has no force elements
   std::shared_ptr<StructureResponse> structure;
 
   explicit RestOperators(const VsiModel& model)
-      : contact(contact_at_rest(model)), vehicle(model.vehicle, regularisation) {
-    if (!model.vehicle.elements.empty()) {
-      elements.emplace(model.vehicle, vehicle.inverse(), 1.0);
-      elements->leave_out_pitch();
+      : contact(contact_at_rest(model)),
+        systems(separate_systems(model.vehicle)),
+        vehicle(model.vehicle, systems, regularisation) {
+    for (const SeparateSystem& system : systems) {
+      if (model.vehicle.elements.empty()) break;
+      elements.emplace_back(model.vehicle, system, vehicle.inverse(), 1.0).leave_out_pitch();
     }
     if (!model.structure) return;
     structure =
@@ -125,6 +128,7 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
   problem.free = problem.predicted = problem.predicted_velocity =
       Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
   problem.vehicle_compliance = vehicle.compliance();
+  problem.coupled = vehicle.coupled();
   problem.velocity_rate[pitch] = 1.0;
   for (int w = 0; w < problem.wheelsets_per_vehicle; ++w) {
     const int k = 6 * w + pitch;
@@ -204,9 +208,9 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   }
 
   std::optional<TrainElements> elements;
-  if (rest.elements) {
+  if (!rest.elements.empty()) {
     elements.emplace(model.vehicle, model.vehicle_x.size());
-    elements->compliance = &*rest.elements;
+    elements->compliance = &rest.elements;
     problem.elements = &*elements;
   }
 
@@ -216,11 +220,10 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     for (int v = 0; v < vehicles; ++v) {
       const LinearMotion& motion = state.vehicle[index(v)];
       const Eigen::VectorXd free =
-          vehicle.inverse() * (load[index(v)] + regularisation * (model.vehicle.mass * motion.displacement));
+          vehicle.displacement(load[index(v)] + regularisation * (model.vehicle.mass * motion.displacement));
       gather_wheelsets(model, v, free, problem.free);
       if (!elements) continue;
-      elements->vehicle[index(v)].begin_rest(motion.displacement, state.friction[index(v)]);
-      elements->free[index(v)] = model.vehicle.elements.rows * free;
+      elements->begin_rest(v, motion.displacement, state.friction[index(v)], free);
     }
     for (int w = 0; w < model.wheelsets(); ++w) {
       problem.free[wheelset_unknowns * w + pitch] = state.contact.displacement[wheelset_unknowns * w + pitch];
@@ -245,8 +248,8 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     for (int v = 0; v < vehicles; ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(model, v, state.contact.force, motion.contact_load);
-      if (elements) elements->vehicle[index(v)].add_end_force(motion.contact_load);
-      Eigen::VectorXd next = vehicle.inverse() * (load[index(v)] + motion.contact_load +
+      if (elements) elements->add_end_force(v, motion.contact_load);
+      Eigen::VectorXd next = vehicle.displacement(load[index(v)] + motion.contact_load +
                                                   regularisation * (model.vehicle.mass * motion.displacement));
       clear_pitch(model, next);
       unbalanced = std::max(unbalanced, constraint.apply(v, state.contact.displacement, next));

@@ -22,37 +22,58 @@ constexpr int paper_searches = 4;
 // K_h of F_n = K_h d^{3/2}, rounded up [N/m^{3/2}]: a wheel's on a rail is 1e11 at most.
 constexpr double stiffest_contact = 1e11;
 
+// Groups of wheelsets, front first: single ones in a time step; at rest all of a vehicle, or of each separate system.
+void find_groups(const ContactProblem& problem, int wheelsets, std::vector<WheelsetRange>& groups) {
+  groups.clear();
+  const int per_vehicle = problem.wheelsets_per_vehicle;
+  for (int w = 0; w < wheelsets; ++w) {
+    WheelsetRange group{w, w + 1};
+    if (problem.wheelsets_per_group > 1) {
+      const int first = w - w % per_vehicle;
+      const WheelsetRange coupled =
+          problem.coupled.empty() ? WheelsetRange{0, per_vehicle} : problem.coupled[index(w - first)];
+      group = {first + coupled.first, first + coupled.end};
+    }
+    if (!groups.empty() && group.first < groups.back().end) {
+      groups.back().end = std::max(groups.back().end, group.end);
+    } else {
+      groups.push_back(group);
+    }
+  }
+}
+
 // C of every group.
 void assemble_compliances(const ContactProblem& problem, NewtonWorkspace& ws) {
-  const int wheelsets = problem.wheelsets_per_group;
-  const int size = wheelset_unknowns * wheelsets;
+  ws.group_of.resize(ws.tangent.size());
   for (std::size_t g = 0; g < ws.compliance.size(); ++g) {
-    const int of_vehicle = static_cast<int>(g) * wheelsets % problem.wheelsets_per_vehicle;
+    const auto [first, end] = ws.range[g];
+    const int of_vehicle = first % problem.wheelsets_per_vehicle;
+    const int size = wheelset_unknowns * (end - first);
     ws.compliance[g].setZero(size, size);
-    for (int i = 0; i < wheelsets; ++i) {
-      for (int j = 0; j < wheelsets; ++j) {
+    for (int i = 0; i < end - first; ++i) {
+      ws.group_of[index(first + i)] = static_cast<int>(g);
+      for (int j = 0; j < end - first; ++j) {
         ws.compliance[g].block<6, 6>(wheelset_unknowns * i, wheelset_unknowns * j) =
             problem.vehicle_compliance.block<6, 6>(6 * (of_vehicle + i), 6 * (of_vehicle + j));
       }
     }
   }
   for (const RailCoupling& c : problem.rail) {
-    const int g = c.i / 2 / wheelsets;
-    if (c.j / 2 / wheelsets != g) continue;
-    const int first = 2 * wheelsets * g;
+    const int g = ws.group_of[index(c.i / 2)];
+    if (ws.group_of[index(c.j / 2)] != g) continue;
+    const int first = 2 * ws.range[index(g)].first;
     ws.compliance[index(g)].block<3, 3>(rail_unknown(c.i - first), rail_unknown(c.j - first)) = c.compliance;
   }
 }
 
-// C of a group that is a whole vehicle, less what its force elements take away. In a time step, where groups are single
+// C of a group of a state of rest, less what its force elements take away. In a time step, where groups are single
 // wheelsets, that is as small as their coupling.
-Eigen::MatrixXd with_elements(const ContactProblem& problem, int vehicle, const Eigen::MatrixXd& compliance) {
+Eigen::MatrixXd with_elements(const ContactProblem& problem, WheelsetRange group, const Eigen::MatrixXd& compliance) {
   if (!problem.elements || problem.wheelsets_per_group != problem.wheelsets_per_vehicle) return compliance;
-  const TrainElements& elements = *problem.elements;
-  const Eigen::MatrixXd stiffening = elements.vehicle[index(vehicle)].stiffening(*elements.compliance);
+  const Eigen::MatrixXd stiffening = problem.elements->stiffening(group);
   Eigen::MatrixXd result = compliance;
-  for (int i = 0; i < problem.wheelsets_per_group; ++i) {
-    for (int j = 0; j < problem.wheelsets_per_group; ++j) {
+  for (int i = 0; i < group.end - group.first; ++i) {
+    for (int j = 0; j < group.end - group.first; ++j) {
       result.block<6, 6>(wheelset_unknowns * i, wheelset_unknowns * j) -= stiffening.block<6, 6>(6 * i, 6 * j);
     }
   }
@@ -61,11 +82,11 @@ Eigen::MatrixXd with_elements(const ContactProblem& problem, int vehicle, const 
 
 // (I − C T)⁻¹ of a group of several wheelsets.
 void invert_group(const ContactProblem& problem, int group, NewtonWorkspace& ws) {
-  const Eigen::MatrixXd stiffened = with_elements(problem, group, ws.compliance[index(group)]);
+  const WheelsetRange range = ws.range[index(group)];
+  const Eigen::MatrixXd stiffened = with_elements(problem, range, ws.compliance[index(group)]);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(stiffened.rows(), stiffened.cols());
-  for (int j = 0; j < problem.wheelsets_per_group; ++j) {
-    jacobian.middleCols<12>(12 * j) -=
-        stiffened.middleCols<12>(12 * j) * ws.tangent[index(group * problem.wheelsets_per_group + j)];
+  for (int j = 0; j < range.end - range.first; ++j) {
+    jacobian.middleCols<12>(12 * j) -= stiffened.middleCols<12>(12 * j) * ws.tangent[index(range.first + j)];
   }
   ws.inverse[index(group)] = jacobian.partialPivLu().inverse();
 }
@@ -149,7 +170,8 @@ class TrainNewton {
         s_(solution),
         ws_(ws) {
     const auto wheelsets = static_cast<int>(s_.displacement.size()) / wheelset_unknowns;
-    const int groups = wheelsets / problem.wheelsets_per_group;
+    find_groups(problem, wheelsets, ws.range);
+    const auto groups = static_cast<int>(ws.range.size());
     ws.tangent.resize(index(wheelsets));
     ws.start.resize(s_.displacement.size());
     ws.start_force.resize(s_.displacement.size());
@@ -193,11 +215,11 @@ class TrainNewton {
   using Turn = GroupNewton::Turn;
 
   [[nodiscard]] Wheelsets wheelsets(int group) const {
-    return {group * problem_.wheelsets_per_group, (group + 1) * problem_.wheelsets_per_group};
+    return {ws_.range[index(group)].first, ws_.range[index(group)].end};
   }
   [[nodiscard]] auto part_of(Eigen::VectorXd& vector, int group) const {
-    const int size = wheelset_unknowns * problem_.wheelsets_per_group;
-    return vector.segment(size * group, size);
+    const auto [first, end] = ws_.range[index(group)];
+    return vector.segment(wheelset_unknowns * first, wheelset_unknowns * (end - first));
   }
 
   [[nodiscard]] int groups() const { return static_cast<int>(ws_.group.size()); }
@@ -395,7 +417,9 @@ void contact_residual(const ContactProblem& problem, const ContactSolution& s, E
   const int per_vehicle = problem.wheelsets_per_vehicle;
   for (int w = 0; w < wheelsets; ++w) {
     const int first = w - w % per_vehicle;
-    for (int v = first; v < first + per_vehicle; ++v) {
+    const WheelsetRange coupled =
+        problem.coupled.empty() ? WheelsetRange{0, per_vehicle} : problem.coupled[index(w - first)];
+    for (int v = first + coupled.first; v < first + coupled.end; ++v) {
       r.segment<6>(wheelset_unknowns * w) += problem.vehicle_compliance.block<6, 6>(6 * (w - first), 6 * (v - first)) *
                                              s.force.segment<6>(wheelset_unknowns * v);
     }

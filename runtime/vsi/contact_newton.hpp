@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "railtab/runtime/contact/contact_response.hpp"
@@ -47,8 +48,8 @@ struct ContactSolution {
 /// docs/theory/coupling.md from Eq. 16.
 struct ContactProblem {
   int wheelsets_per_vehicle = 4;
-  /// Wheelsets whose coupling enters Newton's Jacobian, a divisor of wheelsets_per_vehicle: all of a vehicle at rest,
-  /// one in a time step, within which each responds almost independently.
+  /// Wheelsets whose coupling enters Newton's Jacobian: wheelsets_per_vehicle at rest, all of a vehicle that `coupled`
+  /// joins; one in a time step, within which each responds almost independently.
   int wheelsets_per_group = 4;
   /// dv/dq [1/s] of a wheelset and of a rail head: gamma/(beta·dt) in a time step. At rest 0, but for the wheelset's
   /// pitch, whose unknown is then its deviation from the nominal rotation.
@@ -56,8 +57,10 @@ struct ContactProblem {
   double rail_velocity_rate = 0.0;
   Eigen::VectorXd free, predicted, predicted_velocity;  ///< 12 per wheelset
   Eigen::MatrixXd vehicle_compliance;                   ///< of one vehicle's wheelsets, 6w × 6w, times the load weight
-  TrainElements* elements = nullptr;  ///< force elements of the vehicles, which follow the contact forces; or none
-  std::vector<RailCoupling> rail;     ///< times the load weight; empty on rigid track
+  std::span<const WheelsetRange> coupled;  ///< per wheelset of a vehicle, those whose compliance with it is not zero;
+                                           ///< empty: all of the vehicle
+  TrainElements* elements = nullptr;       ///< force elements of the vehicles, which follow the contact forces; or none
+  std::vector<RailCoupling> rail;          ///< times the load weight; empty on rigid track
   std::vector<std::array<RailHeadMotion, 2>> deviation;  ///< irregularity and the rails' slopes, per wheelset and side
   double largest_move = 5e-3;                            ///< bound on one Newton correction [m or rad]
   /// Contact at the start of the step where f = mean_weight·(mean force over the step − half of that at its start);
@@ -142,6 +145,8 @@ struct NewtonWorkspace {
 
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
   std::vector<Matrix12> tangent;            ///< per wheelset, df/dq
+  std::vector<WheelsetRange> range;         ///< per group, its wheelsets
+  std::vector<int> group_of;                ///< per wheelset
   std::vector<Eigen::MatrixXd> compliance;  ///< per group, C
   std::vector<Eigen::MatrixXd> inverse;     ///< per group, of I − C df/dq
   std::vector<GroupNewton> group;

@@ -1,32 +1,37 @@
 #include "railtab/runtime/vsi/element_forces.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
 namespace railtab {
 
-ElementCompliance::ElementCompliance(const VehicleModel& vehicle, const Eigen::MatrixXd& inverse, double load_weight) {
-  const Eigen::MatrixXd& rows = vehicle.elements.rows;
-  const Eigen::MatrixXd response = load_weight * (inverse * rows.transpose());
-  const Eigen::MatrixXd elongation = load_weight * (rows * inverse);
+ElementCompliance::ElementCompliance(const VehicleModel& vehicle, const SeparateSystem& system,
+                                     const Eigen::MatrixXd& inverse, double load_weight) {
+  const Eigen::MatrixXd rows = vehicle.elements.rows(system.elongations, system.dofs);
+  const Eigen::MatrixXd of_system = inverse(system.dofs, system.dofs);
+  const Eigen::MatrixXd response = load_weight * (of_system * rows.transpose());
+  const Eigen::MatrixXd elongation = load_weight * (rows * of_system);
   own = rows * response;
-  const auto wheelsets = static_cast<Eigen::Index>(vehicle.wheelsets.size());
-  from_wheelsets = Eigen::MatrixXd::Zero(rows.rows(), 6 * wheelsets);
+  const auto unknowns = static_cast<Eigen::Index>(6 * system.wheelsets.size());
+  from_wheelsets = Eigen::MatrixXd::Zero(rows.rows(), unknowns);
   to_wheelsets = from_wheelsets.transpose();
-  for (Eigen::Index k = 0; k < 6 * wheelsets; ++k) {
-    const int dof = vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(k / 6)])]
-                               [static_cast<std::size_t>(k % 6)];
+  for (Eigen::Index k = 0; k < unknowns; ++k) {
+    const int wheelset = system.wheelsets[static_cast<std::size_t>(k / 6)];
+    const int dof = vehicle.dof[index(vehicle.wheelsets[index(wheelset)])][static_cast<std::size_t>(k % 6)];
     if (dof == held) continue;
-    from_wheelsets.col(k) = elongation.col(dof);
-    to_wheelsets.row(k) = response.row(dof);
+    const auto of_dof = std::lower_bound(system.dofs.begin(), system.dofs.end(), dof) - system.dofs.begin();
+    from_wheelsets.col(k) = elongation.col(of_dof);
+    to_wheelsets.row(k) = response.row(of_dof);
   }
 }
 
-ElementCompliance::ElementCompliance(const VehicleModel& vehicle, const std::vector<int>& free,
-                                     const Eigen::MatrixXd& inverse, double load_weight) {
-  const Eigen::MatrixXd rows = vehicle.elements.rows(Eigen::all, free);
+ElementCompliance::ElementCompliance(const VehicleModel& vehicle, const SeparateSystem& system,
+                                     const std::vector<int>& free, const Eigen::MatrixXd& inverse, double load_weight) {
+  const Eigen::MatrixXd rows = vehicle.elements.rows(system.elongations, free);
   own = load_weight * (rows * inverse * rows.transpose());
 }
 
@@ -38,28 +43,47 @@ void ElementCompliance::leave_out_pitch() {
   }
 }
 
-ElementForces::ElementForces(const VehicleModel& vehicle) : elements_(vehicle.elements) {
+ElementForces::ElementForces(const VehicleModel& vehicle, const SeparateSystem& system)
+    : system_(system),
+      whole_(static_cast<int>(system.dofs.size()) == vehicle.dofs()),
+      elements_(elements_of(system, vehicle.elements)) {
   const Eigen::Index rows = elements_.rows.rows();
   for (Eigen::VectorXd* v : {&x0_, &v0_, &predicted_, &predicted_rate_, &x_, &share_, &end_}) v->setZero(rows);
   friction_ = friction_end_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(elements_.element.size()));
   slope_.setZero(rows, rows);
 }
 
+void ElementForces::elongate(const Eigen::VectorXd& displacement, Eigen::VectorXd& elongation) const {
+  if (whole_) {
+    elongation.noalias() = elements_.rows * displacement;
+  } else {
+    elongation.noalias() = elements_.rows * displacement(system_.dofs);
+  }
+}
+
+void ElementForces::add_load(const Eigen::VectorXd& force, Eigen::VectorXd& load) const {
+  if (whole_) {
+    load.noalias() -= elements_.rows.transpose() * force;
+  } else {
+    load(system_.dofs) -= elements_.rows.transpose() * force;
+  }
+}
+
 void ElementForces::begin(const Step& step, const LinearMotion& motion, const Eigen::VectorXd& friction,
                           const Prediction& prediction, const Eigen::VectorXd& guess) {
   step_ = step;
-  friction_ = friction;
-  x0_.noalias() = elements_.rows * motion.displacement;
-  v0_.noalias() = elements_.rows * motion.velocity;
-  predicted_.noalias() = elements_.rows * prediction.displacement;
-  predicted_rate_.noalias() = elements_.rows * prediction.velocity;
-  x_.noalias() = elements_.rows * guess;
+  friction_ = friction(system_.elements);
+  elongate(motion.displacement, x0_);
+  elongate(motion.velocity, v0_);
+  elongate(prediction.displacement, predicted_);
+  elongate(prediction.velocity, predicted_rate_);
+  elongate(guess, x_);
 }
 
 void ElementForces::begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction) {
   step_ = {ElementRule::rest};
-  friction_ = friction;
-  x0_.noalias() = elements_.rows * displacement;
+  friction_ = friction(system_.elements);
+  elongate(displacement, x0_);
   x_ = x0_;
 }
 
@@ -125,6 +149,7 @@ void ElementForces::factor(const ElementCompliance& compliance) {
 // Newton's method on x − x_free + C f(x) = 0. f is piecewise linear and, but for friction under a load that changes,
 // monotone: a few iterations end it exactly. A correction that makes the residual larger is halved.
 bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::VectorXd& free) {
+  if (empty()) return true;
   constexpr double rounding = 1e-14, good_enough = 1e-11;  // m, rad
   constexpr int most_iterations = 60, most_halvings = 8;
   const auto residual = [&] {
@@ -158,27 +183,102 @@ Eigen::MatrixXd ElementForces::stiffening(const ElementCompliance& compliance) c
 }
 
 TrainElements::TrainElements(const VehicleModel& kind, std::size_t vehicles)
-    : vehicle(vehicles, ElementForces(kind)), free(vehicles) {}
+    : wheelsets_(static_cast<int>(kind.wheelsets.size())) {
+  const std::vector<SeparateSystem> systems = separate_systems(kind);
+  systems_ = systems.size();
+  for (std::size_t v = 0; v < vehicles; ++v) {
+    for (const SeparateSystem& system : systems) system_.emplace_back(kind, system);
+  }
+  free_.resize(system_.size());
+}
+
+std::span<ElementForces> TrainElements::of(int vehicle) {
+  return std::span(system_).subspan(index(vehicle) * systems_, systems_);
+}
+std::span<const ElementForces> TrainElements::of(int vehicle) const {
+  return std::span(system_).subspan(index(vehicle) * systems_, systems_);
+}
+
+void TrainElements::begin(int vehicle, const ElementForces::Step& step, const LinearMotion& motion,
+                          const Eigen::VectorXd& friction, const Prediction& prediction, const Eigen::VectorXd& guess,
+                          const Eigen::VectorXd& free) {
+  for (std::size_t s = 0; s < systems_; ++s) {
+    ElementForces& elements = of(vehicle)[s];
+    elements.begin(step, motion, friction, prediction, guess);
+    elements.elongate(free, free_[index(vehicle) * systems_ + s]);
+  }
+}
+
+void TrainElements::begin_rest(int vehicle, const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction,
+                               const Eigen::VectorXd& free) {
+  for (std::size_t s = 0; s < systems_; ++s) {
+    ElementForces& elements = of(vehicle)[s];
+    elements.begin_rest(displacement, friction);
+    elements.elongate(free, free_[index(vehicle) * systems_ + s]);
+  }
+}
 
 void TrainElements::respond(const Eigen::VectorXd& force, Eigen::VectorXd& displacement) {
-  const Eigen::Index wheelsets = compliance->to_wheelsets.rows() / 6;
-  wheelset_force_.resize(6 * wheelsets);
-  for (std::size_t v = 0; v < vehicle.size(); ++v) {
-    const Eigen::Index first = static_cast<Eigen::Index>(v) * wheelsets;
-    for (Eigen::Index w = 0; w < wheelsets; ++w) {
-      wheelset_force_.segment<6>(6 * w) = force.segment<6>(wheelset_unknowns * (first + w));
+  for (std::size_t s = 0; s < system_.size(); ++s) {
+    if (system_[s].empty()) continue;
+    const ElementCompliance& response = (*compliance)[s % systems_];
+    const std::vector<int>& wheelsets = system_[s].wheelsets();
+    const auto first_unknown = [&](std::size_t w) {
+      return wheelset_unknowns * (static_cast<int>(s / systems_) * wheelsets_ + wheelsets[w]);
+    };
+    wheelset_force_.resize(static_cast<Eigen::Index>(6 * wheelsets.size()));
+    for (std::size_t w = 0; w < wheelsets.size(); ++w) {
+      wheelset_force_.segment<6>(static_cast<Eigen::Index>(6 * w)) = force.segment<6>(first_unknown(w));
     }
-    elongation_ = free[v];
-    elongation_.noalias() += compliance->from_wheelsets * wheelset_force_;
-    if (!vehicle[v].solve(*compliance, elongation_)) {
+    elongation_ = free_[s];
+    elongation_.noalias() += response.from_wheelsets * wheelset_force_;
+    if (!system_[s].solve(response, elongation_)) {
       displacement.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
     }
-    wheelset_displacement_.noalias() = compliance->to_wheelsets * vehicle[v].share();
-    for (Eigen::Index w = 0; w < wheelsets; ++w) {
-      displacement.segment<6>(wheelset_unknowns * (first + w)) -= wheelset_displacement_.segment<6>(6 * w);
+    wheelset_displacement_.noalias() = response.to_wheelsets * system_[s].share();
+    for (std::size_t w = 0; w < wheelsets.size(); ++w) {
+      displacement.segment<6>(first_unknown(w)) -= wheelset_displacement_.segment<6>(static_cast<Eigen::Index>(6 * w));
     }
   }
+}
+
+bool TrainElements::solve(int vehicle) {
+  for (std::size_t s = 0; s < systems_; ++s) {
+    if (!of(vehicle)[s].solve((*compliance)[s], free_[index(vehicle) * systems_ + s])) return false;
+  }
+  return true;
+}
+
+Eigen::MatrixXd TrainElements::stiffening(WheelsetRange range) const {
+  const int vehicle = range.first / wheelsets_, first = range.first % wheelsets_, count = range.end - range.first;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(6 * count, 6 * count);
+  for (std::size_t s = 0; s < systems_; ++s) {
+    const ElementForces& elements = of(vehicle)[s];
+    const std::vector<int>& wheelsets = elements.wheelsets();
+    if (elements.empty() || wheelsets.empty()) continue;
+    if (wheelsets.front() < first || wheelsets.front() >= first + count) continue;
+    const Eigen::MatrixXd part = elements.stiffening((*compliance)[s]);
+    for (std::size_t i = 0; i < wheelsets.size(); ++i) {
+      for (std::size_t j = 0; j < wheelsets.size(); ++j) {
+        whole.block<6, 6>(6 * (wheelsets[i] - first), 6 * (wheelsets[j] - first)) =
+            part.block<6, 6>(static_cast<Eigen::Index>(6 * i), static_cast<Eigen::Index>(6 * j));
+      }
+    }
+  }
+  return whole;
+}
+
+void TrainElements::add_share(int vehicle, Eigen::VectorXd& load) const {
+  for (const ElementForces& elements : of(vehicle)) elements.add_share(load);
+}
+
+void TrainElements::add_end_force(int vehicle, Eigen::VectorXd& load) const {
+  for (const ElementForces& elements : of(vehicle)) elements.add_end_force(load);
+}
+
+void TrainElements::store_friction(int vehicle, Eigen::VectorXd& friction) const {
+  for (const ElementForces& elements : of(vehicle)) elements.store_friction(friction);
 }
 
 }  // namespace railtab

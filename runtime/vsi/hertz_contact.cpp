@@ -51,8 +51,7 @@ class HertzContacts : public ContactLaw {
       const LinearMotion& motion = state.vehicle[index(v)];
       predict(hht, motion, p);
       vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
-      free_[index(v)] = step.operators.vehicle.free_increment(step.model.vehicle, step.operators.vehicle_damping, hht,
-                                                              ws.vehicle_load, motion, p);
+      free_[index(v)] = step.operators.vehicle.free_increment(hht, ws.vehicle_load, motion, p);
       // predictor, its velocity, and the motion without contact forces
       const Eigen::VectorXd free = p.displacement + free_[index(v)];
       gather_wheelsets(step.model, v, p.displacement, problem_.predicted);
@@ -61,8 +60,7 @@ class HertzContacts : public ContactLaw {
       gather_wheelsets(step.model, v, free, problem_.free);
       if (!elements_) continue;
       const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
-      elements_->free[index(v)].noalias() = step.model.vehicle.elements.rows * free;
-      elements_->vehicle[index(v)].begin(element_step(hht), motion, state.friction[index(v)], p, start);
+      elements_->begin(v, element_step(hht), motion, state.friction[index(v)], p, start, free);
     }
   }
 
@@ -87,8 +85,8 @@ class HertzContacts : public ContactLaw {
     rail_deviation(step.model, step.contacts, step.end, ws.structure_prediction.displacement, problem_.deviation);
     problem_.velocity_rate = Vector6::Constant(step.hht.velocity_rate());
     problem_.rail_velocity_rate = step.hht.velocity_rate();
-    problem_.vehicle_compliance = step.hht.load_weight() * step.operators.vehicle.compliance();
-    if (elements_) elements_->compliance = &*step.operators.elements;
+    weigh_compliance(step);
+    if (elements_) elements_->compliance = &step.operators.elements;
     problem_.elements = elements_ ? &*elements_ : nullptr;
     const bool energy = step.hht.contact_force == ContactForceRule::energy;
     problem_.start = energy ? &state.contact : nullptr;
@@ -136,14 +134,15 @@ class HertzContacts : public ContactLaw {
     for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
-      if (elements_) elements_->vehicle[index(v)].add_share(ws.vehicle_load);
-      const Eigen::VectorXd increment =
-          free_[index(v)] + hht.load_weight() * (step.operators.vehicle.inverse() * ws.vehicle_load);
+      if (elements_) elements_->add_share(v, ws.vehicle_load);
+      Eigen::VectorXd increment = Eigen::VectorXd::Zero(ws.vehicle_load.size());
+      step.operators.vehicle.add_displacement(hht.load_weight(), ws.vehicle_load, increment);
+      increment += free_[index(v)];
       close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
       if (elements_) {
-        elements_->vehicle[index(v)].add_end_force(motion.contact_load);
-        state.friction[index(v)] = elements_->vehicle[index(v)].friction();
+        elements_->add_end_force(v, motion.contact_load);
+        elements_->store_friction(v, state.friction[index(v)]);
       }
       update(hht, prediction_[index(v)], increment, motion);
     }
@@ -160,6 +159,21 @@ class HertzContacts : public ContactLaw {
     const bool energy = hht.contact_force == ContactForceRule::energy;
     return {energy ? ElementRule::energy : ElementRule::endpoint, hht.time_step, hht.velocity_rate(),
             energy ? 1.0 / (hht.gamma() * hht.load_weight()) : 1.0};
+  }
+
+  // vehicle_compliance, where it is not zero.
+  void weigh_compliance(const StepContext& step) {
+    const VehicleResponse& vehicle = step.operators.vehicle;
+    const Eigen::MatrixXd& compliance = vehicle.compliance();
+    problem_.coupled = vehicle.coupled();
+    if (problem_.vehicle_compliance.size() == 0) {
+      problem_.vehicle_compliance.setZero(compliance.rows(), compliance.cols());
+    }
+    for (int w = 0; w < problem_.wheelsets_per_vehicle; ++w) {
+      const auto [first, end] = problem_.coupled[index(w)];
+      problem_.vehicle_compliance.block(6 * first, 6 * w, 6 * (end - first), 6) =
+          step.hht.load_weight() * compliance.block(6 * first, 6 * w, 6 * (end - first), 6);
+    }
   }
 
   void gather_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {

@@ -33,11 +33,11 @@ void record_wheel_extremes(const VsiModel& model, VsiState& state) {
   }
 }
 
-void record_stops(const VsiModel& model, VsiState& state) {
+void record_stops(const VsiModel& model, const ElongationRows& rows, VsiState& state) {
   const ForceElements& elements = model.vehicle.elements;
   if (elements.empty()) return;
   for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
-    const Eigen::VectorXd x = elements.rows * state.vehicle[v].displacement;
+    const Eigen::VectorXd x = rows * state.vehicle[v].displacement;
     for (std::size_t i = 0; i < elements.element.size(); ++i) {
       const ForceElement& e = elements.element[i];
       if (e.kind != ForceElementKind::stop) continue;
@@ -61,6 +61,7 @@ Integrator::Integrator(OperatorLevels& operators, const IntegrationParameters& p
       contact_law_(make_contact_law(model_)),
       workspace_(model_),
       operators_(operators),
+      elongation_rows_(model_.vehicle.elements.rows.sparseView()),
       energy_(std::move(energy)),
       contact_energy_(contact_energy) {
   if (model_.structure) active_ = {0, model_.structure->dofs()};
@@ -163,7 +164,7 @@ void Integrator::after_step(const StepReport& report, int level, ContactForceRul
   if (energy_record_) energy_record_->step(*account_, state);
   if (state.time > 0.0) {
     record_wheel_extremes(model_, state);
-    record_stops(model_, state);
+    record_stops(model_, elongation_rows_, state);
   }
   if (account_ && energy_) energy_(account_->balance());
 }

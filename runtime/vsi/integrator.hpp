@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,8 +18,12 @@ namespace railtab {
 /// Adds the wheel forces of a state to its extremes.
 void record_wheel_extremes(const VsiModel& model, VsiState& state);
 
+/// ForceElements::rows without their zeros.
+using ElongationRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
 /// Adds the forces of the vehicles' bump stops to the extremes of a state.
-void record_stops(const VsiModel& model, VsiState& state);
+/// @param rows of model.vehicle.elements
+void record_stops(const VsiModel& model, const ElongationRows& rows, VsiState& state);
 
 /// What an integrator has counted since it was made.
 struct StepCounts {
@@ -69,6 +74,7 @@ class Integrator {
   OperatorLevels& operators_;
   std::optional<MovingWindow> window_;
   DofRange active_;  // degrees of freedom of the structure
+  ElongationRows elongation_rows_;
   StepCounts counts_;
   StepTimes times_;
   std::function<void(const EnergyBalance&)> energy_;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
@@ -81,7 +82,7 @@ class RigidWheels : public ContactLaw {
         prediction_(model.vehicle_x.size()),
         remainder_(model.vehicle_x.size()),
         free_force_(model.wheelsets()) {
-    if (!model.vehicle.elements.empty()) elements_.assign(model.vehicle_x.size(), ElementForces(model.vehicle));
+    if (!model.vehicle.elements.empty()) elements_.emplace(model.vehicle, model.vehicle_x.size());
   }
 
   void predict_vehicles(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
@@ -89,8 +90,7 @@ class RigidWheels : public ContactLaw {
       Eigen::VectorXd& R = remainder_[index(v)];
       const LinearMotion& motion = state.vehicle[index(v)];
       vehicle_step_load(step.model, step.hht, v, step.begin, motion, ws.vehicle_load);
-      R = wheels(step).remainder(step.model.vehicle, step.operators.vehicle_damping, step.hht, ws.vehicle_load, motion,
-                                 prediction_[index(v)]);
+      R = wheels(step).remainder(step.hht, ws.vehicle_load, motion, prediction_[index(v)]);
       free_force_.segment(per_vehicle_ * v, per_vehicle_) = wheels(step).free_force(R);
     }
     state_ = &state;
@@ -123,7 +123,11 @@ class RigidWheels : public ContactLaw {
 
   ContactSolve solve(const StepContext& step, int, StepWorkspace& ws, StepReport& report) override {
     const Stopwatch watch = report.times.measure(Phase::contact);
-    for (int v = 0; v < static_cast<int>(elements_.size()); ++v) set_element_load(step, v, Eigen::VectorXd());
+    if (elements_) {
+      elements_->compliance = &wheels(step).elements();
+      element_load_.assign(remainder_.size(), Eigen::VectorXd::Zero(step.model.vehicle.dofs()));
+      for (int v = 0; v < vehicles(); ++v) load_without_heave(step, v);
+    }
     constexpr int most_passes = 50;
     double change = 0.0;
     for (int k = 0; k < most_passes; ++k) {
@@ -157,9 +161,9 @@ class RigidWheels : public ContactLaw {
       }
       wheels(step).update(step.hht, prediction_[index(v)], loaded(v), moved,
                           force_.segment(per_vehicle_ * v, per_vehicle_), state.vehicle[index(v)]);
-      if (elements_.empty()) continue;
-      elements_[index(v)].add_end_force(state.vehicle[index(v)].contact_load);
-      state.friction[index(v)] = elements_[index(v)].friction();
+      if (!elements_) continue;
+      elements_->add_end_force(v, state.vehicle[index(v)].contact_load);
+      elements_->store_friction(v, state.friction[index(v)]);
     }
     std::swap(state.contact, ws.solution);
   }
@@ -173,15 +177,13 @@ class RigidWheels : public ContactLaw {
 
   // R of a vehicle with the load of its force elements.
   [[nodiscard]] Eigen::VectorXd loaded(int v) const {
-    if (elements_.empty()) return remainder_[index(v)];
+    if (!elements_) return remainder_[index(v)];
     return remainder_[index(v)] + element_load_[index(v)];
   }
 
-  void set_element_load(const StepContext& step, int v, const Eigen::VectorXd& force) {
-    element_load_.resize(elements_.size());
-    Eigen::VectorXd& load = element_load_[index(v)];
-    load.setZero(step.model.vehicle.dofs());
-    if (force.size() > 0) load = -step.hht.load_weight() * (step.model.vehicle.elements.rows.transpose() * force);
+  [[nodiscard]] int vehicles() const { return static_cast<int>(remainder_.size()); }
+
+  void load_without_heave(const StepContext& step, int v) {
     free_force_.segment(per_vehicle_ * v, per_vehicle_) = wheels(step).free_force(loaded(v));
   }
 
@@ -201,20 +203,21 @@ class RigidWheels : public ContactLaw {
   double respond_by_elements(const StepContext& step) {
     constexpr double rounding = 1e-11;
     double change = 0.0;
-    for (int v = 0; v < static_cast<int>(elements_.size()); ++v) {
-      ElementForces& elements = elements_[index(v)];
+    for (int v = 0; elements_ && v < vehicles(); ++v) {
       const RigidWheelResponse& response = wheels(step);
       const LinearMotion& motion = state_->vehicle[index(v)];
       const WheelsetHeave heave = heave_of(step, v);
       const Eigen::VectorXd free = response.displacement(prediction_[index(v)], remainder_[index(v)], heave);
-      elements.begin({ElementRule::endpoint, step.hht.time_step, step.hht.velocity_rate()}, motion,
-                     state_->friction[index(v)], response.prescribed(prediction_[index(v)], heave), free);
-      if (!elements.solve(*response.elements(), step.model.vehicle.elements.rows * free)) {
-        return std::numeric_limits<double>::quiet_NaN();
-      }
+      elements_->begin(v, {ElementRule::endpoint, step.hht.time_step, step.hht.velocity_rate()}, motion,
+                       state_->friction[index(v)], response.prescribed(prediction_[index(v)], heave), free, free);
+      if (!elements_->solve(v)) return std::numeric_limits<double>::quiet_NaN();
       const Eigen::VectorXd before = element_load_[index(v)];
-      set_element_load(step, v, elements.share());
-      const double difference = (element_load_[index(v)] - before).cwiseAbs().maxCoeff();
+      Eigen::VectorXd& load = element_load_[index(v)];
+      load.setZero();
+      elements_->add_share(v, load);
+      load *= step.hht.load_weight();
+      load_without_heave(step, v);
+      const double difference = (load - before).cwiseAbs().maxCoeff();
       if (difference > rounding * (1.0 + before.cwiseAbs().maxCoeff())) change = std::max(change, difference);
     }
     return change;
@@ -265,16 +268,22 @@ class RigidWheels : public ContactLaw {
       const int a = i % per_vehicle_, b = k % per_vehicle_;
       return Vector3d(response.stiffness()(a, b), response.damping()(a, b), response.mass()(a, b));
     };
+    // Wheelsets of the train that a vehicle's springs couple with one of them.
+    const auto coupled = [&](int i) {
+      const int first = i - i % per_vehicle_;
+      const WheelsetRange of_vehicle = step.operators.vehicle.coupled()[index(i - first)];
+      return WheelsetRange{first + of_vehicle.first, first + of_vehicle.end};
+    };
     system_.setIdentity(wheelsets, wheelsets);
     force_ = free_force_;
     for (int i = 0; i < wheelsets; ++i) {
-      const int first = i - i % per_vehicle_;
-      for (int k = first; k < first + per_vehicle_; ++k) force_[i] += impedance(i, k).dot(free[index(k)]);
+      const auto [first, end] = coupled(i);
+      for (int k = first; k < end; ++k) force_[i] += impedance(i, k).dot(free[index(k)]);
     }
     for (const LineCoupling& c : couplings_) {
       const Vector3d motion = followed(c.line, rate * c.line, step.hht.acceleration_rate() * c.line[0], running_);
-      const int first = c.i - c.i % per_vehicle_;
-      for (int i = first; i < first + per_vehicle_; ++i) system_(i, c.j) += impedance(i, c.i).dot(motion);
+      const auto [first, end] = coupled(c.i);
+      for (int i = first; i < end; ++i) system_(i, c.j) += impedance(i, c.i).dot(motion);
     }
     force_ = system_.partialPivLu().solve(force_).eval();
   }
@@ -283,7 +292,7 @@ class RigidWheels : public ContactLaw {
   std::vector<Prediction> prediction_;         // per vehicle
   std::vector<Eigen::VectorXd> remainder_;     // per vehicle: R
   const VsiState* state_ = nullptr;            // at the begin of the step
-  std::vector<ElementForces> elements_;        // per vehicle; empty where there are none
+  std::optional<TrainElements> elements_;      // where vehicles have force elements
   std::vector<Eigen::VectorXd> element_load_;  // per vehicle: on its dofs, in R
   Eigen::VectorXd free_force_, force_;         // per wheelset: without heave, and solved [N]
   Eigen::MatrixXd system_;

@@ -11,6 +11,19 @@ namespace {
 
 constexpr int heave = 2;
 
+// The systems of a vehicle by the numbers that their dofs have in `of`, ascending; others are left out.
+std::vector<SeparateSystem> numbered(const std::vector<SeparateSystem>& systems, const std::vector<int>& of) {
+  std::vector<SeparateSystem> result;
+  for (const SeparateSystem& system : systems) {
+    result.emplace_back();
+    for (const int dof : system.dofs) {
+      const auto found = std::lower_bound(of.begin(), of.end(), dof);
+      if (found != of.end() && *found == dof) result.back().dofs.push_back(static_cast<int>(found - of.begin()));
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
@@ -22,9 +35,17 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   }
   const Eigen::MatrixXd effective = effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness);
   const Eigen::MatrixXd effective_bb = effective(b_, b_);  // none where the vehicle is its wheelsets
-  inverse_bb_ = b_.empty() ? effective_bb : effective_inverse(effective_bb);
-  if (!vehicle.elements.empty()) elements_.emplace(vehicle, b_, inverse_bb_, load_weight_);
-  E_inverse_ = effective(c_, b_) * inverse_bb_;
+  const std::vector<SeparateSystem> systems = separate_systems(vehicle);
+  const Eigen::MatrixXd inverse_bb = b_.empty() ? effective_bb : effective_inverse(effective_bb);
+  inverse_bb_ = SeparateMatrix(numbered(systems, b_), inverse_bb);
+  damping_ = SeparateMatrix(systems, damping);
+  stiffness_ = SeparateMatrix(systems, vehicle.stiffness);
+  if (!vehicle.elements.empty()) {
+    for (const SeparateSystem& system : systems) {
+      elements_.emplace_back(vehicle, system, b_, inverse_bb, load_weight_);
+    }
+  }
+  E_inverse_ = effective(c_, b_) * inverse_bb;
   K_bc_ = vehicle.stiffness(b_, c_);
   C_bc_ = damping(b_, c_);
   M_bc_ = vehicle.mass(b_, c_);
@@ -33,8 +54,7 @@ RigidWheelResponse::RigidWheelResponse(const VehicleModel& vehicle, const Eigen:
   A_ = (vehicle.mass(c_, c_) - E_inverse_ * M_bc_) / load_weight_;
 }
 
-Eigen::VectorXd RigidWheelResponse::remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
-                                              const HhtScheme& scheme, const Eigen::VectorXd& load,
+Eigen::VectorXd RigidWheelResponse::remainder(const HhtScheme& scheme, const Eigen::VectorXd& load,
                                               const LinearMotion& motion, Prediction& p) const {
   predict(scheme, motion, p);
   for (int i : c_) {
@@ -42,8 +62,8 @@ Eigen::VectorXd RigidWheelResponse::remainder(const VehicleModel& vehicle, const
     p.weighted_velocity[i] = -scheme.alpha * motion.velocity[i];
   }
   Eigen::VectorXd R = load - scheme.alpha * motion.contact_load;
-  R.noalias() -= damping * p.weighted_velocity;
-  R.noalias() -= vehicle.stiffness * p.weighted_displacement;
+  damping_.add_product(-1.0, p.weighted_velocity, R);
+  stiffness_.add_product(-1.0, p.weighted_displacement, R);
   return R;
 }
 

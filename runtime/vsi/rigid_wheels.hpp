@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "railtab/runtime/vsi/contact_newton.hpp"
@@ -26,8 +25,7 @@ class RigidWheelResponse {
   /// R of the step: loads, damping and stiffness forces known before the wheelsets' heave. Changes the prediction of
   /// the wheelsets' heave, which is prescribed.
   /// @param load of the step on the vehicle besides the contacts: vehicle_step_load()
-  [[nodiscard]] Eigen::VectorXd remainder(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
-                                          const HhtScheme& scheme, const Eigen::VectorXd& load,
+  [[nodiscard]] Eigen::VectorXd remainder(const HhtScheme& scheme, const Eigen::VectorXd& load,
                                           const LinearMotion& motion, Prediction& prediction) const;
   /// Contact forces on the wheelsets (down) [N] where these end the step with no heave, velocity and acceleration.
   [[nodiscard]] Eigen::VectorXd free_force(const Eigen::VectorXd& R) const;
@@ -44,16 +42,18 @@ class RigidWheelResponse {
   [[nodiscard]] const Eigen::MatrixXd& stiffness() const noexcept { return Z_; }
   [[nodiscard]] const Eigen::MatrixXd& damping() const noexcept { return W_; }
   [[nodiscard]] const Eigen::MatrixXd& mass() const noexcept { return A_; }
-  /// Of force elements while the wheelsets' heave is held; none where the vehicle has none.
-  [[nodiscard]] const std::optional<ElementCompliance>& elements() const noexcept { return elements_; }
+  /// Of force elements while the wheelsets' heave is held, per separate system; none where the vehicle has none.
+  [[nodiscard]] const std::vector<ElementCompliance>& elements() const noexcept { return elements_; }
 
  private:
   [[nodiscard]] Eigen::VectorXd increment(const Eigen::VectorXd& R, const WheelsetHeave& heave) const;
 
   double load_weight_;
-  std::optional<ElementCompliance> elements_;
-  std::vector<int> b_, c_;                  // other dofs, heave of the wheelsets
-  Eigen::MatrixXd inverse_bb_, E_inverse_;  // K̄_bb⁻¹; K̄_cb K̄_bb⁻¹
+  std::vector<ElementCompliance> elements_;
+  std::vector<int> b_, c_;     // other dofs, heave of the wheelsets
+  SeparateMatrix inverse_bb_;  // K̄_bb⁻¹
+  SeparateMatrix damping_, stiffness_;
+  Eigen::MatrixXd E_inverse_;  // K̄_cb K̄_bb⁻¹
   Eigen::MatrixXd K_bc_, C_bc_, M_bc_, Z_, W_, A_;
 };
 

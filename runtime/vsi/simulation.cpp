@@ -67,7 +67,7 @@ class Run {
     summary.steps = summary.counted_from = first;
     if (first == 0) {
       record_wheel_extremes(model_, state_);
-      record_stops(model_, state_);
+      record_stops(model_, model_.vehicle.elements.rows.sparseView(), state_);
       tell_state();
       emit();
     }

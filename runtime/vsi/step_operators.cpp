@@ -15,8 +15,9 @@ constexpr double compliance_ahead = 10.0;  // m: covered before the train
 
 StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
     : scheme(hht),
+      systems(separate_systems(model.vehicle)),
       vehicle_damping(model.vehicle_damping(model.contact.speed)),
-      vehicle(model.vehicle, vehicle_damping, hht),
+      vehicle(model.vehicle, systems, vehicle_damping, hht),
       speed_(model.contact.speed) {
   if (model.normal_contact == NormalContact::rigid) {
     rigid_wheels.emplace(model.vehicle, vehicle_damping, hht);
@@ -30,11 +31,14 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
 
 void StepOperators::respond_to_elements(const VsiModel& model) {
   if (model.vehicle.elements.empty() || rigid_wheels) return;
-  elements.emplace(model.vehicle, vehicle.inverse(), scheme.load_weight());
+  elements.clear();
+  for (const SeparateSystem& system : systems) {
+    elements.emplace_back(model.vehicle, system, vehicle.inverse(), scheme.load_weight());
+  }
 }
 
 double StepOperators::vehicle_bytes(const VsiModel& model) {
-  constexpr double matrices = 3.0;  // damping, inverse and one to make it
+  constexpr double matrices = 6.0;  // damping and inverse, both and the stiffness by systems, one to make the inverse
   return matrices * sizeof(double) * model.vehicle.dofs() * model.vehicle.dofs();
 }
 
@@ -55,7 +59,7 @@ void StepOperators::update_for_time(const VsiModel& model, double time, const Do
   if (model.speed(time) != speed_) {
     speed_ = model.speed(time);
     vehicle_damping = model.vehicle_damping(speed_);
-    vehicle = VehicleResponse(model.vehicle, vehicle_damping, scheme);
+    vehicle = VehicleResponse(model.vehicle, systems, vehicle_damping, scheme);
     if (rigid_wheels) rigid_wheels.emplace(model.vehicle, vehicle_damping, scheme);
     respond_to_elements(model);
   }

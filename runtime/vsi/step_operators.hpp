@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "railtab/runtime/vsi/element_forces.hpp"
 #include "railtab/runtime/vsi/rigid_wheels.hpp"
@@ -14,10 +15,11 @@ namespace railtab {
 class StepOperators {
  public:
   HhtScheme scheme;
+  std::vector<SeparateSystem> systems;  ///< of the vehicle
   Eigen::MatrixXd vehicle_damping;
   VehicleResponse vehicle;
-  std::optional<ElementCompliance> elements;       ///< where vehicles have force elements and NormalContact::hertz
-  std::shared_ptr<StructureResponse> structure;    ///< null on rigid track
+  std::vector<ElementCompliance> elements;       ///< per separate system; with force elements and NormalContact::hertz
+  std::shared_ptr<StructureResponse> structure;  ///< null on rigid track
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   StepOperators(const VsiModel& model, const HhtScheme& hht);

@@ -1,6 +1,7 @@
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
 #include "railtab/runtime/base/dense_solvers.hpp"
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -11,34 +12,63 @@ Eigen::MatrixXd effective_inverse(const Eigen::MatrixXd& effective) {
   throw ComputationError("the vehicle's effective matrix has no inverse: check masses and stiffnesses of the vehicle");
 }
 
+namespace {
+
+Eigen::MatrixXd inverse_by_systems(const std::vector<SeparateSystem>& systems, const Eigen::MatrixXd& effective) {
+  if (systems.size() == 1) return effective_inverse(effective);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(effective.rows(), effective.cols());
+  for (const SeparateSystem& system : systems) {
+    inverse(system.dofs, system.dofs) = effective_inverse(effective(system.dofs, system.dofs));
+  }
+  return inverse;
+}
+
+}  // namespace
+
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& damping, const HhtScheme& scheme)
-    : VehicleResponse(vehicle, effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness)) {}
+    : VehicleResponse(vehicle, separate_systems(vehicle), damping, scheme) {}
 
-VehicleResponse::VehicleResponse(const VehicleModel& vehicle, double regularisation)
-    : VehicleResponse(vehicle, Eigen::MatrixXd(vehicle.stiffness + regularisation * vehicle.mass)) {}
+VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const std::vector<SeparateSystem>& systems,
+                                 const Eigen::MatrixXd& damping, const HhtScheme& scheme)
+    : VehicleResponse(vehicle, systems, effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness)) {
+  damping_ = SeparateMatrix(systems, damping);
+  stiffness_ = SeparateMatrix(systems, vehicle.stiffness);
+}
 
-VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::MatrixXd& effective)
-    : inverse_(effective_inverse(effective)) {
-  const auto wheelsets = static_cast<Eigen::Index>(vehicle.wheelsets.size());
+VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const std::vector<SeparateSystem>& systems,
+                                 double regularisation)
+    : VehicleResponse(vehicle, systems, Eigen::MatrixXd(vehicle.stiffness + regularisation * vehicle.mass)) {}
+
+VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const std::vector<SeparateSystem>& systems,
+                                 const Eigen::MatrixXd& effective)
+    : inverse_(inverse_by_systems(systems, effective)), by_systems_(systems, inverse_) {
+  const auto wheelsets = static_cast<int>(vehicle.wheelsets.size());
   compliance_ = Eigen::MatrixXd::Zero(6 * wheelsets, 6 * wheelsets);
-  const auto dof = [&](Eigen::Index k) {
-    return vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[static_cast<std::size_t>(k / 6)])]
-                      [static_cast<std::size_t>(k % 6)];
+  coupled_.resize(vehicle.wheelsets.size());
+  const auto dof = [&](int wheelset, int k) {
+    return vehicle.dof[index(vehicle.wheelsets[index(wheelset)])][index(k)];
   };
-  for (Eigen::Index i = 0; i < 6 * wheelsets; ++i) {
-    for (Eigen::Index j = 0; j < 6 * wheelsets; ++j) {
-      if (dof(i) != held && dof(j) != held) compliance_(i, j) = inverse_(dof(i), dof(j));
+  for (const SeparateSystem& system : systems) {
+    for (const int w : system.wheelsets) {
+      coupled_[index(w)] = {system.wheelsets.front(), system.wheelsets.back() + 1};
+      for (const int v : system.wheelsets) {
+        for (int i = 0; i < 6; ++i) {
+          for (int j = 0; j < 6; ++j) {
+            const int row = dof(w, i), column = dof(v, j);
+            if (row != held && column != held) compliance_(6 * w + i, 6 * v + j) = inverse_(row, column);
+          }
+        }
+      }
     }
   }
 }
 
-Eigen::VectorXd VehicleResponse::free_increment(const VehicleModel& vehicle, const Eigen::MatrixXd& damping,
-                                                const HhtScheme& scheme, const Eigen::VectorXd& load,
+Eigen::VectorXd VehicleResponse::free_increment(const HhtScheme& scheme, const Eigen::VectorXd& load,
                                                 const LinearMotion& motion, const Prediction& prediction) const {
   Eigen::VectorXd known;
   past_contact_load(scheme, motion, {0, motion.contact_load.size()}, known);
-  known += load - damping * prediction.weighted_velocity - vehicle.stiffness * prediction.weighted_displacement;
-  return inverse_ * known;
+  known += load - damping_ * prediction.weighted_velocity - stiffness_ * prediction.weighted_displacement;
+  return displacement(known);
 }
 
 }  // namespace railtab

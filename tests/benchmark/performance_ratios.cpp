@@ -204,11 +204,10 @@ double step_to_back_substitution() {
   });
 }
 
-/// Steps of a coach under a gust that leans it on its stops; rigid track, where the structure takes no time.
-Work coach_in_gust(const std::string& vehicle, ForceElementChoice choice) {
+/// A run in a gust that leans coaches on their stops; rigid track, where the structure takes no time.
+Work train_in_gust(const TrainParameters& train, double duration) {
   SceneParameters scene;
-  scene.train.vehicle = vehicle;
-  scene.train.force_elements = choice;
+  scene.train = train;
   scene.train.speed = 30.0;
   scene.contact.mode = ContactMode::online;
   scene.contact.dimensions.nominal_radius = 0.4575;
@@ -217,13 +216,20 @@ Work coach_in_gust(const std::string& vehicle, ForceElementChoice choice) {
   gust.load[1] = 60e3;
   gust.gust_duration = 0.6;
   scene.loads = {gust};
-  return [model = build_model(scene), integration = scene.integration] {
+  return [model = build_model(scene), integration = scene.integration, duration] {
     VsiState state(model);
     if (!steady_start(model, state).converged) throw ComputationError("no static equilibrium");
-    const RunSummary run = simulate(model, integration, 0.6, 1000, state, {});
+    const RunSummary run = simulate(model, integration, duration, 1000, state, {});
     if (!run.complete) throw ComputationError(run.message);
     return static_cast<double>(run.newton_iterations);
   };
+}
+
+Work coach_in_gust(const std::string& vehicle, ForceElementChoice choice) {
+  TrainParameters train;
+  train.vehicle = vehicle;
+  train.force_elements = choice;
+  return train_in_gust(train, 0.6);
 }
 
 constexpr const char* coach_with_stops = "chinese-emu-car";
@@ -239,6 +245,17 @@ double all_force_elements_to_linear() {
   return median_ratio(coach_in_gust(std::string(RAILTAB_SOURCE_DIR) + "/tests/reference/coach_with_all_elements.toml",
                                     ForceElementChoice::nonlinear),
                       coach_in_gust(coach_with_stops, ForceElementChoice::linear));
+}
+
+/// Sixteen of these coaches, the rear eight turned round, and sixteen that run alike, until the first are on their
+/// stops.
+double mixed_train_to_equal_vehicles() {
+  constexpr double duration = 0.2;  // s
+  TrainParameters mixed, equal;
+  mixed.consist = {{coach_with_stops, 8, false}, {coach_with_stops, 8, true}};
+  equal.vehicle = coach_with_stops;
+  equal.count = 16;
+  return median_ratio(train_in_gust(mixed, duration), train_in_gust(equal, duration));
 }
 
 std::map<std::string, double> read_baseline(const std::string& file) {
@@ -278,7 +295,8 @@ int main(int argc, char** argv) {
         Price{"creep forces: table / FASTSIM 20 x 20", creep_table_to_fastsim},
         Price{"time step / back-substitution", step_to_back_substitution},
         Price{"force elements: as built / linear", force_elements_to_linear, force_element_limit},
-        Price{"all force elements / linear", all_force_elements_to_linear, force_element_limit}}) {
+        Price{"all force elements / linear", all_force_elements_to_linear, force_element_limit},
+        Price{"mixed train / equal vehicles", mixed_train_to_equal_vehicles}}) {
     const double ratio = measure();
     text += fmt::format("{},{:.4g}\n", name, ratio);
     fmt::print("{:<42}{:>9.4f}", name, ratio);

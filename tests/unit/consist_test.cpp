@@ -12,9 +12,11 @@
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/vehicle/joint_file.hpp"
+#include "railtab/runtime/vehicle/separate_systems.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_file.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
+#include "railtab/runtime/vsi/vehicle_response.hpp"
 
 namespace railtab {
 namespace {
@@ -207,7 +209,57 @@ TEST(Consist, CouplersAndInterCarDampersActBetweenCarBodies) {
   EXPECT_NEAR(power(train.damping, turning), 2.0 * damper_c * damper_y * damper_y, 1e-6 * damper_c);
 }
 
+// Unlike vehicles that nothing joins are separate systems, whose dofs no matrix couples; a response by systems is that
+// of the whole.
+TEST(SeparateSystems, AreVehiclesThatNothingJoins) {
+  const VehicleModel train =
+      build_consist(read_consist({entry("c0c0-locomotive", 1, true), entry("chinese-emu-car", 2)}, {}),
+                    MotionPlane::spatial, {}, ForceElementChoice::nonlinear);
+  const std::vector<SeparateSystem> systems = separate_systems(train);
+  ASSERT_EQ(systems.size(), 3U);
+  EXPECT_EQ(systems[0].wheelsets, (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(systems[2].wheelsets, (std::vector<int>{10, 11, 12, 13}));
+  EXPECT_EQ(systems[0].elements.size(), 0U);
+  EXPECT_GT(systems[1].elements.size(), 0U);
+  EXPECT_EQ(systems[1].elements.size() + systems[2].elements.size(), train.elements.element.size());
+  std::vector<bool> found(static_cast<std::size_t>(train.dofs()), false);
+  Eigen::MatrixXd rest = train.stiffness.cwiseAbs() + train.damping.cwiseAbs() + train.gyroscopic.cwiseAbs();
+  for (const SeparateSystem& system : systems) {
+    for (const int dof : system.dofs) {
+      EXPECT_FALSE(found[static_cast<std::size_t>(dof)]) << dof;
+      found[static_cast<std::size_t>(dof)] = true;
+    }
+    rest(system.dofs, system.dofs).setZero();
+  }
+  EXPECT_EQ(std::count(found.begin(), found.end(), false), 0);
+  EXPECT_TRUE(rest.isZero(0.0));
+
+  const HhtScheme scheme{.alpha = -0.05, .time_step = 1e-3};
+  const Eigen::MatrixXd effective = effective_matrix(scheme, train.mass, train.damping, train.stiffness);
+  const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(train.dofs(), 1e3, 5e3);
+  const Eigen::VectorXd moved = VehicleResponse(train, train.damping, scheme).displacement(load);
+  EXPECT_LT((effective * moved - load).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 class ConsistFiles : public testing::InFolder {};
+
+// A joint joins what it connects, also one that is a bump stop alone.
+TEST_F(ConsistFiles, JointsMakeOneSystem) {
+  EXPECT_EQ(
+      separate_systems(model_of({example("power-car"), example("end-coach"), example("end-coach", 1, true)})).size(),
+      1U);
+  const auto joined_by = [&](const std::string& values) {
+    std::ofstream(folder_ / "joint.toml")
+        << "name = \"joint\"\ndescription = \"a joint\"\nnominal_radius = 0.4575\n[[connection]]\nname = \"b\"\n"
+        << "joins = [[\"ahead/car-body\", \"behind/car-body\"]]\nheight = 1.0\n"
+        << values;
+    return separate_systems(build_consist(read_consist({entry("ordinary-coach", 3)}, folder_ / "joint.toml"),
+                                          MotionPlane::spatial, {}, ForceElementChoice::nonlinear))
+        .size();
+  };
+  EXPECT_EQ(joined_by("cy = 1e3\n"), 1U);
+  EXPECT_EQ(joined_by("stop_y = [[0.05, 0.0], [0.06, 1e5]]\n"), 1U);
+}
 
 TEST_F(ConsistFiles, SayWhatIsWrong) {
   const auto replaced = [](std::string text, const std::string& from, const std::string& to) {

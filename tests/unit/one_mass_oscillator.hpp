@@ -40,8 +40,8 @@ class Oscillator {
       : vehicle_(std::move(vehicle)),
         hht_(hht),
         response_(vehicle_, vehicle_.damping, hht),
-        compliance_(vehicle_, response_.inverse(), hht.load_weight()),
-        elements_(vehicle_),
+        compliance_(vehicle_, separate_systems(vehicle_).front(), response_.inverse(), hht.load_weight()),
+        elements_(vehicle_, separate_systems(vehicle_).front()),
         motion_(vehicle_.dofs()),
         friction_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(vehicle_.elements.element.size()))),
         load_(Eigen::VectorXd::Zero(vehicle_.dofs())) {}
@@ -63,8 +63,7 @@ class Oscillator {
     predict(hht_, motion_, prediction_);
     load_.setZero();
     load_[0] = hht_.load_weight() * after - hht_.alpha * before;
-    const Eigen::VectorXd increment =
-        response_.free_increment(vehicle_, vehicle_.damping, hht_, load_, motion_, prediction_);
+    const Eigen::VectorXd increment = response_.free_increment(hht_, load_, motion_, prediction_);
     elements_.begin({energy ? ElementRule::energy : ElementRule::endpoint, hht_.time_step, hht_.velocity_rate(),
                      energy ? 1.0 / (hht_.gamma() * hht_.load_weight()) : 1.0},
                     motion_, friction_, prediction_,
@@ -78,7 +77,7 @@ class Oscillator {
     account(moved);
     close_load(hht_, force, motion_.contact_load, motion_.step_load);
     motion_.contact_load = -rows.transpose() * elements_.end_force();
-    friction_ = elements_.friction();
+    elements_.store_friction(friction_);
     update(hht_, prediction_, moved, motion_);
   }
 

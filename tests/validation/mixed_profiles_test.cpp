@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 
 #include "../folder_fixture.hpp"
@@ -77,7 +78,7 @@ TEST_F(MixedProfiles, EveryCoachRunsOnItsOwnProfile) {
   EXPECT_GT(difference(mixed, 8, all, 8, 8), 1.0) << "the profiles differ in what they do";
 }
 
-// A locomotive on wheels of another radius than its coach's: one dense system, in which each is as it is alone.
+// A locomotive on wheels of another radius than its coach's: separate systems, of which each is as it is alone.
 TEST_F(MixedProfiles, VehiclesOfUnlikeRadiusRunAsAlone) {
   const VsiModel train = build_model(scene("consist = [\"c0c0-locomotive\", \"manchester-coach\"]\n", "",
                                            "[[profiles]]\nvehicle = \"c0c0-locomotive\"\n"));
@@ -106,6 +107,34 @@ TEST_F(MixedProfiles, VehiclesOfUnlikeRadiusRunAsAlone) {
   observer.record = [&](const StepRecord& record) { records.push_back(record); };
   EXPECT_TRUE(run_scene(alone, coach, observer).complete);
   EXPECT_LT(difference(mixed, 12, records, 0, 8), 1e-2);
+}
+
+// In a gust that leans coaches on their stops and makes dampers blow off, each vehicle of a mixed train moves as it
+// does alone, with its own force elements.
+TEST_F(MixedProfiles, VehiclesWithForceElementsRunAsAlone) {
+  const auto in_gust = [&](const std::string& train) {
+    std::ofstream(folder_ / "scene.toml")
+        << "[train]\nspeed = 30.0\n"
+        << train
+        << "[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n[contact.dimensions]\nnominal_radius = 0.4575\n"
+           "[[load]]\nFy = 60e3\ngust_duration = 0.6\n"
+           "[track]\nkind = \"rigid\"\n[integration]\ntime_step = 1e-3\nduration = 0.5\ntolerance = 1e-10\n";
+    const SceneParameters scene = read_scene(folder_ / "scene.toml");
+    return recorded_steps(scene);
+  };
+  const std::vector<StepRecord> mixed = in_gust(
+                                    "consist = [\"chinese-emu-car\", \"-chinese-emu-car\", \"ordinary-coach\"]\n"),
+                                car = in_gust("vehicle = \"chinese-emu-car\"\n"),
+                                coach = in_gust("vehicle = \"ordinary-coach\"\n"),
+                                linear = in_gust("vehicle = \"chinese-emu-car\"\nforce_elements = \"linear\"\n");
+  ASSERT_EQ(mixed.front().wheels.size(), 24U);
+  EXPECT_GT(difference(car, 0, linear, 0, 8), 1e3) << "the elements act";
+  const double of_car = difference(mixed, 0, car, 0, 8), of_coach = difference(mixed, 16, coach, 0, 8);
+  std::printf("mixed train: wheel forces as alone within %.1e N and %.1e N\n", of_car, of_coach);
+  EXPECT_LT(of_car, 1e-3);  // of 1e5 N: rounding of positions in the train
+  EXPECT_LT(of_coach, 1e-3);
+  // the symmetric car turned round is the same car: other order of the sums
+  EXPECT_LT(difference(mixed, 8, car, 0, 8), 1e-2);
 }
 
 TEST_F(MixedProfiles, AreInTheHeader) {
