@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "railtab/runtime/reliability/counter_random.hpp"
+#include "railtab/runtime/reliability/response_surface.hpp"
 
 namespace railtab {
 namespace {
@@ -83,18 +84,29 @@ SubsetLevel level_of(const LevelSamples& samples, double threshold) {
   return level;
 }
 
-/// Spread of the seeds, variable by variable.
-std::vector<double> spread_of(const std::vector<NormalPoint>& seeds) {
-  const double count = static_cast<double>(seeds.size());
-  std::vector<double> spread(seeds.front().size());
-  for (std::size_t j = 0; j < spread.size(); ++j) {
-    double mean = 0.0, square = 0.0;
-    for (const NormalPoint& seed : seeds) mean += seed[j] / count;
-    for (const NormalPoint& seed : seeds) square += (seed[j] - mean) * (seed[j] - mean);
-    spread[j] = std::sqrt(square / (count - 1.0));
+/// log g, g = 1/(1 + exp(−(ŷ − threshold)/s)) with the deviation s of the surface: a soft form of y >= threshold.
+class SoftLimit {
+ public:
+  SoftLimit(const LevelSamples& samples, double threshold)
+      : surface_(samples.points, samples.responses),
+        threshold_(threshold),
+        width_(std::max(surface_.deviation(), 1e-6 * std::abs(threshold) + 1e-300)) {}
+
+  [[nodiscard]] double logarithm(const NormalPoint& point) const {
+    const double x = (surface_(point) - threshold_) / width_;
+    return std::min(x, 0.0) - std::log1p(std::exp(-std::abs(x)));
   }
-  return spread;
-}
+
+ private:
+  ResponseSurface surface_;
+  double threshold_, width_;
+};
+
+/// Where a step leads to by the surface alone.
+struct Candidate {
+  NormalPoint point;
+  double log_ratio = 0.0;  ///< log of g where the step begins over g of the point
+};
 
 /// The chains of one level, all a step at a time.
 class Chains {
@@ -110,10 +122,10 @@ class Chains {
       next.points.push_back(samples.points[i]);
       next.responses.push_back(samples.responses[i]);
     }
-    const std::vector<double> spread = spread_of(next.points);
+    const SoftLimit limit(samples, threshold);
     const std::size_t steps = evaluations / next.chains;
     double moved = 0.0;
-    for (std::size_t step = 1; step <= steps; ++step) moved += advance(level, step, threshold, spread, next);
+    for (std::size_t step = 1; step <= steps; ++step) moved += advance(level, step, threshold, limit, next);
     moved /= static_cast<double>(steps * next.chains);
     samples = std::move(next);
     return moved;
@@ -121,40 +133,59 @@ class Chains {
 
  private:
   /// One step of every chain. @return how many moved
-  double advance(std::size_t level, std::size_t step, double threshold, const std::vector<double>& spread,
-                 LevelSamples& samples) {
-    const std::size_t last = samples.points.size() - samples.chains;
-    std::vector<NormalPoint> candidates;
+  double advance(std::size_t level, std::size_t step, double threshold, const SoftLimit& limit, LevelSamples& samples) {
+    const std::size_t last = samples.points.size() - samples.chains, first = step * samples.chains;
+    std::vector<NormalPoint> points;
+    std::vector<double> log_ratios;
+    std::size_t moved = 0, moved_by_surface = 0;
     for (std::size_t c = 0; c < samples.chains; ++c) {
-      candidates.push_back(
-          candidate(samples.points[last + c], random_normal_point(options_, step * samples.chains + c, level), spread));
+      Candidate candidate = follow_surface(samples.points[last + c], level, first + c, limit, moved_by_surface);
+      points.push_back(std::move(candidate.point));
+      log_ratios.push_back(candidate.log_ratio);
     }
-    const std::vector<double> responses = response_(candidates);
-    std::size_t moved = 0;
+    const std::vector<double> responses = response_(points);
     for (std::size_t c = 0; c < samples.chains; ++c) {
-      const bool kept = responses[c] >= threshold;
+      const bool kept = responses[c] >= threshold && accepted(log_ratios[c], level, first + c, 1);
       moved += kept;
-      samples.points.push_back(kept ? std::move(candidates[c]) : samples.points[last + c]);
+      samples.points.push_back(kept ? std::move(points[c]) : samples.points[last + c]);
       samples.responses.push_back(kept ? responses[c] : samples.responses[last + c]);
     }
-    constexpr double target = 0.44;
-    const double acceptance = static_cast<double>(moved) / static_cast<double>(samples.chains);
-    factor_ *= std::exp((acceptance - target) / std::sqrt(static_cast<double>(step)));
-    return static_cast<double>(moved);
+    const double chains = static_cast<double>(samples.chains), count = static_cast<double>(moved);
+    const double by_surface = static_cast<double>(moved_by_surface) / (chains * surface_steps);
+    sigma_ *= std::exp(std::min(count / chains - 0.44, by_surface - 0.4) / std::sqrt(static_cast<double>(step)));
+    sigma_ = std::min(sigma_, 1.0);
+    return count;
   }
 
-  [[nodiscard]] NormalPoint candidate(const NormalPoint& from, NormalPoint random,
-                                      const std::vector<double>& spread) const {
-    for (std::size_t j = 0; j < random.size(); ++j) {
-      const double sigma = std::min(1.0, factor_ * spread[j]);
-      random[j] = std::sqrt(1.0 - sigma * sigma) * from[j] + sigma * random[j];
+  /// Steps of which each has the distribution φ(u)·g(u) again. @param moved  counts those that move
+  [[nodiscard]] Candidate follow_surface(const NormalPoint& from, std::size_t level, std::size_t sample,
+                                         const SoftLimit& limit, std::size_t& moved) const {
+    const double rho = std::sqrt(1.0 - sigma_ * sigma_), log_from = limit.logarithm(from);
+    NormalPoint point = from;
+    double log_point = log_from;
+    for (std::size_t k = 0; k < surface_steps; ++k) {
+      const std::size_t number = sample * surface_steps + k;
+      NormalPoint next = random_normal_point(options_, number, level);
+      for (std::size_t j = 0; j < next.size(); ++j) next[j] = rho * point[j] + sigma_ * next[j];
+      const double log_next = limit.logarithm(next);
+      if (!accepted(log_next - log_point, level, number, 0)) continue;
+      point = std::move(next);
+      log_point = log_next;
+      ++moved;
     }
-    return random;
+    return {std::move(point), log_from - log_point};
   }
 
+  /// With the probability min(1, exp(log_ratio)). @param stage  0: steps on the surface, 1: whole steps
+  [[nodiscard]] bool accepted(double log_ratio, std::size_t level, std::size_t number, std::size_t stage) const {
+    return std::log(uniform_random(options_.seed, {number, static_cast<std::uint32_t>(options_.variables + stage),
+                                                   first_stream + static_cast<std::uint32_t>(level)})) < log_ratio;
+  }
+
+  static constexpr std::size_t surface_steps = 6;
   const SubsetOptions& options_;
   const ResponseOfPoints& response_;
-  double factor_ = 0.6;
+  double sigma_ = 0.6;
 };
 
 }  // namespace

@@ -55,10 +55,14 @@ struct SubsetResult {
 /// [BrehierEtAl2015]. Nor are samples of equal response, such as steps of a chain that did not move: fewer than p0 N
 /// may go on, with longer chains.
 ///
-/// Samples of a level come from Markov chains that begin at those of the last level beyond its threshold; a step is
-/// u' = ρu + √(1 − ρ²)·w per variable, w standard normal, kept where y(u') is beyond the threshold
-/// [PapaioannouEtAl2015]. √(1 − ρ²) is the spread of the seeds per variable times a factor that all chains
-/// share, adapted after each step to an acceptance of 0.44. γ and the coefficient of variation: [AuBeck2001].
+/// Samples of a level come from Markov chains that begin at those of the last level beyond its threshold b. A step of
+/// delayed acceptance [ChristenFox2005] first moves by steps u' = √(1 − σ²)·u + σ·w, w standard normal
+/// [PapaioannouEtAl2015], kept with the probability min(1, g(u')/g(u)), where g = 1/(1 + exp(−(ŷ − b)/s)) and ŷ is a
+/// quadratic response surface through the last level, s its deviation (ResponseSurface). y of where they lead is then
+/// evaluated, and the whole step kept with the probability min(1, g(u)/g(u')) if y(u') >= b. So samples have the
+/// conditional distribution whatever the surface is; a good one makes them all but independent. σ, shared by all
+/// chains, is adapted after each step to an acceptance of 0.44, and of 0.4 on the surface. γ and the coefficient of
+/// variation: [AuBeck2001].
 ///
 /// Deterministic: random numbers are counted by level, chain and step, so that `response` may run on any number of
 /// workers and be replayed.

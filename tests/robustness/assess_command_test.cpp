@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "vsi_fixture.hpp"
 
@@ -108,6 +110,38 @@ TEST_F(AssessCommand, TellsTheBandsOfSpeed) {
   EXPECT_LT(over["widest_step"].get<double>(), 2.0 / 3.6 + 1e-9);
   const std::string page = text_of("out/assessment.html");
   EXPECT_NE(page.find("; ends of bands interpolated"), std::string::npos);
+}
+
+/// A deck that heaves on springs has free ends, a simple span has none: the note says so, on the page too.
+TEST_F(AssessCommand, TellsOfAFreeEndOfADeck) {
+  std::string shapes = "node,mode,uz\n", nodes;
+  for (int n = 0; n <= 8; ++n) {
+    const double x = 2.5 * n;
+    shapes += std::to_string(n + 1) + ",1,1\n" + std::to_string(n + 1) + ",2," +
+              std::to_string(std::sin(std::numbers::pi * x / 20)) + "\n";
+    nodes += std::to_string(n + 1) + " " + std::to_string(x) + " 0 1.9\n";
+  }
+  write("shapes.csv", shapes);
+  write("nodes.csv", nodes);
+  write("modes.csv", "mode,frequency,mass,damping\n1,5,3e5,0.01\n2,12,2e5,0.01\n");
+  write("free.toml", vertical +
+                         "[assessment]\nline_speed_kmh = 160\n[structure]\nformat = \"modes\"\n"
+                         "mode_table = \"modes.csv\"\nmode_shapes = \"shapes.csv\"\nnodes = \"nodes.csv\"\n"
+                         "axes = \"x y z\"\ndeck.from = [0, 0, 1.9]\ndeck.to = [20, 0, 1.9]\n");
+  const std::string stage = " --stage moving-load --train hslm-a1 -o out --json";
+  const json free = object(vsi("assess free.toml" + stage));
+  const std::string note = "An end of deck " + free["decks"][0]["name"].get<std::string>() +
+                           " is free to move: an axle load that comes on accelerates it at once, while rails, sleepers "
+                           "and ballast would spread the load. The acceleration there is overestimated; runs with "
+                           "contact have the track.";
+  const auto told = [&](const json& assessment) {
+    const json& notes = assessment["stages"]["moving-load"]["notes"];
+    return std::find(notes.begin(), notes.end(), note) != notes.end();
+  };
+  EXPECT_TRUE(told(free)) << free["stages"]["moving-load"]["notes"];
+  EXPECT_NE(text_of("out/assessment.html").find(note), std::string::npos);
+  write("simple.toml", vertical + light_span);
+  EXPECT_EQ(object(vsi("assess simple.toml" + stage))["stages"].dump().find("is free to move"), std::string::npos);
 }
 
 /// The value of the verdict is that of vsi moving-load.

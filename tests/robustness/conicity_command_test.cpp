@@ -46,6 +46,7 @@ TEST_F(ConicityCommand, WrongArguments) {
   expect_refused(pair + "--half-spacing 0.75 --gauge 1.435", "--gauge", "--half-spacing");
   expect_refused(pair + "--half-spacing 0", "--half-spacing");
   expect_refused(pair + "--half-spacing x", "--half-spacing", "a number");
+  expect_refused(pair + "--half-spacing 0.75", "--half-spacing: found 0.75 with the built-in rail 60E1", "a rail file");
   expect_refused(pair + "--amplitudes 1e-3:2e-3", "--amplitudes", "LO:HI:STEP");
   expect_refused(pair + "--amplitudes 2e-3:1e-3:1e-4", "--amplitudes", "LO:HI:STEP");
   expect_refused(pair + "--amplitudes 1e-3:2e-3:0", "--amplitudes", "LO:HI:STEP");

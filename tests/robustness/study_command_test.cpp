@@ -109,6 +109,27 @@ TEST_F(StudyCommand, RunsTheSceneWithTheKeysOfThePlan) {
   EXPECT_NE(kept.header.scene_text.find("train.vehicle = \"ice3-like-coach\""), std::string::npos);
 }
 
+// A train of several vehicles is a text, as after vsi assess --train; it takes the place of the scene's vehicle and
+// count. A vehicle of a file belongs to what the folder is bound to.
+TEST_F(StudyCommand, VariesTheTrain) {
+  write("scene.toml", std::string(scene).insert(8, "count = 2\nvehicle = \"manchester-coach\"\n"));
+  write("coach.toml", vsi("vehicle manchester-coach --toml").output);
+  write("plan.toml",
+        "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nkey = \"train.consist\"\n"
+        "values = [\"manchester-coach*2\", \"ice3-like-coach+-coach.toml\"]\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  const auto rows = table("out/runs.csv");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[2][1], "ice3-like-coach+-coach.toml");
+  const RunResults mixed = read_results(folder_ / ("out/" + rows[2][0] + ".h5"));
+  EXPECT_NE(mixed.header.scene_text.find("train.consist = [\"ice3-like-coach\", \"-coach.toml\"]"), std::string::npos);
+  EXPECT_GT(std::stod(column("out/runs.csv", "wheel_force[N]")[1]),
+            1.1 * std::stod(column("out/runs.csv", "wheel_force[N]")[0]))
+      << "a heavier coach";
+  write("coach.toml", vsi("vehicle manchester-coach --toml").output + "# changed\n");
+  EXPECT_NE(vsi("study plan.toml -o out").output.find("out/scene.toml: found another scene"), std::string::npos);
+}
+
 // Decks are judged at all their nodes, as vsi assess judges them: the largest of what the run followed, not midspan.
 TEST_F(StudyCommand, JudgesWholeDecks) {
   write("scene.toml",

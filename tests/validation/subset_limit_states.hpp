@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -19,21 +20,42 @@ struct KnownLimitState {
   std::function<double(const NormalPoint&)> response;
 };
 
-/// Linear: y = Σu/√n, P = Φ(−limit). Nonlinear: y = (u1² + u2²)/2 is exponential, P = exp(−limit), a limit state that
-/// encloses the origin. Two-sided: y = |u1|, P = 2Φ(−limit), two regions apart.
+/// P(y >= limit) of y = Σu²/2 of an even number of variables: exp(−limit) Σ limit^k/k!, k < variables/2.
+inline double radius_probability(std::size_t variables, double limit) {
+  double term = std::exp(-limit), sum = 0.0;
+  for (std::size_t k = 0; k < variables / 2; ++k) {
+    sum += term;
+    term *= limit / static_cast<double>(k + 1);
+  }
+  return sum;
+}
+
+/// Its limit, by bisection.
+inline double radius_limit(std::size_t variables, double probability) {
+  double low = 0.0, high = 100.0;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (radius_probability(variables, middle) > probability ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Linear: y = Σu/√n, P = Φ(−limit). Radius: y = Σu²/2, a limit state that encloses the origin. Two-sided: y = |u1|,
+/// P = 2Φ(−limit), two regions apart.
 inline std::vector<KnownLimitState> known_limit_states() {
   const auto linear = [](const NormalPoint& u) {
     double sum = 0.0;
     for (const double x : u) sum += x;
     return sum / std::sqrt(static_cast<double>(u.size()));
   };
-  const auto radius = [](const NormalPoint& u) { return 0.5 * (u[0] * u[0] + u[1] * u[1]); };
+  const auto radius = [](const NormalPoint& u) { return 0.5 * std::inner_product(u.begin(), u.end(), u.begin(), 0.0); };
   const auto two_sided = [](const NormalPoint& u) { return std::abs(u[0]); };
   std::vector<KnownLimitState> states;
   for (const double p : {1e-3, 1e-4, 1e-5}) {
     states.push_back({"linear", 2, p, -normal_quantile(p), linear});
     states.push_back({"linear", 50, p, -normal_quantile(p), linear});
-    states.push_back({"radius", 2, p, -std::log(p), radius});
+    states.push_back({"radius", 2, p, radius_limit(2, p), radius});
+    states.push_back({"radius", 20, p, radius_limit(20, p), radius});
     states.push_back({"two-sided", 3, p, -normal_quantile(0.5 * p), two_sided});
   }
   return states;

@@ -142,9 +142,9 @@ std::string standing_in_words(const Assessment& assessment) {
   }
   if (standard + secondary + nothing == 0) return {};
   return fmt::format(
-      "Of the {} limits judged, {} were read in the standard or a national annex to it, {} in a secondary source "
-      "only, {} are unverified: check all but the first in the standard.",
-      standard + secondary + nothing, standard, secondary, nothing);
+      "Limits judged: {} read in the standard or a national annex to it, {} in a secondary source only, {} unverified. "
+      "Check all but the first in the standard.",
+      standard, secondary, nothing);
 }
 
 std::string need_in_words(const Assessment& assessment) {

@@ -24,8 +24,9 @@ double measure_of(const StudyPlan& plan, const StudyRow& row, const std::string&
   const std::optional<double> value = row.measures[measure_index(plan)];
   if (value) return *value;
   throw ComputationError(fmt::format(
-      "run {} has no {}: vsi assess of the scene says why (no deck, no lateral forces, records too far apart)", run,
-      plan.measure));
+      "run {} has no {}: vsi assess of the scene says why (no deck, no lateral forces, records too far apart, an end "
+      "before anything is judged)",
+      run, plan.measure));
 }
 
 /// For limits: a run that ended early, by derailment say, is beyond every one.

@@ -1,6 +1,7 @@
 #include "study_runs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,21 @@ double cut_off_of(const SceneParameters& scene) {
   return cut_off;
 }
 
+/// The vehicles of "a+b*8", a value of train.consist, with their numbers.
+std::vector<std::string_view> vehicles_of(std::string_view train) {
+  std::vector<std::string_view> vehicles;
+  cut(train, '+', vehicles);
+  return vehicles;
+}
+
+/// A value as TOML writes it in the scene: that of train.consist, "a+b*8", is a list there.
+std::string in_scene(const StudyKey& key, const StudyValue& value) {
+  if (!value.other) return fmt::format("{}", key.as_it_is() ? value.number : key.value(value.number));
+  if (key.key != "train.consist") return *value.other;
+  const std::string train = value.cell();
+  return fmt::format("[\"{}\"]", fmt::join(vehicles_of(train), "\", \""));
+}
+
 }  // namespace
 
 std::vector<StudyPoint> planned_points(const StudyPlan& plan) {
@@ -124,8 +140,13 @@ void StudyRuns::bind_folder() const {
   std::vector<fs::path> files = scene_.files;
   for (const StudyVariable& variable : plan_.variables) {  // a vehicle of a file, say
     for (const StudyValue& value : variable.values) {
-      const fs::path named = value.other ? plan_.scene_file.parent_path() / value.cell() : fs::path();
-      if (value.other && is_file(named)) files.push_back(named);
+      if (!value.other) continue;
+      const std::string cell = value.cell();
+      for (const std::string_view vehicle : vehicles_of(cell)) {
+        const std::string_view name = vehicle.substr(0, vehicle.find('*'));
+        const fs::path named = plan_.scene_file.parent_path() / name.substr(name.starts_with('-') ? 1 : 0);
+        if (is_file(named)) files.push_back(named);
+      }
     }
   }
   check_same_scene(
@@ -140,9 +161,8 @@ std::vector<KeyChange> StudyRuns::changes_of(const StudyPoint& point) const {
     for (const StudyKey& key : plan_.variables[j].keys) {
       if (key.key == "train.speed") changes.push_back({"train.speed_kmh", ""});
       if (key.key == "train.speed_kmh") changes.push_back({"train.speed", ""});
-      const StudyValue& value = point[j];
-      const double number = key.as_it_is() ? value.number : key.value(value.number);
-      changes.push_back({key.key, value.other ? *value.other : fmt::format("{}", number)});
+      if (key.key == "train.consist") changes.insert(changes.end(), {{"train.vehicle", ""}, {"train.count", ""}});
+      changes.push_back({key.key, in_scene(key, point[j])});
     }
   }
   return changes;
