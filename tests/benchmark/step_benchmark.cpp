@@ -127,7 +127,8 @@ void compare_factors(const VsiModel& model, const HhtScheme& scheme) {
   const auto line = [&](const char* name, double seconds, std::size_t bytes, double made_in) {
     fmt::print("  {:<34}{:8.4f} ms {:8.1f} MB {:8.1f} GB/s", name, 1e3 * seconds, 1e-6 * static_cast<double>(bytes),
                2e-9 * static_cast<double>(bytes) / seconds);
-    fmt::print(made_in > 0.0 ? "   made in {:.4f} ms\n" : "\n", 1e3 * made_in);
+    if (made_in > 0.0) fmt::print("   made in {:.4f} ms", 1e3 * made_in);
+    fmt::print("\n");
   };
   const std::size_t entry_bytes =
       static_cast<std::size_t>(entries.matrixL().nestedExpression().nonZeros()) * (sizeof(double) + sizeof(int));
