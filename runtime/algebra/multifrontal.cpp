@@ -27,7 +27,7 @@ class Elimination {
         place_(tree.unknown.size()),
         child_(index(tree.blocks()), -1),
         sibling_(child_),
-        front_(index(tree.largest_front) * index(tree.largest_front)),
+        front_(Eigen::VectorXd::Zero(Eigen::Index{tree.largest_front} * tree.largest_front)),
         waiting_(tree.waiting) {
     for (std::size_t k = 0; k < tree.unknown.size(); ++k) position_[index(tree.unknown[k])] = static_cast<int>(k);
   }
@@ -117,8 +117,8 @@ class Elimination {
   std::vector<int> position_;         // of an unknown in the order of elimination
   std::vector<int> place_;            // of a row in the front
   std::vector<int> child_, sibling_;  // of blocks that wait
-  std::vector<double> front_;
-  std::vector<double> waiting_;  // lower triangles in square matrices, one on top of the other
+  Eigen::VectorXd front_;             // begins at a full register: Eigen's sums depend on the place of their numbers
+  std::vector<double> waiting_;       // lower triangles in square matrices, one on top of the other
   std::size_t top_ = 0;
 };
 

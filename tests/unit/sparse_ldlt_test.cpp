@@ -61,6 +61,18 @@ TEST(SparseLdlt, AMatrixThatIsNotPositiveDefiniteIsRejected) {
   }
 }
 
+// A run that is resumed allocates other memory than one that is not.
+TEST(SparseLdlt, MemoryElsewhereChangesNoBit) {
+  const Eigen::SparseMatrix<double> matrix = short_track();
+  const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(matrix.rows(), 0.0, 1.0);
+  const Eigen::VectorXd first = SparseLdlt(matrix).solve(load);
+  std::vector<std::vector<double>> between;
+  for (std::size_t i = 0; i < 20; ++i) {
+    between.emplace_back(1000 + 17 * i, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(SparseLdlt(matrix).solve(load), first) << i;
+  }
+}
+
 // What a factor says of its memory before it is made is what it takes.
 TEST(SparseLdlt, CountsItsMemory) {
   for (const auto& matrix : {short_track(), cube(12)}) {
