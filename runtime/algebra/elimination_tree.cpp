@@ -81,6 +81,21 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return order;
 }
 
+/// Puts the unknowns in postorder. @return the parents of the columns in that order
+std::vector<int> put_in_postorder(Ordered& matrix, std::vector<int>& unknown) {
+  const std::vector<int> parent = column_parents(matrix), order = postorder(parent), before = unknown;
+  std::vector<int> place(order.size()), reordered(order.size(), -1);
+  for (int k = 0; k < matrix.size(); ++k) {
+    place[index(order[index(k)])] = k;
+    unknown[index(k)] = before[index(order[index(k)])];
+  }
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (parent[k] >= 0) reordered[index(place[k])] = place[index(parent[k])];
+  }
+  matrix.number();
+  return reordered;
+}
+
 /// Entries below the diagonal of every column of L: every row's are the columns below it in the tree.
 std::vector<int> column_counts(const Ordered& matrix, const std::vector<int>& parent) {
   std::vector<int> count(parent.size(), 0), mark(parent.size(), -1);
@@ -141,39 +156,30 @@ std::vector<Columns> together(const std::vector<int>& parent, const std::vector<
 EliminationTree::EliminationTree(const Sparse& matrix, const DofRange& range, std::vector<int> order)
     : unknown(std::move(order)) {
   Ordered ordered(matrix, range, unknown);
-  const std::vector<int> before = column_parents(ordered), post = postorder(before);
-  std::vector<int> place(post.size()), column_parent(post.size(), -1), reordered(post.size());
-  for (int k = 0; k < ordered.size(); ++k) {
-    place[index(post[index(k)])] = k;
-    reordered[index(k)] = unknown[index(post[index(k)])];
-  }
-  for (std::size_t k = 0; k < post.size(); ++k) {
-    if (before[k] >= 0) column_parent[index(place[k])] = place[index(before[k])];
-  }
-  unknown = std::move(reordered);
-  ordered.number();
-
+  const std::vector<int> column_parent = put_in_postorder(ordered, unknown);
   const std::vector<int> count = column_counts(ordered, column_parent);
   for (const int c : count) entries += index(c);
   const std::vector<Columns> found = together(column_parent, count);
   const auto blocks = static_cast<int>(found.size());
-  std::vector<int> block_of(post.size()), child(found.size(), -1), sibling(child), mark(post.size(), -1);
+  std::vector<int> block_of(unknown.size());
   for (int b = 0; b < blocks; ++b) {
     first.push_back(found[index(b)].begin);
     for (int j = found[index(b)].begin; j < found[index(b)].end; ++j) block_of[index(j)] = b;
   }
   first.push_back(ordered.size());
+
+  // A block's rows are those of its columns in the matrix and those of the blocks that hang on it.
   parent.assign(found.size(), -1);
+  std::vector<int> child(found.size(), -1), sibling(child), mark(unknown.size(), -1);
   std::size_t stack = 0;
   for (int b = 0; b < blocks; ++b) {
-    const Columns& own = found[index(b)];
     const std::size_t begin = row.size();
     const auto add = [&](int i) {
-      if (i < own.end || mark[index(i)] == b) return;
+      if (i < first[index(b) + 1] || mark[index(i)] == b) return;
       mark[index(i)] = b;
       row.push_back(i);
     };
-    for (int j = own.begin; j < own.end; ++j) ordered.visit(j, add);
+    for (int j = first[index(b)]; j < first[index(b) + 1]; ++j) ordered.visit(j, add);
     for (int c = child[index(b)]; c >= 0; c = sibling[index(c)]) {
       for (std::size_t p = row_end[index(c)] - rows(c).size(); p < row_end[index(c)]; ++p) add(row[p]);
       stack -= rows(c).size() * rows(c).size();
@@ -183,7 +189,7 @@ EliminationTree::EliminationTree(const Sparse& matrix, const DofRange& range, st
     const std::size_t below = row.size() - begin;
     stack += below * below;
     waiting = std::max(waiting, stack);
-    largest_front = std::max(largest_front, own.count() + static_cast<int>(below));
+    largest_front = std::max(largest_front, columns(b) + static_cast<int>(below));
     if (below == 0) continue;
     parent[index(b)] = block_of[index(row[begin])];
     sibling[index(b)] = std::exchange(child[index(parent[index(b)])], b);
