@@ -38,30 +38,20 @@ class Elimination {
     MatrixMap front(front_.data(), n + below, n + below);
     assemble(b, front);
     auto own = front.topLeftCorner(n, n);
-    auto beside = front.bottomLeftCorner(below, n);
-    auto rest = front.bottomRightCorner(below, below);
     // With the root of D in the triangle, C Cᵀ, products need no factor between them.
     if (!take_root(own)) return false;
-    const auto C = own.template triangularView<Eigen::Lower>();
     block.inverse.setIdentity(n, n);
-    C.solveInPlace(block.inverse);
-    block.below.noalias() = beside * block.inverse.transpose().template triangularView<Eigen::Upper>();
-    // Small products are faster whole than as a triangle.
-    constexpr Eigen::Index small = 32;
-    if (below <= small) {
-      rest.noalias() -= block.below.lazyProduct(block.below.transpose());
-    } else {
-      rest.template selfadjointView<Eigen::Lower>().rankUpdate(block.below, -1.0);
+    own.template triangularView<Eigen::Lower>().solveInPlace(block.inverse);
+    block.below.resize(below, n);
+    if (below > 0) {
+      auto beside = front.bottomLeftCorner(below, n);
+      block.below.noalias() = beside * block.inverse.transpose().template triangularView<Eigen::Upper>();
+      wait(b, block.below, front.bottomRightCorner(below, below));
+      beside.noalias() = block.below * block.inverse.template triangularView<Eigen::Lower>();
+      block.below = beside;
     }
-    beside.noalias() = block.below * block.inverse.template triangularView<Eigen::Lower>();
-    block.below = beside;
     block.D = own.diagonal().array().square();
     block.inverse = own.diagonal().asDiagonal() * block.inverse;
-    if (below == 0) return true;
-    MatrixMap(waiting_.data() + top_, below, below).template triangularView<Eigen::Lower>() = rest;
-    top_ += index(static_cast<int>(below * below));
-    int& child = child_[index(tree_.parent[index(b)])];
-    sibling_[index(b)] = std::exchange(child, b);
     return true;
   }
 
@@ -90,6 +80,21 @@ class Elimination {
         for (std::size_t i = j; i < from.size(); ++i) to[place_[index(from[i])]] += column[i];
       }
     }
+  }
+
+  // What the block changes in the rows below it, for the parent's front. @param rows  B C⁻ᵀ @param front  its rows
+  // below
+  template <class Corner>
+  void wait(int b, const Matrix& rows, Corner front) {
+    constexpr Eigen::Index small = 32;  // up to which a product is faster whole than as a triangle
+    if (rows.rows() <= small) {
+      front.noalias() -= rows.lazyProduct(rows.transpose());
+    } else {
+      front.template selfadjointView<Eigen::Lower>().rankUpdate(rows, -1.0);
+    }
+    MatrixMap(waiting_.data() + top_, rows.rows(), rows.rows()).template triangularView<Eigen::Lower>() = front;
+    top_ += static_cast<std::size_t>(rows.rows() * rows.rows());
+    sibling_[index(b)] = std::exchange(child_[index(tree_.parent[index(b)])], b);
   }
 
   // A = C Cᵀ in the lower triangle.
