@@ -14,6 +14,7 @@ namespace railtab {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
+
 // Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
 // on leaves only, and so on.
 std::vector<int> by_height(const EliminationTree& tree) {

@@ -268,7 +268,7 @@ StructureResponse::Memory StructureResponse::memory() const {
   memory.low += static_cast<double>(whole.stored);
   memory.low_setup = static_cast<double>(whole.made);
   if (factored_in_sections_) {
-    // The ordering works on four copies of the pattern; then there are the permuted upper triangle and L by columns.
+    // An estimate of what the division into sections works on: copies of the pattern, or its entries beside the factor.
     const double ordering = 4.0 * entry * nonzeros;
     memory.setup =
         std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->bytes()) / sizeof(double)));
