@@ -5,6 +5,8 @@
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <array>
+#include <csignal>
+#include <mutex>
 #include <new>
 #include <numeric>
 
@@ -76,8 +78,12 @@ std::vector<int> by_nested_dissection(const Sparse& matrix, const DofRange& rang
     // sleepers on the element hang on. Through it everything is near everything, and nothing would cut.
     constexpr idx_t many = 20;
     options[METIS_OPTION_PFACTOR] = 10 * many;
+    // METIS has one sequence of random numbers, and takes SIGTERM and SIGABRT, for all threads.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
     const int status = METIS_NodeND(&vertices, graph.begin.data(), graph.neighbour.data(), graph.size.data(),
                                     options.data(), order.data(), position.data());
+    if (status == METIS_ERROR) static_cast<void>(std::raise(SIGTERM));  // it came meanwhile: METIS has kept it
     if (status != METIS_OK) throw std::bad_alloc();  // the input is a symmetric graph: memory is all that can lack
   }
   std::vector<int> unknown;

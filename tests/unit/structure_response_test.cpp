@@ -1,9 +1,12 @@
 #include "railtab/runtime/vsi/structure_response.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <limits>
 #include <vector>
 
@@ -108,6 +111,24 @@ TEST(EliminationOrder, EliminatesEveryUnknownOfTheRangeOnce) {
       for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], static_cast<int>(i));
     }
   }
+}
+
+// METIS catches SIGTERM while it works.
+TEST(EliminationOrder, ATerminatedProcessEnds) {
+  const StructureModel structure = short_bridge();
+  const pid_t child = fork();
+  if (child == 0) {
+    for (;;) {
+      static_cast<void>(
+          elimination_order(structure.stiffness, {0, structure.dofs()}, EliminationOrder::nested_dissection));
+    }
+  }
+  usleep(200'000);
+  ASSERT_EQ(kill(child, SIGTERM), 0);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(WTERMSIG(status), SIGTERM);
 }
 
 // Nodes of beam elements 250 m long, on which hundreds of sleepers hang, leave the track's order alone.
