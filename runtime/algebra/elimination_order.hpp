@@ -15,9 +15,8 @@ enum class EliminationOrder {
 };
 
 /// @param matrix with its whole pattern, not one triangle only  @param range of unknowns; all others are left out
-/// @param node of every unknown of the matrix, numbers from 0; nested dissection then orders nodes, ten times as fast
-/// for
-///        six unknowns per node, with some percent more entries. Empty: unknowns are nodes of their own
+/// @param node of every unknown of the matrix, numbers from 0; nested dissection then orders nodes, which takes a tenth
+///        of the time where a node has six unknowns. Empty: every unknown is a node
 /// @return the unknown that is eliminated k-th, counted from range.begin, for each k
 [[nodiscard]] std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix, const DofRange& range,
                                                  EliminationOrder order, std::span<const int> node = {});

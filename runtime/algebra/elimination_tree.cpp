@@ -11,40 +11,11 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// The matrix in the order of elimination.
-class Ordered {
- public:
-  Ordered(const Sparse& matrix, const DofRange& range, std::vector<int>& unknown)
-      : matrix_(matrix), first_(static_cast<int>(range.begin)), unknown_(unknown), position_(unknown.size()) {
-    number();
-  }
-  /// After a change of the order.
-  void number() {
-    for (int k = 0; k < size(); ++k) position_[index(unknown_[index(k)])] = k;
-  }
-  [[nodiscard]] int size() const { return static_cast<int>(unknown_.size()); }
-
-  /// Calls visitor(row) for the entries of column k.
-  template <class Visitor>
-  void visit(int k, Visitor&& visitor) const {
-    for (Sparse::InnerIterator entry(matrix_, first_ + unknown_[index(k)]); entry; ++entry) {
-      const auto i = static_cast<int>(entry.row()) - first_;
-      if (i >= 0 && i < size()) visitor(position_[index(i)]);
-    }
-  }
-
- private:
-  const Sparse& matrix_;
-  int first_;
-  const std::vector<int>& unknown_;
-  std::vector<int> position_;
-};
-
 /// First row below the diagonal of every column of L, -1 where there is none [Davis2006, Sect. 4.1].
-std::vector<int> column_parents(const Ordered& matrix) {
-  std::vector<int> parent(index(matrix.size()), -1), ancestor(parent);
-  for (int k = 0; k < matrix.size(); ++k) {
-    matrix.visit(k, [&](int i) {
+std::vector<int> column_parents(const EliminationTree& tree, const Sparse& matrix) {
+  std::vector<int> parent(tree.unknown.size(), -1), ancestor(parent);
+  for (int k = 0; k < tree.size(); ++k) {
+    tree.visit_column(matrix, k, [&](int i, double) {
       while (i != -1 && i < k) {
         const int next = std::exchange(ancestor[index(i)], k);
         if (next == -1) parent[index(i)] = k;
@@ -81,27 +52,32 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return order;
 }
 
+void number(EliminationTree& tree) {
+  tree.position.resize(tree.unknown.size());
+  for (int k = 0; k < tree.size(); ++k) tree.position[index(tree.unknown[index(k)])] = k;
+}
+
 /// Puts the unknowns in postorder. @return the parents of the columns in that order
-std::vector<int> put_in_postorder(Ordered& matrix, std::vector<int>& unknown) {
-  const std::vector<int> parent = column_parents(matrix), order = postorder(parent), before = unknown;
+std::vector<int> put_in_postorder(const Sparse& matrix, EliminationTree& tree) {
+  const std::vector<int> parent = column_parents(tree, matrix), order = postorder(parent), before = tree.unknown;
   std::vector<int> place(order.size()), reordered(order.size(), -1);
-  for (int k = 0; k < matrix.size(); ++k) {
+  for (int k = 0; k < tree.size(); ++k) {
     place[index(order[index(k)])] = k;
-    unknown[index(k)] = before[index(order[index(k)])];
+    tree.unknown[index(k)] = before[index(order[index(k)])];
   }
   for (std::size_t k = 0; k < order.size(); ++k) {
     if (parent[k] >= 0) reordered[index(place[k])] = place[index(parent[k])];
   }
-  matrix.number();
+  number(tree);
   return reordered;
 }
 
 /// Entries below the diagonal of every column of L: every row's are the columns below it in the tree.
-std::vector<int> column_counts(const Ordered& matrix, const std::vector<int>& parent) {
+std::vector<int> column_counts(const EliminationTree& tree, const Sparse& matrix, const std::vector<int>& parent) {
   std::vector<int> count(parent.size(), 0), mark(parent.size(), -1);
-  for (int k = 0; k < matrix.size(); ++k) {
+  for (int k = 0; k < tree.size(); ++k) {
     mark[index(k)] = k;
-    matrix.visit(k, [&](int i) {
+    tree.visit_column(matrix, k, [&](int i, double) {
       for (; i < k && mark[index(i)] != k; i = parent[index(i)]) {
         mark[index(i)] = k;
         ++count[index(i)];
@@ -154,10 +130,10 @@ std::vector<Columns> together(const std::vector<int>& parent, const std::vector<
 }  // namespace
 
 EliminationTree::EliminationTree(const Sparse& matrix, const DofRange& range, std::vector<int> order)
-    : unknown(std::move(order)) {
-  Ordered ordered(matrix, range, unknown);
-  const std::vector<int> column_parent = put_in_postorder(ordered, unknown);
-  const std::vector<int> count = column_counts(ordered, column_parent);
+    : range_begin(static_cast<int>(range.begin)), unknown(std::move(order)) {
+  number(*this);
+  const std::vector<int> column_parent = put_in_postorder(matrix, *this);
+  const std::vector<int> count = column_counts(*this, matrix, column_parent);
   for (const int c : count) entries += index(c);
   const std::vector<Columns> found = together(column_parent, count);
   const auto blocks = static_cast<int>(found.size());
@@ -166,11 +142,12 @@ EliminationTree::EliminationTree(const Sparse& matrix, const DofRange& range, st
     first.push_back(found[index(b)].begin);
     for (int j = found[index(b)].begin; j < found[index(b)].end; ++j) block_of[index(j)] = b;
   }
-  first.push_back(ordered.size());
+  first.push_back(size());
 
   // A block's rows are those of its columns in the matrix and those of the blocks that hang on it.
   parent.assign(found.size(), -1);
-  std::vector<int> child(found.size(), -1), sibling(child), mark(unknown.size(), -1);
+  last_child = sibling = parent;
+  std::vector<int> mark(unknown.size(), -1);
   std::size_t stack = 0;
   for (int b = 0; b < blocks; ++b) {
     const std::size_t begin = row.size();
@@ -179,8 +156,10 @@ EliminationTree::EliminationTree(const Sparse& matrix, const DofRange& range, st
       mark[index(i)] = b;
       row.push_back(i);
     };
-    for (int j = first[index(b)]; j < first[index(b) + 1]; ++j) ordered.visit(j, add);
-    for (int c = child[index(b)]; c >= 0; c = sibling[index(c)]) {
+    for (int j = first[index(b)]; j < first[index(b) + 1]; ++j) {
+      visit_column(matrix, j, [&](int i, double) { add(i); });
+    }
+    for (int c = last_child[index(b)]; c >= 0; c = sibling[index(c)]) {
       for (std::size_t p = row_end[index(c)] - rows(c).size(); p < row_end[index(c)]; ++p) add(row[p]);
       stack -= rows(c).size() * rows(c).size();
     }
@@ -192,7 +171,7 @@ EliminationTree::EliminationTree(const Sparse& matrix, const DofRange& range, st
     largest_front = std::max(largest_front, columns(b) + static_cast<int>(below));
     if (below == 0) continue;
     parent[index(b)] = block_of[index(row[begin])];
-    sibling[index(b)] = std::exchange(child[index(parent[index(b)])], b);
+    sibling[index(b)] = std::exchange(last_child[index(parent[index(b)])], b);
   }
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "railtab/runtime/base/index.hpp"
@@ -19,18 +18,12 @@ using MatrixMap = Eigen::Map<Matrix>;
 
 class Elimination {
  public:
-  Elimination(const Sparse& matrix, const DofRange& range, const EliminationTree& tree)
+  Elimination(const Sparse& matrix, const EliminationTree& tree)
       : matrix_(matrix),
-        first_(static_cast<int>(range.begin)),
         tree_(tree),
-        position_(tree.unknown.size()),
         place_(tree.unknown.size()),
-        child_(index(tree.blocks()), -1),
-        sibling_(child_),
         front_(Eigen::VectorXd::Zero(Eigen::Index{tree.largest_front} * tree.largest_front)),
-        waiting_(tree.waiting) {
-    for (std::size_t k = 0; k < tree.unknown.size(); ++k) position_[index(tree.unknown[k])] = static_cast<int>(k);
-  }
+        waiting_(tree.waiting) {}
 
   /// @return false where a pivot is not positive
   [[nodiscard]] bool eliminate(int b, EliminatedBlock& block) {
@@ -46,7 +39,7 @@ class Elimination {
     if (below > 0) {
       auto beside = front.bottomLeftCorner(below, n);
       block.below.noalias() = beside * block.inverse.transpose().template triangularView<Eigen::Upper>();
-      wait(b, block.below, front.bottomRightCorner(below, below));
+      wait(block.below, front.bottomRightCorner(below, below));
       beside.noalias() = block.below * block.inverse.template triangularView<Eigen::Lower>();
       block.below = beside;
     }
@@ -64,14 +57,11 @@ class Elimination {
     for (std::size_t k = 0; k < rows.size(); ++k) place_[index(rows[k])] = n + static_cast<int>(k);
     for (Eigen::Index j = 0; j < front.cols(); ++j) front.col(j).tail(front.rows() - j).setZero();
     for (int j = 0; j < n; ++j) {
-      for (Sparse::InnerIterator entry(matrix_, first_ + tree_.unknown[index(begin + j)]); entry; ++entry) {
-        const auto unknown = static_cast<int>(entry.row()) - first_;
-        if (unknown < 0 || unknown >= static_cast<int>(position_.size())) continue;
-        const int i = position_[index(unknown)];
-        if (i >= begin + j) front(place_[index(i)], j) += entry.value();
-      }
+      tree_.visit_column(matrix_, begin + j, [&](int i, double value) {
+        if (i >= begin + j) front(place_[index(i)], j) += value;
+      });
     }
-    for (int c = child_[index(b)]; c >= 0; c = sibling_[index(c)]) {  // the last one waits on top
+    for (int c = tree_.last_child[index(b)]; c >= 0; c = tree_.sibling[index(c)]) {  // the last one waits on top
       const std::span<const int> from = tree_.rows(c);
       top_ -= from.size() * from.size();
       const double* column = waiting_.data() + top_;
@@ -85,7 +75,7 @@ class Elimination {
   // What the block changes in the rows below it, for the parent's front. @param rows  B C⁻ᵀ @param front  its rows
   // below
   template <class Corner>
-  void wait(int b, const Matrix& rows, Corner front) {
+  void wait(const Matrix& rows, Corner front) {
     constexpr Eigen::Index small = 32;  // up to which a product is faster whole than as a triangle
     if (rows.rows() <= small) {
       front.noalias() -= rows.lazyProduct(rows.transpose());
@@ -94,7 +84,6 @@ class Elimination {
     }
     MatrixMap(waiting_.data() + top_, rows.rows(), rows.rows()).template triangularView<Eigen::Lower>() = front;
     top_ += static_cast<std::size_t>(rows.rows() * rows.rows());
-    sibling_[index(b)] = std::exchange(child_[index(tree_.parent[index(b)])], b);
   }
 
   // A = C Cᵀ in the lower triangle.
@@ -117,21 +106,18 @@ class Elimination {
   }
 
   const Sparse& matrix_;
-  int first_;
   const EliminationTree& tree_;
-  std::vector<int> position_;         // of an unknown in the order of elimination
-  std::vector<int> place_;            // of a row in the front
-  std::vector<int> child_, sibling_;  // of blocks that wait
-  Eigen::VectorXd front_;             // begins at a full register: Eigen's sums depend on the place of their numbers
-  std::vector<double> waiting_;       // lower triangles in square matrices, one on top of the other
+  std::vector<int> place_;       // of a row in the front
+  Eigen::VectorXd front_;        // begins at a full register: Eigen's sums depend on the place of their numbers
+  std::vector<double> waiting_;  // lower triangles in square matrices, one on top of the other
   std::size_t top_ = 0;
 };
 
 }  // namespace
 
-bool factorise(const Sparse& matrix, const DofRange& range, const EliminationTree& tree,
+bool factorise(const Sparse& matrix, const EliminationTree& tree,
                const std::function<void(int, const EliminatedBlock&)>& store) {
-  Elimination elimination(matrix, range, tree);
+  Elimination elimination(matrix, tree);
   EliminatedBlock block;
   for (int b = 0; b < tree.blocks(); ++b) {
     if (!elimination.eliminate(b, block)) return false;

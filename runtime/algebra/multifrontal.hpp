@@ -19,11 +19,10 @@ struct EliminatedBlock {
 /// Factor L D Lᵀ of a symmetric positive definite matrix by the multifrontal method [DuffReid1983]: every block is
 /// eliminated in a dense matrix of its columns and rows, the front; what that changes in the rows below waits until
 /// their block's front is assembled.
-/// @param matrix its entries (i, j) and (j, i) are equal @param range, tree as of EliminationTree
+/// @param matrix its entries (i, j) and (j, i) are equal @param tree of this matrix
 /// @param store called for every block once, in the order of the tree
 /// @return false where the matrix is not positive definite
-[[nodiscard]] bool factorise(const Eigen::SparseMatrix<double>& matrix, const DofRange& range,
-                             const EliminationTree& tree,
+[[nodiscard]] bool factorise(const Eigen::SparseMatrix<double>& matrix, const EliminationTree& tree,
                              const std::function<void(int block, const EliminatedBlock&)>& store);
 
 }  // namespace railtab

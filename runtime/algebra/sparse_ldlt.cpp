@@ -131,7 +131,7 @@ SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_
     : first_(static_cast<int>(range.begin)) {
   const EliminationTree tree(matrix, range, elimination_order(matrix, range, order, node));
   const std::vector<int> stored_at = place(tree);
-  if (!factorise(matrix, range, tree,
+  if (!factorise(matrix, tree,
                  [&](int b, const EliminatedBlock& block) { store(blocks_[index(stored_at[index(b)])], block); })) {
     throw ComputationError(std::string(message));
   }
@@ -156,9 +156,8 @@ SparseLdlt::Memory SparseLdlt::memory(const Sparse& matrix, const DofRange& rang
 
 // Everything but the numbers. @return where each block of the tree is in blocks_
 std::vector<int> SparseLdlt::place(const EliminationTree& tree) {
-  const auto n = static_cast<int>(tree.unknown.size());
-  position_.resize(tree.unknown.size());
-  for (int k = 0; k < n; ++k) position_[index(tree.unknown[index(k)])] = k;
+  const int n = tree.size();
+  position_ = tree.position;
   inverse_D_.resize(n);
   block_of_.resize(position_.size());
   std::vector<int> stored_at(tree.parent.size());

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <random>
 #include <set>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/joined_groups.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
 
 namespace railtab {
@@ -25,31 +25,21 @@ using Matrix = Eigen::MatrixXd;
 
 /// Rows that stiffness or a common node joins, numbered from 0.
 std::vector<int> parts_of(const FeStructure& structure) {
-  std::vector<int> parent(static_cast<std::size_t>(structure.dofs()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int row) {
-    while (parent[static_cast<std::size_t>(row)] != row) {
-      int& above = parent[static_cast<std::size_t>(row)];
-      above = parent[static_cast<std::size_t>(above)];
-      row = above;
-    }
-    return row;
-  };
-  const auto join = [&](int a, int b) { parent[static_cast<std::size_t>(root(a))] = root(b); };
+  JoinedGroups groups(static_cast<std::size_t>(structure.dofs()));
   for (int j = 0; j < structure.stiffness.outerSize(); ++j) {
     for (Sparse::InnerIterator entry(structure.stiffness, j); entry; ++entry) {
-      if (entry.value() != 0.0) join(static_cast<int>(entry.row()), j);
+      if (entry.value() != 0.0) groups.join(static_cast<int>(entry.row()), j);
     }
   }
   std::map<int, int> first_row;
   for (int r = 0; r < structure.dofs(); ++r) {
     const int node = structure.node_of_row[static_cast<std::size_t>(r)];
-    if (node != no_node) join(r, first_row.emplace(node, r).first->second);
+    if (node != no_node) groups.join(r, first_row.emplace(node, r).first->second);
   }
   std::map<int, int> number;
   std::vector<int> parts;
   for (int r = 0; r < structure.dofs(); ++r) {
-    parts.push_back(number.emplace(root(r), static_cast<int>(number.size())).first->second);
+    parts.push_back(number.emplace(groups.first(r), static_cast<int>(number.size())).first->second);
   }
   return parts;
 }

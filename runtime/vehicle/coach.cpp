@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numeric>
-
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/joined_groups.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 
 namespace railtab {
@@ -46,13 +44,12 @@ Suspension make_unit(std::string name, int body_a, int body_b, const Eigen::Vect
 
 // Of each body the first of those that springs along x join it to.
 std::vector<int> joined_along_x(const VehicleDescription& parts) {
-  std::vector<int> first(parts.bodies.size());
-  std::iota(first.begin(), first.end(), 0);
+  JoinedGroups groups(parts.bodies.size());
   for (const Suspension& unit : parts.suspension) {
-    if (unit.stiffness.x() == 0.0) continue;
-    const int a = first[static_cast<std::size_t>(unit.body_a)], b = first[static_cast<std::size_t>(unit.body_b)];
-    std::replace(first.begin(), first.end(), std::max(a, b), std::min(a, b));
+    if (unit.stiffness.x() != 0.0) groups.join(unit.body_a, unit.body_b);
   }
+  std::vector<int> first;
+  for (std::size_t b = 0; b < parts.bodies.size(); ++b) first.push_back(groups.first(static_cast<int>(b)));
   return first;
 }
 

@@ -2,31 +2,16 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "railtab/runtime/base/index.hpp"
+#include "railtab/runtime/base/joined_groups.hpp"
 
 namespace railtab {
 
 namespace {
 
-// Groups of dofs, joined two by two.
-class DofGroups {
- public:
-  explicit DofGroups(int dofs) : above_(index(dofs)) { std::iota(above_.begin(), above_.end(), 0); }
-
-  [[nodiscard]] int of(int dof) {
-    while (above_[index(dof)] != dof) dof = above_[index(dof)] = above_[index(above_[index(dof)])];
-    return dof;
-  }
-  void join(int a, int b) { above_[index(of(a))] = of(b); }
-
- private:
-  std::vector<int> above_;
-};
-
-void join_coaches(const VehicleModel& vehicle, DofGroups& groups) {
+void join_coaches(const VehicleModel& vehicle, JoinedGroups& groups) {
   std::map<int, int> first;  // dof of each coach
   for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
     for (const int dof : vehicle.dof[b]) {
@@ -35,7 +20,7 @@ void join_coaches(const VehicleModel& vehicle, DofGroups& groups) {
   }
 }
 
-void join_coupled(const VehicleModel& vehicle, DofGroups& groups) {
+void join_coupled(const VehicleModel& vehicle, JoinedGroups& groups) {
   for (const Eigen::MatrixXd* matrix : {&vehicle.mass, &vehicle.damping, &vehicle.stiffness, &vehicle.gyroscopic}) {
     for (int j = 0; j < static_cast<int>(matrix->cols()); ++j) {
       for (int i = 0; i < static_cast<int>(matrix->rows()); ++i) {
@@ -52,7 +37,7 @@ int first_dof(const Eigen::MatrixXd& rows, int row) {
   return held;
 }
 
-void join_by_elements(const ForceElements& elements, DofGroups& groups) {
+void join_by_elements(const ForceElements& elements, JoinedGroups& groups) {
   for (int row = 0; row < elements.elongations(); ++row) {
     const int first = first_dof(elements.rows, row);
     for (int j = first; first != held && j < static_cast<int>(elements.rows.cols()); ++j) {
@@ -69,15 +54,15 @@ bool is_whole(const std::vector<std::vector<int>>& dofs) { return dofs.size() ==
 }  // namespace
 
 std::vector<SeparateSystem> separate_systems(const VehicleModel& vehicle) {
-  DofGroups groups(vehicle.dofs());
+  JoinedGroups groups(index(vehicle.dofs()));
   join_coaches(vehicle, groups);
   join_coupled(vehicle, groups);
   join_by_elements(vehicle.elements, groups);
 
   std::vector<SeparateSystem> systems;
-  std::map<int, std::size_t> number;  // of the system of each group
+  std::map<int, std::size_t> number;  // of the system of each group, by its first dof
   const auto system_of = [&](int dof) -> SeparateSystem& {
-    const auto [known, is_new] = number.emplace(groups.of(dof), systems.size());
+    const auto [known, is_new] = number.emplace(groups.first(dof), systems.size());
     if (is_new) systems.emplace_back();
     return systems[known->second];
   };

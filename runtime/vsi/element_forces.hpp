@@ -36,8 +36,7 @@ enum class ElementRule {
   rest,      ///< stops alone; a damper exerts nothing, and friction what it did
 };
 
-/// The force elements of one separate system of a vehicle in one step. The linear rest of it responds to their forces f
-/// as
+/// The force elements of one separate system of a vehicle in one step. The linear rest responds to their forces f by
 ///
 ///     x = x_free + C_xw f_w − C_xx f(x),     q_w = … − C_wx f(x)                          (E1)
 ///

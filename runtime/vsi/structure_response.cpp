@@ -127,8 +127,8 @@ MirrorPairs rail_pairs(const StructureModel& structure) {
   return pairs;
 }
 
-// Unknowns of one node of the track or of a beam bridge stand on lines six by six at one place; others are on their
-// own.
+// The six unknowns of a node of the track or of a beam bridge are on neighbouring lines at one x. Others count as
+// nodes.
 std::vector<int> mesh_nodes(const StructureModel& structure) {
   std::map<std::pair<double, int>, int> known;
   std::vector<int> node(structure.dof_line.size());
