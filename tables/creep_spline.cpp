@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
+#include "railtab/runtime/base/lane_numbers.hpp"
 #include "railtab/tables/creep_coordinates.hpp"
 #include "railtab/tables/cubic_spline_axis.hpp"
 
@@ -37,28 +39,101 @@ std::vector<double> along_axis(const std::vector<double>& in, std::size_t before
 
 }  // namespace
 
-/// Scaled creepages u, folded by the symmetries into u_x >= 0, u_spin >= 0, in polar coordinates.
-struct CreepSpline::Direction {
-  double turn_x, turn;        ///< signs of x and F_x; of (y, spin) and (F_y, M_z)
-  double x, y, spin;          ///< u
-  double rho, across;         ///< |u|, |(u_y, u_spin)|
-  double cosine, sine;        ///< of the angle to pure longitudinal creepage
-  double cos_beta, sin_beta;  ///< around it; (1, 0) on it
+namespace {
 
-  Direction(double u_x, double u_y, double u_spin) noexcept
-      : turn_x(std::copysign(1.0, u_x)),
-        turn(std::copysign(1.0, u_spin)),
-        x(std::abs(u_x)),
-        y(turn * u_y),
-        spin(std::abs(u_spin)) {
-    const double across_squared = y * y + spin * spin;
-    across = std::sqrt(across_squared);
-    rho = std::sqrt(across_squared + x * x);
-    const double by_rho = 1.0 / rho, by_across = 1.0 / across;  // not used where they are infinite
-    cosine = rho > 0.0 ? x * by_rho : 1.0;
-    sine = rho > 0.0 ? across * by_rho : 0.0;
-    cos_beta = across > 0.0 ? y * by_across : 1.0;
-    sin_beta = across > 0.0 ? spin * by_across : 0.0;
+/// F_x, F_y and M_z, or what belongs to them: of one query in a pack, of queries side by side apart.
+struct LaneComponents {
+  Lanes of[3];
+
+  friend LaneComponents operator+(LaneComponents a, const LaneComponents& b) noexcept {
+    for (int i = 0; i < 3; ++i) a.of[i] += b.of[i];
+    return a;
+  }
+  friend LaneComponents operator-(LaneComponents a, const LaneComponents& b) noexcept {
+    for (int i = 0; i < 3; ++i) a.of[i] -= b.of[i];
+    return a;
+  }
+  friend LaneComponents operator*(LaneComponents a, const LaneComponents& b) noexcept {
+    for (int i = 0; i < 3; ++i) a.of[i] *= b.of[i];
+    return a;
+  }
+  friend LaneComponents operator*(const Lanes& a, LaneComponents b) noexcept {
+    for (Lanes& of : b.of) of *= a;
+    return b;
+  }
+  friend LaneComponents operator*(const LaneComponents& a, const Lanes& b) noexcept { return b * a; }
+  [[nodiscard]] const Lanes& operator[](std::size_t i) const noexcept { return of[i]; }
+};
+template <class V>
+using Components = std::conditional_t<std::is_same_v<V, double>, Pack, LaneComponents>;
+
+template <class V>
+struct Jet {
+  Components<V> value, t, alpha, beta, alpha_beta, ratio;
+
+  template <CreepWanted wanted>
+  void set(int place, const CreepSplineJet& jet) noexcept {
+    const auto put = [place](const Pack& from, Components<V>& to) {
+      if constexpr (std::is_same_v<V, double>) {
+        to = from;
+      } else {
+        for (int i = 0; i < 3; ++i) to.of[i][place] = from[i];
+      }
+    };
+    put(jet.value, value);
+    if constexpr (wanted == CreepWanted::force) return;
+    put(jet.t, t);
+    put(jet.alpha, alpha);
+    put(jet.beta, beta);
+    put(jet.alpha_beta, alpha_beta);
+    if constexpr (wanted == CreepWanted::by_ratio_too) put(jet.ratio, ratio);
+  }
+};
+
+template <class V>
+std::array<V, 8> side_by_side(const V& x, const auto& functions) noexcept {
+  std::array<V, 8> result;
+  for (int i = 0; i < lanes_of<V>; ++i) {
+    const std::array<double, 8> of = functions(lane(x, i));
+    for (std::size_t k = 0; k < 8; ++k) lane(result[k], i) = of[k];
+  }
+  return result;
+}
+
+template <class V>
+V sign_of(const V& x) noexcept {
+  if constexpr (std::is_same_v<V, double>) {
+    return std::copysign(1.0, x);
+  } else {
+    return select(x < 0.0, broadcast<V>(-1.0), broadcast<V>(1.0));
+  }
+}
+
+}  // namespace
+
+/// Scaled creepages u, folded by the symmetries into u_x >= 0, u_spin >= 0, in polar coordinates.
+template <class V>
+struct CreepSpline::Direction {
+  V turn_x, turn;        ///< signs of x and F_x; of (y, spin) and (F_y, M_z)
+  V x, y, spin;          ///< u
+  V rho, across;         ///< |u|, |(u_y, u_spin)|
+  V cosine, sine;        ///< of the angle to pure longitudinal creepage
+  V cos_beta, sin_beta;  ///< around it; (1, 0) on it
+
+  Direction(const V& u_x, const V& u_y, const V& u_spin) noexcept : turn_x(sign_of(u_x)), turn(sign_of(u_spin)) {
+    using std::abs, std::sqrt;
+    x = abs(u_x);
+    y = turn * u_y;
+    spin = abs(u_spin);
+    const V across_squared = y * y + spin * spin, zero{}, one = broadcast<V>(1.0);
+    across = sqrt(across_squared);
+    rho = sqrt(across_squared + x * x);
+    const V by_rho = 1.0 / rho, by_across = 1.0 / across;  // not used where they are infinite
+    const auto moves = rho > zero, aside = across > zero;
+    cosine = select(moves, x * by_rho, one);
+    sine = select(moves, across * by_rho, zero);
+    cos_beta = select(aside, y * by_across, one);
+    sin_beta = select(aside, spin * by_across, zero);
   }
 };
 
@@ -117,7 +192,7 @@ void CreepSpline::set_coefficients(const CreepTableData& data) {
   }
 }
 
-template <bool by_ratio>
+template <CreepWanted wanted>
 void CreepSpline::evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept {
   std::array<std::size_t, 4> cell;
   Pack fraction;
@@ -128,70 +203,95 @@ void CreepSpline::evaluate(const std::array<double, 4>& steps, CreepSplineJet& j
   }
   const float* corner =
       coefficient_.data() + cell[0] * stride_[0] + cell[1] * stride_[1] + cell[2] * stride_[2] + cell[3] * components;
-  creep_spline_jet<by_ratio>(corner, stride_, CreepSplineWeights(fraction), jet);
+  creep_spline_jet<wanted>(corner, stride_, CreepSplineWeights(fraction), jet);
 }
 
-template <bool by_ratio>
-CreepLookup CreepSpline::found(double ratio, const std::array<double, 3>& creepage) const noexcept {
-  CreepLookup result;
-  if (!(ratio >= ratio_first_ && ratio <= ratio_last_)) return result;
+template <CreepWanted wanted, class V>
+CreepLookupOf<V> CreepSpline::found(const V& ratio, const std::array<V, 3>& creepage) const noexcept {
+  CreepLookupOf<V> result;
   result.inside = true;
-  if (!(std::abs(creepage[0]) <= largest_creepage && std::abs(creepage[1]) <= largest_creepage &&
-        std::abs(creepage[2]) <= largest_creepage)) {
-    return beyond(ratio, creepage);
-  }
   const auto [ratio_steps, scale_x, scale_y, scale_spin, moment, alpha_spread, beta_spread, unused] =
-      ratio_functions_(ratio);
-  const Direction d(scale_x * creepage[0], scale_y * creepage[1], scale_spin * creepage[2]);
-  const double h = 1.0 / (d.rho + radius_unit_);  // t/ρ
-  const double t = d.rho * h;
-  CreepSplineJet v;
-  evaluate<by_ratio>({ratio_steps, inverse_step_[0] * t, inverse_step_[1] * angle(d.across, alpha_spread * d.x),
-                      inverse_step_[2] * angle(d.spin, beta_spread * d.y)},
-                     v);
+      side_by_side(ratio, ratio_functions_);
+  const Direction<V> d(scale_x * creepage[0], scale_y * creepage[1], scale_spin * creepage[2]);
+  const V h = 1.0 / (d.rho + radius_unit_);  // t/ρ
+  const V t = d.rho * h, zero{};
+  const V spread_x = alpha_spread * d.x, spread_y = beta_spread * d.y;
+  Jet<V> v;
+  for (int i = 0; i < lanes_of<V>; ++i) {
+    CreepSplineJet jet;
+    evaluate<wanted>({lane(ratio_steps, i), inverse_step_[0] * lane(t, i),
+                      inverse_step_[1] * angle(lane(d.across, i), lane(spread_x, i)),
+                      inverse_step_[2] * angle(lane(d.spin, i), lane(spread_y, i))},
+                     jet);
+    v.template set<wanted>(i, jet);
+  }
+
+  const Components<V> unit{d.turn_x, d.turn, d.turn * moment};
+  const Components<V> force = unit * t * v.value;
+  for (std::size_t i = 0; i < 3; ++i) result.force[i] = force[i];
+  if constexpr (wanted == CreepWanted::force) return result;
 
   // F = t V; its gradient over u in the directions of growing ρ, α, β.
   // What a spread axis moves by when the angle itself moves: q/(q² cos² + sin²).
-  const auto spread_rate = [](double q, double c, double s) { return q / (q * q * c * c + s * s); };
-  const double alpha_rate = h * inverse_step_[1] * spread_rate(alpha_spread, d.cosine, d.sine);
-  const double beta_rate = inverse_step_[2] * spread_rate(beta_spread, d.cos_beta, d.sin_beta);
-  const double outward = radius_unit_ * h * h;
-  const Pack unit{d.turn_x, d.turn, d.turn * moment, 0.0};
-  const Pack by_rho = unit * outward * (v.value + (t * inverse_step_[0]) * v.t);
-  const Pack by_alpha = unit * alpha_rate * v.alpha;
-  const Pack by_beta =
-      d.sine > pole_sine ? unit * (h * beta_rate / d.sine) * v.beta : unit * (alpha_rate * beta_rate) * v.alpha_beta;
-  const Pack by_across = d.sine * by_rho + d.cosine * by_alpha;
-  const Pack force = unit * t * v.value;
-  const Pack by_x = (d.turn_x * scale_x) * (d.cosine * by_rho - d.sine * by_alpha);
-  const Pack by_y = (d.turn * scale_y) * (d.cos_beta * by_across - d.sin_beta * by_beta);
-  const Pack by_spin = (d.turn * scale_spin) * (d.sin_beta * by_across + d.cos_beta * by_beta);
-  for (std::size_t i = 0; i < 3; ++i) {
-    result.force[i] = force[i];
-    result.derivative[i] = {by_x[i], by_y[i], by_spin[i]};
-  }
-  if constexpr (by_ratio) {
-    const auto [steps_1, x_1, y_1, spin_1, moment_1, alpha_1, beta_1, unused_1] = ratio_functions_.slope(ratio);
+  const auto spread_rate = [](const V& q, const V& c, const V& s) { return q / (q * q * c * c + s * s); };
+  const V alpha_rate = h * inverse_step_[1] * spread_rate(alpha_spread, d.cosine, d.sine);
+  const V beta_rate = inverse_step_[2] * spread_rate(beta_spread, d.cos_beta, d.sin_beta);
+  const V outward = radius_unit_ * h * h;
+  const Components<V> by_rho = unit * outward * (v.value + (t * inverse_step_[0]) * v.t);
+  const Components<V> by_alpha = unit * alpha_rate * v.alpha;
+  const auto off_pole = d.sine > broadcast<V>(pole_sine);
+  const Components<V> by_beta = unit * (select(off_pole, h * beta_rate / d.sine, zero) * v.beta +
+                                        select(off_pole, zero, alpha_rate * beta_rate) * v.alpha_beta);
+  const Components<V> by_across = d.sine * by_rho + d.cosine * by_alpha;
+  const Components<V> by_x = (d.turn_x * scale_x) * (d.cosine * by_rho - d.sine * by_alpha);
+  const Components<V> by_y = (d.turn * scale_y) * (d.cos_beta * by_across - d.sin_beta * by_beta);
+  const Components<V> by_spin = (d.turn * scale_spin) * (d.sin_beta * by_across + d.cos_beta * by_beta);
+  for (std::size_t i = 0; i < 3; ++i) result.derivative[i] = {by_x[i], by_y[i], by_spin[i]};
+  if constexpr (wanted == CreepWanted::by_ratio_too) {
+    const auto slopes = [this](double x) { return ratio_functions_.slope(x); };
+    const auto [steps_1, x_1, y_1, spin_1, moment_1, alpha_1, beta_1, unused_1] = side_by_side(ratio, slopes);
     // What an angle's place moves by when its spread changes: d arctan(s/(q c))/dq.
-    const auto turned = [](double q, double c, double s) { return -s * c / (q * q * c * c + s * s); };
-    const Pack change =
+    const auto turned = [](const V& q, const V& c, const V& s) { return -s * c / (q * q * c * c + s * s); };
+    const Components<V> change =
         unit * t *
         (steps_1 * v.ratio + (alpha_1 * inverse_step_[1] * turned(alpha_spread, d.cosine, d.sine)) * v.alpha +
          (beta_1 * inverse_step_[2] * turned(beta_spread, d.cos_beta, d.sin_beta)) * v.beta);
-    const Pack by_scale = (x_1 / scale_x * creepage[0]) * by_x + (y_1 / scale_y * creepage[1]) * by_y +
-                          (spin_1 / scale_spin * creepage[2]) * by_spin;
+    const Components<V> by_scale = (x_1 / scale_x * creepage[0]) * by_x + (y_1 / scale_y * creepage[1]) * by_y +
+                                   (spin_1 / scale_spin * creepage[2]) * by_spin;
     for (std::size_t i = 0; i < 3; ++i) result.by_ratio[i] = change[i] + by_scale[i];
-    result.by_ratio[2] += moment_1 / moment * force[2];
+    result.by_ratio[2] = result.by_ratio[2] + moment_1 / moment * force[2];
   }
   return result;
 }
 
+template <CreepWanted wanted>
+CreepLookup CreepSpline::found_if_inside(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  if (!(ratio >= ratio_first_ && ratio <= ratio_last_)) return {};
+  if (!(std::abs(creepage[0]) <= largest_creepage && std::abs(creepage[1]) <= largest_creepage &&
+        std::abs(creepage[2]) <= largest_creepage)) {
+    return beyond(ratio, creepage);
+  }
+  return found<wanted>(ratio, creepage);
+}
+
+std::array<double, 3> CreepSpline::force(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  return found_if_inside<CreepWanted::force>(ratio, creepage).force;
+}
+
+std::array<Lanes, 3> CreepSpline::force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+  return found<CreepWanted::force>(ratio, creepage).force;
+}
+
 CreepLookup CreepSpline::lookup(double ratio, const std::array<double, 3>& creepage) const noexcept {
-  return found<false>(ratio, creepage);
+  return found_if_inside<CreepWanted::by_creepage>(ratio, creepage);
 }
 
 CreepLookup CreepSpline::jet(double ratio, const std::array<double, 3>& creepage) const noexcept {
-  return found<true>(ratio, creepage);
+  return found_if_inside<CreepWanted::by_ratio_too>(ratio, creepage);
+}
+
+CreepLookupOf<Lanes> CreepSpline::jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+  return found<CreepWanted::by_ratio_too>(ratio, creepage);
 }
 
 CreepLookup CreepSpline::beyond(double ratio, const std::array<double, 3>& creepage) const noexcept {

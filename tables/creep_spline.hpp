@@ -18,22 +18,29 @@ class CreepSpline {
   /// @param data of the smooth layout, checked
   explicit CreepSpline(const CreepTableData& data);
 
+  [[nodiscard]] std::array<double, 3> force(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  [[nodiscard]] std::array<Lanes, 3> force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
   [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
   /// With derivatives with respect to a/b.
   [[nodiscard]] CreepLookup jet(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  [[nodiscard]] CreepLookupOf<Lanes> jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept { return coefficient_.size() * sizeof(float); }
 
  private:
+  template <class V>
   struct Direction;
 
   /// Of (x, y), y >= 0, to (1, 0), 0..π: a division and a polynomial. 0 at (0, 0).
   [[nodiscard]] double angle(double y, double x) const noexcept;
   void set_coefficients(const CreepTableData& data);
   /// @param steps from the first nodes of the axes
-  template <bool by_ratio>
+  template <CreepWanted wanted>
   void evaluate(const std::array<double, 4>& steps, CreepSplineJet& jet) const noexcept;
-  template <bool by_ratio>
-  [[nodiscard]] CreepLookup found(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  /// @pre the ratio lies in the table, squares of the creepages are finite
+  template <CreepWanted wanted, class V>
+  [[nodiscard]] CreepLookupOf<V> found(const V& ratio, const std::array<V, 3>& creepage) const noexcept;
+  template <CreepWanted wanted>
+  [[nodiscard]] CreepLookup found_if_inside(double ratio, const std::array<double, 3>& creepage) const noexcept;
   /// Creepages that are not finite, or so large that their squares would not be.
   [[nodiscard]] CreepLookup beyond(double ratio, const std::array<double, 3>& creepage) const noexcept;
 

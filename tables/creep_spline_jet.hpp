@@ -27,7 +27,10 @@ struct CreepSplineWeights {
   }
 };
 
-/// V = (F_x/t, F_y/t, M_z/(t m)), the fourth lane idle, and its derivatives with respect to t, α, β and, where wanted,
+/// What a query wants of the force: itself, its derivatives with respect to the creepages, and to a/b.
+enum class CreepWanted { force, by_creepage, by_ratio_too };
+
+/// V = (F_x/t, F_y/t, M_z/(t m)), the fourth lane idle, and its derivatives, where wanted, with respect to t, α, β and
 /// a/b in their steps.
 struct CreepSplineJet {
   Pack value, t, alpha, beta, alpha_beta, ratio;
@@ -53,13 +56,13 @@ inline void over_beta(const Pack* places, const Pack* weights, Pack& sum) noexce
 
 /// Contraction of the 4⁴ coefficients around a query. The coefficients are floats, the sums are not: what a query
 /// returns is as smooth as the spline, to rounding of doubles.
-/// @param by_ratio whether the derivative with respect to a/b is wanted
 /// @param corner of place (0, 0, 0, 0); three functions to a place, β fastest. @param stride of a/b, t, α, in floats
-template <bool by_ratio>
+template <CreepWanted wanted>
 void creep_spline_jet(const float* corner, const std::array<std::size_t, 3>& stride, const CreepSplineWeights& w,
                       CreepSplineJet& jet) noexcept {
   using creep_spline_detail::over_beta, creep_spline_detail::separate;
   constexpr int ratio = 0, t = 1, alpha = 2;
+  constexpr bool by_ratio = wanted == CreepWanted::by_ratio_too, slopes = wanted != CreepWanted::force;
   constexpr int packs = 3;  // four places of β, three functions
   Pack value[packs]{}, by_t[packs]{}, by_alpha[packs]{}, along_ratio[packs]{};
   // a/b first: it leaves a quarter of the numbers for the rest.
@@ -77,21 +80,25 @@ void creep_spline_jet(const float* corner, const std::array<std::size_t, 3>& str
         c[0] =
             w.value[0][ratio] * c[0] + w.value[1][ratio] * c[1] + w.value[2][ratio] * c[2] + w.value[3][ratio] * c[3];
         at_alpha[q] += w.value[j][t] * c[0];
-        slope_t[q] += w.slope[j][t] * c[0];
+        if constexpr (slopes) slope_t[q] += w.slope[j][t] * c[0];
       }
     }
     for (int q = 0; q < packs; ++q) {
       value[q] += w.value[l][alpha] * at_alpha[q];
-      by_alpha[q] += w.slope[l][alpha] * at_alpha[q];
-      by_t[q] += w.value[l][alpha] * slope_t[q];
+      if constexpr (slopes) {
+        by_alpha[q] += w.slope[l][alpha] * at_alpha[q];
+        by_t[q] += w.value[l][alpha] * slope_t[q];
+      }
       if constexpr (by_ratio) along_ratio[q] += w.value[l][alpha] * slope_ratio[q];
     }
   }
-  Pack v[4], v_t[4], v_alpha[4];
+  Pack v[4];
   separate(value, v);
+  over_beta(v, w.value, jet.value);
+  if constexpr (!slopes) return;
+  Pack v_t[4], v_alpha[4];
   separate(by_t, v_t);
   separate(by_alpha, v_alpha);
-  over_beta(v, w.value, jet.value);
   over_beta(v_t, w.value, jet.t);
   over_beta(v_alpha, w.value, jet.alpha);
   over_beta(v, w.slope, jet.beta);

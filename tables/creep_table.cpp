@@ -145,6 +145,29 @@ CreepLookup CreepTable::jet(double ratio, const std::array<double, 3>& creepage)
   return spline_ ? spline_->jet(ratio, creepage) : linear_lookup(axes_, data_.values, ratio, creepage);
 }
 
+std::array<double, 3> CreepTable::force(double ratio, const std::array<double, 3>& creepage) const noexcept {
+  return spline_ ? spline_->force(ratio, creepage) : lookup(ratio, creepage).force;
+}
+
+std::array<Lanes, 3> CreepTable::force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+  return spline_ ? spline_->force(ratio, creepage) : jet(ratio, creepage).force;
+}
+
+CreepLookupOf<Lanes> CreepTable::jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+  if (spline_) return spline_->jet(ratio, creepage);
+  CreepLookupOf<Lanes> result;
+  result.inside = true;
+  for (int i = 0; i < Lanes::count; ++i) {
+    const CreepLookup found = jet(ratio[i], {creepage[0][i], creepage[1][i], creepage[2][i]});
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.force[k][i] = found.force[k];
+      result.by_ratio[k][i] = found.by_ratio[k];
+      for (std::size_t j = 0; j < 3; ++j) result.derivative[k][j][i] = found.derivative[k][j];
+    }
+  }
+  return result;
+}
+
 std::size_t CreepTable::bytes() const noexcept {
   return spline_ ? spline_->bytes() : data_.values.size() * sizeof(double);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "railtab/runtime/base/pack.hpp"
 #include "railtab/tables/provenance.hpp"
 
 namespace railtab {
@@ -42,13 +43,15 @@ struct CreepTableData {
   TableProvenance provenance;
 };
 
-/// Force and its derivatives at one query, normalised; order F_x, F_y, M_z and υx, υy, φ.
-struct CreepLookup {
-  std::array<double, 3> force{};
-  std::array<std::array<double, 3>, 3> derivative{};  ///< [i][j] = d force_i / d creepage_j, at constant a/b
-  std::array<double, 3> by_ratio{};                   ///< d force_i / d(a/b), at constant creepage; of jet() only
-  bool inside = false;                                ///< false outside the table: force and derivative are zero
+/// Force and its derivatives at one query, or at several side by side, normalised; order F_x, F_y, M_z and υx, υy, φ.
+template <class V>
+struct CreepLookupOf {
+  std::array<V, 3> force{};
+  std::array<std::array<V, 3>, 3> derivative{};  ///< [i][j] = d force_i / d creepage_j, at constant a/b
+  std::array<V, 3> by_ratio{};                   ///< d force_i / d(a/b), at constant creepage; of jet() only
+  bool inside = false;                           ///< false outside the table: force and derivative are zero
 };
+using CreepLookup = CreepLookupOf<double>;
 
 class CreepSpline;
 class GridAxis;
@@ -67,6 +70,12 @@ class CreepTable {
   [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
   /// lookup() with the derivatives with respect to a/b.
   [[nodiscard]] CreepLookup jet(double ratio, const std::array<double, 3>& creepage) const noexcept;
+
+  /// The force of lookup() alone.
+  [[nodiscard]] std::array<double, 3> force(double ratio, const std::array<double, 3>& creepage) const noexcept;
+  /// force() and jet() of eight queries. @pre inside
+  [[nodiscard]] std::array<Lanes, 3> force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
+  [[nodiscard]] CreepLookupOf<Lanes> jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
 
   [[nodiscard]] const CreepTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].

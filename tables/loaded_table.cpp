@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 #include "railtab/runtime/base/smooth_step.hpp"
 #include "railtab/tables/hermite_basis.hpp"
 
@@ -31,19 +31,21 @@ void require_size(const std::string& place, std::size_t found, std::size_t expec
 }
 
 // The polynomials of Lagrange with value 1 at one node, with two derivatives.
+template <class V>
 struct Lagrange {
-  std::array<double, LoadedTable::most_nodes> value, first, second;
+  std::array<V, LoadedTable::most_nodes> value, first, second;
 
   /// @param inverse 1/(node i − node j), j fastest
-  Lagrange(const std::vector<double>& node, const std::vector<double>& inverse, double x) noexcept {
+  Lagrange(const std::vector<double>& node, const std::vector<double>& inverse, const V& x) noexcept {
     for (std::size_t i = 0; i < node.size(); ++i) {
-      double p = 1.0, dp = 0.0, ddp = 0.0;
+      V p = broadcast<V>(1.0), dp{}, ddp{};
       for (std::size_t j = 0; j < node.size(); ++j) {
         if (j == i) continue;
-        const double slope = inverse[i * node.size() + j], factor = (x - node[j]) * slope;
-        ddp = ddp * factor + 2.0 * dp * slope;
-        dp = dp * factor + p * slope;
-        p *= factor;
+        const double slope = inverse[i * node.size() + j];
+        const V factor = (x - node[j]) * slope;
+        ddp = ddp * factor + (2.0 * slope) * dp;
+        dp = dp * factor + slope * p;
+        p = p * factor;
       }
       value[i] = p;
       first[i] = dp;
@@ -60,45 +62,46 @@ std::vector<double> inverse_distances(const std::vector<double>& node) {
 }
 
 constexpr std::size_t buckets = 2048;
+constexpr std::size_t most_columns = LoadedTable::most_nodes * LoadedTable::most_nodes;
 
-// Derivatives along the pose and its reductions.
+// Derivatives along roll and yaw.
 enum Direction : std::size_t { here, by_roll, by_yaw, by_roll_roll, by_roll_yaw, by_yaw_yaw, directions };
 
 }  // namespace
 
 /// Weights of the columns (roll, yaw²) in the value and in derivatives with respect to roll and yaw.
+template <class V>
 struct LoadedTable::Weights {
-  static constexpr std::size_t most = most_nodes * most_nodes;
   std::size_t columns;
-  std::array<std::array<Pack, 2>, most> column;  ///< over Direction, of which the last two are idle
-  std::array<double, 2 * most> twice;            ///< of the values, each for a quantity and its slope
+  std::array<std::array<V, directions>, most_columns> column;
 
-  Weights(const LoadedTable& table, double roll, double yaw) noexcept : columns(table.data_.columns()) {
+  Weights(const LoadedTable& table, const V& roll, const V& yaw) noexcept : columns(table.data_.columns()) {
     const LoadedTableData& data = table.data_;
-    const Lagrange r(data.roll, table.inverse_roll_, roll), s(data.yaw_squared, table.inverse_yaw_, yaw * yaw);
+    const Lagrange<V> r(data.roll, table.inverse_roll_, roll), s(data.yaw_squared, table.inverse_yaw_, yaw * yaw);
     std::size_t k = 0;
     for (std::size_t i = 0; i < data.roll.size(); ++i) {
       for (std::size_t j = 0; j < data.yaw_squared.size(); ++j, ++k) {
-        const double yaw_1 = 2.0 * yaw * s.first[j], yaw_2 = 2.0 * s.first[j] + 4.0 * yaw * yaw * s.second[j];
-        column[k][0] =
-            Pack{r.value[i] * s.value[j], r.first[i] * s.value[j], r.value[i] * yaw_1, r.second[i] * s.value[j]};
-        column[k][1] = Pack{r.first[i] * yaw_1, r.value[i] * yaw_2, 0.0, 0.0};
-        twice[2 * k] = twice[2 * k + 1] = column[k][0][here];
+        const V yaw_1 = 2.0 * yaw * s.first[j], yaw_2 = 2.0 * s.first[j] + 4.0 * yaw * yaw * s.second[j];
+        column[k] = {r.value[i] * s.value[j],  r.first[i] * s.value[j], r.value[i] * yaw_1,
+                     r.second[i] * s.value[j], r.first[i] * yaw_1,      r.value[i] * yaw_2};
       }
     }
   }
-  [[nodiscard]] double value(std::size_t k) const noexcept { return column[k][0][here]; }
 };
 
-/// Where a pose lies.
-struct LoadedTable::Cell {
-  std::size_t lateral = 0;  ///< the lower node
-  double width = 0.0;       ///< [m]
-  double t = 0.0;           ///< 0..1
-  HermiteBasis across{0.0, 1.0};
-  std::array<double, 2> touch{};  ///< height of first touch at both lateral nodes, in this roll and yaw [m]
-  int level = 0;                  ///< the lower node
-  double u = 0.0;
+/// The weights of one pose in the value, each twice: for a quantity and its slope.
+struct LoadedTable::ColumnWeights {
+  std::size_t columns;
+  std::array<double, 2 * most_columns> twice;
+
+  template <class V>
+  void set(const Weights<V>& weights, int place) noexcept {
+    columns = weights.columns;
+    for (std::size_t k = 0; k < columns; ++k) {
+      twice[2 * k] = twice[2 * k + 1] = lane(weights.column[k][here], place);
+    }
+  }
+  [[nodiscard]] double value(std::size_t k) const noexcept { return twice[2 * k]; }
 };
 
 void require_consistent(const LoadedTableData& table, const std::string& source) {
@@ -157,29 +160,30 @@ std::size_t LoadedTable::bytes() const noexcept {
          sizeof(std::size_t) * part_at_.size();
 }
 
-bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) const noexcept {
+bool LoadedTable::find_lateral(double y, const ColumnWeights& weight, std::size_t& node,
+                               std::array<double, 4>& corner) const noexcept {
   // y and its derivative at a node.
-  const auto place = [&](std::size_t node, double& derivative) {
-    const double* const shift = &data_.shift[2 * node * weights.columns];
+  const auto place = [&](std::size_t at, double& derivative) {
+    const double* const shift = &data_.shift[2 * at * weight.columns];
     Pack even{}, odd{}, a, b;
     std::size_t k = 0;
-    for (; k + 4 <= weights.columns; k += 4) {
-      const double *const from = shift + 2 * k, *const weight = &weights.twice[2 * k];
+    for (; k + 4 <= weight.columns; k += 4) {
+      const double *const from = shift + 2 * k, *const twice = &weight.twice[2 * k];
       std::memcpy(&a, from, sizeof a);
-      std::memcpy(&b, weight, sizeof b);
+      std::memcpy(&b, twice, sizeof b);
       even += a * b;
       std::memcpy(&a, from + 4, sizeof a);
-      std::memcpy(&b, weight + 4, sizeof b);
+      std::memcpy(&b, twice + 4, sizeof b);
       odd += a * b;
     }
     even += odd;
-    double at = even[0] + even[2], slope = even[1] + even[3];
-    for (; k < weights.columns; ++k) {
-      at += weights.value(k) * shift[2 * k];
-      slope += weights.value(k) * shift[2 * k + 1];
+    double value = even[0] + even[2], slope = even[1] + even[3];
+    for (; k < weight.columns; ++k) {
+      value += weight.value(k) * shift[2 * k];
+      slope += weight.value(k) * shift[2 * k + 1];
     }
     derivative = slope;
-    return at;
+    return value;
   };
   const std::size_t last = data_.lateral.size() - 1;
   const double first_y0 = data_.lateral.front(), range = data_.lateral.back() - first_y0;
@@ -191,7 +195,6 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
   double slope = 0.0;
   const std::size_t near = node_of(y);
   std::size_t low = node_of(y - (place(near, slope) - data_.lateral[near]));
-  std::array<double, 4> corner{};
   corner[0] = place(low, corner[1]);
   while (low > 0 && corner[0] > y) corner[0] = place(--low, corner[1]);
   corner[2] = place(low + 1, corner[3]);
@@ -200,368 +203,543 @@ bool LoadedTable::find_lateral(double y, const Weights& weights, Cell& cell) con
     corner[1] = corner[3];
     corner[2] = place(++low + 1, corner[3]);
   }
-  const std::size_t high = low + 1;
-  cell.lateral = low;
-  cell.width = data_.lateral[high] - data_.lateral[low];
-  if (!(y >= corner[0] && y <= corner[2])) return false;
-  double t = (y - corner[0]) / (corner[2] - corner[0]);
-  constexpr double root = 1e-8;  // of rounding: Newton's next correction is less than its square
-  for (int iteration = 0; iteration < 20; ++iteration) {  // nearly linear: two suffice
-    const HermiteBasis basis(t, cell.width);
-    const double change =
-        (HermiteBasis::sum(basis.value, corner) - y) / (HermiteBasis::sum(basis.first, corner) * cell.width);
-    t -= change;
-    if (std::abs(change) < root) break;
-  }
-  cell.t = std::clamp(t, 0.0, 1.0);
-  cell.across = HermiteBasis(cell.t, cell.width);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double* const touch = &data_.touch[(low + i) * weights.columns];
-    for (std::size_t k = 0; k < weights.columns; ++k) cell.touch[i] += weights.value(k) * touch[k];
-  }
-  return true;
+  node = low;
+  return y >= corner[0] && y <= corner[2];
 }
 
-double LoadedTable::touch_height(const Cell& cell, const Weights& weights) const noexcept {
-  const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
-  const float* const low = &data_.height[4 * cell.lateral * levels * columns];
+int LoadedTable::find_level(double z, std::size_t node, const std::array<double, 4>& across, double t,
+                            const ColumnWeights& weight) const noexcept {
+  const std::size_t columns = weight.columns, levels = static_cast<std::size_t>(data_.levels);
+  const float* const low = &data_.height[4 * node * levels * columns];
   const float* const high = low + 4 * levels * columns;
+  const double* const touch = &data_.touch[node * columns];
   Pack at_low{}, at_high{};  // value and slope across are the first and the third
+  double touch_low = 0.0, touch_high = 0.0;
   for (std::size_t k = 0; k < columns; ++k) {
-    Pack node;
-    widen(low + 4 * k, node);
-    at_low += weights.value(k) * node;
-    widen(high + 4 * k, node);
-    at_high += weights.value(k) * node;
+    Pack stored;
+    widen(low + 4 * k, stored);
+    at_low += weight.value(k) * stored;
+    widen(high + 4 * k, stored);
+    at_high += weight.value(k) * stored;
+    touch_low += weight.value(k) * touch[k];
+    touch_high += weight.value(k) * touch[columns + k];
   }
-  const std::array<double, 4>& basis = cell.across.value;
-  return basis[0] * (cell.touch[0] + at_low[0]) + basis[1] * at_low[2] + basis[2] * (cell.touch[1] + at_high[0]) +
-         basis[3] * at_high[2];
-}
-
-void LoadedTable::find_level(double z, const Weights& weights, Cell& cell) const noexcept {
-  const double touch = touch_height(cell, weights);
-  cell.level = -1;
-  if (z <= touch) return;
-  // By the rise of the middle column; found() goes on from there.
-  const double above = z - touch;
-  const auto levels = static_cast<std::size_t>(data_.levels);
-  const float *const low = &rise_[cell.lateral * levels], *const high = low + levels;
+  const double first_touch = across[0] * (touch_low + at_low[0]) + across[1] * at_low[2] +
+                             across[2] * (touch_high + at_high[0]) + across[3] * at_high[2];
+  if (z <= first_touch) return -1;
+  // By the rise of the middle column; find() goes on from there.
+  const double above = z - first_touch;
+  const float *const rise_low = &rise_[node * levels], *const rise_high = rise_low + levels;
   const auto rise = [&](int level) {
     const auto k = static_cast<std::size_t>(level);
-    return (1.0 - cell.t) * static_cast<double>(low[k]) + cell.t * static_cast<double>(high[k]);
+    return (1.0 - t) * static_cast<double>(rise_low[k]) + t * static_cast<double>(rise_high[k]);
   };
   const double share = std::sqrt(above / rise(data_.levels - 1));
   int level = std::clamp(static_cast<int>(std::min(share, 1.0) * (data_.levels - 1)), 0, data_.levels - 2);
   while (level > 0 && rise(level) > above) --level;
   while (level < data_.levels - 2 && rise(level + 1) <= above) ++level;
-  cell.level = level;
-}
-
-/// The place along the energy and how it and y0 follow the pose (y, z, roll, yaw).
-struct LoadedTable::LevelPlace {
-  double w;
-  Eigen::Vector4d w_1, y0_1;
-};
-
-namespace {
-
-// Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
-struct Linear {
-  std::size_t low = 0, high = 0;
-  double part = 0.0, rate = 0.0;
-
-  Linear(const std::vector<double>& node, double x) noexcept {
-    if (node.size() == 1) return;
-    const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
-    high = static_cast<std::size_t>(above - node.begin());
-    low = high - 1;
-    rate = 1.0 / (node[high] - node[low]);
-    part = (x - node[low]) * rate;
-  }
-};
-
-}  // namespace
-
-void LoadedTable::fetch_parts(const Cell& cell, double roll, double yaw) const noexcept {
-  const Linear r(data_.roll, roll), s(data_.yaw_squared, yaw * yaw);
-  const std::size_t levels = static_cast<std::size_t>(data_.levels), yaws = data_.yaw_squared.size();
-  const std::size_t first = cell.lateral * levels + static_cast<std::size_t>(cell.level);
-  for (const std::size_t node : {first, first + levels, first + 1, first + levels + 1}) {
-    if (data_.pressed[node] == 0) continue;
-    for (const std::size_t i : {r.low, r.high}) {
-      const float* const stored = &data_.part[part_at_[node] + (i * yaws + s.low) * LoadedPart::quantities];
-      __builtin_prefetch(stored);
-      __builtin_prefetch(stored + LoadedPart::quantities);
-    }
-  }
-}
-
-template <bool slopes>
-void LoadedTable::add_parts(const Cell& cell, const LevelPlace& place, double roll, double yaw, LoadedLookup& result,
-                            LoadedSlopes* derivatives) const noexcept {
-  // Every quantity but the share weighted with it; the sums and their derivatives along the four coordinates.
-  constexpr std::size_t packs = LoadedPart::quantities / 4;
-  enum Along : std::size_t { value, by_lateral, by_level, by_roll_node, by_yaw_node, count };
-  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
-  const std::size_t yaws = data_.yaw_squared.size();
-  const Linear r(data_.roll, roll), s(data_.yaw_squared, yaw * yaw);
-  const std::array<double, 2> ft{1.0 - cell.t, cell.t}, fu{1.0 - cell.u, cell.u};
-  const std::array<double, 2> fr{1.0 - r.part, r.part}, fs{1.0 - s.part, s.part};
-  const std::array<double, 2> t_rate{-1.0 / cell.width, 1.0 / cell.width},
-      u_rate{-1.0 / level_step_, 1.0 / level_step_};
-  const std::array<double, 2> r_rate{-r.rate, r.rate}, s_rate{-s.rate, s.rate};
-  const std::size_t first = cell.lateral * levels + static_cast<std::size_t>(cell.level);
-  const std::array<std::size_t, 4> node{first, first + levels, first + 1, first + levels + 1};
-  unsigned loaded = 0;
-  for (const std::size_t n : node) loaded |= data_.pressed[n];
-  const double w = place.w;
-  for (std::size_t p = 0; p < data_.parts(); ++p) {
-    if ((loaded >> p & 1U) == 0) continue;
-    Pack sum[count][packs]{};
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      const std::uint32_t pressed = data_.pressed[node[corner]];
-      if ((pressed >> p & 1U) == 0) continue;
-      const auto before = static_cast<std::size_t>(std::popcount(pressed & ((1U << p) - 1U)));
-      const float* const stored = &data_.part[part_at_[node[corner]] + before * columns * LoadedPart::quantities];
-      Pack here_[packs]{}, along_roll[packs]{}, along_yaw[packs]{};
-      for (std::size_t i = 0; i <= r.high - r.low; ++i) {
-        for (std::size_t j = 0; j <= s.high - s.low; ++j) {
-          const float* const v = stored + ((r.low + i) * yaws + s.low + j) * LoadedPart::quantities;
-          const double share = static_cast<double>(v[0]);
-          for (std::size_t q = 0; q < packs; ++q) {
-            Pack values;
-            widen(v + 4 * q, values);
-            values *= q == 0 ? Pack{1.0, share, share, share} : Pack{share, share, share, share};
-            here_[q] += fr[i] * fs[j] * values;
-            if constexpr (slopes) {
-              along_roll[q] += r_rate[i] * fs[j] * values;
-              along_yaw[q] += fr[i] * s_rate[j] * values;
-            }
-          }
-        }
-      }
-      const std::size_t t = corner & 1U, u = corner >> 1U;
-      for (std::size_t q = 0; q < packs; ++q) {
-        sum[value][q] += ft[t] * fu[u] * here_[q];
-        if constexpr (slopes) {
-          sum[by_lateral][q] += t_rate[t] * fu[u] * here_[q];
-          sum[by_level][q] += ft[t] * u_rate[u] * here_[q];
-          sum[by_roll_node][q] += ft[t] * fu[u] * along_roll[q];
-          sum[by_yaw_node][q] += ft[t] * fu[u] * along_yaw[q];
-        }
-      }
-    }
-    const double share = sum[value][0][0], inverse = 1.0 / share;
-    if (!(share > 0.0)) continue;
-    // From reduced quantities to lengths, densities and pressure.
-    const Pack scale[packs]{{1.0, yaw, 1.0, 1.0}, {1.0, w, w, w * w}, {w * w, 1.0, 1.0, w}};
-    const Pack means{0.0, 1.0, 1.0, 1.0};  // all but the share
-    Pack mean[packs];
-    for (std::size_t q = 0; q < packs; ++q) mean[q] = inverse * sum[value][q];
-    mean[0][0] = share;
-    const auto store = [](const Pack(&from)[packs], LoadedPart& to) { std::memcpy(&to, from, sizeof to); };
-    Pack scaled[packs];
-    for (std::size_t q = 0; q < packs; ++q) scaled[q] = scale[q] * mean[q];
-    store(scaled, result.part[result.parts]);
-    if constexpr (slopes) {
-      for (std::size_t d = by_lateral; d < count; ++d) {
-        const double slope = sum[d][0][0];
-        for (std::size_t q = 0; q < packs; ++q) sum[d][q] = inverse * (sum[d][q] - slope * mean[q]);
-        sum[d][0] = means * sum[d][0] + (1.0 - means) * slope;
-      }
-      const Pack scale_w[packs]{{0.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 1.0, 2.0 * w}, {2.0 * w, 0.0, 0.0, 1.0}};
-      Pack slope[4][packs];
-      for (std::size_t j = 0; j < 4; ++j) {
-        const auto k = static_cast<Eigen::Index>(j);
-        for (std::size_t q = 0; q < packs; ++q) {
-          slope[j][q] = scale[q] * (sum[by_lateral][q] * place.y0_1[k] + sum[by_level][q] * place.w_1[k]) +
-                        scale_w[q] * mean[q] * place.w_1[k];
-          if (j == 2) slope[j][q] += scale[q] * sum[by_roll_node][q];
-          if (j == 3) slope[j][q] += 2.0 * yaw * scale[q] * sum[by_yaw_node][q];
-        }
-        if (j == 3) slope[j][0][1] += mean[0][1];
-      }
-      Pack along[LoadedPart::quantities];
-      for (std::size_t q = 0; q < packs; ++q) {
-        transpose(slope[0][q], slope[1][q], slope[2][q], slope[3][q], &along[4 * q]);
-      }
-      std::memcpy(&derivatives->part[result.parts], along, sizeof along);
-    }
-    ++result.parts;
-  }
-}
-
-double LoadedTable::margin_share(double roll, double yaw) const noexcept {
-  const double margin = border * (data_.roll.back() - data_.roll.front());
-  const double share = smooth_step(std::min(roll - data_.roll.front(), data_.roll.back() - roll) / margin);
-  const double largest = data_.yaw_squared.back();
-  if (data_.yaw_squared.size() == 1) return yaw * yaw <= largest ? share : 0.0;
-  return share * smooth_step((largest - yaw * yaw) / (border * largest));
+  return level;
 }
 
 /// The corners' values, slopes along w and y0 and mixed derivatives, by Direction: of the lower lateral node at both
 /// levels, then of the upper one.
 struct LoadedTable::Corners {
   Pack of[4][directions];
+
+  /// Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
+  [[nodiscard]] std::array<double, 4> across(const std::array<double, 4>& basis, Direction d) const noexcept {
+    const Pack below{basis[0], basis[0], basis[1], basis[1]}, above{basis[2], basis[2], basis[3], basis[3]};
+    const Pack low = below * of[0][d] + above * of[2][d], high = below * of[1][d] + above * of[3][d];
+    return {low[0] + low[2], low[1] + low[3], high[0] + high[2], high[1] + high[3]};
+  }
 };
 
 /// The corners in the directions that are wanted.
-template <bool slopes>
-void LoadedTable::add_corners(const Cell& cell, const Weights& weights, Corners& corners) const noexcept {
-  constexpr std::size_t wanted = slopes ? directions : by_yaw + 1, packs = slopes ? 2 : 1;
+template <bool slopes, class V>
+void LoadedTable::add_corners(std::size_t node, int level, const Weights<V>& weights, int place,
+                              Corners& corners) const noexcept {
+  constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
   const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
   for (std::size_t lateral = 0; lateral < 2; ++lateral) {
-    const std::size_t node = cell.lateral + lateral;
-    const float* const height = &data_.height[4 * (node * levels + static_cast<std::size_t>(cell.level)) * columns];
-    const double* const touch = &data_.touch[node * columns];
-    Pack touches[2]{}, at_low[wanted]{}, at_high[wanted]{};
+    const float* const height =
+        &data_.height[4 * ((node + lateral) * levels + static_cast<std::size_t>(level)) * columns];
+    const double* const touch = &data_.touch[(node + lateral) * columns];
+    Pack at_low[wanted]{}, at_high[wanted]{};
+    double touches[wanted]{};
     for (std::size_t k = 0; k < columns; ++k) {
-      const auto& weight = weights.column[k];
       Pack below, above;
       widen(height + 4 * k, below);
       widen(height + 4 * (columns + k), above);
       for (std::size_t d = 0; d < wanted; ++d) {
-        at_low[d] += weight[d / 4][d % 4] * below;
-        at_high[d] += weight[d / 4][d % 4] * above;
+        const double weight = lane(weights.column[k][d], place);
+        at_low[d] += weight * below;
+        at_high[d] += weight * above;
+        touches[d] += weight * touch[k];
       }
-      for (std::size_t q = 0; q < packs; ++q) touches[q] += touch[k] * weight[q];
     }
     for (std::size_t d = 0; d < wanted; ++d) {
-      at_low[d][0] += touches[d / 4][d % 4];
-      at_high[d][0] += touches[d / 4][d % 4];
+      at_low[d][0] += touches[d];
+      at_high[d][0] += touches[d];
       corners.of[2 * lateral][d] = at_low[d];
       corners.of[2 * lateral + 1][d] = at_high[d];
     }
   }
 }
 
+/// Where a pose lies among the nodes of the parts.
+struct LoadedTable::PartPlace {
+  /// Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
+  struct Linear {
+    std::size_t low = 0, high = 0;
+    double part = 0.0, rate = 0.0;
+
+    Linear(const std::vector<double>& node, double x) noexcept {
+      if (node.size() == 1) return;
+      const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
+      high = static_cast<std::size_t>(above - node.begin());
+      low = high - 1;
+      rate = 1.0 / (node[high] - node[low]);
+      part = (x - node[low]) * rate;
+    }
+  };
+
+  std::array<std::size_t, 4> node;  ///< (lateral, level): lower, next lateral, next level, both
+
+  [[nodiscard]] static std::array<std::size_t, 4> nodes(std::size_t lateral, int level, int levels) noexcept {
+    const auto count = static_cast<std::size_t>(levels);
+    const std::size_t first = lateral * count + static_cast<std::size_t>(level);
+    return {first, first + count, first + 1, first + count + 1};
+  }
+  double t, u, width, level_step;
+  Linear r, s;
+};
+
 namespace {
 
-/// Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
-std::array<double, 4> across_at(const Pack (*corner)[directions], const std::array<double, 4>& basis,
-                                Direction d) noexcept {
-  const Pack below{basis[0], basis[0], basis[1], basis[1]}, above{basis[2], basis[2], basis[3], basis[3]};
-  const Pack low = below * corner[0][d] + above * corner[2][d], high = below * corner[1][d] + above * corner[3][d];
-  return {low[0] + low[2], low[1] + low[3], high[0] + high[2], high[1] + high[3]};
+// Asks the memory for what will be read soon.
+void fetch(const void* from, std::size_t bytes) {
+  constexpr std::size_t line = 64;
+  for (std::size_t at = 0; at < bytes + line - 1; at += line) __builtin_prefetch(static_cast<const char*>(from) + at);
 }
 
 }  // namespace
 
-template <bool slopes>
-LoadedLookup LoadedTable::found(double y, double z, double roll, double yaw, LoadedSlopes* derivatives) const noexcept {
-  LoadedLookup result;
-  double inside = margin_share(roll, yaw);
-  if (!(inside > 0.0)) return result;
-  const Weights weights(*this, roll, yaw);
-  Cell cell;
-  if (!find_lateral(y, weights, cell)) return result;
-  const double y0 = data_.lateral[cell.lateral] + cell.t * cell.width;
-  const double lateral_range = data_.lateral.back() - data_.lateral.front();
-  inside *= smooth_step(std::min(y0 - data_.lateral.front(), data_.lateral.back() - y0) / (border * lateral_range));
-  if (!(inside > 0.0)) return result;
-  find_level(z, weights, cell);
-  if (cell.level < 0) {
-    result.table_share = inside;
-    return result;
+void LoadedTable::fetch_corners(std::size_t node, int level) const noexcept {
+  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
+  const std::size_t levels_read = level == 0 ? 1 : 2;
+  for (const std::size_t lateral : {node, node + 1}) {
+    const std::size_t at = lateral * levels + static_cast<std::size_t>(level);
+    fetch(&data_.height[4 * at * columns], levels_read * 4 * columns * sizeof(float));
+    if (level == 0) fetch(&rise_[at], levels * sizeof(float));
+    if (level == 0) fetch(&data_.touch[lateral * columns], columns * sizeof(double));
   }
+}
 
-  const HermiteBasis& t = cell.across;
-  Corners corners;
-  const auto& corner = corners.of;
-  std::array<double, 4> line;
-  for (int moved = 0;;) {
-    add_corners<slopes>(cell, weights, corners);
-    line = across_at(corner, t.value, here);
-    if (z < line[0] && cell.level > 0 && moved <= 0) {
-      moved = -1;
-      --cell.level;
-    } else if (z >= line[2] && moved >= 0) {
-      if (cell.level == data_.levels - 2) return result;
-      moved = 1;
-      ++cell.level;
-    } else {
-      break;
+void LoadedTable::fetch_parts(std::size_t node, int level, double roll, double yaw) const noexcept {
+  const std::size_t columns = data_.columns(), yaws = data_.yaw_squared.size();
+  const PartPlace::Linear r(data_.roll, roll), s(data_.yaw_squared, yaw * yaw);
+  for (const std::size_t corner : PartPlace::nodes(node, level, data_.levels)) {
+    const float* part = &data_.part[part_at_[corner]] + (r.low * yaws + s.low) * LoadedPart::quantities;
+    for (std::uint32_t pressed = data_.pressed[corner]; pressed != 0; pressed &= pressed - 1) {
+      for (std::size_t i = 0; i <= r.high - r.low; ++i) {
+        fetch(part + i * yaws * LoadedPart::quantities, 2 * LoadedPart::quantities * sizeof(float));
+      }
+      part += columns * LoadedPart::quantities;
     }
   }
-  fetch_parts(cell, roll, yaw);
-  constexpr std::size_t packs = slopes ? 2 : 1;
-  Pack shift[4][2]{};  // over the directions: y and ∂y/∂y0 of the lower lateral node, then of the upper one
-  for (std::size_t lateral = 0; lateral < 2; ++lateral) {
-    const double* const place = &data_.shift[2 * (cell.lateral + lateral) * weights.columns];
-    for (std::size_t k = 0; k < weights.columns; ++k) {
-      for (std::size_t q = 0; q < packs; ++q) {
-        shift[2 * lateral][q] += place[2 * k] * weights.column[k][q];
-        shift[2 * lateral + 1][q] += place[2 * k + 1] * weights.column[k][q];
+}
+
+/// Of one part every quantity but the share weighted with it; the sums and their derivatives along the coordinates.
+struct LoadedTable::PartSums {
+  enum Along : std::size_t { value, by_lateral, by_level, by_roll_node, by_yaw_node, count };
+  static constexpr std::size_t packs = LoadedPart::quantities / 4;
+  Pack sum[count][packs];
+};
+
+template <bool slopes>
+bool LoadedTable::sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept {
+  constexpr std::size_t packs = PartSums::packs;
+  const std::size_t columns = data_.columns(), yaws = data_.yaw_squared.size();
+  const PartPlace::Linear &r = place.r, &s = place.s;
+  const std::array<double, 2> ft{1.0 - place.t, place.t}, fu{1.0 - place.u, place.u};
+  const std::array<double, 2> fr{1.0 - r.part, r.part}, fs{1.0 - s.part, s.part};
+  const std::array<double, 2> t_rate{-1.0 / place.width, 1.0 / place.width},
+      u_rate{-1.0 / place.level_step, 1.0 / place.level_step};
+  const std::array<double, 2> r_rate{-r.rate, r.rate}, s_rate{-s.rate, s.rate};
+  auto& sum = sums.sum;
+  std::memset(&sums, 0, sizeof sums);
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const std::uint32_t pressed = data_.pressed[place.node[corner]];
+    if ((pressed >> part & 1U) == 0) continue;
+    const auto before = static_cast<std::size_t>(std::popcount(pressed & ((1U << part) - 1U)));
+    const float* const stored = &data_.part[part_at_[place.node[corner]] + before * columns * LoadedPart::quantities];
+    Pack here_[packs]{}, along_roll[packs]{}, along_yaw[packs]{};
+    for (std::size_t i = 0; i <= r.high - r.low; ++i) {
+      for (std::size_t j = 0; j <= s.high - s.low; ++j) {
+        const float* const v = stored + ((r.low + i) * yaws + s.low + j) * LoadedPart::quantities;
+        const double share = static_cast<double>(v[0]);
+        for (std::size_t q = 0; q < packs; ++q) {
+          Pack values;
+          widen(v + 4 * q, values);
+          values *= q == 0 ? Pack{1.0, share, share, share} : Pack{share, share, share, share};
+          here_[q] += fr[i] * fs[j] * values;
+          if constexpr (slopes) {
+            along_roll[q] += r_rate[i] * fs[j] * values;
+            along_yaw[q] += fr[i] * s_rate[j] * values;
+          }
+        }
+      }
+    }
+    const std::size_t t = corner & 1U, u = corner >> 1U;
+    for (std::size_t q = 0; q < packs; ++q) {
+      sum[PartSums::value][q] += ft[t] * fu[u] * here_[q];
+      if constexpr (slopes) {
+        sum[PartSums::by_lateral][q] += t_rate[t] * fu[u] * here_[q];
+        sum[PartSums::by_level][q] += ft[t] * u_rate[u] * here_[q];
+        sum[PartSums::by_roll_node][q] += ft[t] * fu[u] * along_roll[q];
+        sum[PartSums::by_yaw_node][q] += ft[t] * fu[u] * along_yaw[q];
       }
     }
   }
-  const auto& sum = HermiteBasis::sum;
-  // The level: the root of a cubic that grows from z or less to z or more.
-  double low = 0.0, high = 1.0, u = (z - line[0]) / (line[2] - line[0]);
-  if (cell.level == 0) u = std::sqrt(std::max(0.0, u));
-  constexpr double rounding = 1e-13, root = 1e-8;  // of a place; Newton's next correction is less than its square
-  for (int iteration = 0; iteration < 60; ++iteration) {
-    const HermiteBasis basis(u, level_step_);
-    const double excess = sum(basis.value, line) - z, slope = sum(basis.first, line) * level_step_;
-    (excess > 0.0 ? high : low) = u;
-    double next = u - excess / slope;
-    const bool within = next >= low && next <= high;
-    if (!within) next = 0.5 * (low + high);
-    const double change = std::abs(next - u);
-    u = next;
-    if (change < rounding || (within && change < root * u)) break;
-  }
-  cell.u = u;
-  const double w = (cell.level + u) * level_step_;
-  inside *= smooth_step((data_.levels - 1 - (cell.level + u)) / (border * (data_.levels - 1)));
-  const HermiteBasis level(u, level_step_);
-
-  // y0(y, roll, yaw), then w(y, z, roll, yaw) from Z(w, y0(y, roll, yaw), roll, yaw) = z.
-  const auto along = [&](const std::array<double, 4>& basis, Direction d) {
-    return sum(basis, {shift[0][d / 4][d % 4], shift[1][d / 4][d % 4], shift[2][d / 4][d % 4], shift[3][d / 4][d % 4]});
-  };
-  const double Y_y0 = along(t.first, here), Z_w = sum(level.first, line);
-  if (!(Z_w > 0.0)) return result;
-  const std::array<double, 4> line_y = across_at(corner, t.first, here);
-  const std::array<double, 4> line_r = across_at(corner, t.value, by_roll), line_s = across_at(corner, t.value, by_yaw);
-  const double Z_y = sum(level.value, line_y);
-  const Eigen::Vector4d y0_1(1.0 / Y_y0, 0.0, -along(t.value, by_roll) / Y_y0, -along(t.value, by_yaw) / Y_y0);
-  const Eigen::Vector4d Z_1 =
-      Eigen::Vector4d(0.0, -1.0, sum(level.value, line_r), sum(level.value, line_s)) + Z_y * y0_1;
-  const Eigen::Vector4d w_1 = -Z_1 / Z_w;
-  const double w3 = w * w * w;
-  result.table_share = inside;
-  result.energy = w3 * w * w;
-  result.force = 5.0 * w3 * w * w_1;
-  if constexpr (slopes) {
-    const auto Z = [&](const std::array<double, 4>& at_w, const std::array<double, 4>& at_y, Direction d) {
-      return sum(at_w, across_at(corner, at_y, d));
-    };
-    const auto symmetric = [](const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
-      return Eigen::Matrix4d(a * b.transpose() + b * a.transpose());
-    };
-    Eigen::Matrix4d Y_2 = Eigen::Matrix4d::Zero(), Z_2 = Eigen::Matrix4d::Zero();
-    Y_2.bottomRightCorner<2, 2>() << along(t.value, by_roll_roll), along(t.value, by_roll_yaw),
-        along(t.value, by_roll_yaw), along(t.value, by_yaw_yaw);
-    const Eigen::Vector4d Y_y1(0.0, 0.0, along(t.first, by_roll), along(t.first, by_yaw));
-    const Eigen::Matrix4d y0_2 =
-        -(Y_2 + symmetric(Y_y1, y0_1) + along(t.second, here) * y0_1 * y0_1.transpose()) / Y_y0;
-    Z_2(2, 2) = Z(level.value, t.value, by_roll_roll);
-    Z_2(2, 3) = Z_2(3, 2) = Z(level.value, t.value, by_roll_yaw);
-    Z_2(3, 3) = Z(level.value, t.value, by_yaw_yaw);
-    const Eigen::Vector4d Z_y1(0.0, 0.0, Z(level.value, t.first, by_roll), Z(level.value, t.first, by_yaw));
-    Z_2 += symmetric(Z_y1, y0_1) + Z(level.value, t.second, here) * y0_1 * y0_1.transpose() + Z_y * y0_2;
-    const Eigen::Vector4d Z_w1 =
-        Eigen::Vector4d(0.0, 0.0, sum(level.first, line_r), sum(level.first, line_s)) + sum(level.first, line_y) * y0_1;
-    const Eigen::Matrix4d w_2 = -(Z_2 + symmetric(Z_w1, w_1) + sum(level.second, line) * w_1 * w_1.transpose()) / Z_w;
-    derivatives->stiffness = 5.0 * w3 * (4.0 * w_1 * w_1.transpose() + w * w_2);
-  }
-  add_parts<slopes>(cell, {w, w_1, y0_1}, roll, yaw, result, derivatives);
-  return result;
+  return sum[PartSums::value][0][0] > 0.0;
 }
 
-template LoadedLookup LoadedTable::found<false>(double, double, double, double, LoadedSlopes*) const noexcept;
-template LoadedLookup LoadedTable::found<true>(double, double, double, double, LoadedSlopes*) const noexcept;
+namespace {
+
+double& element(Eigen::Vector4d& of, std::size_t j) { return of[static_cast<Eigen::Index>(j)]; }
+template <class V>
+V& element(std::array<V, 4>& of, std::size_t j) {
+  return of[j];
+}
+void set_symmetric(Eigen::Matrix4d& of, std::size_t i, std::size_t j, double value) {
+  const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+  of(row, column) = of(column, row) = value;
+}
+template <class V>
+void set_symmetric(std::array<std::array<V, 4>, 4>& of, std::size_t i, std::size_t j, const V& value) {
+  of[i][j] = of[j][i] = value;
+}
+
+void set_zero(Eigen::Matrix4d& of) { of.setZero(); }
+template <class V>
+void set_zero(std::array<std::array<V, 4>, 4>& of) {
+  of = {};
+}
+
+/// The place along the energy and how it and y0 follow the pose (y, z, roll, yaw).
+template <class V>
+struct LevelPlace {
+  V w;
+  std::array<V, 4> w_1, y0_1;
+};
+
+// A part from its sums: from reduced quantities to lengths, densities and pressure.
+template <bool slopes, class V>
+void set_part(const std::array<V, 5 * LoadedPart::quantities>& sum, const LevelPlace<V>& place, const V& yaw,
+              LoadedPartOf<V>& part, LoadedPartOf<std::array<V, 4>>* derivative) noexcept {
+  constexpr std::size_t n = LoadedPart::quantities;
+  const V one = broadcast<V>(1.0), &w = place.w, ww = w * w, zero{};
+  const std::array<V, n> scale{one, yaw, one, one, one, w, w, ww, ww, one, one, w};
+  const V share = sum[0], inverse = 1.0 / share;
+  std::array<V, n> mean;
+  for (std::size_t q = 1; q < n; ++q) mean[q] = inverse * sum[q];
+  mean[0] = share;
+  std::array<V, n> value;
+  for (std::size_t q = 0; q < n; ++q) value[q] = scale[q] * mean[q];
+  part = LoadedPartOf<V>::of(value);
+  if constexpr (slopes) {
+    const std::array<V, n> scale_w{zero, zero, zero, zero, zero, one, one, 2.0 * w, 2.0 * w, zero, zero, one};
+    // along y0, level, nodes of roll and of yaw²
+    const auto along = [&](std::size_t d, std::size_t q) {
+      const V& of_share = sum[d * n];
+      return q == 0 ? of_share : inverse * (sum[d * n + q] - of_share * mean[q]);
+    };
+    std::array<std::array<V, 4>, n> slope;
+    for (std::size_t q = 0; q < n; ++q) {
+      const V by_y0 = scale[q] * along(1, q), by_w = scale[q] * along(2, q) + scale_w[q] * mean[q];
+      for (std::size_t j = 0; j < 4; ++j) slope[q][j] = by_y0 * place.y0_1[j] + by_w * place.w_1[j];
+      slope[q][2] = slope[q][2] + scale[q] * along(3, q);
+      slope[q][3] = slope[q][3] + 2.0 * yaw * scale[q] * along(4, q);
+    }
+    slope[1][3] = slope[1][3] + mean[1];
+    *derivative = LoadedPartOf<std::array<V, 4>>::of(slope);
+  }
+}
+
+}  // namespace
+
+template <class V>
+V LoadedTable::margin_share(const V& roll, const V& yaw) const noexcept {
+  const double margin = border * (data_.roll.back() - data_.roll.front());
+  const V share = smooth_step(at_most(roll - data_.roll.front(), data_.roll.back() - roll) * (1.0 / margin));
+  const double largest = data_.yaw_squared.back();
+  const V squared = yaw * yaw;
+  if (data_.yaw_squared.size() == 1) return select(squared > broadcast<V>(largest), V{}, share);
+  return share * smooth_step((largest - squared) * (1.0 / (border * largest)));
+}
+
+/// What the corners leave at the poses' places across: along w the height of the wheelset and its derivatives, value
+/// and slope at the lower level, then at the upper one; y(y0) and its derivatives along roll and yaw, value and slope
+/// at the lower node, then at the upper one.
+template <class V>
+struct LoadedTable::Lines {
+  enum Height : std::size_t {
+    height,
+    over_y0,
+    over_roll,
+    over_yaw,
+    over_y0_y0,
+    over_roll_roll,
+    over_roll_yaw,
+    over_yaw_yaw,
+    over_y0_roll,
+    over_y0_yaw,
+    heights
+  };
+  std::array<std::array<V, 4>, heights> z;
+  std::array<std::array<V, 4>, directions> y;
+};
+
+template <bool slopes, class V>
+void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
+                       LoadedSlopesOf<V>* derivatives) const noexcept {
+  using std::abs, std::sqrt;
+  constexpr int n = lanes_of<V>;
+  const auto each = [](auto&& visit) {
+    for (int i = 0; i < n; ++i) visit(i);
+  };
+  const V zero{}, one = broadcast<V>(1.0);
+  result = {};
+  if constexpr (slopes) set_zero(derivatives->stiffness);
+  V inside = margin_share(pose.roll, pose.yaw);
+  if (!any(inside > zero)) return;
+  const Weights<V> weights(*this, pose.roll, pose.yaw);
+
+  // The lateral node below, and the place t between it and the next: y(y0) is nearly linear.
+  std::array<std::size_t, n> lateral{};
+  std::array<V, 4> corner{zero, one, one, one};
+  V width = one, from{}, found{};
+  std::array<ColumnWeights, n> weight;
+  each([&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!(lane(inside, i) > 0.0)) return;
+    weight[k].set(weights, i);
+    std::array<double, 4> ends{};
+    if (!find_lateral(lane(pose.y, i), weight[k], lateral[k], ends)) return;
+    lane(found, i) = 1.0;
+    for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends[j];
+    lane(from, i) = data_.lateral[lateral[k]];
+    fetch_corners(lateral[k], 0);
+    lane(width, i) = data_.lateral[lateral[k] + 1] - data_.lateral[lateral[k]];
+  });
+  const auto& sum = HermiteBasisOf<V>::sum;
+  V t = (pose.y - corner[0]) / (corner[2] - corner[0]);
+  constexpr double root = 1e-8;  // of rounding: Newton's next correction is less than its square
+  for (int iteration = 0; iteration < 20; ++iteration) {  // two suffice
+    const HermiteBasisOf<V> basis(t, width);
+    const V change = (sum(basis.value, corner) - pose.y) / (sum(basis.first, corner) * width);
+    t = t - change;
+    if (all((abs(change) < broadcast<V>(root)) | (found < 0.5))) break;
+  }
+  t = select(t > zero, at_most(t, one), zero);
+  const HermiteBasisOf<V> across(t, width);
+  const V y0 = from + t * width;
+  const double lateral_range = data_.lateral.back() - data_.lateral.front();
+  inside = inside * smooth_step(at_most(y0 - data_.lateral.front(), data_.lateral.back() - y0) *
+                                (1.0 / (border * lateral_range)));
+  inside = select(found > 0.5, inside, zero);
+
+  const auto basis_of = [](const std::array<V, 4>& of, int i) {
+    return std::array<double, 4>{lane(of[0], i), lane(of[1], i), lane(of[2], i), lane(of[3], i)};
+  };
+
+  // The level below, and what the corners of the cell leave there.
+  using L = Lines<V>;
+  L lines{};
+  std::array<int, n> level{};
+  V level_number{}, met{};
+  each([&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    lane(found, i) = 0.0;
+    if (!(lane(inside, i) > 0.0)) return;
+    level[k] = find_level(lane(pose.z, i), lateral[k], basis_of(across.value, i), lane(t, i), weight[k]);
+    if (level[k] < 0) return;
+    lane(found, i) = 1.0;
+    fetch_corners(lateral[k], level[k]);
+  });
+  each([&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (lane(found, i) == 0.0) return;
+    const std::array<double, 4> value = basis_of(across.value, i), first = basis_of(across.first, i);
+    const double z = lane(pose.z, i);
+    Corners corners;
+    std::array<double, 4> line;
+    for (int moved = 0;;) {
+      add_corners<slopes>(lateral[k], level[k], weights, i, corners);
+      line = corners.across(value, here);
+      if (z < line[0] && level[k] > 0 && moved <= 0) {
+        moved = -1;
+        --level[k];
+      } else if (z >= line[2] && moved >= 0) {
+        if (level[k] == data_.levels - 2) {
+          lane(inside, i) = lane(found, i) = 0.0;
+          return;
+        }
+        moved = 1;
+        ++level[k];
+      } else {
+        break;
+      }
+    }
+    lane(met, i) = 1.0;
+    lane(level_number, i) = level[k];
+    fetch_parts(lateral[k], level[k], lane(pose.roll, i), lane(pose.yaw, i));
+    const auto set = [&](std::size_t which, const std::array<double, 4>& numbers) {
+      for (std::size_t j = 0; j < 4; ++j) lane(lines.z[which][j], i) = numbers[j];
+    };
+    set(L::height, line);
+    set(L::over_y0, corners.across(first, here));
+    set(L::over_roll, corners.across(value, by_roll));
+    set(L::over_yaw, corners.across(value, by_yaw));
+    if constexpr (slopes) {
+      set(L::over_y0_y0, corners.across(basis_of(across.second, i), here));
+      set(L::over_roll_roll, corners.across(value, by_roll_roll));
+      set(L::over_roll_yaw, corners.across(value, by_roll_yaw));
+      set(L::over_yaw_yaw, corners.across(value, by_yaw_yaw));
+      set(L::over_y0_roll, corners.across(first, by_roll));
+      set(L::over_y0_yaw, corners.across(first, by_yaw));
+    }
+    constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
+    const double* const shift = &data_.shift[2 * lateral[k] * weights.columns];
+    Pack place[wanted]{};
+    for (std::size_t c = 0; c < weights.columns; ++c) {
+      const double *const low = shift + 2 * c, *const high = low + 2 * weights.columns;
+      const Pack stored{low[0], low[1], high[0], high[1]};
+      for (std::size_t d = 0; d < wanted; ++d) place[d] += lane(weights.column[c][d], i) * stored;
+    }
+    for (std::size_t d = 0; d < wanted; ++d)
+      for (int j = 0; j < 4; ++j) lane(lines.y[d][static_cast<std::size_t>(j)], i) = place[d][j];
+  });
+  if (!any(found > 0.5)) {
+    result.table_share = inside;
+    return;
+  }
+
+  // The level: the root of a cubic that grows from z or less to z or more.
+  const std::array<V, 4>& line = lines.z[L::height];
+  V low{}, high = one, u = (pose.z - line[0]) / (line[2] - line[0]);
+  u = select(level_number < 0.5, sqrt(select(u > zero, u, zero)), u);
+  constexpr double rounding = 1e-13;  // of a place
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const HermiteBasisOf<V> basis(u, broadcast<V>(level_step_));
+    const V excess = sum(basis.value, line) - pose.z, slope = sum(basis.first, line) * level_step_;
+    high = select(excess > zero, u, high);
+    low = select(excess > zero, low, u);
+    V next = u - excess / slope;
+    const auto within = (next >= low) & (next <= high);
+    next = select(within, next, 0.5 * (low + high));
+    const V change = abs(next - u);
+    u = next;
+    if (all((change < broadcast<V>(rounding)) | (within & (change < root * u)) | (found < 0.5))) break;
+  }
+  const V w = (level_number + u) * level_step_;
+  const double last = data_.levels - 1;
+  inside = inside * select(found > 0.5, smooth_step((last - (level_number + u)) * (1.0 / (border * last))), one);
+  const HermiteBasisOf<V> along_w(u, broadcast<V>(level_step_));
+
+  // y0(y, roll, yaw), then w(y, z, roll, yaw) from Z(w, y0(y, roll, yaw), roll, yaw) = z.
+  const auto Y = [&](const std::array<V, 4>& basis, Direction d) { return sum(basis, lines.y[d]); };
+  const auto Z = [&](const std::array<V, 4>& basis, std::size_t which) { return sum(basis, lines.z[which]); };
+  const V Y_y0 = Y(across.first, here), Z_w = Z(along_w.first, L::height);
+  found = select(Z_w > zero, found, zero);
+  const auto contact = found > 0.5;
+  const V by_Y = 1.0 / Y_y0, by_Z = 1.0 / Z_w, Z_y = Z(along_w.value, L::over_y0);
+  LevelPlace<V> place;
+  place.w = w;
+  place.y0_1 = {by_Y, zero, -(Y(across.value, by_roll) * by_Y), -(Y(across.value, by_yaw) * by_Y)};
+  const std::array<V, 4> Z_1{Z_y * place.y0_1[0], broadcast<V>(-1.0),
+                             Z(along_w.value, L::over_roll) + Z_y * place.y0_1[2],
+                             Z(along_w.value, L::over_yaw) + Z_y * place.y0_1[3]};
+  for (std::size_t j = 0; j < 4; ++j) place.w_1[j] = -(Z_1[j] * by_Z);
+  const V w3 = w * w * w, w4 = w3 * w;
+  // Without contact the share counts, and nothing else.
+  result.table_share = select(contact | (met < 0.5), inside, zero);
+  result.energy = select(contact, w4 * w, zero);
+  if (!any(contact)) return;
+  for (std::size_t j = 0; j < 4; ++j) element(result.force, j) = 5.0 * w4 * place.w_1[j];
+  if constexpr (slopes) {
+    const std::array<V, 4> Y_y1{zero, zero, Y(across.first, by_roll), Y(across.first, by_yaw)};
+    const std::array<V, 4> Z_y1{zero, zero, Z(along_w.value, L::over_y0_roll), Z(along_w.value, L::over_y0_yaw)};
+    const V Y_yy = Y(across.second, here), Z_yy = Z(along_w.value, L::over_y0_y0);
+    const V Z_wy = Z(along_w.first, L::over_y0), Z_ww = Z(along_w.second, L::height);
+    const std::array<V, 4> Z_w1{Z_wy * place.y0_1[0], zero, Z(along_w.first, L::over_roll) + Z_wy * place.y0_1[2],
+                                Z(along_w.first, L::over_yaw) + Z_wy * place.y0_1[3]};
+    for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t m = 0; m <= j; ++m) {
+        V Y_2 = Y_y1[j] * place.y0_1[m] + place.y0_1[j] * Y_y1[m] + Y_yy * place.y0_1[j] * place.y0_1[m];
+        V Z_2 = Z_y1[j] * place.y0_1[m] + place.y0_1[j] * Z_y1[m] + Z_yy * place.y0_1[j] * place.y0_1[m];
+        if (m >= 2) {
+          const std::size_t both = j + m - 4;  // 0: roll twice, 1: roll and yaw, 2: yaw twice
+          Y_2 = Y_2 + Y(across.value, static_cast<Direction>(by_roll_roll + both));
+          Z_2 = Z_2 + Z(along_w.value, L::over_roll_roll + both);
+        }
+        Z_2 = Z_2 - Z_y * Y_2 * by_Y;
+        const V w_2 =
+            -((Z_2 + Z_w1[j] * place.w_1[m] + place.w_1[j] * Z_w1[m] + Z_ww * place.w_1[j] * place.w_1[m]) * by_Z);
+        const V K = 5.0 * w3 * (4.0 * place.w_1[j] * place.w_1[m] + w * w_2);
+        set_symmetric(derivatives->stiffness, j, m, K);
+      }
+    }
+  }
+
+  // The parts of every pose, in their order; then those of equal number side by side.
+  std::array<std::array<PartSums, LoadedLookup::capacity>, n> sums;
+  std::array<std::size_t, n> count{};
+  each([&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!lane(contact, i)) return;
+    const double yaw = lane(pose.yaw, i);
+    const PartPlace at{PartPlace::nodes(lateral[k], level[k], data_.levels),
+                       lane(t, i),
+                       lane(u, i),
+                       lane(width, i),
+                       level_step_,
+                       PartPlace::Linear(data_.roll, lane(pose.roll, i)),
+                       PartPlace::Linear(data_.yaw_squared, yaw * yaw)};
+    std::uint32_t loaded = 0;
+    for (const std::size_t node : at.node) loaded |= data_.pressed[node];
+    for (; loaded != 0; loaded &= loaded - 1) {
+      const auto part = static_cast<std::size_t>(std::countr_zero(loaded));
+      if (sum_part<slopes>(at, part, sums[k][count[k]])) ++count[k];
+    }
+    result.parts = std::max(result.parts, count[k]);
+  });
+  for (std::size_t p = 0; p < result.parts; ++p) {
+    std::array<V, PartSums::count * LoadedPart::quantities> numbers;
+    constexpr std::size_t used = (slopes ? std::size_t{PartSums::count} : 1) * LoadedPart::quantities;
+    V has{};
+    each([&](int i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (p < count[k]) {
+        lane(has, i) = 1.0;
+        std::array<double, PartSums::count * LoadedPart::quantities> of;
+        std::memcpy(of.data(), &sums[k][p], used * sizeof(double));
+        for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = of[q];
+      } else {
+        for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = q < LoadedPart::quantities ? 1.0 : 0.0;
+      }
+    });
+    set_part<slopes>(numbers, place, pose.yaw, result.part[p], slopes ? &derivatives->part[p] : nullptr);
+    result.part[p].share = select(has > 0.5, result.part[p].share, zero);
+  }
+}
+
+template void LoadedTable::find<false, double>(const LoadedPoseOf<double>&, LoadedLookup&,
+                                               LoadedSlopes*) const noexcept;
+template void LoadedTable::find<true, double>(const LoadedPoseOf<double>&, LoadedLookup&, LoadedSlopes*) const noexcept;
+template void LoadedTable::find<false, Lanes>(const LoadedPoseOf<Lanes>&, LoadedLookupOf<Lanes>&,
+                                              LoadedSlopesOf<Lanes>*) const noexcept;
+template void LoadedTable::find<true, Lanes>(const LoadedPoseOf<Lanes>&, LoadedLookupOf<Lanes>&,
+                                             LoadedSlopesOf<Lanes>*) const noexcept;
 
 }  // namespace railtab

@@ -6,8 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 
@@ -71,31 +74,62 @@ struct LoadedPartOf {
 };
 using LoadedPart = LoadedPartOf<double>;
 
-/// The contact at a pose. Generalised forces on the rail, order y, z, roll, yaw: the derivatives of the energy with
-/// respect to the wheelset's motions [N, N m].
-struct LoadedLookup {
+/// Containers of four numbers and of 4 × 4: Eigen's of single ones.
+template <class V>
+struct LoadedNumbers {
+  using Vector = std::array<V, 4>;
+  using Matrix = std::array<std::array<V, 4>, 4>;
+};
+template <>
+struct LoadedNumbers<double> {
+  using Vector = Eigen::Vector4d;
+  using Matrix = Eigen::Matrix4d;
+};
+
+/// The contact at a pose, or at several side by side. Generalised forces on the rail, order y, z, roll, yaw: the
+/// derivatives of the energy with respect to the wheelset's motions [N, N m].
+template <class V>
+struct LoadedLookupOf {
   static constexpr std::size_t capacity = 6;
   /// Share of the table in the answer: 1 inside, 0 outside, smooth between over a margin inside its border. Where 0,
-  /// what follows is zero.
-  double table_share = 0.0;
-  double energy = 0.0;  ///< U [J]; 0: no contact
-  Eigen::Vector4d force = Eigen::Vector4d::Zero();
-  std::size_t parts = 0;
-  /// The first `parts`, in increasing arc length on the rail, each with a share.
-  std::array<LoadedPart, capacity> part;
+  /// what follows is zero; side by side nothing but the energy holds where that is zero.
+  V table_share{};
+  V energy{};  ///< U [J]; 0: no contact
+  typename LoadedNumbers<V>::Vector force = [] {
+    if constexpr (std::is_same_v<V, double>) {
+      return Eigen::Vector4d(Eigen::Vector4d::Zero());
+    } else {
+      return typename LoadedNumbers<V>::Vector{};
+    }
+  }();
+  std::size_t parts = 0;  ///< of the pose that has most
+  /// The first `parts`, in increasing arc length on the rail, each with a share. A pose that has fewer has the share 0
+  /// and otherwise 1.
+  std::array<LoadedPartOf<V>, capacity> part;
 
-  [[nodiscard]] double largest_pressure() const noexcept {  ///< [Pa]
-    double largest = 0.0;
-    for (std::size_t p = 0; p < parts; ++p) largest = std::max(largest, part[p].pressure);
+  [[nodiscard]] V largest_pressure() const noexcept {  ///< [Pa]
+    V largest{};
+    for (std::size_t p = 0; p < parts; ++p) {
+      largest = select((part[p].share > V{}) & (part[p].pressure > largest), part[p].pressure, largest);
+    }
     return largest;
   }
 };
+using LoadedLookup = LoadedLookupOf<double>;
 
 /// Derivatives with respect to the pose.
-struct LoadedSlopes {
-  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();  ///< of the forces
+template <class V>
+struct LoadedSlopesOf {
+  typename LoadedNumbers<V>::Matrix stiffness;  ///< of the forces; zero without contact
   /// Of the parts, as many as these, along y, z, roll, yaw.
-  std::array<LoadedPartOf<std::array<double, 4>>, LoadedLookup::capacity> part;
+  std::array<LoadedPartOf<std::array<V, 4>>, LoadedLookup::capacity> part;
+};
+using LoadedSlopes = LoadedSlopesOf<double>;
+
+/// Height and lateral position of the wheelset centre [m] (WheelsetPose), roll and yaw [rad].
+template <class V>
+struct LoadedPoseOf {
+  V y, z, roll, yaw;
 };
 
 /// @throws InputError "source: name" where shapes disagree or nodes are out of order
@@ -113,37 +147,49 @@ class LoadedTable {
 
   /// @param y, z of the wheelset centre [m] (WheelsetPose) @param roll, yaw [rad]
   [[nodiscard]] LoadedLookup lookup(double y, double z, double roll, double yaw) const noexcept {
-    return found<false>(y, z, roll, yaw, nullptr);
+    LoadedLookup result;
+    find<false, double>({y, z, roll, yaw}, result, nullptr);
+    return result;
   }
-  /// The same with derivatives; these are set where there is contact.
+  /// The same with derivatives; those of the parts are set where there is contact.
   [[nodiscard]] LoadedLookup lookup(double y, double z, double roll, double yaw, LoadedSlopes& slopes) const noexcept {
-    return found<true>(y, z, roll, yaw, &slopes);
+    LoadedLookup result;
+    find<true, double>({y, z, roll, yaw}, result, &slopes);
+    return result;
   }
+  /// Of one pose, or of eight side by side (V = Lanes). @param derivatives where `slopes`
+  template <bool slopes, class V>
+  void find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result, LoadedSlopesOf<V>* derivatives) const noexcept;
 
   [[nodiscard]] const LoadedTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  template <class V>
   struct Weights;
-  struct Cell;
-  struct LevelPlace;
+  template <class V>
+  struct Lines;
+  struct ColumnWeights;
   struct Corners;
+  struct PartPlace;
+  struct PartSums;
+  template <class V>
+  [[nodiscard]] V margin_share(const V& roll, const V& yaw) const noexcept;
+  /// The node below y0, and y and ∂y/∂y0 there and at the next. False where y is outside.
+  [[nodiscard]] bool find_lateral(double y, const ColumnWeights& weight, std::size_t& node,
+                                  std::array<double, 4>& corner) const noexcept;
+  /// The level below z, or one near it, and heights of first touch at both nodes. -1: no contact.
+  [[nodiscard]] int find_level(double z, std::size_t node, const std::array<double, 4>& across, double t,
+                               const ColumnWeights& weight) const noexcept;
+  template <bool slopes, class V>
+  void add_corners(std::size_t node, int level, const Weights<V>& weights, int place, Corners& corners) const noexcept;
+  /// Ask the memory for what the next steps of a look-up will read: of level 0 to find the level, else its corners;
+  /// the parts.
+  void fetch_corners(std::size_t node, int level) const noexcept;
+  void fetch_parts(std::size_t node, int level, double roll, double yaw) const noexcept;
   template <bool slopes>
-  [[nodiscard]] LoadedLookup found(double y, double z, double roll, double yaw,
-                                   LoadedSlopes* derivatives) const noexcept;
-  [[nodiscard]] double margin_share(double roll, double yaw) const noexcept;
-  [[nodiscard]] bool find_lateral(double y, const Weights& weights, Cell& cell) const noexcept;
-  [[nodiscard]] double touch_height(const Cell& cell, const Weights& weights) const noexcept;
-  /// The level below z or one near it; -1 without contact.
-  void find_level(double z, const Weights& weights, Cell& cell) const noexcept;
-  template <bool slopes>
-  void add_corners(const Cell& cell, const Weights& weights, Corners& corners) const noexcept;
-  /// Asks the memory for what add_parts() will read of the first part.
-  void fetch_parts(const Cell& cell, double roll, double yaw) const noexcept;
-  template <bool slopes>
-  void add_parts(const Cell& cell, const LevelPlace& place, double roll, double yaw, LoadedLookup& result,
-                 LoadedSlopes* derivatives) const noexcept;
+  [[nodiscard]] bool sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept;
 
   LoadedTableData data_;
   std::vector<float> rise_;            ///< of each (lateral, level), z − z_touch in the middle of roll at yaw 0

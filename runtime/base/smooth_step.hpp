@@ -1,12 +1,14 @@
 #pragma once
 
-#include <algorithm>
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 
 /// 0 at and below 0, 1 at and above 1, continuous slope.
-[[nodiscard]] inline double smooth_step(double x) noexcept {
-  const double s = std::clamp(x, 0.0, 1.0);
+template <class V>
+[[nodiscard]] V smooth_step(const V& x) noexcept {
+  const V zero{}, one = broadcast<V>(1.0);
+  const V s = select(x > zero, at_most(x, one), zero);
   return s * s * (3.0 - 2.0 * s);
 }
 

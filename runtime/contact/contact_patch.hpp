@@ -57,6 +57,10 @@ struct ContactPatches {
   bool from_table = false;  ///< from the geometry table, also where nothing touches
   bool overflow = false;    ///< more than `capacity` candidates: the deepest were kept
 
+  void clear() noexcept {
+    count = 0;
+    from_table = overflow = false;
+  }
   [[nodiscard]] const ContactPatch* begin() const noexcept { return patch.data(); }
   [[nodiscard]] const ContactPatch* end() const noexcept { return patch.data() + count; }
 };

@@ -1,5 +1,8 @@
 #include "railtab/runtime/contact/contact_response.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "railtab/runtime/contact/loaded_wheel.hpp"
 
 namespace railtab {
@@ -101,6 +104,33 @@ WheelResponse wheel_response(const WheelContactModel& model, WheelSide side, con
   result.force = wheel_force(model, side, wheelset, rail, result.contact);
   result.tangent = wheel_force_tangent(model, side, wheelset, rail, result.contact, rates);
   return result;
+}
+
+void wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels, const StepRates& rates,
+                     std::span<WheelResponse> responses) noexcept {
+  const bool side_by_side =
+      model.geometry->loaded() && model.damping == 0.0 && !model.friction_law.falls() && !rates.start;
+  constexpr std::size_t most = Lanes::count;
+  for (std::size_t first = 0; first < wheels.size(); first += most) {
+    const auto some = wheels.subspan(first, std::min(most, wheels.size() - first));
+    const auto to = responses.subspan(first, some.size());
+    std::array<LoadedAnswer, most> answer;
+    std::array<Matrix9, most> tangent;
+    const std::uint32_t answered =
+        side_by_side && some.size() > 1 ? loaded_wheel_responses(model, some, rates, answer, tangent) : 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if ((answered >> i & 1U) == 0) {
+        to[i] = wheel_response(model, some[i].side, some[i].wheelset, some[i].rail, rates);
+        continue;
+      }
+      WheelResponse& of = to[i];
+      of.contact.pose = answer[i].pose;
+      of.contact.loaded = answer[i].lookup;
+      of.contact.patches.clear();
+      of.force = answer[i].force;
+      of.tangent = tangent[i];
+    }
+  }
 }
 
 }  // namespace railtab

@@ -1,8 +1,10 @@
 #include "railtab/runtime/contact/loaded_wheel.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 #include "railtab/runtime/base/dual.hpp"
@@ -15,45 +17,101 @@ namespace railtab {
 
 namespace {
 
+// V: a number, or numbers side by side; T: the same, or dual numbers of these.
+template <class T>
+struct NumberOf {
+  using type = T;
+};
+template <class V, class S, std::size_t count>
+struct NumberOf<DualOf<V, S, count>> {
+  using type = V;
+};
+template <class T>
+using Number = typename NumberOf<T>::type;
+
+template <class T>
+const Number<T>& number(const T& x) {
+  if constexpr (std::is_same_v<T, Number<T>>) {
+    return x;
+  } else {
+    return x.value;
+  }
+}
+
 template <class T>
 using Vector = std::array<T, 3>;
 template <class T>
 using Generalised = std::array<T, 9>;
-using Pose = std::array<double, 4>;  // y, z, roll, yaw
+template <class V>
+using Pose = std::array<V, 4>;  // y, z, roll, yaw
 
 constexpr std::size_t pose_directions = 4;
 
-// Of a quantity of the table with its slope along the pose, which are the first directions of dual numbers.
 template <class T>
-T quantity(double value, const Pose& slope) {
-  T result(value);
-  if constexpr (!std::is_same_v<T, double>) std::memcpy(&result.slope[0], slope.data(), sizeof slope);
-  return result;
+T constant(double x) {
+  if constexpr (std::is_same_v<T, Number<T>>) {
+    return broadcast<T>(x);
+  } else {
+    return T(x);
+  }
 }
 
-template <class T>
-T coordinate(double value, std::size_t direction) {
-  T result(value);
-  if constexpr (!std::is_same_v<T, double>) result.slope[direction / 4][direction % 4] = 1.0;
-  return result;
-}
-
-double number(double x) { return x; }
+// The derivative of a dual number in one direction.
 template <std::size_t packs>
-double number(const Dual<packs>& x) {
-  return x.value;
+double slope_along(const Dual<packs>& x, std::size_t direction) {
+  return x.slope[direction / 4][direction % 4];
+}
+template <std::size_t directions>
+const Lanes& slope_along(const DualLanes<directions>& x, std::size_t direction) {
+  return x.slope[direction];
+}
+template <std::size_t packs>
+void set_slope(Dual<packs>& x, std::size_t direction, double slope) {
+  x.slope[direction / 4][direction % 4] = slope;
 }
 
-/// Creep force with its derivatives, if wanted.
-struct Creep {
-  CreepForceJet jet;
+// A quantity with its slope along the pose, which are the first directions of dual numbers.
+template <class T>
+T quantity(const Number<T>& value, const Pose<Number<T>>& slope) {
+  T result(value);
+  if constexpr (!std::is_same_v<T, Number<T>>) std::memcpy(&result.slope[0], slope.data(), sizeof slope);
+  return result;
+}
 
+template <class T>
+T coordinate(const Number<T>& value, std::size_t direction) {
+  Pose<Number<T>> slope{};
+  slope[direction] = broadcast<Number<T>>(1.0);
+  return quantity<T>(value, slope);
+}
+
+/// Normalised creep force with its derivatives (CreepForceJet).
+template <class V>
+struct Creep {
+  std::array<V, 3> force{};
+  std::array<std::array<V, 4>, 3> derivative{};
+
+  void set(int place, const CreepForceJet& jet) {
+    const std::array<double, 3> f{jet.force.x, jet.force.y, jet.force.moment};
+    for (std::size_t k = 0; k < 3; ++k) {
+      lane(force[k], place) = f[k];
+      for (std::size_t i = 0; i < 4; ++i) lane(derivative[k][i], place) = jet.derivative[k][i];
+    }
+  }
+  explicit Creep(const CreepLookupOf<V>& found) : force(found.force) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<V, 3>& d = found.derivative[k];
+      derivative[k] = {found.by_ratio[k], d[0], d[1], d[2]};
+    }
+  }
+  explicit Creep(const std::array<V, 3>& alone) : force(alone) {}
+  Creep() = default;
   template <class T>
   [[nodiscard]] std::array<T, 3> of(const T& ratio, const std::array<T, 3>& c) const {
-    std::array<T, 3> f{T(jet.force.x), T(jet.force.y), T(jet.force.moment)};
-    if constexpr (!std::is_same_v<T, double>) {
+    std::array<T, 3> f{force[0], force[1], force[2]};
+    if constexpr (!std::is_same_v<T, V>) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::array<double, 4>& d = jet.derivative[k];
+        const std::array<V, 4>& d = derivative[k];
         for (std::size_t i = 0; i < std::size(ratio.slope); ++i) {
           f[k].slope[i] = d[0] * ratio.slope[i] + d[1] * c[0].slope[i] + d[2] * c[1].slope[i] + d[3] * c[2].slope[i];
         }
@@ -77,8 +135,8 @@ struct Wrench {
 };
 
 template <class T>
-Wrench<double> numbers(const Wrench<T>& w) {
-  Wrench<double> result;
+Wrench<Number<T>> numbers(const Wrench<T>& w) {
+  Wrench<Number<T>> result;
   for (std::size_t i = 0; i < 3; ++i) {
     result.force[i] = number(w.force[i]);
     result.moment[i] = number(w.moment[i]);
@@ -97,38 +155,45 @@ struct Part {
 };
 
 /// Derivatives of a wrench with respect to the wheel's motion: velocity (3), rotation (3), the rail's roll rate.
-using MotionSlope = Eigen::Matrix<double, 6, 7>;
-using MotionRow = Eigen::Matrix<double, 1, 7>;
+template <class V>
+using MotionRow = std::array<V, 7>;
+template <class V>
+using MotionSlope = std::array<MotionRow<V>, 6>;
 
 /// Forces of numbers, or of dual numbers whose first directions are those of the pose and, where parts are damped,
 /// whose others are the parts' normal forces; derivatives with respect to velocities are summed up apart
-/// (motion_slope()), since every part answers to three components of slip only.
+/// (motion_slope()), since every part answers to three components of slip only. Numbers side by side are those of
+/// wheels without damping and with friction that does not fall.
 template <class T>
 class LoadedContactForce {
  public:
+  using V = Number<T>;
+  static constexpr int places = lanes_of<V>;
+
   /// @param rail_friction RailHeadMotion::friction
   /// @param slopes of the look-up, where T has derivatives
-  LoadedContactForce(const WheelContactModel& model, double rail_friction, const WheelKinematics& wheel,
-                     const LoadedLookup& lookup, const LoadedSlopes* slopes)
+  LoadedContactForce(const WheelContactModel& model, const V& rail_friction, const WheelKinematics<V>& wheel,
+                     const LoadedLookupOf<V>& lookup, const LoadedSlopesOf<V>* slopes)
       : model_(model), friction_(model.friction * rail_friction), wheel_(wheel), lookup_(lookup), slopes_(slopes) {
-    const Pose pose{wheel.y, wheel.z, wheel.roll, wheel.yaw};
+    const V zero{};
+    const Pose<V> pose{wheel.y, wheel.z, wheel.roll, wheel.yaw};
     for (std::size_t k = 0; k < pose_directions; ++k) pose_[k] = coordinate<T>(pose[k], k);
     centre_y_ = coordinate<T>(wheel.centre_y, 0);
     centre_z_ = coordinate<T>(wheel.centre_z, 1);
-    const Pose of_cos_roll{0.0, 0.0, -wheel.sin_roll, 0.0}, of_sin_roll{0.0, 0.0, wheel.cos_roll, 0.0};
-    cos_roll_ = quantity<T>(wheel.cos_roll, of_cos_roll);
-    sin_roll_ = quantity<T>(wheel.sin_roll, of_sin_roll);
-    const Pose of_cos_yaw{0.0, 0.0, 0.0, -wheel.sin_yaw}, of_sin_yaw{0.0, 0.0, 0.0, wheel.cos_yaw};
-    cos_yaw_ = quantity<T>(wheel.cos_yaw, of_cos_yaw);
-    sin_yaw_ = quantity<T>(wheel.sin_yaw, of_sin_yaw);
-    Pose slope{};
-    for (Eigen::Index j = 0; j < 4; ++j) {
-      if constexpr (derivatives) std::memcpy(slope.data(), slopes_->stiffness.col(j).data(), sizeof slope);
-      force_[static_cast<std::size_t>(j)] = quantity<T>(lookup.force[j], slope);
+    cos_roll_ = quantity<T>(wheel.cos_roll, {zero, zero, -wheel.sin_roll, zero});
+    sin_roll_ = quantity<T>(wheel.sin_roll, {zero, zero, wheel.cos_roll, zero});
+    cos_yaw_ = quantity<T>(wheel.cos_yaw, {zero, zero, zero, -wheel.sin_yaw});
+    sin_yaw_ = quantity<T>(wheel.sin_yaw, {zero, zero, zero, wheel.cos_yaw});
+    Pose<V> force{}, slope{};
+    for (std::size_t j = 0; j < 4; ++j) {
+      force[j] = element(lookup.force, j);
+      if constexpr (derivatives) {
+        for (std::size_t k = 0; k < 4; ++k) slope[k] = element(slopes_->stiffness, k, j);
+      }
+      force_[j] = quantity<T>(force[j], slope);
     }
-    std::memcpy(slope.data(), lookup.force.data(), sizeof slope);
-    energy_ = quantity<T>(lookup.energy, slope);
-    if (lookup.energy > 0.0) add_parts();
+    energy_ = quantity<T>(lookup.energy, force);
+    if (any(lookup.energy > zero)) add_parts();
   }
 
   /// Derivative of the energy (LoadedLookup::force) and the energy.
@@ -137,35 +202,40 @@ class LoadedContactForce {
   [[nodiscard]] const std::array<T, 4>& pose() const { return pose_; }
   /// Creep and damping forces, and their derivatives with respect to velocities.
   [[nodiscard]] const Wrench<T>& rest() const { return rest_; }
-  [[nodiscard]] const MotionSlope& motion_slope() const { return motion_slope_; }
+  [[nodiscard]] const MotionSlope<V>& motion_slope() const { return motion_slope_; }
   /// All forces at the pose.
   [[nodiscard]] Wrench<T> total() const {
     Wrench<T> sum = wrench(force_);
-    sum.add(rest_, T(1.0));
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum.force[i] += rest_.force[i];
+      sum.moment[i] += rest_.moment[i];
+    }
     return sum;
   }
-  [[nodiscard]] const std::array<double, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
-  [[nodiscard]] int outside_creep_table() const { return outside_; }
-  [[nodiscard]] double creep_power() const { return creep_power_; }  ///< WheelForce::creep_power
+  [[nodiscard]] const std::array<V, LoadedLookup::capacity>& part_normal() const { return part_normal_; }
+  [[nodiscard]] int outside_creep_table(int place) const { return outside_[static_cast<std::size_t>(place)]; }
+  [[nodiscard]] const V& creep_power() const { return creep_power_; }  ///< WheelForce::creep_power
 
   /// Elastic forces on the wheel. The moment of the normal forces about the axle is zero.
   [[nodiscard]] Wrench<T> wrench(const std::array<T, 4>& on_rail) const {
     const T moment_x = -on_rail[2], moment_up = -on_rail[3], moment_y = sin_yaw_ / cos_yaw_ * moment_x;
     const T &c = cos_roll_, &s = sin_roll_;
-    return {{T(0.0), -on_rail[0], -on_rail[1]}, {moment_x, c * moment_y - s * moment_up, s * moment_y + c * moment_up}};
+    return {{constant<T>(0.0), -on_rail[0], -on_rail[1]},
+            {moment_x, c * moment_y - s * moment_up, s * moment_y + c * moment_up}};
   }
 
   /// Generalised forces on wheelset (6) and rail head (3) in track axes: as WheelForce::patch, of the right wheel.
   /// @param w with derivatives, or numbers alone
   template <class U>
   [[nodiscard]] Generalised<U> generalised(const Wrench<U>& w) const {
-    const auto of_pose = [](const T& x) {
-      if constexpr (std::is_same_v<U, T>)
+    const auto of_pose = [](const T& x) -> const U& {
+      if constexpr (std::is_same_v<U, T>) {
         return x;
-      else
+      } else {
         return number(x);
+      }
     };
-    const double c = wheel_.rail_cos, s = wheel_.rail_sin;
+    const V &c = wheel_.rail_cos, &s = wheel_.rail_sin;
     const Vector<U>&f = w.force, &m = w.moment;
     const U fy = c * f[1] - s * f[2], fz = s * f[1] + c * f[2];
     const U about_axle =
@@ -176,7 +246,19 @@ class LoadedContactForce {
   }
 
  private:
-  static constexpr bool derivatives = !std::is_same_v<T, double>;
+  static constexpr bool derivatives = !std::is_same_v<T, V>;
+  static constexpr bool single = std::is_same_v<V, double>;
+  static constexpr double largest_side_by_side = 1e60;  ///< creepage whose square is far from overflow
+  using Parts = std::array<Part<T>, LoadedLookup::capacity>;
+
+  static double element(const Eigen::Vector4d& of, std::size_t j) { return of[static_cast<Eigen::Index>(j)]; }
+  static const Lanes& element(const std::array<Lanes, 4>& of, std::size_t j) { return of[j]; }
+  static double element(const Eigen::Matrix4d& of, std::size_t i, std::size_t j) {
+    return of(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  }
+  static const Lanes& element(const std::array<std::array<Lanes, 4>, 4>& of, std::size_t i, std::size_t j) {
+    return of[i][j];
+  }
 
   /// Velocity of the wheel's particle at `arm` from the wheelset centre against the rail's particle there. The rail's
   /// own roll rate turns its surface about the rail-head origin; `rotation` counts it about the wheelset centre.
@@ -189,7 +271,7 @@ class LoadedContactForce {
 
   void add_parts() {
     using std::cos, std::sin;
-    std::array<Part<T>, LoadedLookup::capacity> parts;
+    Parts parts;
     for (std::size_t p = 0; p < lookup_.parts; ++p) {
       Part<T>& part = parts[p];
       const auto of = [&](auto&& member) {
@@ -200,8 +282,14 @@ class LoadedContactForce {
         }
       };
       const T angle = of([](const auto& q) { return q.angle; });
-      part.cos_angle = cos(angle);
-      part.sin_angle = sin(angle);
+      const SineCosineOf<V> direction(number(angle));
+      if constexpr (derivatives) {
+        part.cos_angle = chained(angle, direction.cosine, -direction.sine);
+        part.sin_angle = chained(angle, direction.sine, direction.cosine);
+      } else {
+        part.cos_angle = direction.cosine;
+        part.sin_angle = direction.sine;
+      }
       part.arm = {of([](const auto& q) { return q.arm_x; }), of([](const auto& q) { return q.arm_y; }),
                   of([](const auto& q) { return q.arm_z; })};
       part.a = of([](const auto& q) { return q.a; });
@@ -211,11 +299,13 @@ class LoadedContactForce {
       part.saddle = of([](const auto& q) { return q.saddle; });
       const T elastic = of([](const auto& q) { return q.share; }) * force_[1] / part.cos_angle;
       part.normal = elastic;
-      if (model_.damping != 0.0) add_damping(elastic, p, part);
+      if constexpr (single) {
+        if (model_.damping != 0.0) add_damping(elastic, p, part);
+      }
       part_normal_[p] = number(part.normal);
     }
-    if (friction_ > 0.0) add_groups(parts);
-    if constexpr (derivatives) {
+    if (any(friction_ > V{})) add_groups(parts);
+    if constexpr (single && derivatives) {
       if (model_.damping != 0.0) add_damped_normals();
     }
   }
@@ -227,47 +317,41 @@ class LoadedContactForce {
     const T approach = part.cos_angle * slip[2] - part.sin_angle * slip[1];
     part.normal = elastic * (1.0 + model_.damping * approach);
     const bool pulls = number(part.normal) < 0.0;
-    if (pulls) part.normal = T(0.0);
+    if (pulls) part.normal = constant<T>(0.0);
     if constexpr (derivatives) {
       const double c = part.cos_angle.value, s = part.sin_angle.value;
       const double x = part.arm[0].value, y = part.arm[1].value, z = part.arm[2].value;
-      MotionRow& row = damped_[p];
-      row << 0.0, -s, c, y * c + z * s, -x * c, -x * s, -(s * wheel_.centre_z + c * wheel_.centre_y);
-      row *= pulls ? 0.0 : elastic.value * model_.damping;
-      const std::size_t direction = pose_directions + p;
-      part.normal.slope[direction / 4][direction % 4] = 1.0;
+      damped_[p] = {0.0, -s, c, y * c + z * s, -x * c, -x * s, -(s * wheel_.centre_z + c * wheel_.centre_y)};
+      for (double& slope : damped_[p]) slope *= pulls ? 0.0 : elastic.value * model_.damping;
+      set_slope(part.normal, pose_directions + p, 1.0);
     }
     const T more = part.normal - elastic;
-    add(Vector<T>{T(0.0), more * part.sin_angle, -more * part.cos_angle}, part.arm, Vector<T>{T(0.0), T(0.0), T(0.0)},
-        T(1.0));
+    add(Vector<T>{constant<T>(0.0), more * part.sin_angle, -more * part.cos_angle}, part.arm,
+        Vector<T>{constant<T>(0.0), constant<T>(0.0), constant<T>(0.0)}, constant<T>(1.0));
   }
 
   void add_damped_normals() {
     for (std::size_t p = 0; p < lookup_.parts; ++p) {
-      const std::size_t direction = pose_directions + p;
-      Eigen::Matrix<double, 6, 1> along;
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        along[i] = rest_.force[k].slope[direction / 4][direction % 4];
-        along[3 + i] = rest_.moment[k].slope[direction / 4][direction % 4];
+      for (std::size_t i = 0; i < 6; ++i) {
+        const double along = slope_along(i < 3 ? rest_.force[i] : rest_.moment[i - 3], pose_directions + p);
+        for (std::size_t k = 0; k < 7; ++k) motion_slope_[i][k] += along * damped_[p][k];
       }
-      motion_slope_ += along * damped_[p];
     }
   }
 
   // Every run of neighbouring parts, as one ellipse, weighted with how far its parts have merged with each other, and
   // not with those outside.
-  void add_groups(const std::array<Part<T>, LoadedLookup::capacity>& parts) {
+  void add_groups(const Parts& parts) {
     const std::size_t n = lookup_.parts;
     std::array<T, LoadedLookup::capacity + 1> merged;  // between parts k − 1 and k
-    for (std::size_t k = 0; k <= n; ++k) merged[k] = k == 0 || k == n ? T(0.0) : merging(parts, k);
+    for (std::size_t k = 0; k <= n; ++k) merged[k] = k == 0 || k == n ? constant<T>(0.0) : merging(parts, k);
     for (std::size_t first = 0; first < n; ++first) {
-      T within = T(1.0);
+      T within = constant<T>(1.0);
       for (std::size_t last = first; last < n; ++last) {
-        if (last > first) within = T(within * merged[last]);
-        if (number(within) == 0.0) break;
+        if (last > first) within = within * merged[last];
+        if (!any(number(within) > V{})) break;
         const T weight = within * (1.0 - merged[first]) * (1.0 - merged[last + 1]);
-        if (!(number(weight) > 0.0)) continue;
+        if (!any(number(weight) > V{})) continue;
         if (first == last) {
           add_creep(parts[first], weight);
         } else {
@@ -278,24 +362,26 @@ class LoadedContactForce {
   }
 
   // The force per length at the saddle over the lesser of the largest on both sides, 0 to 1.
-  T merging(const std::array<Part<T>, LoadedLookup::capacity>& parts, std::size_t k) const {
-    std::size_t below = 0, above = k;
-    for (std::size_t p = 1; p < k; ++p)
-      if (number(parts[p].peak) > number(parts[below].peak)) below = p;
-    for (std::size_t p = k + 1; p < lookup_.parts; ++p)
-      if (number(parts[p].peak) > number(parts[above].peak)) above = p;
-    const T& lesser = number(parts[below].peak) < number(parts[above].peak) ? parts[below].peak : parts[above].peak;
-    const T ratio = parts[k - 1].saddle / lesser;
-    return number(ratio) >= 1.0 ? T(1.0) : ratio;
+  T merging(const Parts& parts, std::size_t k) const {
+    const auto is_part = [&](std::size_t p) { return lookup_.part[p].share > V{}; };
+    T below = parts[0].peak, above = parts[k].peak;
+    for (std::size_t p = 1; p < k; ++p) {
+      below = select(number(parts[p].peak) > number(below), parts[p].peak, below);
+    }
+    for (std::size_t p = k + 1; p < lookup_.parts; ++p) {
+      above = select(is_part(p) & (number(parts[p].peak) > number(above)), parts[p].peak, above);
+    }
+    const T ratio = parts[k - 1].saddle / select(number(below) < number(above), below, above);
+    return select(is_part(k), select(number(ratio) >= 1.0, constant<T>(1.0), ratio), constant<T>(0.0));
   }
 
-  static Part<T> together(const std::array<Part<T>, LoadedLookup::capacity>& parts, std::size_t first,
-                          std::size_t last) {
+  static Part<T> together(const Parts& parts, std::size_t first, std::size_t last) {
     using std::sqrt;
     Part<T> sum;
-    sum.normal = T(0.0);
-    sum.arm.fill(T(0.0));
-    T s = T(0.0), aa = T(0.0), bb = T(0.0), along = T(0.0), across = T(0.0);
+    sum.normal = constant<T>(0.0);
+    sum.arm.fill(constant<T>(0.0));
+    T s = constant<T>(0.0), aa = constant<T>(0.0), bb = constant<T>(0.0), along = constant<T>(0.0),
+      across = constant<T>(0.0);
     for (std::size_t p = first; p <= last; ++p) {
       const T& N = parts[p].normal;
       sum.normal += N;
@@ -305,98 +391,147 @@ class LoadedContactForce {
       along += N * parts[p].cos_angle;
       across += N * parts[p].sin_angle;
     }
-    sum.s = s / sum.normal;
+    // Where a wheel beside has these parts, and this one has not, any ellipse serves.
+    const auto bears = number(sum.normal) > V{};
+    const T N = select(bears, sum.normal, constant<T>(1.0));
+    sum.s = s / N;
     for (std::size_t p = first; p <= last; ++p) {
       const T distance = parts[p].s - sum.s;
       bb += parts[p].normal * (parts[p].b * parts[p].b + 5.0 * distance * distance);
     }
-    for (std::size_t i = 0; i < 3; ++i) sum.arm[i] = sum.arm[i] / sum.normal;
-    sum.a = sqrt(aa / sum.normal);
-    sum.b = sqrt(bb / sum.normal);
+    for (std::size_t i = 0; i < 3; ++i) sum.arm[i] = sum.arm[i] / N;
+    sum.a = sqrt(select(bears, aa, constant<T>(1.0)) / N);
+    sum.b = sqrt(select(bears, bb, constant<T>(1.0)) / N);
+    along = select(bears, along, constant<T>(1.0));
     const T length = sqrt(along * along + across * across);
     sum.cos_angle = along / length;
     sum.sin_angle = across / length;
     return sum;
   }
 
-  void add_creep(const Part<T>& part, const T& weight) {
+  void add_creep(const Part<T>& part, const T& share) {
     using std::sqrt;
-    if (!(number(part.normal) > 0.0)) return;
+    const auto bears = number(part.normal) > V{};
+    if (!any(bears)) return;
+    const T normal = single ? part.normal : select(bears, part.normal, constant<T>(1.0));
+    const T weight = single ? share : select(bears, share, constant<T>(0.0));
     const Vector<T> slip = slip_velocity(part.arm);
     const auto& rotation = wheel_.rotation;
     const double speed = model_.creepage_speed() / model_.friction_law.initial_slope;
     const T slip_across = part.cos_angle * slip[1] + part.sin_angle * slip[2];
-    const Friction friction = this->friction(slip[0], slip_across);
-    const T bound = friction.coefficient * part.normal, root = sqrt(part.a * part.b);
+    T bound = friction_ * normal;
+    std::array<V, 3> friction_slope{};
+    if constexpr (single) {
+      if (model_.friction_law.falls()) bound = falling_friction(slip[0], slip_across, friction_slope) * normal;
+    }
+    const T root = sqrt(part.a * part.b);
     const T scale = model_.normal.material.shear_modulus() / speed * (part.a * part.b) / bound;
     const std::array<T, 3> creepage{slip[0] * scale, slip_across * scale,
                                     (rotation[2] * part.cos_angle - rotation[1] * part.sin_angle) * scale * root};
     const T ratio = part.a / part.b;
-    const Creepage at{number(creepage[0]), number(creepage[1]), number(creepage[2])};
-    Creep creep;
-    if constexpr (derivatives) {
-      creep.jet = creep_force_jet(model_.creep_law, ratio.value, at);
-      const CreepForceJet& jet = creep.jet;
-      const std::array<double, 3> force{jet.force.x, jet.force.y, jet.force.moment}, c{at.x, at.y, at.spin};
-      const std::array<double, 3> size{1.0, 1.0, root.value};
-      Eigen::Matrix3d slope;  // of the local forces with respect to the slips
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::array<double, 4>& d = jet.derivative[i];
-        const double by_bound = force[i] - d[1] * c[0] - d[2] * c[1] - d[3] * c[2];
-        for (std::size_t k = 0; k < 3; ++k) {
-          slope(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-              weight.value * size[i] *
-              (bound.value * scale.value * size[k] * d[k + 1] + part.normal.value * friction.slope[k] * by_bound);
-        }
-      }
-      add_motion_slope(part, slope);
-    } else {
-      creep.jet.force = creep_force(model_.creep_law, ratio, at);
-    }
-    const CreepForce& local = creep.jet.force;
-    const auto* table = std::get_if<TableCreep>(&model_.creep_law);
-    if (table && table->share(number(ratio), at) < 1.0) ++outside_;
-    creep_power_ -=
-        number(weight) * number(bound) / number(scale) * (local.x * at.x + local.y * at.y + local.moment * at.spin);
+    const Creep<V> creep =
+        creep_of(number(ratio), {number(creepage[0]), number(creepage[1]), number(creepage[2])}, number(weight), bears);
+    if constexpr (derivatives) add_motion_slope(part, creep, creepage, number(weight), scale, bound, friction_slope);
+    V power{};
+    for (std::size_t k = 0; k < 3; ++k) power = power + creep.force[k] * number(creepage[k]);
+    creep_power_ = creep_power_ - number(weight) * number(bound) / number(scale) * power;
     const std::array<T, 3> f = creep.of(ratio, creepage);
     const T across = f[1] * bound, spin = f[2] * bound * root;
     const Vector<T> force{f[0] * bound, across * part.cos_angle, across * part.sin_angle};
-    const Vector<T> moment{T(0.0), -spin * part.sin_angle, spin * part.cos_angle};
+    const Vector<T> moment{constant<T>(0.0), -spin * part.sin_angle, spin * part.cos_angle};
     add(force, part.arm, moment, weight);
   }
 
+  // The law's creep force, and what it leaves of the table to another law is counted.
+  Creep<V> creep_of(const V& ratio, const std::array<V, 3>& creepage, const V& weight, const auto& bears) {
+    const auto* table = std::get_if<TableCreep>(&model_.creep_law);
+    std::array<double, places> share;
+    double least = 1.0;
+    const auto at = [&](int i) { return Creepage{lane(creepage[0], i), lane(creepage[1], i), lane(creepage[2], i)}; };
+    for (int i = 0; i < places && table; ++i) {
+      double& of = share[static_cast<std::size_t>(i)] = table->share(lane(ratio, i), at(i));
+      const bool finite = std::abs(at(i).x) + std::abs(at(i).y) + std::abs(at(i).spin) < largest_side_by_side;
+      if (of < 1.0 && lane(bears, i) && lane(weight, i) > 0.0) ++outside_[static_cast<std::size_t>(i)];
+      least = std::min(least, finite ? of : 0.0);
+    }
+    if constexpr (!single) {
+      if (table && least == 1.0) {
+        if constexpr (derivatives) {
+          return Creep<V>(table->table->jet(ratio, creepage));
+        } else {
+          return Creep<V>(table->table->force(ratio, creepage));
+        }
+      }
+    }
+    Creep<V> creep;
+    for (int i = 0; i < places; ++i) {
+      if (!lane(bears, i)) continue;
+      if constexpr (derivatives) {
+        creep.set(i, creep_force_jet(model_.creep_law, lane(ratio, i), at(i)));
+      } else {
+        creep.set(i, {creep_force(model_.creep_law, lane(ratio, i), at(i)), {}});
+      }
+    }
+    return creep;
+  }
+
   /// Coefficient at a slip velocity, and its derivatives with respect to the slip along x, across and about the normal.
-  struct Friction {
-    T coefficient;
-    std::array<double, 3> slope{};
-  };
-  [[nodiscard]] Friction friction(const T& along, const T& across) const {
-    if (!model_.friction_law.falls()) return {T(friction_), {}};
+  [[nodiscard]] T falling_friction(const T& along, const T& across, std::array<V, 3>& slopes) const {
     using std::sqrt;
     constexpr double least = 1e-12;  // m²/s²: a root has no slope at zero
-    const T velocity = sqrt(along * along + across * across + T(least));
+    const T velocity = sqrt(along * along + across * across + constant<T>(least));
     const double w = number(velocity), slope = friction_ * model_.friction_law.slope(w);
     const double value = friction_ * model_.friction_law.share(w);
-    Friction result{T(value), {slope * number(along) / w, slope * number(across) / w, 0.0}};
-    if constexpr (derivatives) result.coefficient = chained(velocity, value, slope);
-    return result;
+    slopes = {slope * number(along) / w, slope * number(across) / w, 0.0};
+    if constexpr (derivatives) {
+      return chained(velocity, value, slope);
+    } else {
+      return value;
+    }
   }
 
   // The slips of a part, along x, across and about its normal, are Eᵀ (velocity, rotation) of the wheel, and its creep
   // forces act on the wheel by E.
-  void add_motion_slope(const Part<T>& part, const Eigen::Matrix3d& slope) {
-    const double c = part.cos_angle.value, s = part.sin_angle.value;
-    const double x = part.arm[0].value, y = part.arm[1].value, z = part.arm[2].value;
-    Eigen::Matrix<double, 6, 3> E;
-    E << 1.0, 0.0, 0.0,           //
-        0.0, c, 0.0,              //
-        0.0, s, 0.0,              //
-        0.0, y * s - z * c, 0.0,  //
-        z, -x * s, -s,            //
-        -y, x * c, c;
-    const Eigen::Matrix<double, 6, 3> answer = E * slope;
-    motion_slope_.leftCols<6>() += answer * E.transpose();
-    motion_slope_.col(6) += (c * wheel_.centre_z - s * wheel_.centre_y) * answer.col(1);
+  void add_motion_slope(const Part<T>& part, const Creep<V>& creep, const std::array<T, 3>& creepage, const V& weight,
+                        const T& scale, const T& bound, const std::array<V, 3>& friction_slope) {
+    const V one = broadcast<V>(1.0), zero{}, root = number(part.a) * number(part.b);
+    using std::sqrt;
+    const std::array<V, 3> size{one, one, sqrt(root)};
+    std::array<std::array<V, 3>, 3> slope;  // of the local forces with respect to the slips
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<V, 4>& d = creep.derivative[i];
+      V by_bound = creep.force[i];
+      for (std::size_t k = 0; k < 3; ++k) by_bound = by_bound - d[k + 1] * number(creepage[k]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        V along = number(bound) * number(scale) * size[k] * d[k + 1];
+        if constexpr (single) along += number(part.normal) * friction_slope[k] * by_bound;
+        slope[i][k] = weight * size[i] * along;
+      }
+    }
+    const V &c = number(part.cos_angle), &s = number(part.sin_angle);
+    const V &x = number(part.arm[0]), &y = number(part.arm[1]), &z = number(part.arm[2]);
+    const std::array<std::array<V, 3>, 6> E{{{one, zero, zero},
+                                             {zero, c, zero},
+                                             {zero, s, zero},
+                                             {zero, y * s - z * c, zero},
+                                             {z, -x * s, -s},
+                                             {-y, x * c, c}}};
+    // Rows of E whose first and last entries are not zero.
+    constexpr auto has = [](std::size_t row, std::size_t k) {
+      return k == 1 ? row > 0 : row > 3 || (row == 0 && k == 0);
+    };
+    std::array<std::array<V, 3>, 6> answer{};
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        if (has(i, j))
+          for (std::size_t k = 0; k < 3; ++k) answer[i][k] += E[i][j] * slope[j][k];
+    const V rail = c * wheel_.centre_z - s * wheel_.centre_y;
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t m = 0; m < 6; ++m)
+        for (std::size_t k = 0; k < 3; ++k)
+          if (has(m, k)) motion_slope_[i][m] += answer[i][k] * E[m][k];
+      motion_slope_[i][6] += rail * answer[i][1];
+    }
   }
 
   // A force on the wheel at `arm`, and a moment.
@@ -408,24 +543,26 @@ class LoadedContactForce {
   }
 
   const WheelContactModel& model_;
-  double friction_;  ///< without slip
-  const WheelKinematics& wheel_;
-  const LoadedLookup& lookup_;
-  const LoadedSlopes* slopes_;
+  V friction_;  ///< without slip
+  const WheelKinematics<V>& wheel_;
+  const LoadedLookupOf<V>& lookup_;
+  const LoadedSlopesOf<V>* slopes_;
   std::array<T, pose_directions> pose_, force_;
   T centre_y_, centre_z_, cos_roll_, sin_roll_, cos_yaw_, sin_yaw_;
   T energy_;
   Wrench<T> rest_;
-  MotionSlope motion_slope_ = MotionSlope::Zero();
-  std::array<MotionRow, LoadedLookup::capacity> damped_;  ///< of the parts' normal forces
-  std::array<double, LoadedLookup::capacity> part_normal_{};
-  int outside_ = 0;
-  double creep_power_ = 0.0;
+  MotionSlope<V> motion_slope_{};
+  std::array<MotionRow<V>, LoadedLookup::capacity> damped_;  ///< of the parts' normal forces
+  std::array<V, LoadedLookup::capacity> part_normal_{};
+  std::array<int, places> outside_{};
+  V creep_power_{};
 };
 
-WheelKinematics right_wheel(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                            const RailHeadMotion& rail) {
-  return {model.geometry->pair(), on_right(side, wheelset), on_right(side, rail), model.speed};
+WheelKinematics<double> right_wheel(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
+                                    const RailHeadMotion& rail) {
+  WheelMotion<double> motion;
+  motion.set(0, on_right(side, wheelset), on_right(side, rail));
+  return {model.geometry->pair(), motion, model.speed};
 }
 
 Vector9 in_track(WheelSide side, const Generalised<double>& of_right) {
@@ -445,10 +582,10 @@ template <class T>
 MeanForce<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& start, const LoadedContactForce<T>& end,
                             double weight) {
   const double radius = pair.nominal_radius();
-  const Pose metric{1.0, 1.0, radius * radius, radius * radius};
-  const Pose from{start.pose.y, start.pose.z, start.pose.roll, start.pose.yaw};
+  const Pose<double> metric{1.0, 1.0, radius * radius, radius * radius};
+  const Pose<double> from{start.pose.y, start.pose.z, start.pose.roll, start.pose.yaw};
   std::array<T, 4> mean, path;
-  T work = weight * end.energy() - start.weight * start.energy, length = T(0.0);
+  T work = weight * end.energy() - start.weight * start.energy, length = constant<T>(0.0);
   for (std::size_t j = 0; j < 4; ++j) {
     path[j] = end.pose()[j] - from[j];
     mean[j] = 0.5 * (start.weight * start.force[static_cast<Eigen::Index>(j)] + weight * end.elastic()[j]);
@@ -456,9 +593,9 @@ MeanForce<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& start
     length += metric[j] * path[j] * path[j];
   }
   const T ends = mean[0] * mean[0] + mean[1] * mean[1];
-  T share = T(1.0);
+  T share = constant<T>(1.0);
   if (number(length) > 0.0) {
-    T along = T(0.0);
+    T along = constant<T>(0.0);
     const T correction = work / length;
     for (std::size_t j = 0; j < 4; ++j) {
       const T more = metric[j] * correction * path[j];
@@ -473,129 +610,174 @@ MeanForce<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& start
 }
 
 /// Derivatives with respect to the nine displacements, which velocities follow.
+template <class V>
 class DisplacementSlopes {
  public:
-  DisplacementSlopes(const WheelKinematics& wheel, const StepRates& rates) : w_(wheel), rates_(rates) {}
+  using Column = Generalised<V>;
+  DisplacementSlopes(const WheelKinematics<V>& wheel, const StepRates& rates) : w_(wheel), rates_(rates) {}
 
   /// @param pose derivatives of the generalised forces with respect to the pose. @param motion with respect to the
   /// wheel's motion. @param turned of those that turn with the rail, their values
-  [[nodiscard]] Matrix9 of(const Eigen::Matrix<double, 9, 4>& pose, const Eigen::Matrix<double, 9, 7>& motion,
-                           const Vector9& turned) const {
-    const double c = w_.rail_cos, s = w_.rail_sin, rail = rates_.rail;
+  [[nodiscard]] std::array<Column, 9> of(const std::array<Column, 4>& pose, const std::array<Column, 7>& motion,
+                                         const Column& turned) const {
+    const V &c = w_.rail_cos, &s = w_.rail_sin;
+    const double rail = rates_.rail;
     const Vector6& rate = rates_.wheelset;
-    Matrix9 t;
-    // along the track's y and z
-    const Vector9 pose_y = c * pose.col(0) - s * pose.col(1), pose_z = s * pose.col(0) + c * pose.col(1);
-    const Vector9 motion_y = c * motion.col(1) - s * motion.col(2), motion_z = s * motion.col(1) + c * motion.col(2);
-    t.col(0) = rate[0] * motion.col(0);
-    t.col(1) = pose_y + rate[1] * motion_y;
-    t.col(2) = pose_z + rate[2] * motion_z;
-    t.col(6) = -(pose_y + rail * motion_y);
-    t.col(7) = -(pose_z + rail * motion_z);
+    const auto &axle = w_.axle, &velocity = w_.velocity, &swaying = w_.swaying;
     // rotations: the axle turns with roll and yaw
-    const auto about = [&](double x, double y, double z) -> Vector9 {
-      return w_.turning * (x * motion.col(3) + y * motion.col(4) + z * motion.col(5));
-    };
-    const Vector9 roll = pose.col(2) + about(0.0, -w_.axle[2], w_.axle[1]);
-    t.col(3) = roll + rate[3] * motion.col(3);
-    t.col(4) = rate[4] * (w_.axle[0] * motion.col(3) + w_.axle[1] * motion.col(4) + w_.axle[2] * motion.col(5));
-    t.col(5) = pose.col(3) + about(-w_.cos_yaw, -w_.sin_yaw * w_.cos_roll, -w_.sin_yaw * w_.sin_roll) +
-               rate[5] * (s * motion.col(4) + c * motion.col(5));
-    t.col(8) = w_.centre_z * pose.col(0) - w_.centre_y * pose.col(1) - roll + rail * (motion.col(6) - motion.col(3)) +
-               w_.velocity[2] * motion.col(1) - w_.velocity[1] * motion.col(2) + w_.swaying[2] * motion.col(4) -
-               w_.swaying[1] * motion.col(5) + turned;
+    const V roll_y = -(w_.turning * axle[2]), roll_z = w_.turning * axle[1];
+    const V yaw_x = -(w_.turning * w_.cos_yaw), turned_yaw = -(w_.turning * w_.sin_yaw);
+    const V yaw_y = turned_yaw * w_.cos_roll, yaw_z = turned_yaw * w_.sin_roll;
+    std::array<Column, 9> t;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const auto m = [&](std::size_t k) -> const V& { return motion[k][i]; };
+      const auto p = [&](std::size_t k) -> const V& { return pose[k][i]; };
+      // along the track's y and z
+      const V pose_y = c * p(0) - s * p(1), pose_z = s * p(0) + c * p(1);
+      const V motion_y = c * m(1) - s * m(2), motion_z = s * m(1) + c * m(2);
+      t[0][i] = rate[0] * m(0);
+      t[1][i] = pose_y + rate[1] * motion_y;
+      t[2][i] = pose_z + rate[2] * motion_z;
+      t[6][i] = -(pose_y + rail * motion_y);
+      t[7][i] = -(pose_z + rail * motion_z);
+      const V roll = p(2) + roll_y * m(4) + roll_z * m(5);
+      t[3][i] = roll + rate[3] * m(3);
+      t[4][i] = rate[4] * (axle[0] * m(3) + axle[1] * m(4) + axle[2] * m(5));
+      t[5][i] = p(3) + yaw_x * m(3) + yaw_y * m(4) + yaw_z * m(5) + rate[5] * (s * m(4) + c * m(5));
+      t[8][i] = w_.centre_z * p(0) - w_.centre_y * p(1) - roll + rail * (m(6) - m(3)) + velocity[2] * m(1) -
+                velocity[1] * m(2) + swaying[2] * m(4) - swaying[1] * m(5) + turned[i];
+    }
     return t;
   }
 
  private:
-  const WheelKinematics& w_;
+  const WheelKinematics<V>& w_;
   const StepRates& rates_;
 };
 
+/// Forces of right wheels, of which one is taken.
 template <class T>
-LoadedWheelForce force_of(const LoadedContactForce<T>& force, WheelSide side, const WheelKinematics& wheel,
-                          const LoadedLookup& lookup) {
-  LoadedWheelForce result;
-  const Vector9 total = in_track(side, force.generalised(numbers(force.total())));
-  result.wheelset = total.head<6>();
-  result.rail = total.tail<3>();
-  result.rail_x = -result.wheelset[0];
-  std::copy_n(force.part_normal().begin(), lookup.parts, result.normal.begin());
-  result.outside_creep_table = force.outside_creep_table();
-  result.creep_power = force.creep_power();
-  result.pressure = lookup.largest_pressure();
-  const Generalised<double> rest = force.generalised(numbers(force.rest()));
-  result.memory = {.weight = lookup.table_share,
-                   .pose = {wheel.y, wheel.z, wheel.roll, wheel.yaw},
-                   .energy = lookup.energy,
-                   .force = lookup.force,
-                   .rest = lookup.table_share * Eigen::Map<const Vector9>(rest.data()),
-                   .total = lookup.table_share * total};
-  return result;
+class WheelForces {
+ public:
+  using V = Number<T>;
+  WheelForces(const LoadedContactForce<T>& force, const WheelKinematics<V>& wheel, const LoadedLookupOf<V>& lookup)
+      : force_(force),
+        wheel_(wheel),
+        lookup_(lookup),
+        total_(force.generalised(numbers(force.total()))),
+        rest_(force.generalised(numbers(force.rest()))),
+        pressure_(lookup.largest_pressure()) {}
+
+  /// @param table of the same wheel, its look-up
+  void give(int place, WheelSide side, const LoadedLookup& table, LoadedWheelForce& result) const {
+    const auto at = [place](const V& of) { return lane(of, place); };
+    Generalised<double> total, rest;
+    for (std::size_t i = 0; i < 9; ++i) {
+      total[i] = at(total_[i]);
+      rest[i] = at(rest_[i]);
+    }
+    const Vector9 in = in_track(side, total);
+    result.wheelset = in.head<6>();
+    result.rail = in.tail<3>();
+    result.rail_x = -result.wheelset[0];
+    result.normal.fill(0.0);
+    for (std::size_t p = 0; p < table.parts; ++p) result.normal[p] = at(force_.part_normal()[p]);
+    result.outside_creep_table = force_.outside_creep_table(place);
+    result.creep_power = at(force_.creep_power());
+    result.pressure = at(pressure_);
+    result.memory = {.weight = table.table_share,
+                     .pose = {at(wheel_.y), at(wheel_.z), at(wheel_.roll), at(wheel_.yaw)},
+                     .energy = table.energy,
+                     .force = table.force,
+                     .rest = table.table_share * Eigen::Map<const Vector9>(rest.data()),
+                     .total = table.table_share * in};
+  }
+
+ private:
+  const LoadedContactForce<T>& force_;
+  const WheelKinematics<V>& wheel_;
+  const LoadedLookupOf<V>& lookup_;
+  Generalised<V> total_, rest_;
+  V pressure_;
+};
+
+/// Of right wheels, by columns.
+template <class T>
+std::array<Generalised<Number<T>>, 9> tangent_of(const LoadedContactForce<T>& force,
+                                                 const WheelKinematics<Number<T>>& wheel, const StepRates& rates,
+                                                 const Generalised<T>& total, const Wrench<T>& turning,
+                                                 const Number<T>& of_motion) {
+  using V = Number<T>;
+  const V &c = wheel.rail_cos, &s = wheel.rail_sin, zero{};
+  const auto &f = turning.force, &m = turning.moment;
+  const V fy = c * number(f[1]) - s * number(f[2]), fz = s * number(f[1]) + c * number(f[2]);
+  const Generalised<V> turned{zero, -fz, fy, zero, zero, c * number(m[1]) - s * number(m[2]), fz, -fy, zero};
+  std::array<Generalised<V>, 4> pose;
+  for (std::size_t j = 0; j < 4; ++j)
+    for (std::size_t i = 0; i < 9; ++i) pose[j][i] = slope_along(total[i], j);
+  // As LoadedContactForce::generalised().
+  std::array<Generalised<V>, 7> motion;
+  const MotionSlope<V>& w = force.motion_slope();
+  for (std::size_t k = 0; k < 7; ++k) {
+    const auto of = [&](std::size_t row) { return of_motion * w[row][k]; };
+    const V x = of(0), y = of(1), z = of(2), about_x = of(3), about_y = of(4), about_z = of(5);
+    const V across = c * y - s * z, down = s * y + c * z;
+    motion[k] = {x,
+                 across,
+                 down,
+                 about_x,
+                 wheel.axle[0] * about_x + wheel.axle[1] * about_y + wheel.axle[2] * about_z,
+                 s * about_y + c * about_z,
+                 -across,
+                 -down,
+                 -(about_x + wheel.centre_y * z - wheel.centre_z * y)};
+  }
+  return DisplacementSlopes<V>(wheel, rates).of(pose, motion, turned);
 }
 
-/// Of the right wheel.
-template <class T>
-Matrix9 tangent_of(const LoadedContactForce<T>& force, const WheelContactModel& model, const WheelKinematics& wheel,
-                   const LoadedLookup& lookup, const StepRates& rates, const LoadedMemory* start) {
-  Generalised<T> total;
-  double of_motion = 1.0;
-  Vector9 turned = Vector9::Zero();
-  const auto turn = [&](const Wrench<T>& w) {
-    const double c = wheel.rail_cos, s = wheel.rail_sin;
-    const double fy = c * number(w.force[1]) - s * number(w.force[2]);
-    const double fz = s * number(w.force[1]) + c * number(w.force[2]);
-    turned << 0.0, -fz, fy, 0.0, 0.0, c * number(w.moment[1]) - s * number(w.moment[2]), fz, -fy, 0.0;
-  };
-  if (start) {
-    const MeanForce<T> mean = mean_over_step(model.geometry->pair(), *start, force, lookup.table_share);
-    turn(mean.end);
-    total = force.generalised(mean.end);
-    for (std::size_t i = 0; i < 9; ++i) total[i] += start->rest[static_cast<Eigen::Index>(i)] * mean.of_start;
-    of_motion = lookup.table_share * number(mean.of_start);
-  } else {
-    const Wrench<T> sum = force.total();
-    turn(sum);
-    total = force.generalised(sum);
+template <class V>
+Matrix9 tangent_in_track(const std::array<Generalised<V>, 9>& of_right, int place, WheelSide side) {
+  Matrix9 tangent;
+  for (std::size_t j = 0; j < 9; ++j)
+    for (std::size_t i = 0; i < 9; ++i) {
+      tangent(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = lane(of_right[j][i], place);
+    }
+  if (side == WheelSide::left) {
+    const Vector9 sign = reflected(Vector9(Vector9::Ones()));
+    tangent = sign.asDiagonal() * tangent * sign.asDiagonal();
   }
-  Eigen::Matrix<double, 9, 4> pose;
-  for (Eigen::Index i = 0; i < 9; ++i)
-    for (Eigen::Index j = 0; j < 4; ++j) pose(i, j) = total[static_cast<std::size_t>(i)].slope[0][j];
-  // As LoadedContactForce::generalised().
-  const MotionSlope w = of_motion * force.motion_slope();
-  const double c = wheel.rail_cos, s = wheel.rail_sin;
-  Eigen::Matrix<double, 9, 7> motion;
-  motion.row(0) = w.row(0);
-  motion.row(1) = c * w.row(1) - s * w.row(2);
-  motion.row(2) = s * w.row(1) + c * w.row(2);
-  motion.row(3) = w.row(3);
-  motion.row(4) = wheel.axle[0] * w.row(3) + wheel.axle[1] * w.row(4) + wheel.axle[2] * w.row(5);
-  motion.row(5) = s * w.row(4) + c * w.row(5);
-  motion.row(6) = -motion.row(1);
-  motion.row(7) = -motion.row(2);
-  motion.row(8) = -(w.row(3) + wheel.centre_y * w.row(2) - wheel.centre_z * w.row(1));
-  return DisplacementSlopes(wheel, rates).of(pose, motion, turned);
+  return tangent;
 }
 
 template <class T>
 LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelContactModel& model, WheelSide side,
-                                const WheelKinematics& wheel, const LoadedLookup& lookup, const StepRates& rates,
-                                const LoadedMemory* start) {
-  LoadedWheelResponse result{force_of(force, side, wheel, lookup),
-                             tangent_of(force, model, wheel, lookup, rates, start)};
-  if (side == WheelSide::left) {
-    const Vector9 sign = reflected(Vector9(Vector9::Ones()));
-    result.tangent = sign.asDiagonal() * result.tangent * sign.asDiagonal();
+                                const WheelKinematics<double>& wheel, const LoadedLookup& lookup,
+                                const StepRates& rates, const LoadedMemory* start) {
+  Wrench<T> sum = force.total();
+  Generalised<T> total = force.generalised(sum);
+  double of_motion = 1.0;
+  if (start) {
+    const MeanForce<T> mean = mean_over_step(model.geometry->pair(), *start, force, lookup.table_share);
+    sum = mean.end;
+    total = force.generalised(sum);
+    for (std::size_t i = 0; i < 9; ++i) total[i] += start->rest[static_cast<Eigen::Index>(i)] * mean.of_start;
+    of_motion = lookup.table_share * number(mean.of_start);
   }
-  return result;
+  LoadedWheelResponse response;
+  WheelForces<T>(force, wheel, lookup).give(0, side, lookup, response.force);
+  response.tangent = tangent_in_track(tangent_of(force, wheel, rates, total, sum, of_motion), 0, side);
+  return response;
 }
 
 }  // namespace
 
 LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
-  const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
-  return force_of(LoadedContactForce<double>(model, rail.friction, wheel, lookup, nullptr), side, wheel, lookup);
+  const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
+  const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
+  LoadedWheelForce result;
+  WheelForces<double>(force, wheel, lookup).give(0, side, lookup, result);
+  return result;
 }
 
 ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pose,
@@ -620,7 +802,7 @@ ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pos
 Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                           const LoadedLookup& lookup) noexcept {
-  const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
+  const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
   const LoadedContactForce<double> end(model, rail.friction, wheel, lookup, nullptr);
   const MeanForce<double> mean = mean_over_step(model.geometry->pair(), start, end, lookup.table_share);
   Generalised<double> force = end.generalised(mean.end);
@@ -633,12 +815,103 @@ LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelS
                                           const LoadedLookup& lookup, const LoadedSlopes& slopes,
                                           const StepRates& rates, const LoadedMemory* start) noexcept {
   constexpr std::size_t normal_packs = (LoadedLookup::capacity + 3) / 4;
-  const WheelKinematics wheel = right_wheel(model, side, wheelset, rail);
+  const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
   const auto response = [&]<std::size_t packs>() {
     const LoadedContactForce<Dual<packs>> force(model, rail.friction, wheel, lookup, &slopes);
     return response_of(force, model, side, wheel, lookup, rates, start);
   };
   return model.damping != 0.0 ? response.operator()<1 + normal_packs>() : response.operator()<1>();
+}
+
+namespace {
+
+void set_lookup(const LoadedLookupOf<Lanes>& of, int place, LoadedLookup& result) {
+  result.table_share = of.table_share[place];
+  result.energy = of.energy[place];
+  for (std::size_t j = 0; j < 4; ++j) result.force[static_cast<Eigen::Index>(j)] = of.force[j][place];
+  for (result.parts = 0; result.parts < of.parts && of.part[result.parts].share[place] > 0.0; ++result.parts) {
+    const std::array<Lanes, LoadedPart::quantities> from = of.part[result.parts].values();
+    std::array<double, LoadedPart::quantities> values;
+    for (std::size_t q = 0; q < values.size(); ++q) values[q] = from[q][place];
+    result.part[result.parts] = LoadedPart::of(values);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// Wheels side by side at their loaded contacts.
+template <bool slopes>
+struct WheelsSideBySide {
+  WheelMotion<Lanes> motion;
+  std::optional<WheelKinematics<Lanes>> wheel;
+  LoadedLookupOf<Lanes> lookup;
+  LoadedSlopesOf<Lanes> derivatives;
+  std::uint32_t answered = 0;  ///< bit by bit, by the table alone and with friction
+
+  WheelsSideBySide(const WheelContactModel& model, std::span<const WheelState> wheels) {
+    assert(model.geometry->loaded() && model.damping == 0.0 && !model.friction_law.falls());
+    assert(!wheels.empty() && wheels.size() <= Lanes::count);
+    for (std::size_t i = 0; i < Lanes::count; ++i) {
+      const WheelState& of = wheels[std::min(i, wheels.size() - 1)];
+      motion.set(static_cast<int>(i), on_right(of.side, of.wheelset), on_right(of.side, of.rail));
+    }
+    wheel.emplace(model.geometry->pair(), motion, model.speed);
+    const LoadedPoseOf<Lanes> pose{wheel->y, wheel->z, wheel->roll, wheel->yaw};
+    model.geometry->loaded()->find<slopes, Lanes>(pose, lookup, slopes ? &derivatives : nullptr);
+    for (std::size_t i = 0; i < wheels.size(); ++i) {
+      const auto at = static_cast<int>(i);
+      const bool alone = lookup.table_share[at] == 1.0 && lookup.energy[at] > 0.0 && motion.friction[at] > 0.0;
+      answered |= static_cast<std::uint32_t>(alone) << i;
+    }
+  }
+
+  /// Poses, look-ups and forces of the wheels that are answered.
+  template <class T>
+  void give(const LoadedContactForce<T>& force, std::span<const WheelState> wheels, std::span<LoadedAnswer> to) const {
+    const WheelForces<T> forces(force, *wheel, lookup);
+    for (std::size_t i = 0; i < wheels.size(); ++i) {
+      if ((answered >> i & 1U) == 0) continue;
+      const auto at = static_cast<int>(i);
+      to[i].pose = {wheel->y[at], wheel->z[at], wheel->roll[at], wheel->yaw[at]};
+      set_lookup(lookup, at, to[i].lookup);
+      forces.give(at, wheels[i].side, to[i].lookup, to[i].force);
+    }
+  }
+};
+
+}  // namespace
+
+std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
+                                  std::span<LoadedAnswer> to) noexcept {
+  const WheelsSideBySide<false> side_by_side(model, wheels);
+  if (side_by_side.answered == 0) return 0;
+  const LoadedContactForce<Lanes> force(model, side_by_side.motion.friction, *side_by_side.wheel, side_by_side.lookup,
+                                        nullptr);
+  side_by_side.give(force, wheels, to);
+  return side_by_side.answered;
+}
+
+std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels,
+                                     const StepRates& rates, std::span<LoadedAnswer> to,
+                                     std::span<Matrix9> tangent) noexcept {
+  assert(!rates.start);
+  const WheelsSideBySide<true> side_by_side(model, wheels);
+  if (side_by_side.answered == 0) return 0;
+  using T = DualLanes<pose_directions>;
+  const WheelKinematics<Lanes>& wheel = *side_by_side.wheel;
+  const LoadedContactForce<T> force(model, side_by_side.motion.friction, wheel, side_by_side.lookup,
+                                    &side_by_side.derivatives);
+  const Wrench<T> sum = force.total();
+  const auto of_right = tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<Lanes>(1.0));
+  side_by_side.give(force, wheels, to);
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    if ((side_by_side.answered >> i & 1U) != 0) {
+      tangent[i] = tangent_in_track(of_right, static_cast<int>(i), wheels[i].side);
+    }
+  }
+  return side_by_side.answered;
 }
 
 }  // namespace railtab

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "railtab/runtime/contact/wheel_contact.hpp"
 #include "railtab/tables/loaded_table.hpp"
 
@@ -55,5 +58,30 @@ struct LoadedWheelResponse {
                                                         const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                                         const LoadedLookup& lookup, const LoadedSlopes& slopes,
                                                         const StepRates& rates, const LoadedMemory* start) noexcept;
+
+/// A wheel and its rail.
+struct WheelState {
+  WheelSide side;
+  WheelsetMotion wheelset;
+  RailHeadMotion rail;
+};
+
+/// One of several wheels at its loaded contact.
+struct LoadedAnswer {
+  WheelsetPose pose;  ///< of a right wheel
+  LoadedLookup lookup;
+  LoadedWheelForce force;
+};
+
+/// Forces of up to eight wheels side by side, look-ups included. Only wheels that touch, by the table alone, and where
+/// there is friction are answered.
+/// @pre no damping, friction that does not fall
+/// @return whether each wheel is answered, bit by bit from the first
+[[nodiscard]] std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
+                                                std::span<LoadedAnswer> to) noexcept;
+/// The same with derivatives. @pre no start of a mean force
+[[nodiscard]] std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels,
+                                                   const StepRates& rates, std::span<LoadedAnswer> to,
+                                                   std::span<Matrix9> tangent) noexcept;
 
 }  // namespace railtab

@@ -1,6 +1,7 @@
 #include "railtab/runtime/contact/table_creep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "railtab/runtime/base/smooth_step.hpp"
@@ -34,8 +35,8 @@ CreepForce table_creep(const TableCreep& law, double ratio, const Creepage& cree
   const double share = law.share(ratio, creepage);
   CreepForce force;
   if (share > 0.0) {
-    const CreepLookup found = law.table->lookup(ratio, {creepage.x, creepage.y, creepage.spin});
-    force = {found.force[0], found.force[1], found.force[2]};
+    const std::array<double, 3> found = law.table->force(ratio, {creepage.x, creepage.y, creepage.spin});
+    force = {found[0], found[1], found[2]};
   }
   if (share == 1.0) return force;
   const CreepForce polach = polach_creep({.nu = law.table->data().poisson}, ratio, creepage);

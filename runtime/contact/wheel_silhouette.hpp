@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "railtab/runtime/base/sine_cosine.hpp"
 #include "railtab/runtime/contact/contact_patch.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 
@@ -32,23 +33,6 @@ struct SilhouettePoint {
   double dty, dtz;  ///< d/ds of ty, tz
   double speed;     ///< (dy, dz) = speed·(ty, tz); not positive where the section's point is no lowest one along x
   bool exists;      ///< false where the section has no such point: steep flank at large yaw, normal not downward
-};
-
-/// sin and cos to rounding; of the small angles of a wheelset by their series, a tenth of the library's time.
-struct SineCosine {
-  double sine, cosine;
-  explicit SineCosine(double angle) noexcept : sine(0.0), cosine(1.0) {
-    if (angle == 0.0) return;             // most tracks have no cross-level
-    constexpr double series_limit = 0.1;  // [rad] the first terms left out are 3e-18 of the sine, 3e-17 of the cosine
-    const double x = angle * angle;
-    if (x <= series_limit * series_limit) {
-      sine = angle + angle * x * (-1.0 / 6 + x * (1.0 / 120 + x * (-1.0 / 5040 + x * (1.0 / 362880))));
-      cosine = 1.0 + x * (-0.5 + x * (1.0 / 24 + x * (-1.0 / 720 + x * (1.0 / 40320))));
-    } else {
-      sine = std::sin(angle);
-      cosine = std::cos(angle);
-    }
-  }
 };
 
 /// sin, cos, tan of yaw and roll, computed once per query.

@@ -1,5 +1,9 @@
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
@@ -72,6 +76,64 @@ ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem,
         force.head<6>() += wheel.wheelset;
         force.segment<3>(r) = wheel.rail;
       }
+    }
+  }
+  return counts;
+}
+
+bool computes_side_by_side(const TrainContact& train, const ContactProblem& problem) noexcept {
+  const WheelContactModel& model = train.shared();
+  return model.damping == 0.0 && !model.friction_law.falls() && !problem.start &&
+         std::all_of(train.model.begin(), train.model.end(), [](const auto& m) { return m.geometry->loaded(); });
+}
+
+ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,
+                                    std::span<const int> wheelsets, ContactSolution& s, std::vector<char>& evaluated) {
+  constexpr std::size_t most = Lanes::count / 2;  // wheelsets
+  ContactCounts counts;
+  std::array<WheelState, 2 * most> wheel;
+  std::array<LoadedAnswer, 2 * most> answer;
+  for (std::size_t first = 0, count = 0; first < wheelsets.size(); first += count) {
+    // neighbours on the same profiles
+    const WheelContactModel& model = train[wheelsets[first]];
+    for (count = 0; count < most && first + count < wheelsets.size(); ++count) {
+      const int w = wheelsets[first + count];
+      if (train[w].geometry != model.geometry) break;
+      const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
+      for (int side = 0; side < 2; ++side) {
+        wheel[2 * count + index(side)] = {wheel_sides[index(side)], motion,
+                                          rail_motion(problem, s.displacement, w, side)};
+      }
+    }
+    const std::uint32_t answered = loaded_wheel_forces(model, {wheel.data(), 2 * count}, answer);
+    for (std::size_t i = 0; i < count; ++i) {
+      const int w = wheelsets[first + i];
+      const bool both = (answered >> (2 * i) & 3U) == 3U;
+      evaluated[index(w)] = both;
+      if (!both) continue;
+      auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
+      force.setZero();
+      for (int side = 0; side < 2; ++side) {
+        const std::size_t number = index(2 * w + side);
+        const LoadedAnswer& of = answer[2 * i + index(side)];
+        force.head<6>() += of.force.wheelset;
+        force.segment<3>(6 + 3 * side) = of.force.rail;
+        s.rail_x[number] = of.force.rail_x;
+        s.normal[number] = of.force.normal;
+        s.creep_power[number] = of.force.creep_power;
+        s.pressure[number] = of.force.pressure;
+        s.contact[number].pose = of.pose;
+        s.contact[number].loaded = of.lookup;
+        s.contact[number].patches.clear();
+        ContactMemory& memory = s.memory[number];
+        memory.pose = of.pose;
+        memory.count = 0;
+        memory.loaded = of.force.memory;
+        counts.outside_creep_table += of.force.outside_creep_table;
+      }
+      s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w) = force;
+      counts.queries += 2;
+      counts.table_queries += 2;
     }
   }
   return counts;

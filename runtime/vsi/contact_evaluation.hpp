@@ -21,6 +21,17 @@ struct Wheelsets {
 ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& solution, NewtonWorkspace& workspace);
 
+/// Whether wheels can be computed side by side in a time step: by loaded tables, without damping, with friction that
+/// does not fall, forces at the end of the step.
+[[nodiscard]] bool computes_side_by_side(const TrainContact& train, const ContactProblem& problem) noexcept;
+
+/// evaluate() of those wheelsets of some whose wheels the loaded table answers alone.
+/// @param evaluated per wheelset of the train, set for these
+/// @pre computes_side_by_side()
+ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,
+                                    std::span<const int> wheelsets, ContactSolution& solution,
+                                    std::vector<char>& evaluated);
+
 /// df/dq where evaluate() has found the patches.
 void differentiate(const TrainContact& train, const ContactProblem& problem, Wheelsets wheelsets,
                    const ContactSolution& solution, NewtonWorkspace& workspace);

@@ -168,11 +168,13 @@ class TrainNewton {
         limits_(limits),
         first_order_(std::pow(limits.force_tolerance / stiffest_contact, 2.0 / 3.0)),
         s_(solution),
-        ws_(ws) {
+        ws_(ws),
+        side_by_side_(problem.wheelsets_per_group == 1 && computes_side_by_side(train, problem)) {
     const auto wheelsets = static_cast<int>(s_.displacement.size()) / wheelset_unknowns;
     find_groups(problem, wheelsets, ws.range);
     const auto groups = static_cast<int>(ws.range.size());
     ws.tangent.resize(index(wheelsets));
+    ws.evaluated.assign(index(wheelsets), 0);
     ws.start.resize(s_.displacement.size());
     ws.start_force.resize(s_.displacement.size());
     ws.correction.resize(s_.displacement.size());
@@ -202,9 +204,7 @@ class TrainNewton {
 
   NewtonReport solve() {
     for (report_.iterations = 0; report_.iterations <= limits_.max_iterations; ++report_.iterations) {
-      for (int g = 0; g < groups(); ++g) {
-        if (ws_.group[index(g)].moved) evaluate_group(g);
-      }
+      evaluate_moved();
       if (!correct() || report_.converged) break;
     }
     return report_;
@@ -250,8 +250,22 @@ class TrainNewton {
     return true;
   }
 
+  void evaluate_moved() {
+    if (side_by_side_) {
+      ws_.to_evaluate.clear();
+      for (int g = 0; g < groups(); ++g) {
+        if (ws_.group[index(g)].moved) ws_.to_evaluate.push_back(g);
+      }
+      report_.counts += evaluate_side_by_side(train_, problem_, ws_.to_evaluate, s_, ws_.evaluated);
+    }
+    for (int g = 0; g < groups(); ++g) {
+      if (!ws_.group[index(g)].moved) continue;
+      ws_.group[index(g)].extrapolated = 0.0;
+      if (!side_by_side_ || !ws_.evaluated[index(g)]) evaluate_group(g);
+    }
+  }
+
   void evaluate_group(int g) {
-    ws_.group[index(g)].extrapolated = 0.0;
     const bool searches = ws_.found.empty() || ++ws_.group[index(g)].evaluations <= paper_searches;
     report_.counts += evaluate(train_, problem_, searches ? Pairs::searched : Pairs::kept, wheelsets(g), s_, ws_);
   }
@@ -388,6 +402,7 @@ class TrainNewton {
   double first_order_;
   ContactSolution& s_;
   NewtonWorkspace& ws_;
+  bool side_by_side_;
   NewtonReport report_;
 };
 

@@ -150,7 +150,9 @@ struct NewtonWorkspace {
   std::vector<Eigen::MatrixXd> compliance;  ///< per group, C
   std::vector<Eigen::MatrixXd> inverse;     ///< per group, of I − C df/dq
   std::vector<GroupNewton> group;
-  std::vector<int> to_invert;  ///< groups whose inverse is to be made
+  std::vector<int> to_invert;    ///< groups whose inverse is to be made
+  std::vector<int> to_evaluate;  ///< wheelsets whose forces are to be computed side by side
+  std::vector<char> evaluated;   ///< per wheelset, whether they were
   Eigen::VectorXd residual, correction;
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
   std::vector<double> tangent_error;   ///< per group, estimate: of a change of forces by the tangent, relative

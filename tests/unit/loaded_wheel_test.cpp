@@ -79,10 +79,8 @@ Vector9 total(const WheelForce& f) {
 TEST(Dual, CarriesDerivativesAlong) {
   Dual<3> x(0.7);
   x.slope[2][1] = 1.0;
-  const Dual<3> f = sqrt(2.0 - sin(x) * x / (1.0 + cos(x))) * tan(x) - 3.0 / (x * x + 1.0);
-  const auto of = [](double v) {
-    return std::sqrt(2.0 - std::sin(v) * v / (1.0 + std::cos(v))) * std::tan(v) - 3.0 / (v * v + 1.0);
-  };
+  const Dual<3> f = sqrt(2.0 - sin(x) * x / (1.0 + cos(x))) - 3.0 / (x * x + 1.0);
+  const auto of = [](double v) { return std::sqrt(2.0 - std::sin(v) * v / (1.0 + std::cos(v))) - 3.0 / (v * v + 1.0); };
   EXPECT_NEAR(f.value, of(0.7), 1e-15);
   EXPECT_NEAR(f.slope[2][1], (of(0.7 + 1e-6) - of(0.7 - 1e-6)) / 2e-6, 1e-9);
   EXPECT_EQ(f.slope[0][0], 0.0);
@@ -128,6 +126,92 @@ TEST(LoadedWheel, OneLookUpGivesForceAndTangent) {
     const Matrix9 tangent = wheel_force_tangent(model, s.side, s.wheelset, s.rail, contact, rates);
     EXPECT_LT((found.tangent - tangent).norm(), 1e-12 * tangent.norm());
   }
+}
+
+// A table over the jump at 0.2 mm, beside which two parts of the rail bear load, and merge.
+const ContactGeometry& geometry_over_jump() {
+  static const ContactGeometry geometry = [] {
+    LoadedSweepOptions options = tread_options();
+    options.lateral = {-0.9e-3, 1.3e-3};
+    options.force_error = 3e-2;
+    options.light_error = 0.1;
+    return ContactGeometry(s1002_on_60e1(),
+                           std::make_shared<const LoadedTable>(sweep_loaded(s1002_on_60e1(), options)));
+  }();
+  return geometry;
+}
+
+/// 53 wheels at 10 to 100 kN or so, among them some in the air, on the border of the table and outside, and rails
+/// without friction.
+std::vector<WheelState> mixed_wheels(const ContactGeometry& geometry, double middle) {
+  States states;
+  std::vector<WheelState> wheels;
+  for (int n = 0; n < 53; ++n) {
+    State s = states.next(n % 2 == 0 ? WheelSide::right : WheelSide::left);
+    const WheelsetPose pose = relative_pose(geometry.pair(), s.side, s.wheelset, s.rail);
+    const double across = middle + states.at(-5e-4, 5e-4) - pose.y;
+    s.wheelset.displacement[1] += s.side == WheelSide::right ? across : -across;
+    const WheelsetPose moved = relative_pose(geometry.pair(), s.side, s.wheelset, s.rail);
+    s.wheelset.displacement[2] +=
+        s1002_on_60e1().touch_height(moved.y, moved.roll, moved.yaw) - moved.z + states.at(2e-5, 7e-5);
+    if (n % 16 == 5 || n >= 48) s.wheelset.displacement[2] -= 1e-3;
+    if (n % 16 == 9) s.wheelset.displacement[5] = 3.95e-3;
+    if (n % 16 == 11) s.wheelset.displacement[1] += 0.02;
+    if (n % 16 == 14) s.rail.friction = 0.0;
+    wheels.push_back({s.side, s.wheelset, s.rail});
+  }
+  return wheels;
+}
+
+void expect_same(const WheelResponse& of, const WheelResponse& one) {
+  const double size = total(one.force).norm();
+  EXPECT_LE((total(of.force) - total(one.force)).norm(), 1e-10 * size);
+  EXPECT_LE((of.tangent - one.tangent).norm(), 1e-9 * one.tangent.norm());
+  EXPECT_NEAR(of.force.creep_power, one.force.creep_power, 1e-9 * std::abs(one.force.creep_power));
+  EXPECT_NEAR(of.force.pressure, one.force.pressure, 1e-10 * one.force.pressure);
+  EXPECT_EQ(of.force.outside_creep_table, one.force.outside_creep_table);
+  EXPECT_LE((of.force.memory.total - one.force.memory.total).norm(), 1e-10 * size);
+  EXPECT_LE((of.force.memory.rest - one.force.memory.rest).norm(), 1e-10 * size);
+  EXPECT_EQ(of.contact.patches.count, one.contact.patches.count);
+  ASSERT_EQ(of.contact.loaded.parts, one.contact.loaded.parts);
+  EXPECT_NEAR(of.contact.loaded.energy, one.contact.loaded.energy, 1e-10 * one.contact.loaded.energy);
+  for (std::size_t p = 0; p < one.contact.loaded.parts; ++p) {
+    EXPECT_NEAR(of.force.normal[p], one.force.normal[p], 1e-10 * size);
+    EXPECT_NEAR(of.contact.loaded.part[p].s_rail, one.contact.loaded.part[p].s_rail, 1e-10);
+  }
+}
+
+TEST(LoadedWheel, EightSideBySideAreThoseOfSingleWheels) {
+  constexpr double rate = 2000.0;
+  const StepRates rates{Vector6::Constant(rate), rate, nullptr};
+  int alone = 0, several_parts = 0;
+  for (const bool jump : {false, true}) {
+    for (const CreepLaw& law : {creep_law("table", 0.28), CreepLaw(PolachCreep{})}) {
+      WheelContactModel model = model_with(law);
+      if (jump) model.geometry = &geometry_over_jump();
+      const std::vector<WheelState> wheels = mixed_wheels(*model.geometry, jump ? 0.2e-3 : -1.75e-3);
+      std::vector<WheelResponse> responses(wheels.size());
+      wheel_responses(model, wheels, rates, responses);
+      for (std::size_t i = 0; i < wheels.size(); ++i) {
+        const WheelState& w = wheels[i];
+        SCOPED_TRACE(i);
+        const WheelResponse one = wheel_response(model, w.side, w.wheelset, w.rail, rates);
+        alone += one.contact.loaded.table_share == 1.0 && one.contact.touches() && w.rail.friction > 0.0;
+        several_parts += one.contact.loaded.parts > 1;
+        expect_same(responses[i], one);
+      }
+      std::vector<LoadedAnswer> forces(8);
+      const std::uint32_t answered = loaded_wheel_forces(model, {wheels.data(), 8}, forces);
+      EXPECT_EQ(answered, 0xdfU);  // the sixth is in the air
+      for (std::size_t i = 0; i < 8; ++i) {
+        if ((answered >> i & 1U) == 0) continue;
+        EXPECT_LE((total(forces[i].force) - total(responses[i].force)).norm(), 1e-10 * total(forces[i].force).norm());
+      }
+    }
+  }
+  EXPECT_GT(alone, 4 * 30);
+  EXPECT_LT(alone, 4 * 40);
+  EXPECT_GT(several_parts, 20);
 }
 
 TEST(LoadedWheel, TangentIsTheDerivativeInATimeStep) {
