@@ -100,14 +100,13 @@ void describe_structure(const SceneParameters& scene, const VsiModel& model, Mod
                                      2 * model.structure->rail[0].x.size(),
                                      spans == 0 ? "" : fmt::format(", {} span{}", spans, spans == 1 ? "" : "s")));
     if (scene.reduction.kind != Reduction::none) plan.built.push_back(reduction_text(scene.reduction));
+    for (const std::string& part : model.structure->left_out) plan.left_out.push_back(part);
   }
   if (track_on_import(scene)) {
     const FeFiles& files = scene.structure.files;
     const std::filesystem::path& file = files.by_modes() ? files.modes : files.stiffness;
     plan.built.push_back(
         fmt::format("bridge of {}{}", files.by_modes() ? "the modes in " : "", file.filename().string()));
-    if (!model.structure) return;
-    for (const std::string& part : model.structure->left_out) plan.left_out.push_back(part);
   }
 }
 

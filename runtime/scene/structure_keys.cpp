@@ -41,6 +41,16 @@ KeyRow track_kind_key() {
           structure_left_out};
 }
 
+KeyRow longitudinal_key() {
+  return {"track.longitudinal", "",
+          "motions of rails and sleepers along x; auto: left out where that changes the rail heads' static compliance "
+          "by at most 1 %",
+          choice<LongitudinalMotion>(of_track<&TrackParameters::longitudinal>,
+                                     {{"auto", LongitudinalMotion::automatic},
+                                      {"kept", LongitudinalMotion::kept},
+                                      {"left-out", LongitudinalMotion::left_out}})};
+}
+
 std::vector<KeyRow> layout_keys() {
   return {
       {"track.sleeper_spacing", "m", "sleeper spacing",
@@ -49,6 +59,7 @@ std::vector<KeyRow> layout_keys() {
        NumberKey{of_track<&TrackParameters::half_rail_distance>, {0.25, 1.1}}},
       {"track.elements_per_bay", "1", "rail elements between sleepers",
        IntegerKey{of_track<&TrackParameters::elements_per_bay>, 1, 20}},
+      longitudinal_key(),
       {"track.length_before", "m", "track before x = 0, rounded up to whole bays",
        NumberKey{of_track<&TrackParameters::length_before>, {0.1, 1e4}}},
       {"track.length_after", "m", "track after the last span, or x = 0",

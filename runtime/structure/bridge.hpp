@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "railtab/runtime/structure/longitudinal_motion.hpp"
 #include "railtab/runtime/structure/matrix_assembly.hpp"
 
 namespace railtab {
@@ -57,9 +58,15 @@ inline constexpr int track_lines = 18;
 [[nodiscard]] Bridge beam_bridge(const std::vector<BridgeParameters>& spans, MotionPlane plane,
                                  const std::vector<double>& report = {}, DeckRecord record = DeckRecord::named_nodes);
 
+/// In which motions a track is built.
+struct TrackMotion {
+  MotionPlane plane = MotionPlane::spatial;
+  LongitudinalChoice longitudinal;
+};
+
 /// Rails on pads, sleepers and ballast, laid over a bridge and on to the ground before and after it. The one place
 /// where track and bridge are put together. @throws InputError naming the key
-[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane,
+[[nodiscard]] StructureModel lay_track(const TrackParameters& track, Bridge bridge, const TrackMotion& motion,
                                        DeckRecord record = DeckRecord::named_nodes);
 
 /// Dofs of the ground under every sleeper; none where it stands on a bridge.

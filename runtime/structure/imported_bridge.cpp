@@ -258,13 +258,13 @@ std::vector<std::string> plausibility_warnings(double mass_per_length, double fi
 
 StructureModel build_track_on_import(const TrackParameters& track, const ImportParameters& parameters,
                                      DeckRecord record) {
+  track.validate();
   parameters.validate();
-  if (parameters.files.by_modes()) {
-    return lay_track(track, modal_bridge(parameters, record), MotionPlane::spatial, record);
-  }
+  const TrackMotion motion{MotionPlane::spatial, choose_longitudinal(track, {}, MotionPlane::spatial)};
+  if (parameters.files.by_modes()) return lay_track(track, modal_bridge(parameters, record), motion, record);
   FeStructure structure = read_on_supports(parameters);
   require_held(structure);
-  return lay_track(track, bridge_of(std::move(structure), parameters, record), MotionPlane::spatial, record);
+  return lay_track(track, bridge_of(std::move(structure), parameters, record), motion, record);
 }
 
 StructureModel import_with_rails(const ImportParameters& parameters, DeckRecord record) {

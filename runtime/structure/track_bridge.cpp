@@ -1,5 +1,7 @@
 #include "railtab/runtime/structure/track_bridge.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -30,6 +32,9 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPl
   constexpr int to_number = 0;
   DofIndices free;
   for (size_t k = 0; k < 6; ++k) free[k] = has_dof(plane, k) ? to_number : held;
+  const bool along_x = track.longitudinal == LongitudinalMotion::kept;
+  const DofIndices free_sleeper = along_x ? free : DofIndices{held, free[1], free[2], free[3], held, held};
+  if (!along_x) free[0] = held;
   TrackNodes nodes;
   // a length that is a whole number of bays but for rounding must not get one more
   constexpr double rounding = 1e-9;
@@ -37,7 +42,7 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPl
   const int last = static_cast<int>(std::ceil((bridge_end + track.length_after) / track.sleeper_spacing - rounding));
   for (int i = first; i <= last; ++i) {
     nodes.sleeper.x.push_back(i * track.sleeper_spacing);
-    nodes.sleeper.dof.push_back(free);
+    nodes.sleeper.dof.push_back(free_sleeper);
   }
   NodeLine rail;
   for (int j = first * track.elements_per_bay; j <= last * track.elements_per_bay; ++j) {
@@ -225,10 +230,32 @@ void set_rows(Bridge& bridge, const OrderAlongTrack& order, StructureModel& mode
   set_channels(bridge.deck, model);
 }
 
+/// The track with this decided. A sleeper has pads at its top and ballast at its bottom, and pitches freely: at rest it
+/// bears no force along x, and neither holds the rail's foot nor the deck. Above some 100 Hz its inertia does hold the
+/// foot, through the pad's damper.
+TrackParameters with(LongitudinalMotion motion, TrackParameters track) {
+  track.longitudinal = motion;
+  if (motion == LongitudinalMotion::left_out) track.pad.kx = track.ballast_deck.kx = track.ballast_deck.cx = 0.0;
+  return track;
+}
+
+std::string longitudinal_left_out(const TrackNodes& nodes, MotionPlane plane, double change) {
+  const size_t of_sleeper = plane == MotionPlane::spatial ? 3 : 2;
+  const size_t count = of_sleeper * nodes.sleeper.x.size() + 2 * (nodes.rail[0].x.size() - 2);
+  return fmt::format(
+      "{} degrees of freedom of the track along x ({} of sleepers, x of rails): nothing acts along them, and the "
+      "static "
+      "compliance of the rail heads under a wheelset changes by at most {:.2g} %",
+      count, plane == MotionPlane::spatial ? "x, pitch and yaw" : "x and pitch", 100.0 * change);
+}
+
 }  // namespace
 
-StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlane plane, DeckRecord record) {
-  track.validate();
+StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const TrackMotion& motion,
+                         DeckRecord record) {
+  parameters.validate();
+  const auto& [plane, longitudinal] = motion;
+  const TrackParameters track = with(longitudinal.motion, parameters);
   TrackNodes nodes = place_nodes(track, bridge.end, plane);
   bridge.dof_line.resize(bridge.dof_x.size(), -1);
   number_dofs(nodes.sleeper, 0, bridge);
@@ -261,6 +288,9 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
   model.spans = std::move(bridge.spans);
   model.warnings = std::move(bridge.warnings);
   model.left_out = std::move(bridge.left_out);
+  if (longitudinal.motion == LongitudinalMotion::left_out) {
+    model.left_out.push_back(longitudinal_left_out(nodes, plane, longitudinal.change));
+  }
   for (size_t side = 0; side < 2; ++side) {
     model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, rail.head_height};
   }
@@ -269,7 +299,9 @@ StructureModel lay_track(const TrackParameters& track, Bridge bridge, MotionPlan
 
 StructureModel build_track_bridge(const TrackParameters& track, const std::vector<BridgeParameters>& spans,
                                   MotionPlane plane, const std::vector<double>& report, DeckRecord record) {
-  return lay_track(track, beam_bridge(spans, plane, report, record), plane, record);
+  track.validate();
+  return lay_track(track, beam_bridge(spans, plane, report, record), {plane, choose_longitudinal(track, spans, plane)},
+                   record);
 }
 
 }  // namespace railtab

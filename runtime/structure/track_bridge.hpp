@@ -37,6 +37,15 @@ struct SleeperParameters {
   double height = 0.20;  ///< [m]; its centre of gravity at half of it
 };
 
+/// Whether rails move along x, and sleepers along x, in pitch and in yaw. No force of a run acts along x on the track:
+/// these motions follow the rails' bending alone, through springs at the arm of the rail's foot. Left out, they are
+/// held, pads have no spring along x, and the ballast on a deck none and no damper.
+enum class LongitudinalMotion {
+  automatic,  ///< left out where that changes the rail heads' compliance by at most 1 % (longitudinal_change())
+  kept,
+  left_out,
+};
+
 /// Ballasted track: two rails on pads on rigid sleepers on ballast. Default sources: vertical values [Zhai2004],
 /// lateral values of an open vehicle–track data set for the CHN60 track; longitudinal taken equal to lateral.
 struct TrackParameters {
@@ -45,8 +54,9 @@ struct TrackParameters {
   double sleeper_spacing = 0.6;      ///< [m]
   double half_rail_distance = 0.75;  ///< track centre to rail-head centre [m]
   int elements_per_bay = 2;          ///< rail elements between sleepers, 1..20
-  double length_before = 60.0;       ///< track before x = 0 [m]; rounded up to whole bays
-  double length_after = 60.0;        ///< track after the end of the last span, or after x = 0 where there is none [m]
+  LongitudinalMotion longitudinal = LongitudinalMotion::automatic;
+  double length_before = 60.0;  ///< track before x = 0 [m]; rounded up to whole bays
+  double length_after = 60.0;   ///< track after the end of the last span, or after x = 0 where there is none [m]
 
   SupportParameters pad{30e6, 30e6, 65e6, 50e3, 50e3, 75e3};  ///< one pad, between rail foot and sleeper top
   double pad_roll_stiffness = 122e3;  ///< about x [N m/rad]: kz spread over a foot of 0.15 m, kz·b²/12
