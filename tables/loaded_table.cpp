@@ -426,46 +426,6 @@ void set_zero(std::array<std::array<V, 4>, 4>& of) {
   of = {};
 }
 
-/// The place along the energy and how it and y0 follow the pose (y, z, roll, yaw).
-template <class V>
-struct LevelPlace {
-  V w;
-  std::array<V, 4> w_1, y0_1;
-};
-
-// A part from its sums: from reduced quantities to lengths, densities and pressure.
-template <bool slopes, class V>
-void set_part(const std::array<V, 5 * LoadedPart::quantities>& sum, const LevelPlace<V>& place, const V& yaw,
-              LoadedPartOf<V>& part, LoadedPartOf<std::array<V, 4>>* derivative) noexcept {
-  constexpr std::size_t n = LoadedPart::quantities;
-  const V one = broadcast<V>(1.0), &w = place.w, ww = w * w, zero{};
-  const std::array<V, n> scale{one, yaw, one, one, one, w, w, ww, ww, one, one, w};
-  const V share = sum[0], inverse = 1.0 / share;
-  std::array<V, n> mean;
-  for (std::size_t q = 1; q < n; ++q) mean[q] = inverse * sum[q];
-  mean[0] = share;
-  std::array<V, n> value;
-  for (std::size_t q = 0; q < n; ++q) value[q] = scale[q] * mean[q];
-  part = LoadedPartOf<V>::of(value);
-  if constexpr (slopes) {
-    const std::array<V, n> scale_w{zero, zero, zero, zero, zero, one, one, 2.0 * w, 2.0 * w, zero, zero, one};
-    // along y0, level, nodes of roll and of yaw²
-    const auto along = [&](std::size_t d, std::size_t q) {
-      const V& of_share = sum[d * n];
-      return q == 0 ? of_share : inverse * (sum[d * n + q] - of_share * mean[q]);
-    };
-    std::array<std::array<V, 4>, n> slope;
-    for (std::size_t q = 0; q < n; ++q) {
-      const V by_y0 = scale[q] * along(1, q), by_w = scale[q] * along(2, q) + scale_w[q] * mean[q];
-      for (std::size_t j = 0; j < 4; ++j) slope[q][j] = by_y0 * place.y0_1[j] + by_w * place.w_1[j];
-      slope[q][2] = slope[q][2] + scale[q] * along(3, q);
-      slope[q][3] = slope[q][3] + 2.0 * yaw * scale[q] * along(4, q);
-    }
-    slope[1][3] = slope[1][3] + mean[1];
-    *derivative = LoadedPartOf<std::array<V, 4>>::of(slope);
-  }
-}
-
 }  // namespace
 
 template <class V>
@@ -478,12 +438,42 @@ V LoadedTable::margin_share(const V& roll, const V& yaw) const noexcept {
   return share * smooth_step((largest - squared) * (1.0 / (border * largest)));
 }
 
-/// What the corners leave at the poses' places across: along w the height of the wheelset and its derivatives, value
-/// and slope at the lower level, then at the upper one; y(y0) and its derivatives along roll and yaw, value and slope
-/// at the lower node, then at the upper one.
-template <class V>
-struct LoadedTable::Lines {
-  enum Height : std::size_t {
+/// A look-up in its steps: lateral cell, level, energy and forces, stiffness, parts.
+template <bool slopes, class V>
+class LoadedTable::LookUp {
+ public:
+  LookUp(const LoadedTable& table, const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
+         LoadedSlopesOf<V>* derivatives) noexcept
+      : table_(table),
+        data_(table.data_),
+        pose_(pose),
+        result_(result),
+        derivatives_(derivatives),
+        weights_(table, pose.roll, pose.yaw) {}
+
+  /// @param inside share of the table by roll and yaw
+  void run(const V& inside) noexcept {
+    inside_ = inside;
+    find_laterals();
+    find_levels();
+    if (!any(found_ > 0.5)) {
+      result_.table_share = inside_;
+      return;
+    }
+    find_energy();
+    if (!any(found_ > 0.5)) return;
+    if constexpr (slopes) set_stiffness();
+    set_parts();
+  }
+
+ private:
+  static constexpr int places = lanes_of<V>;
+  static constexpr double root = 1e-8;  ///< of rounding: Newton's next correction is less than its square
+  using Four = std::array<V, 4>;
+
+  /// What the corners leave at the places across: along w the height of the wheelset and its derivatives, value and
+  /// slope at the lower level, then at the upper one.
+  enum Line : std::size_t {
     height,
     over_y0,
     over_roll,
@@ -494,244 +484,304 @@ struct LoadedTable::Lines {
     over_yaw_yaw,
     over_y0_roll,
     over_y0_yaw,
-    heights
+    lines
   };
-  std::array<std::array<V, 4>, heights> z;
-  std::array<std::array<V, 4>, directions> y;
-};
 
-template <bool slopes, class V>
-void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
-                       LoadedSlopesOf<V>* derivatives) const noexcept {
-  using std::abs, std::sqrt;
-  constexpr int n = lanes_of<V>;
-  const auto each = [](auto&& visit) {
-    for (int i = 0; i < n; ++i) visit(i);
-  };
-  const V zero{}, one = broadcast<V>(1.0);
-  result = {};
-  if constexpr (slopes) set_zero(derivatives->stiffness);
-  V inside = margin_share(pose.roll, pose.yaw);
-  if (!any(inside > zero)) return;
-  const Weights<V> weights(*this, pose.roll, pose.yaw);
+  static void each(auto&& visit) {
+    for (int i = 0; i < places; ++i) visit(i, static_cast<std::size_t>(i));
+  }
+  static V sum(const Four& basis, const Four& of) { return HermiteBasisOf<V>::sum(basis, of); }
+  static std::array<double, 4> at(const Four& of, int i) {
+    return {lane(of[0], i), lane(of[1], i), lane(of[2], i), lane(of[3], i)};
+  }
+  /// y and its derivatives, and z, at the places found.
+  [[nodiscard]] V Y(const Four& basis, Direction d) const { return sum(basis, y_[d]); }
+  [[nodiscard]] V Z(const Four& basis, std::size_t line) const { return sum(basis, z_[line]); }
 
   // The lateral node below, and the place t between it and the next: y(y0) is nearly linear.
-  std::array<std::size_t, n> lateral{};
-  std::array<V, 4> corner{zero, one, one, one};
-  V width = one, from{}, found{};
-  std::array<ColumnWeights, n> weight;
-  each([&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (!(lane(inside, i) > 0.0)) return;
-    weight[k].set(weights, i);
-    std::array<double, 4> ends{};
-    if (!find_lateral(lane(pose.y, i), weight[k], lateral[k], ends)) return;
-    lane(found, i) = 1.0;
-    for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends[j];
-    lane(from, i) = data_.lateral[lateral[k]];
-    fetch_corners(lateral[k], 0);
-    lane(width, i) = data_.lateral[lateral[k] + 1] - data_.lateral[lateral[k]];
-  });
-  const auto& sum = HermiteBasisOf<V>::sum;
-  V t = (pose.y - corner[0]) / (corner[2] - corner[0]);
-  constexpr double root = 1e-8;  // of rounding: Newton's next correction is less than its square
-  for (int iteration = 0; iteration < 20; ++iteration) {  // two suffice
-    const HermiteBasisOf<V> basis(t, width);
-    const V change = (sum(basis.value, corner) - pose.y) / (sum(basis.first, corner) * width);
-    t = t - change;
-    if (all((abs(change) < broadcast<V>(root)) | (found < 0.5))) break;
+  void find_laterals() {
+    const V zero{}, one = broadcast<V>(1.0);
+    Four corner{zero, one, one, one};
+    V from{};
+    width_ = one;
+    each([&](int i, std::size_t k) {
+      if (!(lane(inside_, i) > 0.0)) return;
+      weight_[k].set(weights_, i);
+      std::array<double, 4> ends{};
+      if (!table_.find_lateral(lane(pose_.y, i), weight_[k], lateral_[k], ends)) return;
+      lane(found_, i) = 1.0;
+      for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends[j];
+      lane(from, i) = data_.lateral[lateral_[k]];
+      lane(width_, i) = data_.lateral[lateral_[k] + 1] - data_.lateral[lateral_[k]];
+      table_.fetch_corners(lateral_[k], 0);
+    });
+    using std::abs;
+    t_ = (pose_.y - corner[0]) / (corner[2] - corner[0]);
+    for (int iteration = 0; iteration < 20; ++iteration) {  // two suffice
+      const HermiteBasisOf<V> basis(t_, width_);
+      const V change = (sum(basis.value, corner) - pose_.y) / (sum(basis.first, corner) * width_);
+      t_ = t_ - change;
+      if (all((abs(change) < broadcast<V>(root)) | (found_ < 0.5))) break;
+    }
+    t_ = select(t_ > zero, at_most(t_, one), zero);
+    across_ = HermiteBasisOf<V>(t_, width_);
+    const V y0 = from + t_ * width_;
+    const double range = data_.lateral.back() - data_.lateral.front();
+    inside_ = inside_ *
+              smooth_step(at_most(y0 - data_.lateral.front(), data_.lateral.back() - y0) * (1.0 / (border * range)));
+    inside_ = select(found_ > 0.5, inside_, zero);
   }
-  t = select(t > zero, at_most(t, one), zero);
-  const HermiteBasisOf<V> across(t, width);
-  const V y0 = from + t * width;
-  const double lateral_range = data_.lateral.back() - data_.lateral.front();
-  inside = inside * smooth_step(at_most(y0 - data_.lateral.front(), data_.lateral.back() - y0) *
-                                (1.0 / (border * lateral_range)));
-  inside = select(found > 0.5, inside, zero);
 
-  const auto basis_of = [](const std::array<V, 4>& of, int i) {
-    return std::array<double, 4>{lane(of[0], i), lane(of[1], i), lane(of[2], i), lane(of[3], i)};
-  };
-
-  // The level below, and what the corners of the cell leave there.
-  using L = Lines<V>;
-  L lines{};
-  std::array<int, n> level{};
-  V level_number{}, met{};
-  each([&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    lane(found, i) = 0.0;
-    if (!(lane(inside, i) > 0.0)) return;
-    level[k] = find_level(lane(pose.z, i), lateral[k], basis_of(across.value, i), lane(t, i), weight[k]);
-    if (level[k] < 0) return;
-    lane(found, i) = 1.0;
-    fetch_corners(lateral[k], level[k]);
-  });
-  each([&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (lane(found, i) == 0.0) return;
-    const std::array<double, 4> value = basis_of(across.value, i), first = basis_of(across.first, i);
-    const double z = lane(pose.z, i);
-    Corners corners;
-    std::array<double, 4> line;
-    for (int moved = 0;;) {
-      add_corners<slopes>(lateral[k], level[k], weights, i, corners);
-      line = corners.across(value, here);
-      if (z < line[0] && level[k] > 0 && moved <= 0) {
-        moved = -1;
-        --level[k];
-      } else if (z >= line[2] && moved >= 0) {
-        if (level[k] == data_.levels - 2) {
-          lane(inside, i) = lane(found, i) = 0.0;
-          return;
+  // The level below, and what the corners of the cell leave across. All levels are guessed first: the memory then has
+  // the corners of eight poses to bring.
+  void find_levels() {
+    found_ = V{};
+    each([&](int i, std::size_t k) {
+      if (!(lane(inside_, i) > 0.0)) return;
+      level_[k] = table_.find_level(lane(pose_.z, i), lateral_[k], at(across_.value, i), lane(t_, i), weight_[k]);
+      if (level_[k] < 0) return;
+      lane(found_, i) = 1.0;
+      table_.fetch_corners(lateral_[k], level_[k]);
+    });
+    each([&](int i, std::size_t k) {
+      if (lane(found_, i) == 0.0) return;
+      const std::array<double, 4> value = at(across_.value, i);
+      const double z = lane(pose_.z, i);
+      Corners corners;
+      std::array<double, 4> line;
+      for (int moved = 0;;) {
+        table_.add_corners<slopes>(lateral_[k], level_[k], weights_, i, corners);
+        line = corners.across(value, here);
+        if (z < line[0] && level_[k] > 0 && moved <= 0) {
+          moved = -1;
+          --level_[k];
+        } else if (z >= line[2] && moved >= 0) {
+          if (level_[k] == data_.levels - 2) {
+            lane(inside_, i) = lane(found_, i) = 0.0;
+            return;
+          }
+          moved = 1;
+          ++level_[k];
+        } else {
+          break;
         }
-        moved = 1;
-        ++level[k];
-      } else {
-        break;
       }
-    }
-    lane(met, i) = 1.0;
-    lane(level_number, i) = level[k];
-    fetch_parts(lateral[k], level[k], lane(pose.roll, i), lane(pose.yaw, i));
+      table_.fetch_parts(lateral_[k], level_[k], lane(pose_.roll, i), lane(pose_.yaw, i));
+      lane(touches_, i) = 1.0;
+      lane(level_number_, i) = level_[k];
+      set_lines(i, corners, line);
+      set_shift(i, lateral_[k]);
+    });
+  }
+
+  void set_lines(int i, const Corners& corners, const std::array<double, 4>& line) {
+    const std::array<double, 4> value = at(across_.value, i), first = at(across_.first, i);
     const auto set = [&](std::size_t which, const std::array<double, 4>& numbers) {
-      for (std::size_t j = 0; j < 4; ++j) lane(lines.z[which][j], i) = numbers[j];
+      for (std::size_t j = 0; j < 4; ++j) lane(z_[which][j], i) = numbers[j];
     };
-    set(L::height, line);
-    set(L::over_y0, corners.across(first, here));
-    set(L::over_roll, corners.across(value, by_roll));
-    set(L::over_yaw, corners.across(value, by_yaw));
-    if constexpr (slopes) {
-      set(L::over_y0_y0, corners.across(basis_of(across.second, i), here));
-      set(L::over_roll_roll, corners.across(value, by_roll_roll));
-      set(L::over_roll_yaw, corners.across(value, by_roll_yaw));
-      set(L::over_yaw_yaw, corners.across(value, by_yaw_yaw));
-      set(L::over_y0_roll, corners.across(first, by_roll));
-      set(L::over_y0_yaw, corners.across(first, by_yaw));
-    }
+    set(height, line);
+    set(over_y0, corners.across(first, here));
+    set(over_roll, corners.across(value, by_roll));
+    set(over_yaw, corners.across(value, by_yaw));
+    if constexpr (!slopes) return;
+    set(over_y0_y0, corners.across(at(across_.second, i), here));
+    set(over_roll_roll, corners.across(value, by_roll_roll));
+    set(over_roll_yaw, corners.across(value, by_roll_yaw));
+    set(over_yaw_yaw, corners.across(value, by_yaw_yaw));
+    set(over_y0_roll, corners.across(first, by_roll));
+    set(over_y0_yaw, corners.across(first, by_yaw));
+  }
+
+  void set_shift(int i, std::size_t lateral) {
     constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
-    const double* const shift = &data_.shift[2 * lateral[k] * weights.columns];
+    const double* const shift = &data_.shift[2 * lateral * weights_.columns];
     Pack place[wanted]{};
-    for (std::size_t c = 0; c < weights.columns; ++c) {
-      const double *const low = shift + 2 * c, *const high = low + 2 * weights.columns;
+    for (std::size_t c = 0; c < weights_.columns; ++c) {
+      const double *const low = shift + 2 * c, *const high = low + 2 * weights_.columns;
       const Pack stored{low[0], low[1], high[0], high[1]};
-      for (std::size_t d = 0; d < wanted; ++d) place[d] += lane(weights.column[c][d], i) * stored;
+      for (std::size_t d = 0; d < wanted; ++d) place[d] += lane(weights_.column[c][d], i) * stored;
     }
     for (std::size_t d = 0; d < wanted; ++d)
-      for (int j = 0; j < 4; ++j) lane(lines.y[d][static_cast<std::size_t>(j)], i) = place[d][j];
-  });
-  if (!any(found > 0.5)) {
-    result.table_share = inside;
-    return;
+      for (int j = 0; j < 4; ++j) lane(y_[d][static_cast<std::size_t>(j)], i) = place[d][j];
   }
 
-  // The level: the root of a cubic that grows from z or less to z or more.
-  const std::array<V, 4>& line = lines.z[L::height];
-  V low{}, high = one, u = (pose.z - line[0]) / (line[2] - line[0]);
-  u = select(level_number < 0.5, sqrt(select(u > zero, u, zero)), u);
-  constexpr double rounding = 1e-13;  // of a place
-  for (int iteration = 0; iteration < 60; ++iteration) {
-    const HermiteBasisOf<V> basis(u, broadcast<V>(level_step_));
-    const V excess = sum(basis.value, line) - pose.z, slope = sum(basis.first, line) * level_step_;
-    high = select(excess > zero, u, high);
-    low = select(excess > zero, low, u);
-    V next = u - excess / slope;
-    const auto within = (next >= low) & (next <= high);
-    next = select(within, next, 0.5 * (low + high));
-    const V change = abs(next - u);
-    u = next;
-    if (all((change < broadcast<V>(rounding)) | (within & (change < root * u)) | (found < 0.5))) break;
+  // The place u between the levels: the root of a cubic that grows from z or less to z or more.
+  void find_place() {
+    using std::abs, std::sqrt;
+    const Four& line = z_[height];
+    const V zero{};
+    V low{}, high = broadcast<V>(1.0);
+    u_ = (pose_.z - line[0]) / (line[2] - line[0]);
+    u_ = select(level_number_ < 0.5, sqrt(select(u_ > zero, u_, zero)), u_);
+    constexpr double rounding = 1e-13;  // of a place
+    for (int iteration = 0; iteration < 60; ++iteration) {
+      const HermiteBasisOf<V> basis(u_, broadcast<V>(table_.level_step_));
+      const V excess = sum(basis.value, line) - pose_.z, slope = sum(basis.first, line) * table_.level_step_;
+      high = select(excess > zero, u_, high);
+      low = select(excess > zero, low, u_);
+      V next = u_ - excess / slope;
+      const auto within = (next >= low) & (next <= high);
+      next = select(within, next, 0.5 * (low + high));
+      const V change = abs(next - u_);
+      u_ = next;
+      if (all((change < broadcast<V>(rounding)) | (within & (change < root * u_)) | (found_ < 0.5))) break;
+    }
   }
-  const V w = (level_number + u) * level_step_;
-  const double last = data_.levels - 1;
-  inside = inside * select(found > 0.5, smooth_step((last - (level_number + u)) * (1.0 / (border * last))), one);
-  const HermiteBasisOf<V> along_w(u, broadcast<V>(level_step_));
 
   // y0(y, roll, yaw), then w(y, z, roll, yaw) from Z(w, y0(y, roll, yaw), roll, yaw) = z.
-  const auto Y = [&](const std::array<V, 4>& basis, Direction d) { return sum(basis, lines.y[d]); };
-  const auto Z = [&](const std::array<V, 4>& basis, std::size_t which) { return sum(basis, lines.z[which]); };
-  const V Y_y0 = Y(across.first, here), Z_w = Z(along_w.first, L::height);
-  found = select(Z_w > zero, found, zero);
-  const auto contact = found > 0.5;
-  const V by_Y = 1.0 / Y_y0, by_Z = 1.0 / Z_w, Z_y = Z(along_w.value, L::over_y0);
-  LevelPlace<V> place;
-  place.w = w;
-  place.y0_1 = {by_Y, zero, -(Y(across.value, by_roll) * by_Y), -(Y(across.value, by_yaw) * by_Y)};
-  const std::array<V, 4> Z_1{Z_y * place.y0_1[0], broadcast<V>(-1.0),
-                             Z(along_w.value, L::over_roll) + Z_y * place.y0_1[2],
-                             Z(along_w.value, L::over_yaw) + Z_y * place.y0_1[3]};
-  for (std::size_t j = 0; j < 4; ++j) place.w_1[j] = -(Z_1[j] * by_Z);
-  const V w3 = w * w * w, w4 = w3 * w;
-  // Without contact the share counts, and nothing else.
-  result.table_share = select(contact | (met < 0.5), inside, zero);
-  result.energy = select(contact, w4 * w, zero);
-  if (!any(contact)) return;
-  for (std::size_t j = 0; j < 4; ++j) element(result.force, j) = 5.0 * w4 * place.w_1[j];
-  if constexpr (slopes) {
-    const std::array<V, 4> Y_y1{zero, zero, Y(across.first, by_roll), Y(across.first, by_yaw)};
-    const std::array<V, 4> Z_y1{zero, zero, Z(along_w.value, L::over_y0_roll), Z(along_w.value, L::over_y0_yaw)};
-    const V Y_yy = Y(across.second, here), Z_yy = Z(along_w.value, L::over_y0_y0);
-    const V Z_wy = Z(along_w.first, L::over_y0), Z_ww = Z(along_w.second, L::height);
-    const std::array<V, 4> Z_w1{Z_wy * place.y0_1[0], zero, Z(along_w.first, L::over_roll) + Z_wy * place.y0_1[2],
-                                Z(along_w.first, L::over_yaw) + Z_wy * place.y0_1[3]};
+  void find_energy() {
+    find_place();
+    const V zero{}, w = (level_number_ + u_) * table_.level_step_;
+    const double last = data_.levels - 1;
+    const V below_last = smooth_step((last - (level_number_ + u_)) * (1.0 / (border * last)));
+    inside_ = inside_ * select(found_ > 0.5, below_last, broadcast<V>(1.0));
+    along_ = HermiteBasisOf<V>(u_, broadcast<V>(table_.level_step_));
+    const V Z_w = Z(along_.first, height), Z_y = Z(along_.value, over_y0);
+    found_ = select(Z_w > zero, found_, zero);
+    by_Y_ = 1.0 / Y(across_.first, here);
+    by_Z_ = 1.0 / Z_w;
+    place_.w = w;
+    place_.y0_1 = {by_Y_, zero, -(Y(across_.value, by_roll) * by_Y_), -(Y(across_.value, by_yaw) * by_Y_)};
+    const Four Z_1{Z_y * place_.y0_1[0], broadcast<V>(-1.0), Z(along_.value, over_roll) + Z_y * place_.y0_1[2],
+                   Z(along_.value, over_yaw) + Z_y * place_.y0_1[3]};
+    const V w4 = w * w * w * w;
+    for (std::size_t j = 0; j < 4; ++j) {
+      place_.w_1[j] = -(Z_1[j] * by_Z_);
+      element(result_.force, j) = select(found_ > 0.5, 5.0 * w4 * place_.w_1[j], zero);
+    }
+    // Without contact the share counts, and nothing else.
+    result_.table_share = select((found_ > 0.5) | (touches_ < 0.5), inside_, zero);
+    result_.energy = select(found_ > 0.5, w4 * w, zero);
+  }
+
+  void set_stiffness() {
+    const V zero{}, &w = place_.w, w3 = w * w * w;
+    const Four &w_1 = place_.w_1, &y0_1 = place_.y0_1;
+    const V Y_yy = Y(across_.second, here), Z_yy = Z(along_.value, over_y0_y0), Z_y = Z(along_.value, over_y0);
+    const V Z_wy = Z(along_.first, over_y0), Z_ww = Z(along_.second, height);
+    const Four Y_y1{zero, zero, Y(across_.first, by_roll), Y(across_.first, by_yaw)};
+    const Four Z_y1{zero, zero, Z(along_.value, over_y0_roll), Z(along_.value, over_y0_yaw)};
+    const Four Z_w1{Z_wy * y0_1[0], zero, Z(along_.first, over_roll) + Z_wy * y0_1[2],
+                    Z(along_.first, over_yaw) + Z_wy * y0_1[3]};
     for (std::size_t j = 0; j < 4; ++j) {
       for (std::size_t m = 0; m <= j; ++m) {
-        V Y_2 = Y_y1[j] * place.y0_1[m] + place.y0_1[j] * Y_y1[m] + Y_yy * place.y0_1[j] * place.y0_1[m];
-        V Z_2 = Z_y1[j] * place.y0_1[m] + place.y0_1[j] * Z_y1[m] + Z_yy * place.y0_1[j] * place.y0_1[m];
+        V Y_2 = Y_y1[j] * y0_1[m] + y0_1[j] * Y_y1[m] + Y_yy * y0_1[j] * y0_1[m];
+        V Z_2 = Z_y1[j] * y0_1[m] + y0_1[j] * Z_y1[m] + Z_yy * y0_1[j] * y0_1[m];
         if (m >= 2) {
           const std::size_t both = j + m - 4;  // 0: roll twice, 1: roll and yaw, 2: yaw twice
-          Y_2 = Y_2 + Y(across.value, static_cast<Direction>(by_roll_roll + both));
-          Z_2 = Z_2 + Z(along_w.value, L::over_roll_roll + both);
+          Y_2 = Y_2 + Y(across_.value, static_cast<Direction>(by_roll_roll + both));
+          Z_2 = Z_2 + Z(along_.value, over_roll_roll + both);
         }
-        Z_2 = Z_2 - Z_y * Y_2 * by_Y;
-        const V w_2 =
-            -((Z_2 + Z_w1[j] * place.w_1[m] + place.w_1[j] * Z_w1[m] + Z_ww * place.w_1[j] * place.w_1[m]) * by_Z);
-        const V K = 5.0 * w3 * (4.0 * place.w_1[j] * place.w_1[m] + w * w_2);
-        set_symmetric(derivatives->stiffness, j, m, K);
+        Z_2 = Z_2 - Z_y * Y_2 * by_Y_;
+        const V w_2 = -((Z_2 + Z_w1[j] * w_1[m] + w_1[j] * Z_w1[m] + Z_ww * w_1[j] * w_1[m]) * by_Z_);
+        set_symmetric(derivatives_->stiffness, j, m, V(5.0 * w3 * (4.0 * w_1[j] * w_1[m] + w * w_2)));
       }
     }
   }
 
   // The parts of every pose, in their order; then those of equal number side by side.
-  std::array<std::array<PartSums, LoadedLookup::capacity>, n> sums;
-  std::array<std::size_t, n> count{};
-  each([&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (!lane(contact, i)) return;
-    const double yaw = lane(pose.yaw, i);
-    const PartPlace at{PartPlace::nodes(lateral[k], level[k], data_.levels),
-                       lane(t, i),
-                       lane(u, i),
-                       lane(width, i),
-                       level_step_,
-                       PartPlace::Linear(data_.roll, lane(pose.roll, i)),
-                       PartPlace::Linear(data_.yaw_squared, yaw * yaw)};
-    std::uint32_t loaded = 0;
-    for (const std::size_t node : at.node) loaded |= data_.pressed[node];
-    for (; loaded != 0; loaded &= loaded - 1) {
-      const auto part = static_cast<std::size_t>(std::countr_zero(loaded));
-      if (sum_part<slopes>(at, part, sums[k][count[k]])) ++count[k];
-    }
-    result.parts = std::max(result.parts, count[k]);
-  });
-  for (std::size_t p = 0; p < result.parts; ++p) {
-    std::array<V, PartSums::count * LoadedPart::quantities> numbers;
-    constexpr std::size_t used = (slopes ? std::size_t{PartSums::count} : 1) * LoadedPart::quantities;
-    V has{};
-    each([&](int i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (p < count[k]) {
-        lane(has, i) = 1.0;
-        std::array<double, PartSums::count * LoadedPart::quantities> of;
-        std::memcpy(of.data(), &sums[k][p], used * sizeof(double));
-        for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = of[q];
-      } else {
-        for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = q < LoadedPart::quantities ? 1.0 : 0.0;
+  void set_parts() {
+    std::array<std::array<PartSums, LoadedLookup::capacity>, places> sums;
+    std::array<std::size_t, places> count{};
+    each([&](int i, std::size_t k) {
+      if (lane(found_, i) == 0.0) return;
+      const double yaw = lane(pose_.yaw, i);
+      const PartPlace at{PartPlace::nodes(lateral_[k], level_[k], data_.levels),
+                         lane(t_, i),
+                         lane(u_, i),
+                         lane(width_, i),
+                         table_.level_step_,
+                         PartPlace::Linear(data_.roll, lane(pose_.roll, i)),
+                         PartPlace::Linear(data_.yaw_squared, yaw * yaw)};
+      std::uint32_t loaded = 0;
+      for (const std::size_t node : at.node) loaded |= data_.pressed[node];
+      for (; loaded != 0; loaded &= loaded - 1) {
+        const auto part = static_cast<std::size_t>(std::countr_zero(loaded));
+        if (table_.sum_part<slopes>(at, part, sums[k][count[k]])) ++count[k];
       }
+      result_.parts = std::max(result_.parts, count[k]);
     });
-    set_part<slopes>(numbers, place, pose.yaw, result.part[p], slopes ? &derivatives->part[p] : nullptr);
-    result.part[p].share = select(has > 0.5, result.part[p].share, zero);
+    constexpr std::size_t used = (slopes ? std::size_t{PartSums::count} : 1) * LoadedPart::quantities;
+    for (std::size_t p = 0; p < result_.parts; ++p) {
+      std::array<V, PartSums::count * LoadedPart::quantities> numbers;
+      V has{};
+      each([&](int i, std::size_t k) {
+        std::array<double, PartSums::count * LoadedPart::quantities> of{};
+        if (p < count[k]) {
+          std::memcpy(of.data(), &sums[k][p], used * sizeof(double));
+          lane(has, i) = 1.0;
+        } else {
+          std::fill_n(of.begin(), LoadedPart::quantities, 1.0);
+        }
+        for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = of[q];
+      });
+      set_part(numbers, p);
+      result_.part[p].share = select(has > 0.5, result_.part[p].share, V{});
+    }
   }
+
+  // A part from its sums: from reduced quantities to lengths, densities and pressure.
+  void set_part(const std::array<V, PartSums::count * LoadedPart::quantities>& sums, std::size_t p) noexcept {
+    constexpr std::size_t count = LoadedPart::quantities;
+    const V one = broadcast<V>(1.0), &w = place_.w, ww = w * w, zero{};
+    const std::array<V, count> scale{one, pose_.yaw, one, one, one, w, w, ww, ww, one, one, w};
+    const V share = sums[0], inverse = 1.0 / share;
+    std::array<V, count> mean;
+    for (std::size_t q = 1; q < count; ++q) mean[q] = inverse * sums[q];
+    mean[0] = share;
+    std::array<V, count> value;
+    for (std::size_t q = 0; q < count; ++q) value[q] = scale[q] * mean[q];
+    result_.part[p] = LoadedPartOf<V>::of(value);
+    if constexpr (slopes) {
+      const std::array<V, count> scale_w{zero, zero, zero, zero, zero, one, one, 2.0 * w, 2.0 * w, zero, zero, one};
+      const auto along = [&](PartSums::Along d, std::size_t q) {
+        const V& of_share = sums[d * count];
+        return q == 0 ? of_share : inverse * (sums[d * count + q] - of_share * mean[q]);
+      };
+      std::array<std::array<V, 4>, count> slope;
+      for (std::size_t q = 0; q < count; ++q) {
+        const V by_y0 = scale[q] * along(PartSums::by_lateral, q),
+                by_w = scale[q] * along(PartSums::by_level, q) + scale_w[q] * mean[q];
+        for (std::size_t j = 0; j < 4; ++j) slope[q][j] = by_y0 * place_.y0_1[j] + by_w * place_.w_1[j];
+        slope[q][2] = slope[q][2] + scale[q] * along(PartSums::by_roll_node, q);
+        slope[q][3] = slope[q][3] + 2.0 * pose_.yaw * scale[q] * along(PartSums::by_yaw_node, q);
+      }
+      slope[1][3] = slope[1][3] + mean[1];
+      derivatives_->part[p] = LoadedPartOf<std::array<V, 4>>::of(slope);
+    }
+  }
+
+  /// The place along the energy and how it and y0 follow the pose (y, z, roll, yaw).
+  struct {
+    V w;
+    Four w_1, y0_1;
+  } place_;
+
+  const LoadedTable& table_;
+  const LoadedTableData& data_;
+  const LoadedPoseOf<V>& pose_;
+  LoadedLookupOf<V>& result_;
+  LoadedSlopesOf<V>* derivatives_;
+  Weights<V> weights_;
+  std::array<ColumnWeights, places> weight_;
+  V inside_;
+  V found_{}, touches_{};  ///< 1 where the search goes on; where there is contact
+  std::array<std::size_t, places> lateral_{};
+  std::array<int, places> level_{};
+  V level_number_{}, width_, t_, u_;
+  HermiteBasisOf<V> across_{V{}, broadcast<V>(1.0)}, along_{V{}, broadcast<V>(1.0)};
+  std::array<Four, lines> z_{};
+  std::array<Four, directions> y_{};  ///< y(y0): value and slope at the lower node, then at the upper one
+  V by_Y_, by_Z_;                     ///< 1/Y_y0, 1/Z_w
+};
+
+template <bool slopes, class V>
+void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
+                       LoadedSlopesOf<V>* derivatives) const noexcept {
+  result = {};
+  if constexpr (slopes) set_zero(derivatives->stiffness);
+  const V inside = margin_share(pose.roll, pose.yaw);
+  if (any(inside > V{})) LookUp<slopes, V>(*this, pose, result, derivatives).run(inside);
 }
 
 template void LoadedTable::find<false, double>(const LoadedPoseOf<double>&, LoadedLookup&,

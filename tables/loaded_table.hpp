@@ -168,8 +168,8 @@ class LoadedTable {
  private:
   template <class V>
   struct Weights;
-  template <class V>
-  struct Lines;
+  template <bool slopes, class V>
+  class LookUp;
   struct ColumnWeights;
   struct Corners;
   struct PartPlace;

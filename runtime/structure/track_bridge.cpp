@@ -244,8 +244,7 @@ std::string longitudinal_left_out(const TrackNodes& nodes, MotionPlane plane, do
   const size_t count = of_sleeper * nodes.sleeper.x.size() + 2 * (nodes.rail[0].x.size() - 2);
   return fmt::format(
       "{} degrees of freedom of the track along x ({} of sleepers, x of rails): nothing acts along them, and the "
-      "static "
-      "compliance of the rail heads under a wheelset changes by at most {:.2g} %",
+      "static compliance of the rail heads under a wheelset changes by at most {:.2g} %",
       count, plane == MotionPlane::spatial ? "x, pitch and yaw" : "x and pitch", 100.0 * change);
 }
 

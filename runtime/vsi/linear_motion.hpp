@@ -35,37 +35,25 @@ struct Prediction {
 
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Predictors ã and ṽ.
-inline void predict(const HhtScheme& scheme, const ConstVector& a, const ConstVector& v,
-                    const ConstVector& acceleration, Eigen::Ref<Eigen::VectorXd> predicted,
-                    Eigen::Ref<Eigen::VectorXd> predicted_velocity) {
-  const double dt = scheme.time_step;
-  predicted = a + dt * v + dt * dt * (0.5 - scheme.beta()) * acceleration;
-  predicted_velocity = v + dt * (1.0 - scheme.gamma()) * acceleration;
-}
-
-/// Displacement, velocity and acceleration at the end of a step, to be written.
-struct MotionTarget {
-  Eigen::Ref<Eigen::VectorXd> displacement, velocity, acceleration;
-};
-/// Closes a step with the increment Δ over the predictors.
-inline void update(const HhtScheme& scheme, const ConstVector& predicted, const ConstVector& predicted_velocity,
-                   const ConstVector& increment, MotionTarget motion) {
-  motion.displacement = predicted + increment;
-  motion.velocity = predicted_velocity + scheme.velocity_rate() * increment;
-  motion.acceleration = scheme.acceleration_rate() * increment;
-}
-
-/// Predictors of the degrees of freedom in `range`; those of others keep their values.
+/// Predictors of the degrees of freedom in `range`, in one pass through the memory; those of others keep their values.
 inline void predict(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range, Prediction& p) {
   for (Eigen::VectorXd* vector : {&p.displacement, &p.velocity, &p.weighted_displacement, &p.weighted_velocity})
     vector->resize(motion.displacement.size());
-  predict(scheme, range.of(motion.displacement), range.of(motion.velocity), range.of(motion.acceleration),
-          range.of(p.displacement), range.of(p.velocity));
-  range.of(p.weighted_displacement) =
-      scheme.load_weight() * range.of(p.displacement) - scheme.alpha * range.of(motion.displacement);
-  range.of(p.weighted_velocity) =
-      scheme.load_weight() * range.of(p.velocity) - scheme.alpha * range.of(motion.velocity);
+  const double dt = scheme.time_step, weight = scheme.load_weight(), alpha = scheme.alpha;
+  const double by_acceleration = dt * dt * (0.5 - scheme.beta()), faster = dt * (1.0 - scheme.gamma());
+  const double *const a = motion.displacement.data(), *const v = motion.velocity.data();
+  const double* const acceleration = motion.acceleration.data();
+  double *const predicted = p.displacement.data(), *const velocity = p.velocity.data();
+  double *const weighted = p.weighted_displacement.data(), *const weighted_velocity = p.weighted_velocity.data();
+#pragma GCC ivdep
+  for (Eigen::Index i = range.begin; i < range.end(); ++i) {
+    const double a_1 = a[i] + dt * v[i] + by_acceleration * acceleration[i];
+    const double v_1 = v[i] + faster * acceleration[i];
+    predicted[i] = a_1;
+    velocity[i] = v_1;
+    weighted[i] = weight * a_1 - alpha * a[i];
+    weighted_velocity[i] = weight * v_1 - alpha * v[i];
+  }
 }
 inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
   predict(scheme, motion, {0, motion.displacement.size()}, p);
@@ -99,8 +87,17 @@ inline void close_load(const HhtScheme& scheme, const ConstVector& load, const C
 /// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.
 inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
                    const DofRange& range, LinearMotion& motion) {
-  update(scheme, range.of(p.displacement), range.of(p.velocity), range.of(increment),
-         {range.of(motion.displacement), range.of(motion.velocity), range.of(motion.acceleration)});
+  const double velocity_rate = scheme.velocity_rate(), acceleration_rate = scheme.acceleration_rate();
+  const double *const predicted = p.displacement.data(), *const predicted_velocity = p.velocity.data();
+  const double* const delta = increment.data();
+  double *const displacement = motion.displacement.data(), *const velocity = motion.velocity.data();
+  double* const acceleration = motion.acceleration.data();
+#pragma GCC ivdep
+  for (Eigen::Index i = range.begin; i < range.end(); ++i) {
+    displacement[i] = predicted[i] + delta[i];
+    velocity[i] = predicted_velocity[i] + velocity_rate * delta[i];
+    acceleration[i] = acceleration_rate * delta[i];
+  }
 }
 inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
                    LinearMotion& motion) {
