@@ -178,7 +178,8 @@ void bind_geometry(py::module_& module) {
     a, b                  semi-axes along and across the rolling direction [m]
     pressure              largest [Pa]
 
-    Forces are those of the table's loaded part where it has one, else of Hertz's ellipse of steel.
+    Forces are those of the table's loaded part where it has one that is certified to 5 %, else of
+    Hertz's ellipse of steel.
 
     >>> table.contacts(0.001, load=60e3)["rolling_radius"].round(4)
     array([0.4605])

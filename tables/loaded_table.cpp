@@ -104,6 +104,12 @@ struct LoadedTable::ColumnWeights {
   [[nodiscard]] double value(std::size_t k) const noexcept { return twice[2 * k]; }
 };
 
+double LoadedTableData::certified_force_error() const noexcept {
+  const auto found = std::find_if(statistics.begin(), statistics.end(),
+                                  [](const auto& s) { return s.first == "certified.error.force.p99"; });
+  return found == statistics.end() ? 0.0 : found->second;
+}
+
 void require_consistent(const LoadedTableData& table, const std::string& source) {
   constexpr std::size_t many = 100000;
   const auto place = [&](const char* name) { return fmt::format("{}: {}", source, name); };

@@ -48,6 +48,9 @@ struct LoadedTableData {
   /// Options and measured errors, name -> value; written as attributes.
   std::vector<std::pair<std::string, double>> statistics;
 
+  /// 99th percentile of the relative error of the force above 5 kN, as the table's generation has measured it; 0 where
+  /// it has not.
+  [[nodiscard]] double certified_force_error() const noexcept;
   [[nodiscard]] std::size_t parts() const noexcept { return cut.size() + 1; }
   [[nodiscard]] std::size_t columns() const noexcept { return roll.size() * yaw_squared.size(); }
 };
@@ -131,6 +134,10 @@ template <class V>
 struct LoadedPoseOf {
   V y, z, roll, yaw;
 };
+
+/// A larger certified error is that of a pair whose jumps come and go with roll and yaw: forces are not read from such
+/// a table unless asked for.
+inline constexpr double largest_certified_force_error = 0.05;
 
 /// @throws InputError "source: name" where shapes disagree or nodes are out of order
 void require_consistent(const LoadedTableData& table, const std::string& source);

@@ -16,11 +16,16 @@ class ContactGeometry {
  public:
   using Source = std::variant<TableContact, ContactSearch, PaperSearch>;
   /// @param loaded the loaded contact of the same pair, where forces come from it
-  explicit ContactGeometry(Source source, std::shared_ptr<const LoadedTable> loaded = nullptr)
-      : source_(std::move(source)), loaded_(std::move(loaded)) {}
+  /// @param unused_error where forces do not come from it since it is too inaccurate: its certified error
+  explicit ContactGeometry(Source source, std::shared_ptr<const LoadedTable> loaded = nullptr,
+                           double unused_error = 0.0)
+      : source_(std::move(source)), loaded_(std::move(loaded)), unused_error_(unused_error) {}
 
   /// Null where normal forces are those of the patches.
   [[nodiscard]] const LoadedTable* loaded() const noexcept { return loaded_.get(); }
+
+  /// LoadedTableData::certified_force_error() of a loaded contact that is there and too inaccurate to be used; else 0.
+  [[nodiscard]] double unused_loaded_error() const noexcept { return unused_error_; }
 
   /// Patches of the right wheel at a pose, with penetration above zero. Left wheel: pose.mirrored().
   [[nodiscard]] ContactPatches patches(const WheelsetPose& pose) const noexcept {
@@ -52,6 +57,7 @@ class ContactGeometry {
  private:
   Source source_;
   std::shared_ptr<const LoadedTable> loaded_;
+  double unused_error_;
 };
 
 }  // namespace railtab

@@ -11,10 +11,15 @@ namespace railtab {
 ContactTable read_contact_table(const std::filesystem::path& file) {
   GeometryTableData data = read_geometry_table(file);
   std::shared_ptr<const LoadedTable> loaded;
-  if (data.loaded) loaded = std::make_shared<const LoadedTable>(std::move(*data.loaded));
+  double unused_error = 0.0;
+  if (data.loaded && data.loaded->certified_force_error() > largest_certified_force_error) {
+    unused_error = data.loaded->certified_force_error();
+  } else if (data.loaded) {
+    loaded = std::make_shared<const LoadedTable>(std::move(*data.loaded));
+  }
   data.loaded.reset();
   TableContact patches = in_file(file.string(), [&] { return TableContact(GeometryTable(std::move(data))); });
-  ContactGeometry geometry(patches, std::move(loaded));
+  ContactGeometry geometry(patches, std::move(loaded), unused_error);
   return {std::move(patches), std::move(geometry)};
 }
 

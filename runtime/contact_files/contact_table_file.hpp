@@ -7,7 +7,7 @@
 namespace railtab {
 
 /// A geometry table from its file, for patches, and as what forces come from: with the loaded part where the file has
-/// one.
+/// one that is certified well enough (largest_certified_force_error).
 struct ContactTable {
   TableContact patches;
   ContactGeometry geometry;

@@ -137,11 +137,13 @@ std::vector<KeyRow> contact_keys() {
       {"contact.table", "", "geometry table", FileKey{of_contact<&ContactParameters::table>}},
       {"contact.elastic",
        "",
-       "forces by the loaded part of the table, or by an ellipse per patch; automatic: the former where present",
+       "forces by the loaded part of the table, or by an ellipse per patch; automatic: the former where present and "
+       "certified to 5 %",
        choice<ElasticContact>(of_contact<&ContactParameters::elastic>, {{"automatic", ElasticContact::automatic},
                                                                         {"half-space", ElasticContact::half_space},
                                                                         {"patches", ElasticContact::patches}}),
-       {&with_contact_table}}};
+       {&with_contact_table},
+       {&inaccurate_loaded_table}}};
   return all_of({rows, applying(with_hertz_contact, all_of({hertz, pair_keys(), force_keys()}))});
 }
 

@@ -27,7 +27,7 @@ struct Warning {
 
 extern const Warning vehicle_above_top_speed, vehicle_above_critical_speed, vehicle_linearised;
 extern const Warning speed_outside_run, start_on_flanges, judging_outside_run;
-extern const Warning energy_rule_with_paper_search;
+extern const Warning energy_rule_with_paper_search, inaccurate_loaded_table;
 extern const Warning structure_unlike_a_bridge, span_unlike_a_bridge;
 extern const Warning irregularity_zero, irregularity_outside_run, irregularity_with_step;
 extern const Warning deviation_zero, deviation_outside_run;

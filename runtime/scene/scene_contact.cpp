@@ -35,7 +35,9 @@ WheelRailPair scene_pair(const ContactParameters& contact) {
 }
 
 /// The loaded contact of a table, where the scene's forces are to come from it; it leaves the table.
-std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& contact, GeometryTableData& table) {
+/// @param unused_error its certified error where that is too large to use it unasked
+std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& contact, GeometryTableData& table,
+                                                     double& unused_error) {
   std::optional<LoadedTableData> loaded = std::move(table.loaded);
   table.loaded.reset();
   if (contact.elastic == ElasticContact::patches) return nullptr;
@@ -43,6 +45,11 @@ std::shared_ptr<const LoadedTable> loaded_contact_of(const ContactParameters& co
     if (contact.elastic == ElasticContact::automatic) return nullptr;
     throw input_error("scene: contact.elastic", fmt::format("\"half-space\" with {}", contact.table.string()),
                       "a table with a loaded part (tablegen loaded adds it), or \"patches\"");
+  }
+  const double error = loaded->certified_force_error();
+  if (contact.elastic == ElasticContact::automatic && error > largest_certified_force_error) {
+    unused_error = error;
+    return nullptr;
   }
   if (!contact.material.has_contact_modulus(loaded->contact_modulus)) {
     throw input_error("scene: contact.material",
@@ -132,9 +139,11 @@ ContactGeometry scene_geometry(const ContactParameters& contact) {
   switch (contact.mode) {
     case ContactMode::table: {
       GeometryTableData table = in_file("scene: geometry table", [&] { return read_geometry_table(contact.table); });
-      std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table);
-      return in_file(contact.table.string(),
-                     [&] { return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded)); });
+      double unused_error = 0.0;
+      std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table, unused_error);
+      return in_file(contact.table.string(), [&] {
+        return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded), unused_error);
+      });
     }
     case ContactMode::online:
       return ContactGeometry(ContactSearch(scene_pair(contact)));

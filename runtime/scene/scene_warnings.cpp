@@ -8,6 +8,7 @@
 #include "railtab/runtime/assessment/dynamic_need.hpp"
 #include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
+#include "railtab/runtime/scene/scene_contact.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/start_checks.hpp"
 
@@ -27,6 +28,20 @@ const Warning energy_rule_with_paper_search{
           "integration.contact_force = \"energy\" with contact.mode = \"paper\": its contact points jump, no force "
           "conserves the energy of the contact springs over a jump, and a step may have no solution; use "
           "\"automatic\", which is then \"endpoint\"");
+    }};
+
+const Warning inaccurate_loaded_table{
+    "a loaded part of a contact table is certified worse than 5 %, and is not used",
+    [](const SceneCase& at, Warnings& list) {
+      for (const auto& geometry : contact_geometries(at.model)) {
+        if (geometry->unused_loaded_error() == 0.0) continue;
+        list.push_back(fmt::format(
+            "contact: the loaded part of the table of {} on {} is off by {:.2g} % of the force (99 % of its check), "
+            "more than {:.0f} %, and is not used: forces are those of an ellipse per patch; contact.elastic = "
+            "\"half-space\" uses it nevertheless",
+            geometry->pair().wheel().knots().name, geometry->pair().rail().knots().name,
+            100.0 * geometry->unused_loaded_error(), 100.0 * largest_certified_force_error));
+      }
     }};
 
 const Warning structure_unlike_a_bridge{

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <string>
+
 #include "command/json_text.hpp"
 #include "command/print.hpp"
 #include "command/progress_bar.hpp"
@@ -56,8 +59,17 @@ void loaded_command(const std::vector<std::string>& arguments) {
   const std::string file = line.required("file");
   ProgressBar bar("loaded contact", !line.quiet());
   add_loaded_table(file, requested(line), provenance("loaded", arguments), [&](double share) { bar.show(share); });
-  if (line.quiet() && !line.json()) return;
   const GeometryTableData table = read_geometry_table(file);
+  if (const double error = table.loaded->certified_force_error(); error > largest_certified_force_error) {
+    const std::string warning = fmt::format(
+        "tablegen loaded: warning: {}: the force above 5 kN is off by {:.2g} % (99 % of its check), more than {:.0f} "
+        "%: "
+        "where the contact jumps differs too much with roll and yaw for one table; runs use it only with "
+        "contact.elastic = \"half-space\". A smaller --roll, --yaw or --lateral may serve.\n",
+        file, 100.0 * error, 100.0 * largest_certified_force_error);
+    std::fputs(warning.c_str(), stderr);
+  }
+  if (line.quiet() && !line.json()) return;
   if (line.json()) {
     print_json(table_description(table, file));
   } else {

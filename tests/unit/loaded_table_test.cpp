@@ -2,15 +2,22 @@
 
 #include "railtab/tables/loaded_table.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <random>
 
 #include "loaded_table_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/contact_files/contact_table_file.hpp"
+#include "railtab/runtime/scene/scene_contact.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tablegen/loaded_verification.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace railtab {
 namespace {
@@ -270,6 +277,32 @@ TEST(LateralWarp, GoesThroughTheJumpsWithAContinuousSlope) {
     EXPECT_GT(warp.at(y0).slope, 0.5);
   }
   EXPECT_NEAR(LateralWarp({}, {}, 2e-3).at(1e-3).y, 3e-3, 1e-15);
+}
+
+// A table that its own generation has found to be wrong is read only where it is asked for.
+TEST(LoadedTable, IsNotUsedUnaskedWhereItsCertifiedErrorIsLarge) {
+  GeometrySweepOptions options;
+  options.lateral = {-0.003, -0.002};
+  options.yaw = options.roll = {0.0, 0.0};
+  GeometryTableData data = sweep_geometry(s1002_on_60e1(), options);
+  data.loaded = tread_table();
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("railtab_certified_{}.h5", getpid());
+  for (const double error : {0.01, 0.3}) {
+    data.loaded->statistics = {{"certified.error.force.p99", error}};
+    write_geometry_table(file, data);
+    ContactParameters contact;
+    contact.table = file;
+    const ContactGeometry automatic = scene_geometry(contact);
+    EXPECT_EQ(automatic.loaded() != nullptr, error == 0.01);
+    EXPECT_EQ(automatic.unused_loaded_error(), error == 0.01 ? 0.0 : error);
+    EXPECT_EQ(read_contact_table(file).geometry.loaded() != nullptr, error == 0.01);
+    contact.elastic = ElasticContact::half_space;
+    const ContactGeometry asked = scene_geometry(contact);
+    EXPECT_NE(asked.loaded(), nullptr);
+    EXPECT_EQ(asked.unused_loaded_error(), 0.0);
+  }
+  std::filesystem::remove(file);
 }
 
 }  // namespace
