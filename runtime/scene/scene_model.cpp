@@ -185,7 +185,7 @@ double run_duration(const SceneParameters& scene, const VsiModel& model) {
     const double last = model.wheelset_x(model.wheelsets() - 1, 0.0), way = x - last;
     if (!(way > 0.0)) {
       throw input_error("scene: train.start", fmt::format("the last wheelset at x = {:.6g} m", last),
-                        fmt::format("one ahead of x = {:.6g} m, where the run ends (or integration.duration)", x));
+                        fmt::format("it before x = {:.6g} m, where the run ends, or integration.duration", x));
     }
     return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
   };

@@ -291,6 +291,20 @@ std::vector<std::string> lost_by_modes(const ModalStructure& structure, const Im
   return sentences;
 }
 
+/// Where modes leave so much of the static flexibility out that accelerations come out too small.
+std::vector<std::string> missing_flexibility(const ModalStructure& structure, const ImportParameters& parameters) {
+  constexpr double much = 0.05;
+  std::vector<std::string> sentences;
+  for (const StaticFlexibility& at : static_flexibility(structure, parameters)) {
+    if (!at.whole || at.lost() <= much) continue;
+    sentences.push_back(fmt::format(
+        "structure.modes: the {} modes, up to {:.4g} Hz, lack {:.2g} % of the static flexibility at x = {:.6g} m: "
+        "deflections, and accelerations above the highest mode, come out too small; export more modes",
+        structure.omega.size(), structure.omega.maxCoeff() / (2.0 * std::numbers::pi), 100.0 * at.lost(), at.x));
+  }
+  return sentences;
+}
+
 Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record) {
   const ModalStructure structure = read_modal_structure(parameters);
   const std::vector<int> deck = deck_of(structure, parameters);
@@ -301,6 +315,7 @@ Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record) {
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
   bridge.spans.push_back({extent.begin - rounding, extent.end + rounding});
   bridge.left_out = lost_by_modes(structure, parameters);
+  bridge.warnings = missing_flexibility(structure, parameters);
   const std::vector<ReportedDeckNode> reported = reported_deck_nodes(structure.at, deck, parameters.report);
   MotionBasis basis(structure.omega.size());
   add_vertical_motions(structure, reported, basis, bridge.nodes);

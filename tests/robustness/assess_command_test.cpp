@@ -351,6 +351,9 @@ TEST_F(AssessCommand, WrongInput) {
   expect_refused("assess scene.toml -o no/out", "no folder");
   write("typed.toml", vertical + light_span + "[assessment]\nline_speed = 200\n");
   expect_refused("assess typed.toml -o out", "unknown key 'assessment.line_speed'; did you mean");
+  write("rules.toml", vertical + light_span + "[assessment]\nrules = [\"europe\"]\n");
+  expect_refused("assess rules.toml -o out",
+                 "assessment.rules: found \"europe\", expected names of China, Europe, Japan");
   expect_refused("assess scene.toml --seeds 3 --stage contact -o out2", "irregularity.spectrum");
 }
 

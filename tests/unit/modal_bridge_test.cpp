@@ -250,6 +250,14 @@ TEST_F(ModesOfABridge, ThePlanStatesWhatIsLost) {
   EXPECT_NE(all.find("static flexibility beyond the modes: "), std::string::npos) << all;
   EXPECT_NE(all.find(" % at x = 16 m"), std::string::npos) << all;
   EXPECT_NE(all.find("the modes are orthogonal"), std::string::npos) << all;
+  const auto warned = [](const RunPlan& of) {
+    return fmt::format("{}", fmt::join(of.warnings, "\n")).find("of the static flexibility") != std::string::npos;
+  };
+  EXPECT_FALSE(warned(plan));
+  const BuiltIn bridge(12);
+  write("flexibility.csv",
+        fmt::format("node,flexibility\n{},{:.15g}\n", 10 + bridge.dof.size() / 2, 1.2 * bridge.flexibility()));
+  EXPECT_TRUE(warned(plan_run(scene(by_modes), {})));
   std::string unknown = by_modes;
   unknown.erase(unknown.find("static_flexibility"), std::string("static_flexibility = \"flexibility.csv\"\n").size());
   const std::string other = fmt::format("{}", fmt::join(plan_run(scene(unknown), {}).left_out, "\n"));

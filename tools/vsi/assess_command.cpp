@@ -125,6 +125,22 @@ Request request_of(const CommandLine& line) {
   return request;
 }
 
+/// @throws InputError where no clause has rules of that name: nothing would be judged by them
+void require_known_rules(const std::vector<std::string>& rules, const std::vector<Clause>& clauses) {
+  std::vector<std::string> known;
+  for (const Clause& clause : clauses) {
+    if (!clause.rules.empty() && std::find(known.begin(), known.end(), clause.rules) == known.end()) {
+      known.push_back(clause.rules);
+    }
+  }
+  std::sort(known.begin(), known.end());
+  for (const std::string& name : rules) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw input_error("scene: assessment.rules", fmt::format("\"{}\"", name),
+                      fmt::format("names of {}, or of a file of --clauses", fmt::join(known, ", ")));
+  }
+}
+
 Assessment begin(const SceneParameters& scene, const Request& request, const CommandLine& line) {
   Assessment assessment;
   assessment.scene_name = scene.name;
@@ -140,6 +156,7 @@ Assessment begin(const SceneParameters& scene, const Request& request, const Com
     for (const std::string& file : line.required_many("clauses")) files.emplace_back(file);
   }
   assessment.clauses = clauses_with(files);
+  require_known_rules(scene.assessment.rules, assessment.clauses);
   return assessment;
 }
 

@@ -68,7 +68,7 @@ std::string contact_text(const VehicleModel& vehicle, MotionPlane motion) {
   constexpr double usual = 0.46;  // PairDimensions' default [m]
   return fmt::format(
       "[contact]\n"
-      "mode = \"online\"             # needs no table; with one, a run is many times faster:\n"
+      "mode = \"online\"             # needs no table; with one, a run takes a third less time:\n"
       "wheel = \"S1002\"             #   tablegen geometry --wheel S1002 --rail 60E1 --rail-inclination 1:40 \\\n"
       "rail = \"60E1\"               #       --roll=-0.005:0.005{1} -o table.h5\n"
       "rail_inclination = 0.025    #   then, in place of these lines: table = \"table.h5\"\n"
