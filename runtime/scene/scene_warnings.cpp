@@ -45,7 +45,9 @@ const Warning inaccurate_loaded_table{
     }};
 
 const Warning structure_unlike_a_bridge{
-    "mass per metre or first natural frequency is implausible for a bridge", [](const SceneCase& at, Warnings& list) {
+    "mass per metre or first natural frequency is implausible for a bridge, or modes lack more than 5 % of the static "
+    "flexibility",
+    [](const SceneCase& at, Warnings& list) {
       list.insert(list.end(), at.model.structure_warnings.begin(), at.model.structure_warnings.end());
     }};
 

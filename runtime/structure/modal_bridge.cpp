@@ -315,7 +315,6 @@ Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record) {
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
   bridge.spans.push_back({extent.begin - rounding, extent.end + rounding});
   bridge.left_out = lost_by_modes(structure, parameters);
-  bridge.warnings = missing_flexibility(structure, parameters);
   const std::vector<ReportedDeckNode> reported = reported_deck_nodes(structure.at, deck, parameters.report);
   MotionBasis basis(structure.omega.size());
   add_vertical_motions(structure, reported, basis, bridge.nodes);
@@ -357,6 +356,8 @@ Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record) {
     return by_modes(*found, shape);
   };
   bridge.warnings = plausibility_warnings(0.0, omega[0] / (2.0 * std::numbers::pi));
+  for (std::string& sentence : missing_flexibility(structure, parameters))
+    bridge.warnings.push_back(std::move(sentence));
   return bridge;
 }
 
