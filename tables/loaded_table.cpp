@@ -316,7 +316,7 @@ struct LoadedTable::PartPlace {
     const std::size_t first = lateral * count + static_cast<std::size_t>(level);
     return {first, first + count, first + 1, first + count + 1};
   }
-  double t, u, width, level_step;
+  double t, u, width;
   Linear r, s;
 };
 
@@ -370,7 +370,7 @@ bool LoadedTable::sum_part(const PartPlace& place, std::size_t part, PartSums& s
   const std::array<double, 2> ft{1.0 - place.t, place.t}, fu{1.0 - place.u, place.u};
   const std::array<double, 2> fr{1.0 - r.part, r.part}, fs{1.0 - s.part, s.part};
   const std::array<double, 2> t_rate{-1.0 / place.width, 1.0 / place.width},
-      u_rate{-1.0 / place.level_step, 1.0 / place.level_step};
+      u_rate{-1.0 / level_step_, 1.0 / level_step_};
   const std::array<double, 2> r_rate{-r.rate, r.rate}, s_rate{-s.rate, s.rate};
   auto& sum = sums.sum;
   std::memset(&sums, 0, sizeof sums);
@@ -696,7 +696,6 @@ class LoadedTable::LookUp {
                          lane(t_, i),
                          lane(u_, i),
                          lane(width_, i),
-                         table_.level_step_,
                          PartPlace::Linear(data_.roll, lane(pose_.roll, i)),
                          PartPlace::Linear(data_.yaw_squared, yaw * yaw)};
       std::uint32_t loaded = 0;

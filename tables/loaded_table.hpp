@@ -95,7 +95,7 @@ template <class V>
 struct LoadedLookupOf {
   static constexpr std::size_t capacity = 6;
   /// Share of the table in the answer: 1 inside, 0 outside, smooth between over a margin inside its border. Where 0,
-  /// what follows is zero; side by side nothing but the energy holds where that is zero.
+  /// what follows is zero; side by side, parts hold where the energy is above zero.
   V table_share{};
   V energy{};  ///< U [J]; 0: no contact
   typename LoadedNumbers<V>::Vector force = [] {
@@ -107,7 +107,7 @@ struct LoadedLookupOf {
   }();
   std::size_t parts = 0;  ///< of the pose that has most
   /// The first `parts`, in increasing arc length on the rail, each with a share. A pose that has fewer has the share 0
-  /// and otherwise 1.
+  /// in their place.
   std::array<LoadedPartOf<V>, capacity> part;
 
   [[nodiscard]] V largest_pressure() const noexcept {  ///< [Pa]

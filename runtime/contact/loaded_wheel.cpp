@@ -270,7 +270,6 @@ class LoadedContactForce {
   }
 
   void add_parts() {
-    using std::cos, std::sin;
     Parts parts;
     for (std::size_t p = 0; p < lookup_.parts; ++p) {
       Part<T>& part = parts[p];
@@ -663,7 +662,6 @@ class WheelForces {
   WheelForces(const LoadedContactForce<T>& force, const WheelKinematics<V>& wheel, const LoadedLookupOf<V>& lookup)
       : force_(force),
         wheel_(wheel),
-        lookup_(lookup),
         total_(force.generalised(numbers(force.total()))),
         rest_(force.generalised(numbers(force.rest()))),
         pressure_(lookup.largest_pressure()) {}
@@ -696,7 +694,6 @@ class WheelForces {
  private:
   const LoadedContactForce<T>& force_;
   const WheelKinematics<V>& wheel_;
-  const LoadedLookupOf<V>& lookup_;
   Generalised<V> total_, rest_;
   V pressure_;
 };
@@ -836,10 +833,6 @@ void set_lookup(const LoadedLookupOf<Lanes>& of, int place, LoadedLookup& result
     result.part[result.parts] = LoadedPart::of(values);
   }
 }
-
-}  // namespace
-
-namespace {
 
 /// Wheels side by side at their loaded contacts.
 template <bool slopes>

@@ -29,6 +29,15 @@ WheelContact contact_of_wheel(const WheelContactModel& model, std::size_t wheel,
   return contact;
 }
 
+// What a wheel's force consists of.
+void keep_numbers(const WheelForce& force, std::size_t wheel, ContactSolution& s, ContactCounts& counts) {
+  s.rail_x[wheel] = force.rail_x;
+  s.normal[wheel] = force.normal;
+  s.creep_power[wheel] = force.creep_power;
+  s.pressure[wheel] = force.pressure;
+  counts.outside_creep_table += force.outside_creep_table;
+}
+
 }  // namespace
 
 ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
@@ -59,11 +68,7 @@ ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem,
       const int r = 6 + 3 * side;
       end_force.head<6>() += wheel.wheelset;
       end_force.segment<3>(r) = wheel.rail;
-      s.rail_x[number] = wheel.rail_x;
-      counts.outside_creep_table += wheel.outside_creep_table;
-      s.normal[number] = wheel.normal;
-      s.creep_power[number] = wheel.creep_power;
-      s.pressure[number] = wheel.pressure;
+      keep_numbers(wheel, number, s, counts);
       s.memory[number] = contact_memory(model.geometry->pair(), contact, wheel);
       if (problem.start) {
         const ContactMemory& start = problem.start->memory[number];
@@ -118,10 +123,7 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
         const LoadedAnswer& of = answer[2 * i + index(side)];
         force.head<6>() += of.force.wheelset;
         force.segment<3>(6 + 3 * side) = of.force.rail;
-        s.rail_x[number] = of.force.rail_x;
-        s.normal[number] = of.force.normal;
-        s.creep_power[number] = of.force.creep_power;
-        s.pressure[number] = of.force.pressure;
+        keep_numbers(of.force, number, s, counts);
         s.contact[number].pose = of.pose;
         s.contact[number].loaded = of.lookup;
         s.contact[number].patches.clear();
@@ -129,7 +131,6 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
         memory.pose = of.pose;
         memory.count = 0;
         memory.loaded = of.force.memory;
-        counts.outside_creep_table += of.force.outside_creep_table;
       }
       s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w) = force;
       counts.queries += 2;
