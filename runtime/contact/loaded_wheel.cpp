@@ -844,7 +844,7 @@ struct WheelsSideBySide {
   std::uint32_t answered = 0;  ///< bit by bit, by the table alone and with friction
 
   WheelsSideBySide(const WheelContactModel& model, std::span<const WheelState> wheels) {
-    assert(model.geometry->loaded() && model.damping == 0.0 && !model.friction_law.falls());
+    assert(computes_side_by_side(model));
     assert(!wheels.empty() && wheels.size() <= Lanes::count);
     for (std::size_t i = 0; i < Lanes::count; ++i) {
       const WheelState& of = wheels[std::min(i, wheels.size() - 1)];
@@ -875,6 +875,10 @@ struct WheelsSideBySide {
 };
 
 }  // namespace
+
+bool computes_side_by_side(const WheelContactModel& model) noexcept {
+  return model.geometry->loaded() && model.damping == 0.0 && !model.friction_law.falls();
+}
 
 std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
                                   std::span<LoadedAnswer> to) noexcept {

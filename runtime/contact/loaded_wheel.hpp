@@ -66,6 +66,9 @@ struct WheelState {
   RailHeadMotion rail;
 };
 
+/// Whether wheels can be computed side by side: by a loaded table, without damping, with friction that does not fall.
+[[nodiscard]] bool computes_side_by_side(const WheelContactModel& model) noexcept;
+
 /// One of several wheels at its loaded contact.
 struct LoadedAnswer {
   WheelsetPose pose;  ///< of a right wheel
@@ -75,7 +78,7 @@ struct LoadedAnswer {
 
 /// Forces of up to eight wheels side by side, look-ups included. Only wheels that touch, by the table alone, and where
 /// there is friction are answered.
-/// @pre no damping, friction that does not fall
+/// @pre computes_side_by_side()
 /// @return whether each wheel is answered, bit by bit from the first
 [[nodiscard]] std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
                                                 std::span<LoadedAnswer> to) noexcept;

@@ -87,9 +87,8 @@ ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem,
 }
 
 bool computes_side_by_side(const TrainContact& train, const ContactProblem& problem) noexcept {
-  const WheelContactModel& model = train.shared();
-  return model.damping == 0.0 && !model.friction_law.falls() && !problem.start &&
-         std::all_of(train.model.begin(), train.model.end(), [](const auto& m) { return m.geometry->loaded(); });
+  return !problem.start && std::all_of(train.model.begin(), train.model.end(),
+                                       [](const WheelContactModel& model) { return computes_side_by_side(model); });
 }
 
 ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,

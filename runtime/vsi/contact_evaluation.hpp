@@ -21,8 +21,7 @@ struct Wheelsets {
 ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& solution, NewtonWorkspace& workspace);
 
-/// Whether wheels can be computed side by side in a time step: by loaded tables, without damping, with friction that
-/// does not fall, forces at the end of the step.
+/// Whether all wheels can be computed side by side in a time step, which must count the forces at its end.
 [[nodiscard]] bool computes_side_by_side(const TrainContact& train, const ContactProblem& problem) noexcept;
 
 /// evaluate() of those wheelsets of some whose wheels the loaded table answers alone.
