@@ -57,6 +57,13 @@ if "rolling_contact" in globals():
     __all__.append("rolling_contact")
 
 
+def __getattr__(name):
+    if name == "rolling_contact":
+        raise AttributeError("railtab.rolling_contact: this railtab was built without tablegen, which solves it; "
+                             "the packages and builds with -D RAILTAB_TABLEGEN=ON have it")
+    raise AttributeError(f"module 'railtab' has no attribute '{name}'")
+
+
 def displacement(y=0.0, z=0.0, roll=0.0, yaw=0.0) -> numpy.ndarray:
     """Displacements of a wheelset for WheelContact, shape (..., 6): x, y, z [m], roll, pitch, yaw [rad], x = pitch = 0.
 

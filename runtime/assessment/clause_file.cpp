@@ -8,6 +8,7 @@
 #include "railtab/runtime/assessment/measure_kind.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 
 namespace railtab {
@@ -143,7 +144,9 @@ std::vector<Clause> library_clauses() {
 std::vector<Clause> clauses_with(const std::vector<std::filesystem::path>& files) {
   std::vector<Clause> clauses = library_clauses();
   for (const std::filesystem::path& file : files) {
-    read_clauses(parse_toml(read_toml_text(file, "a TOML file of clauses"), file), file, clauses);
+    const toml::table table = parse_toml(read_toml_text(file, "a TOML file of clauses"), file);
+    check_toml_kind(table, file, TomlKind::clauses);
+    read_clauses(table, file, clauses);
   }
   return clauses;
 }

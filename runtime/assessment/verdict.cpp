@@ -55,6 +55,8 @@ std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
                                    const std::vector<MeasuredValue>& values, const std::vector<MissingMeasure>& missing,
                                    bool& other_spans) {
   Verdict verdict{&clause, stage, Outcome::pass, {}, 0.0, {}};
+  const auto failing = [](const Verdict& v) { return v.at && v.utilisation() > 1.0; };
+  Verdict overestimated = verdict;
   for (const MeasuredValue& value : values) {
     if (value.measure != clause.measure || value.stage != stage) continue;
     if (!of_span(clause, value)) {
@@ -66,13 +68,19 @@ std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
     Verdict next = verdict;
     next.at = value;
     next.limit = *limit;
-    if (!verdict.at || next.utilisation() > verdict.utilisation()) verdict = std::move(next);
+    Verdict& worst = failing(next) && !value.overestimated.empty() ? overestimated : verdict;
+    if (!worst.at || next.utilisation() > worst.utilisation()) worst = std::move(next);
   }
-  if (!verdict.at) return std::nullopt;
-  if (verdict.utilisation() > 1.0) {
+  if (failing(verdict)) {
     verdict.outcome = Outcome::fail;
     return verdict;
   }
+  if (overestimated.at) {
+    overestimated.outcome = Outcome::not_judged;
+    overestimated.reason = overestimated.at->overestimated;
+    return overestimated;
+  }
+  if (!verdict.at) return std::nullopt;
   for (const MissingMeasure& m : missing) {
     if (m.measure != clause.measure || m.stage != stage || !m.partly) continue;
     verdict.outcome = Outcome::not_judged;

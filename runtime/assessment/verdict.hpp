@@ -25,6 +25,7 @@ struct MeasuredValue {
   std::string run;              ///< name of the run's files; empty: none
   /// What limits depend on: span [m], axle_load, static_wheel_load [N], nadal_limit, weinstock_limit, fra_limit.
   std::map<std::string, double, std::less<>> quantities;
+  std::string overestimated;  ///< why the true value is smaller; empty: it is not known to be. It cannot fail a clause
 };
 
 /// What clauses are chosen by.
@@ -64,7 +65,8 @@ struct Verdict {
 [[nodiscard]] std::optional<double> limit_for(const Clause& clause, const MeasuredValue& value);
 
 /// All clauses against all values: a verdict per clause and stage that has values for it, one "not judged" where none
-/// has. A value whose measure is only partly known fails or is not judged. @param clauses outlive the verdicts
+/// has. A value whose measure is only partly known fails or is not judged, one that is overestimated passes or is not
+/// judged. @param clauses outlive the verdicts
 [[nodiscard]] std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentFacts& facts,
                                          const std::vector<MeasuredValue>& values,
                                          const std::vector<MissingMeasure>& missing);

@@ -26,6 +26,11 @@ double peak_resident_memory() noexcept {
   return getrusage(RUSAGE_SELF, &usage) == 0 ? unit * static_cast<double>(usage.ru_maxrss) : 0.0;
 }
 
+double installed_memory() noexcept {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  return pages > 0 ? static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0.0;
+}
+
 void return_large_pieces() noexcept {
 #ifdef __GLIBC__
   // Every piece that goes back is paid for by page faults when it is asked for again: with a megabyte in place of what

@@ -96,6 +96,18 @@ class BoundsCheck {
 
 }  // namespace
 
+namespace {
+
+/// What a file is that begins so and has no text; empty: it may be text.
+std::string_view binary_kind(std::string_view begin) {
+  if (begin.starts_with("\x89HDF\r\n\x1a\n")) return "an HDF5 file";
+  if (begin.starts_with("railtab\n")) return "a table or results of railtab";
+  if (begin.starts_with("PK\x03\x04")) return "a ZIP archive";
+  return begin.substr(0, 512).find('\0') != std::string_view::npos ? "a binary file" : "";
+}
+
+}  // namespace
+
 std::string toml_fault(std::string_view text, std::size_t line, std::string_view parser_words) {
   for (; line > 1 && text.find('\n') != std::string_view::npos; --line) text.remove_prefix(text.find('\n') + 1);
   text = text.substr(0, text.find_first_of("#\n"));
@@ -127,6 +139,8 @@ std::string read_toml_text(const std::filesystem::path& file, std::string_view w
   if (!stream && !stream.eof()) throw input_error(file.string(), "a file that cannot be read", what);
   text.resize(static_cast<std::size_t>(stream.gcount()));
   text.shrink_to_fit();
+  if (const std::string_view kind = binary_kind(text); !kind.empty()) throw input_error(file.string(), kind, what);
+  if (file.extension() == ".csv") throw input_error(file.string(), "a file of columns (.csv)", what);
   if (text.size() > TomlBounds::bytes) {
     throw input_error(file.string(), fmt::format("more than {} MB", TomlBounds::bytes >> 20),
                       fmt::format("{} of at most that size", what));

@@ -26,6 +26,15 @@ bool has_free_end(const ModalDeck& deck) {
   return false;
 }
 
+double sudden_acceleration(const ModalDeck& deck, double x) {
+  const Eigen::ArrayXd here = deck.shape_at(x);
+  double largest = 0.0;
+  for (const double end : {0.0, deck.length()}) {
+    largest = std::max(largest, std::abs((here * deck.shape_at(end)).head(deck.dynamic_modes).sum()));
+  }
+  return largest;
+}
+
 std::size_t element_at(const ModalDeck& deck, double x) noexcept {
   return interval_at(deck.knots, std::clamp(x, 0.0, deck.length()));
 }

@@ -56,6 +56,9 @@ struct DynamicModes {
 
 /// Whether an end of the line moves in a mode that vibrates: an axle load that comes on to the deck there acts at once.
 [[nodiscard]] bool has_free_end(const ModalDeck& deck);
+/// By how much 1 N that comes on to an end of the deck accelerates its line at x at once: the larger amount of both
+/// ends, |Σ φ_n(end) φ_n(x)| over modes that vibrate [1/kg]; 0 without free ends. @pre 0 <= x <= length
+[[nodiscard]] double sudden_acceleration(const ModalDeck& deck, double x);
 
 /// Element of the line that holds x, clamped to the line.
 [[nodiscard]] std::size_t element_at(const ModalDeck& deck, double x) noexcept;

@@ -24,6 +24,11 @@ void mirror_y(ProfilePoints& outline) {
   std::reverse(outline.points.begin(), outline.points.end());
 }
 
+std::size_t top_of(const std::vector<OutlinePoint>& points) {
+  const auto higher = [](const auto& a, const auto& b) { return a.z < b.z; };
+  return static_cast<std::size_t>(std::min_element(points.begin(), points.end(), higher) - points.begin());
+}
+
 /// The axes cannot be told from the numbers alone, but a flange shows where z and y point.
 void orient_wheel(const std::string& file, ProfilePoints& outline) {
   std::vector<OutlinePoint>& points = outline.points;
@@ -46,15 +51,19 @@ void orient_wheel(const std::string& file, ProfilePoints& outline) {
     mirror_z(outline);
     outline.notes.push_back(file + ": z mirrored, since the flange points up");
   }
+  // The field side of a wheel rises, or has the lip of a hollow tread.
+  constexpr double lip = 12 * mm;
+  const double top = points[top_of(points)].z, inner = points.front().z - top, outer = points.back().z - top;
+  if (std::min(inner, outer) > lip) {
+    throw input_error(file,
+                      fmt::format("a profile whose sides go down by {:.3g} mm and {:.3g} mm, as those of a rail do",
+                                  inner / mm, outer / mm),
+                      "a wheel profile, with a flange on one side; are wheel and rail exchanged?");
+  }
   if (tip.y > 0.0) {
     mirror_y(outline);
     outline.notes.push_back(file + ": y mirrored, since the flange lies at y > 0");
   }
-}
-
-std::size_t top_of(const std::vector<OutlinePoint>& points) {
-  const auto higher = [](const auto& a, const auto& b) { return a.z < b.z; };
-  return static_cast<std::size_t>(std::min_element(points.begin(), points.end(), higher) - points.begin());
 }
 
 /// y at which an outline is `level` deep, from its top towards one end (step -1 or 1).
@@ -69,6 +78,7 @@ std::optional<double> y_at_level(const std::vector<OutlinePoint>& points, double
 }
 
 /// Says where the head stands against its highest point, by the middle of its sides.
+/// @throws InputError: the head is narrow and the outline wide, as of a wheel with its flange upwards
 void note_lean(const std::string& file, ProfilePoints& outline) {
   constexpr double depth = 10 * mm;
   const OutlinePoint top = outline.points[top_of(outline.points)];
@@ -80,6 +90,14 @@ void note_lean(const std::string& file, ProfilePoints& outline) {
                     (outline.points.back().z - top.z) / mm));
   }
   if (!gauge || !field) return;
+  const double head = *field - *gauge, width = outline.points.back().y - outline.points.front().y;
+  constexpr double foot = 2.5;  // times the head's width: more than a rail with its foot has
+  if (width > foot * head) {
+    throw input_error(file,
+                      fmt::format("a profile {:.3g} mm wide of which {:.3g} mm stand up, as the flange of a wheel does",
+                                  width / mm, head / mm),
+                      "a rail profile; are wheel and rail exchanged?");
+  }
   const double middle = 0.5 * (*gauge + *field) - top.y;
   if (middle > 3 * mm) {
     outline.notes.push_back(

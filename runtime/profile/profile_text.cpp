@@ -11,12 +11,13 @@ namespace railtab {
 
 namespace {
 constexpr std::string_view blanks = " \t\r\f\v";
-}
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // UTF-8, as Windows programs write it
+}  // namespace
 
 std::optional<std::string> ProfileText::next() {
   std::string text;
   if (!std::getline(in, text)) return std::nullopt;
-  ++line;
+  if (++line == 1 && text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
 }
 

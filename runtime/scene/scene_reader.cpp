@@ -15,6 +15,7 @@
 #include "railtab/runtime/scene/toml_leaves.hpp"
 #include "railtab/runtime/scene/unused_keys.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "railtab/runtime/vehicle/vehicle_file.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
@@ -335,6 +336,8 @@ SceneParameters read_scene(const std::filesystem::path& file, const std::vector<
   draft.parameters.text = read_toml_text(file, "a TOML scene");
   try {
     toml::table root = toml::parse(draft.parameters.text, file.string());
+    check_toml_kind(root, file, TomlKind::scene);
+    if (root.empty()) throw input_error(file.string(), "a file without keys", "a scene (vsi new writes one)");
     in_file(file.string(), [&] { scene::change_keys(changes, root); });
     if (!changes.empty()) draft.parameters.text += fmt::format("\n# changed: {}\n", scene::changes_text(changes));
     const std::vector<scene::Leaf> leaves = scene::leaves_of(root, file);

@@ -1,6 +1,7 @@
 #include "railtab/runtime/vehicle/joint_file.hpp"
 
 #include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "railtab/runtime/vehicle/vehicle_sections.hpp"
 
@@ -8,6 +9,7 @@ namespace railtab {
 
 VehicleData parse_joint(const std::string& text, const std::filesystem::path& place) {
   const toml::table table = parse_toml(text, place);
+  check_toml_kind(table, place, TomlKind::vehicle);
   SourcedValues sourced;
   TomlSection root(place, "", table, {}, sourced);
   VehicleData data;

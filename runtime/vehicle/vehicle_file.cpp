@@ -4,6 +4,7 @@
 
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/vehicle/series_damper.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "railtab/runtime/vehicle/vehicle_import.hpp"
 #include "railtab/runtime/vehicle/vehicle_sections.hpp"
@@ -106,6 +107,7 @@ VehicleData read_root(TomlSection& root, const std::string& text, const std::fil
 
 VehicleData parse_vehicle(const std::string& text, const std::filesystem::path& place) {
   const toml::table table = parse_toml(text, place);
+  check_toml_kind(table, place, TomlKind::vehicle);
   SourcedValues sourced;
   TomlSection root(place, "", table, {}, sourced);
   VehicleData data = read_root(root, text, place);

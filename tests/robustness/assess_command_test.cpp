@@ -132,14 +132,21 @@ TEST_F(AssessCommand, TellsOfAFreeEndOfADeck) {
   const json free = object(vsi("assess free.toml" + stage));
   const std::string note = "An end of deck " + free["decks"][0]["name"].get<std::string>() +
                            " is free to move: an axle load that comes on accelerates it at once, while rails, sleepers "
-                           "and ballast would spread the load. The acceleration there is overestimated; runs with "
-                           "contact have the track.";
+                           "and ballast would spread the load. The acceleration there is overestimated and fails "
+                           "no limit; runs with contact have the track.";
   const auto told = [&](const json& assessment) {
     const json& notes = assessment["stages"]["moving-load"]["notes"];
     return std::find(notes.begin(), notes.end(), note) != notes.end();
   };
   EXPECT_TRUE(told(free)) << free["stages"]["moving-load"]["notes"];
+  EXPECT_EQ(verdict(free, "en1990.deck-acceleration.ballasted")["outcome"], "fail") << "by resonance";
   EXPECT_NE(text_of("out/assessment.html").find(note), std::string::npos);
+  write("modes.csv", "mode,frequency,mass,damping\n1,5,4e4,0.5\n2,12,4e4,0.5\n");
+  const json heaves = object(vsi("assess free.toml" + stage));
+  const json acceleration = verdict(heaves, "en1990.deck-acceleration.ballasted");
+  EXPECT_GT(acceleration["value"], acceleration["limit"]) << "170 kN that come on to 40 t at once";
+  EXPECT_EQ(acceleration["outcome"], "not judged") << acceleration;
+  EXPECT_NE(acceleration.value("reason", "").find("comes on to the free end"), std::string::npos);
   write("simple.toml", vertical + light_span);
   EXPECT_EQ(object(vsi("assess simple.toml" + stage))["stages"].dump().find("is free to move"), std::string::npos);
 }

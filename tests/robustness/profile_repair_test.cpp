@@ -298,6 +298,19 @@ TEST(SmoothingSpline, RefusesNoiseOutOfRange) {
   EXPECT_THROW(static_cast<void>(smoothing_spline(ProfileKind::rail, "line", y, z, 1e-5)), InputError);
 }
 
+TEST_F(ProfileRepair, WheelAndRailExchangedAreRejected) {
+  const std::string wheel_file = listed(standard_profile(ProfileKind::wheel, "S1002", 0.0), 1e3, 1e3);
+  const std::string rail_file = listed(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0), 1e3, 1e3);
+  EXPECT_EQ(refusal("w.txt", wheel_file, ProfileKind::wheel), "");
+  EXPECT_EQ(refusal("r.txt", rail_file, ProfileKind::rail), "");
+  expect_refused("r.txt", rail_file, ProfileKind::wheel, {"r.txt: ", "are wheel and rail exchanged?"});
+  expect_refused("w.txt", wheel_file, ProfileKind::rail, {"w.txt: ", "are wheel and rail exchanged?"});
+}
+
+TEST_F(ProfileRepair, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  expect_same_points(wheel("\xEF\xBB\xBF" + std::string(wheel_points)), wheel(wheel_points));
+}
+
 TEST_F(ProfileRepair, SmoothingIsSaid) {
   const ProfileCurve exact(standard_profile(ProfileKind::wheel, "S1002", 0.0));
   const Noisy p = noisy_s1002(exact, 0.2 * mm, 5e-6);

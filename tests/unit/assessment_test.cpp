@@ -36,7 +36,7 @@ Assessment with_passages(const std::vector<std::vector<double>>& accelerations, 
       passage.acceleration = {values[i], 12.5, 1.0};
     }
   }
-  a.values.push_back(*largest_of_passages(deck, passage_measures[0]));
+  a.values.push_back(largest_of_passages(deck, passage_measures[0]).front());
   a.verdicts = judge(a.clauses, a.facts, a.values, {});
   return a;
 }
@@ -179,6 +179,32 @@ TEST(Assessment, OneLimitWithItsValuesByStage) {
       judge(a.clauses, a.facts, a.values, {{"deck_acceleration", AssessmentStage::contact, "one run ended", true}});
   EXPECT_EQ(a.failures(false), 0);
   EXPECT_EQ(a.count(Outcome::pass), 0);
+}
+
+// A value that is known to be too large passes, or leaves its limit open; another one still fails it.
+TEST(Assessment, AnOverestimatedValueFailsNoLimit) {
+  Assessment a = with_passages({{3.0, 4.2}}, 50.0);
+  MeasuredValue v;
+  v.measure = "deck_acceleration";
+  v.stage = AssessmentStage::moving_load;
+  v.value = 9.0;
+  v.overestimated = "the end is free";
+  a.values = {v};
+  const auto verdict_of = [&]() -> const Verdict& {
+    a.verdicts = judge(a.clauses, a.facts, a.values, {});
+    return *std::ranges::find_if(a.verdicts, [](const Verdict& verdict) { return verdict.at.has_value(); });
+  };
+  EXPECT_EQ(verdict_of().outcome, Outcome::not_judged);
+  EXPECT_EQ(verdict_of().reason, "the end is free");
+  EXPECT_EQ(verdict_of().at->value, 9.0);
+  a.values[0].value = 3.0;
+  EXPECT_EQ(verdict_of().outcome, Outcome::pass);
+  a.values[0].value = 9.0;
+  v.value = 3.6;
+  v.overestimated.clear();
+  a.values.push_back(v);
+  EXPECT_EQ(verdict_of().outcome, Outcome::fail);
+  EXPECT_EQ(verdict_of().at->value, 3.6);
 }
 
 // How well a limit is known is told for each, and counted: a program that quotes the standard is not the standard.

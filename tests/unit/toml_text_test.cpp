@@ -79,5 +79,25 @@ TEST_F(TomlFiles, ScenesAreBounded) {
             "s.toml: found more than 4 MB, expected a TOML scene of at most that size");
 }
 
+TEST_F(TomlFiles, OfAnotherKindAreNamed) {
+  const auto refused = [&](const char* name, const std::string& text) {
+    try {
+      static_cast<void>(read_scene(write(name, text)));
+    } catch (const InputError& wrong) {
+      return std::string(wrong.what()).substr(folder_.string().size() + 1);
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refused("s.toml", ""), "s.toml: found a file without keys, expected a scene (vsi new writes one)");
+  EXPECT_EQ(refused("p.toml", "scene = \"s.toml\"\n[[vary]]\nkey = \"train.speed\"\n"),
+            "p.toml: found a plan of a study, expected a scene");
+  EXPECT_EQ(refused("v.toml", "name = \"v\"\n[car_body]\nmass = 1\n"), "v.toml: found a vehicle, expected a scene");
+  EXPECT_EQ(refused("c.csv", "x,y\n0,0\n"), "c.csv: found a file of columns (.csv), expected a TOML scene");
+  EXPECT_EQ(refused("r.h5", "railtab\n1 bytes follow"),
+            "r.h5: found a table or results of railtab, expected a TOML scene");
+  EXPECT_EQ(refused("h.h5", "\x89HDF\r\n\x1a\n"), "h.h5: found an HDF5 file, expected a TOML scene");
+  EXPECT_EQ(refused("b.toml", std::string("a = 1\0", 6)), "b.toml: found a binary file, expected a TOML scene");
+}
+
 }  // namespace
 }  // namespace railtab

@@ -253,6 +253,8 @@ TEST(TrainPassage, AForceComesOnToAFreeEnd) {
   deck.largest_shape = Eigen::ArrayXd::Constant(1, 1.0 / std::sqrt(M));
   EXPECT_TRUE(has_free_end(deck));
   EXPECT_FALSE(has_free_end(simply_supported_deck(span())));
+  EXPECT_NEAR(sudden_acceleration(deck, 3.0), 1.0 / M, 1e-12 / M) << "the whole deck heaves";
+  EXPECT_LT(sudden_acceleration(simply_supported_deck(span()), 3.0), 1e-6 / M);
   AxleTrain axle;
   axle.behind = {0.0};
   axle.load = {100e3};

@@ -155,7 +155,10 @@ std::string need_in_words(const Assessment& assessment) {
   if (assessment.decks.empty()) return {};
   if (with(DynamicNeed::required) != assessment.decks.end()) return "EN 1991-2, 6.4.4, asks for a dynamic analysis.";
   const auto open = with(DynamicNeed::undecided);
-  if (open == assessment.decks.end()) return "EN 1991-2, 6.4.4, does not ask for a dynamic analysis here.";
+  if (open == assessment.decks.end()) {
+    return "EN 1991-2, 6.4.4, does not ask for a dynamic analysis here: limits on dynamic values go beyond what it "
+           "asks.";
+  }
   return fmt::format("Whether EN 1991-2, 6.4.4, asks for a dynamic analysis is open: {}.", open->need.reason);
 }
 

@@ -60,7 +60,9 @@ std::string deck_curves(const Assessment& assessment, const DeckAssessment& deck
     chart.title = fmt::format("{}: {} over the speed of moving loads", deck.deck.name, title);
     chart.note =
         "Anywhere on the deck, each train by itself; those with the largest values, and the scene's own train.";
-    if (const auto most = largest_of_passages(deck, *measure)) {
+    const std::vector<MeasuredValue> largest = largest_of_passages(deck, *measure);
+    const auto most = std::ranges::max_element(largest, {}, &MeasuredValue::value);
+    if (most != largest.end()) {
       chart.note += fmt::format(" Largest of all: {}, {}.",
                                 amount_in_words(most->value, find_measure(most->measure)->unit), place_in_words(*most));
     }

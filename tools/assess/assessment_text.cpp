@@ -52,6 +52,7 @@ void limit_lines(const Assessment& assessment, const LimitVerdicts& limit, std::
 
 std::string assessment_text(const Assessment& assessment) {
   std::string text = fmt::format("{}\n{}\n", assessment.scene_name, verdict_in_words(assessment));
+  if (const std::string need = need_in_words(assessment); !need.empty()) text += need + "\n";
   if (const std::string standing = standing_in_words(assessment); !standing.empty()) text += standing + "\n";
   text += "\n";
   const auto out = std::back_inserter(text);
@@ -74,6 +75,9 @@ std::string assessment_text(const Assessment& assessment) {
     limit_lines(assessment, limit, text);
   }
   if (elsewhere > 0) fmt::format_to(out, "{} limits need a stage that was not computed.\n", elsewhere);
+  if (const int others = assessment.count(Outcome::not_applicable); others > 0) {
+    fmt::format_to(out, "{} limits do not apply here; the page lists them with the reason.\n", others);
+  }
   text += "\n";
   for (const StageReport& stage : assessment.stages) {
     fmt::format_to(out, "Stage {}: {}\n", stage_name(stage.stage),

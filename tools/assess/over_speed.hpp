@@ -22,9 +22,8 @@ inline constexpr std::array passage_measures{PassageMeasure{"deck_acceleration",
 /// A value [SI] at a deck, with the span that limits depend on; the caller adds where on it.
 [[nodiscard]] MeasuredValue value_of_deck(const DeckAssessment& deck, std::string_view measure, AssessmentStage stage,
                                           double value);
-/// The largest of all trains of a deck at computed speeds; none where there are none.
-[[nodiscard]] std::optional<MeasuredValue> largest_of_passages(const DeckAssessment& deck,
-                                                               const PassageMeasure& measure);
+/// The largest of all trains of a deck at computed speeds: of values that are not overestimated, and of those that are.
+[[nodiscard]] std::vector<MeasuredValue> largest_of_passages(const DeckAssessment& deck, const PassageMeasure& measure);
 
 /// Speeds [m/s] in which a limit is exceeded.
 struct SpeedBand {

@@ -13,7 +13,8 @@ namespace railtab {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto patience = 2s;  // before anything is drawn
+constexpr auto patience = 2s;       // before anything is drawn
+constexpr auto log_interval = 60s;  // of lines where no terminal is
 
 bool on_terminal() { return ::isatty(STDERR_FILENO) != 0; }
 
@@ -26,7 +27,8 @@ void draw_line(const std::string& text) {
 
 ProgressBar::ProgressBar(std::string title, bool wanted)
     : title_(std::move(title)),
-      enabled_(wanted && on_terminal()),
+      enabled_(wanted),
+      terminal_(on_terminal()),
       start_(Clock::now()),
       pass_start_(start_),
       last_drawn_(start_) {}
@@ -45,12 +47,18 @@ void ProgressBar::show(double share) {
     begun_ = true;
   }
   last_share_ = share;
-  if (now - start_ < patience || now - last_drawn_ < 100ms) return;
+  if (now - start_ < patience || now - last_drawn_ < (terminal_ ? 100ms : log_interval)) return;
   last_drawn_ = now;
-  drawn_ = true;
   const double elapsed = std::chrono::duration<double>(now - pass_start_).count();
   const double done = share - first_share_;
-  const std::string left = done > 0.0 ? fmt::format("{:4.0f} s left", elapsed * (1.0 - share) / done) : "";
+  const std::string left = done > 0.0 ? fmt::format("{:.0f} s left", elapsed * (1.0 - share) / done) : "";
+  if (!terminal_) {
+    std::fputs(
+        fmt::format("{}: {:.0f} %{}\n", printable(title_), 100.0 * share, left.empty() ? "" : ", " + left).c_str(),
+        stderr);
+    return;
+  }
+  drawn_ = true;
   constexpr int width = 40;
   const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
   draw_line(fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} % {}", title_, "", full, "", width - full, 100.0 * share, left));

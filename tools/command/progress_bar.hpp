@@ -9,7 +9,8 @@
 
 namespace railtab {
 
-/// One line on stderr with the share done and the time left; only on a terminal, only after two seconds of work.
+/// The share done and the time left on stderr, after two seconds of work: on a terminal one line that is drawn anew,
+/// elsewhere, as in the log of a batch job, a line each minute.
 class ProgressBar {
  public:
   /// @param wanted false keeps it silent (--quiet)
@@ -26,7 +27,7 @@ class ProgressBar {
  private:
   using Clock = std::chrono::steady_clock;
   std::string title_;
-  bool enabled_;
+  bool enabled_, terminal_;
   bool drawn_ = false, begun_ = false;
   double last_share_ = 0.0, first_share_ = 0.0;
   Clock::time_point start_, pass_start_, last_drawn_;

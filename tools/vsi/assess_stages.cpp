@@ -140,7 +140,7 @@ void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const s
       deck.responses[t].passages = merged(std::move(deck.responses[t].passages), critical[t].passages);
     }
     for (const assess::PassageMeasure& measure : assess::passage_measures) {
-      if (auto largest = largest_of_passages(deck, measure)) assessment.values.push_back(*std::move(largest));
+      for (MeasuredValue& largest : largest_of_passages(deck, measure)) assessment.values.push_back(std::move(largest));
     }
   }
 }

@@ -18,6 +18,7 @@
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/results/result_file.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
@@ -67,38 +68,43 @@ Description of_array_file(const std::string& file) {
   return {fmt::format("a file of the kind {}", type), {}, {fmt::format("tablegen info {}", file)}};
 }
 
-bool has_any(const toml::table& table, std::initializer_list<std::string_view> keys) {
-  return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return table.contains(key); });
-}
-
 Description of_toml(const std::string& file) {
   const toml::table table = parse_toml(read_toml_text(file, "a TOML file"), file);
-  if (table.contains("vary")) {
-    return {
-        "a plan of a study", {}, {fmt::format("vsi study {} --count", file), fmt::format("vsi study {} -o DIR", file)}};
+  Description d{std::string(kind_name(toml_kind(table))), {}, {}};
+  if (const auto name = table["name"].value<std::string>()) d.facts.push_back(printable(*name));
+  switch (toml_kind(table)) {
+    case TomlKind::scene:
+      d.commands = {fmt::format("vsi check {}", file), fmt::format("vsi run {} --plan", file),
+                    fmt::format("vsi run {}", file), fmt::format("vsi sweep {} --speed LO:HI:STEP -o DIR", file)};
+      if (table.contains("bridge") || table.contains("structure")) {
+        d.commands.push_back(fmt::format("vsi assess {}", file));
+        d.commands.push_back(fmt::format("vsi structure {}", file));
+        d.commands.push_back(fmt::format("vsi moving-load {} --speed LO:HI", file));
+        d.commands.push_back(fmt::format("vsi fmu {} -o track.fmu", file));
+      }
+      break;
+    case TomlKind::study_plan:
+      d.commands = {fmt::format("vsi study {} --count", file), fmt::format("vsi study {} -o DIR", file)};
+      break;
+    case TomlKind::vehicle:
+      if (!table.contains("length")) {  // which every vehicle has
+        d.kind = "a joint of vehicles";
+        d.commands = {fmt::format("a vehicle's joint_front or joint_rear = \"{}\"", file)};
+      } else {
+        d.commands = {fmt::format("vsi vehicle {}", file), fmt::format("a scene's train.vehicle = \"{}\"", file)};
+      }
+      break;
+    case TomlKind::pair_list:
+      d.commands = {fmt::format("tablegen batch {}", file)};
+      break;
+    case TomlKind::clauses:
+      d.commands = {fmt::format("vsi assess SCENE.toml --clauses {}", file)};
+      break;
+    case TomlKind::unknown:
+      for (const auto& [key, value] : table) d.facts.emplace_back(key.str());
+      break;
   }
-  if (has_any(table, {"train", "contact", "track", "bridge", "structure", "integration", "irregularity"})) {
-    Description d{"a scene", {}, {}};
-    if (const auto name = table["name"].value<std::string>()) d.facts.push_back(printable(*name));
-    d.commands = {fmt::format("vsi check {}", file), fmt::format("vsi run {} --plan", file),
-                  fmt::format("vsi run {}", file), fmt::format("vsi sweep {} --speed LO:HI:STEP -o DIR", file)};
-    if (has_any(table, {"bridge", "structure"})) {
-      d.commands.push_back(fmt::format("vsi structure {}", file));
-      d.commands.push_back(fmt::format("vsi moving-load {} --speed LO:HI", file));
-      d.commands.push_back(fmt::format("vsi fmu {} -o track.fmu", file));
-    }
-    return d;
-  }
-  if (has_any(table, {"pair", "pairs"})) {
-    return {"a list of wheel and rail pairs", {}, {fmt::format("tablegen batch {}", file)}};
-  }
-  if (has_any(table, {"body", "bodies", "car_body", "bogie", "wheelset", "template"})) {
-    return {
-        "a vehicle", {}, {fmt::format("vsi vehicle {}", file), fmt::format("a scene's train.vehicle = \"{}\"", file)}};
-  }
-  std::vector<std::string> keys;
-  for (const auto& [key, value] : table) keys.emplace_back(key.str());
-  return {"TOML, but no scene or vehicle", keys, {}};
+  return d;
 }
 
 Description of_text(const std::string& file, const std::string& first, const std::string& ending) {

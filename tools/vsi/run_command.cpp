@@ -18,6 +18,7 @@
 #include "headline_text.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/base/process_memory.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/recorded_run.hpp"
@@ -43,6 +44,29 @@ ContactMode contact_mode(const std::string& name) {
 
 void print_warning(std::string_view warning) { print_message(fmt::format("vsi run: warning: {}\n", warning)); }
 
+std::string bytes_text(double bytes) {
+  for (const auto& [unit, name] : {std::pair(1e12, "TB"), std::pair(1e9, "GB")}) {
+    if (bytes >= unit) return fmt::format("{:.4g} {}", bytes / unit, name);
+  }
+  return fmt::format("{:.4g} MB", 1e-6 * bytes);
+}
+
+/// What this machine has too little of.
+void warn_of_room(const PlannedMemory& memory, const std::filesystem::path& results) {
+  if (const double here = installed_memory(); here > 0.0 && memory.most > here) {
+    print_warning(fmt::format("the run may need {} of memory, and this machine has {}", bytes_text(memory.most),
+                              bytes_text(here)));
+  }
+  std::error_code unknown;
+  const std::filesystem::path folder = results.has_parent_path() ? results.parent_path() : ".";
+  const std::filesystem::space_info room = std::filesystem::space(folder, unknown);
+  if (!unknown && memory.results > static_cast<double>(room.available)) {
+    print_warning(fmt::format("the results take {}, and {} are free in {}; output.every writes fewer records",
+                              bytes_text(memory.results), bytes_text(static_cast<double>(room.available)),
+                              folder.string()));
+  }
+}
+
 int print_plan(const SceneParameters& scene, const RunOptions& options) {
   SetupProgress progress(!options.quiet && !options.json);
   const RunPlan plan = plan_run(scene, [&](std::string_view part) { progress.show(part); });
@@ -66,15 +90,15 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
     return 0;
   }
   for (const std::string& warning : plan.warnings) print_warning(warning);
+  warn_of_room(plan.memory, options.output);
   if (options.quiet) return 0;
   print_formatted("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
   print_formatted("  {} degrees of freedom of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
                   plan.vehicle_dofs, plan.wheels);
-  print_formatted(
-      "  at most {:.4g} MB of memory in all, {:.4g} MB where no step is divided; a step reads {:.3g} MB of it\n",
-      1e-6 * plan.memory.most, 1e-6 * plan.memory.undivided, 1e-6 * plan.memory.step_reads);
-  print_formatted("  {:.4g} MB of results, {:.3g} MB of it for ParaView\n", 1e-6 * plan.memory.results,
-                  1e-6 * plan.memory.grid);
+  print_formatted("  at most {} of memory in all, {} where no step is divided; a step reads {} of it\n",
+                  bytes_text(plan.memory.most), bytes_text(plan.memory.undivided), bytes_text(plan.memory.step_reads));
+  print_formatted("  {} of results, {} of it for ParaView\n", bytes_text(plan.memory.results),
+                  bytes_text(plan.memory.grid));
   for (const std::string& part : plan.built) print_formatted("  built:    {}\n", part);
   for (const std::string& part : plan.left_out) print_formatted("  left out: {}\n", part);
   return 0;

@@ -11,6 +11,7 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "sweep_plan.hpp"
 
@@ -389,6 +390,7 @@ StudyPlan read_study_plan(const std::filesystem::path& file) {
   plan.file = file;
   plan.text = read_toml_text(file, "a plan in TOML");
   const toml::table table = parse_toml(plan.text, file);
+  check_toml_kind(table, file, TomlKind::study_plan);
   SourcedValues values;
   TomlSection root(file, "", table, {}, values);
   plan.scene_file = file.parent_path() / root.text("scene");

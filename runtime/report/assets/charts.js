@@ -232,7 +232,7 @@ const railtab = (function () {
         context.fillRect(a, area.y, 1, area.h); context.fillRect(b - 1, area.y, 1, area.h);
         context.fillStyle = colour('--soft');
         if (mark.label !== before && b > area.x && a < area.x + area.w) {
-          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + (limits ? 30 : 12));
+          context.fillText(mark.label, Math.max(a, area.x) + 4, area.y + (limits ? 36 : 12));
         }
         before = mark.label;
       });
