@@ -12,15 +12,12 @@ set(railtab_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/railtab)
 set(railtab_contact_headers
   runtime/base/input_error.hpp
   runtime/base/lane_numbers.hpp
-  runtime/base/pack.hpp
-  runtime/base/sine_cosine.hpp
   tables/creep_table.hpp
   tables/geometry_leaf.hpp
   tables/geometry_table.hpp
   tables/loaded_table.hpp
   tables/profile_knots.hpp
   tables/provenance.hpp
-  tables/table_shard.hpp
   runtime/profile/profile_curve.hpp
   runtime/profile/profile_file.hpp
   runtime/profile/standard_profiles.hpp

@@ -10,7 +10,7 @@
 #include "railtab/tablegen/creep_sweep.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tables/creep_table.hpp"
-#include "railtab/tables/table_shard.hpp"
+#include "railtab/tables/provenance.hpp"
 
 namespace railtab {
 

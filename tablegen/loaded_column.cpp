@@ -8,6 +8,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
+#include "railtab/tablegen/force_over_lowering.hpp"
 
 namespace railtab {
 
@@ -114,16 +115,15 @@ LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, Load
   }
 }
 
-/// The height at which the energy is w⁵, from a height near by: U^(2/5) is nearly linear in the lowering.
-LoadedNode solved_level(const ContactSearch& search, WheelsetPose pose, double touch, double w,
-                        const LoadedColumnOptions& options, long& solutions) {
-  // Of the lowering: the rest is to first order. Wider where the elements' change with the height keeps the iteration
-  // from coming nearer.
-  constexpr double nearest = 2e-3, widest = 3e-2;
+/// At a height at which the energy is nearly w⁵, from one near by: U^(2/5) is nearly linear in the lowering.
+LoadedContact near_level(const ContactSearch& search, WheelsetPose pose, double touch, double w,
+                         const LoadedColumnOptions& options, long& solutions) {
+  // Of the lowering. Wider where the elements' change with the height keeps the iteration from coming nearer.
+  constexpr double nearest = 1e-2, widest = 6e-2;
   double near = nearest;
   for (int iteration = 0; near < widest; ++iteration) {
     if (iteration > 5) near *= 1.5;
-    const LoadedContact contact = solved(search, pose, options.contact);
+    LoadedContact contact = solved(search, pose, options.contact);
     ++solutions;
     const double energy = contact.elastic_energy, force = contact.on_rail.force.z(), lowering = pose.z - touch;
     if (!contact.converged || !(energy > 0.0) || !(force > 0.0)) {
@@ -131,21 +131,42 @@ LoadedNode solved_level(const ContactSearch& search, WheelsetPose pose, double t
       continue;
     }
     const double change = (w * w - std::pow(energy, 0.4)) / (0.4 * std::pow(energy, -0.6) * force);
-    if (std::abs(change) > near * lowering) {
-      pose.z += std::max(change, -0.8 * lowering);
-      continue;
-    }
-    LoadedNode node;
-    node.z = pose.z + change;
-    node.force = force * (1.0 + 1.5 * change / lowering);
-    node.z_w = 5.0 * std::pow(w, 4) / node.force;
-    node.z_y = -contact.on_rail.force.y() / force;
-    set_parts(search, contact, options.cut, w, node);
-    return node;
+    if (std::abs(change) <= near * lowering) return contact;
+    pose.z += std::max(change, -0.8 * lowering);
   }
   throw ComputationError(fmt::format(
       "loaded contact at y = {:.6g} m, roll = {:.4g} rad, yaw = {:.4g} rad: no height has the elastic energy {:.3g} J",
       pose.y, pose.roll, pose.yaw, std::pow(w, 5)));
+}
+
+/// Solutions at growing energy, their number that of the levels above first touch.
+struct ColumnSolutions {
+  // from first touch on
+  std::vector<double> lowering{0.0};   ///< [m]
+  std::vector<double> force{0.0};      ///< F_z [N]
+  std::vector<double> slope;           ///< F_y/F_z
+  std::vector<LoadedContact> contact;  ///< without first touch
+};
+
+ColumnSolutions solutions_near_levels(const ContactSearch& search, WheelsetPose pose, const TouchPoint& touch,
+                                      double step, const LoadedColumnOptions& options, long& count) {
+  ColumnSolutions found;
+  found.slope.push_back(-touch.z_touch_dy);
+  const auto steepness = [&](std::size_t k) {
+    return found.lowering[k] / std::pow(found.contact[k - 1].elastic_energy, 0.4);
+  };
+  for (std::size_t k = 1; k < static_cast<std::size_t>(options.levels); ++k) {
+    const double w = static_cast<double>(k) * step;
+    constexpr double first_guess = 5e-5;  // m/J^(2/5), ordinary for a tread
+    const double guess = k == 1 ? first_guess : k == 2 ? steepness(1) : 2.0 * steepness(k - 1) - steepness(k - 2);
+    pose.z = touch.z_touch + std::max(guess, 1e-7) * w * w;
+    const LoadedContact& contact =
+        found.contact.emplace_back(near_level(search, pose, touch.z_touch, w, options, count));
+    found.lowering.push_back(contact.pose.z - touch.z_touch);
+    found.force.push_back(contact.on_rail.force.z());
+    found.slope.push_back(contact.on_rail.force.y() / contact.on_rail.force.z());
+  }
+  return found;
 }
 
 }  // namespace
@@ -156,26 +177,26 @@ LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose
     throw ComputationError(fmt::format("wheel and rail never meet at y = {:.6g} m, roll = {:.4g} rad, yaw = {:.4g} rad",
                                        pose.y, pose.roll, pose.yaw));
   }
-  LoadedColumn column;
-  column.level.resize(1);
-  column.level.front().z = touch.z_touch;
   const double step = options.largest_level / (options.levels - 1);
-  for (int k = 1; k < options.levels; ++k) {
-    const double w = k * step;
-    WheelsetPose at = pose;
-    const auto steepness = [&](int level) {
-      const double below = level * step;
-      return (column.level[static_cast<std::size_t>(level)].z - touch.z_touch) / (below * below);
-    };
-    const double first_guess = 5e-5;  // m/J^(2/5), ordinary for a tread
-    const double guess = k == 1 ? first_guess : k == 2 ? steepness(1) : 2.0 * steepness(k - 1) - steepness(k - 2);
-    at.z = touch.z_touch + std::max(guess, 1e-7) * w * w;
-    column.level.push_back(solved_level(search, at, touch.z_touch, w, options, column.solutions));
+  LoadedColumn column;
+  const ColumnSolutions found = solutions_near_levels(search, pose, touch, step, options, column.solutions);
+  const ForceOverLowering over(found.lowering, found.force);
+  column.level.resize(static_cast<std::size_t>(options.levels));
+  for (std::size_t k = 1; k < column.level.size(); ++k) {
+    const double w = static_cast<double>(k) * step, lowering = over.lowering_at(std::pow(w, 5));
+    LoadedNode& node = column.level[k];
+    node.z = touch.z_touch + lowering;
+    node.force = over.force(lowering);
+    node.z_w = 5.0 * std::pow(w, 4) / node.force;
+    const std::size_t beside = lowering > found.lowering[k] && k + 1 < column.level.size() ? k + 1 : k - 1;
+    const double part = (lowering - found.lowering[k]) / (found.lowering[beside] - found.lowering[k]);
+    node.z_y = -found.slope[k] - part * (found.slope[beside] - found.slope[k]);
+    set_parts(search, found.contact[k - 1], options.cut, std::pow(over.work(k), 0.2), node);
   }
   LoadedNode& first = column.level.front();
-  const LoadedNode& next = column.level[1];
+  first.z = touch.z_touch;
   first.z_y = touch.z_touch_dy;
-  first.part = next.part;
+  first.part = column.level[1].part;
   return column;
 }
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/runtime/base/pack.hpp"
 #include "railtab/tables/creep_coordinates.hpp"
 #include "railtab/tables/cubic_spline_axis.hpp"
 

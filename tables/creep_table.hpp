@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 #include "railtab/tables/provenance.hpp"
 
 namespace railtab {

@@ -13,7 +13,6 @@
 #include "railtab/tables/loaded_table.hpp"
 #include "railtab/tables/profile_knots.hpp"
 #include "railtab/tables/provenance.hpp"
-#include "railtab/tables/table_shard.hpp"
 
 namespace railtab {
 

@@ -9,6 +9,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/runtime/base/pack.hpp"
 #include "railtab/runtime/base/smooth_step.hpp"
 #include "railtab/tables/hermite_basis.hpp"
 

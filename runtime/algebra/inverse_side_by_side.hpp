@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "railtab/runtime/base/pack.hpp"
+
 namespace railtab {
 
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "railtab/runtime/base/dof_range.hpp"
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 

@@ -7,7 +7,7 @@
 
 #include "railtab/runtime/algebra/section_layout.hpp"
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 

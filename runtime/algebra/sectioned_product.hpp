@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
-#include "railtab/runtime/base/pack.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
-#include "railtab/runtime/base/sine_cosine.hpp"
+#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
 
@@ -87,14 +87,6 @@ struct DualOf {
       for (std::size_t i = 0; i < count; ++i) r.slope[i] = select(mask, a.slope[i], b.slope[i]);
       return r;
     }
-  }
-  friend DualOf sin(const DualOf& x) noexcept {
-    const SineCosineOf<V> of(x.value);
-    return chained(x, of.sine, of.cosine);
-  }
-  friend DualOf cos(const DualOf& x) noexcept {
-    const SineCosineOf<V> of(x.value);
-    return chained(x, of.cosine, -of.sine);
   }
 };
 

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
-#include "railtab/runtime/base/sine_cosine.hpp"
 #include "railtab/runtime/contact/wheel_contact.hpp"
 
 namespace railtab {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "railtab/runtime/base/sine_cosine.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 #include "railtab/runtime/contact/contact_patch.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 

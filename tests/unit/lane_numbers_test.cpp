@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "railtab/runtime/base/sine_cosine.hpp"
 #include "railtab/runtime/base/smooth_step.hpp"
 
 namespace railtab {
