@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -148,6 +149,54 @@ LoadedNode solved_level(const ContactSearch& search, WheelsetPose pose, double t
       pose.y, pose.roll, pose.yaw, std::pow(w, 5)));
 }
 
+/// (z − z_t)/w² about a level of a column, as a parabola of the level: its value and slope there, by least squares
+/// through heights and slopes of the levels around. Heights far from a first parabola count less in the second, for
+/// where the elements change with the height, single ones are off by much more than the others.
+Eigen::Vector2d steepness(const std::vector<LoadedNode>& level, double step, int k) {
+  constexpr int reach = 3;
+  constexpr double height_noise = 2e-5, slope_noise = 1e-3;  // relative, of 28 elements
+  const int last = static_cast<int>(level.size()) - 1;
+  const int from = std::max(1, k - reach), count = std::min(last, k + reach) - from + 1;
+  Eigen::MatrixX3d matrix(2 * count, 3);
+  Eigen::VectorXd right(2 * count), weight(2 * count);
+  for (int i = 0; i < count; ++i) {
+    const int at = from + i;
+    const double t = at - k, w = at * step;
+    const LoadedNode& node = level[static_cast<std::size_t>(at)];
+    matrix.row(2 * i) << 1.0, t, t * t;
+    right[2 * i] = (node.z - level.front().z) / (w * w);
+    // ∂z/∂w over w: twice the parabola and the level times its slope
+    matrix.row(2 * i + 1) << 2.0, 2.0 * t + at, 2.0 * t * t + 2.0 * at * t;
+    right[2 * i + 1] = node.z_w / w;
+    weight[2 * i] = 1.0;
+    weight[2 * i + 1] = 0.5 * height_noise / slope_noise;
+  }
+  Eigen::Vector3d parabola;
+  for (int pass = 0; pass < 2; ++pass) {
+    parabola = (weight.asDiagonal() * matrix).colPivHouseholderQr().solve(weight.cwiseProduct(right));
+    const Eigen::VectorXd miss = (matrix * parabola - right).cwiseAbs() / (3.0 * height_noise * parabola[0]);
+    for (int i = 0; i < count; ++i) weight[2 * i] = 1.0 / std::max(1.0, miss[2 * i]);
+  }
+  return parabola.head<2>();
+}
+
+/// Takes the noise of single solutions out of z and ∂z/∂w: the stiffness is a difference of both over one level and
+/// multiplies it. A larger change than of noise is none, as where a second contact begins, and is limited.
+void smooth_levels(std::vector<LoadedNode>& level, double step) {
+  constexpr double most_height = 3e-4, most_slope = 1e-3;  // relative
+  const std::vector<LoadedNode> solved = level;
+  const double touch = level.front().z;
+  for (std::size_t k = 1; k < level.size(); ++k) {
+    const double at = static_cast<double>(k), w = at * step, lowering = solved[k].z - touch;
+    const Eigen::Vector2d found = steepness(solved, step, static_cast<int>(k));
+    const auto near = [](double wanted, double old, double most) {
+      return std::clamp(wanted, (1.0 - most) * old, (1.0 + most) * old);
+    };
+    level[k].z = touch + near(found[0] * w * w, lowering, most_height);
+    level[k].z_w = near((2.0 * found[0] + at * found[1]) * w, solved[k].z_w, most_slope);
+  }
+}
+
 }  // namespace
 
 LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose, const LoadedColumnOptions& options) {
@@ -172,6 +221,7 @@ LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose
     at.z = touch.z_touch + std::max(guess, 1e-7) * w * w;
     column.level.push_back(solved_level(search, at, touch.z_touch, w, options, column.solutions));
   }
+  smooth_levels(column.level, step);
   LoadedNode& first = column.level.front();
   const LoadedNode& next = column.level[1];
   first.z_y = touch.z_touch_dy;
