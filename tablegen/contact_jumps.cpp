@@ -44,6 +44,32 @@ std::vector<ContactJump> contact_jumps(const ContactSearch& search, const Interv
   return jumps;
 }
 
+std::vector<std::optional<double>> same_jumps(const std::vector<ContactJump>& reference,
+                                              const std::vector<ContactJump>& moved) {
+  struct Pair {
+    double shared;
+    std::size_t of_reference, of_moved;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    const auto [low, high] = std::minmax(reference[i].s_below, reference[i].s_above);
+    for (std::size_t j = 0; j < moved.size(); ++j) {
+      const auto [moved_low, moved_high] = std::minmax(moved[j].s_below, moved[j].s_above);
+      const double shared = std::min(high, moved_high) - std::max(low, moved_low);
+      if (shared > 0.0) pairs.push_back({shared, i, j});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.shared > q.shared; });
+  std::vector<std::optional<double>> places(reference.size());
+  std::vector<bool> taken(moved.size(), false);
+  for (const Pair& pair : pairs) {
+    if (places[pair.of_reference] || taken[pair.of_moved]) continue;
+    places[pair.of_reference] = moved[pair.of_moved].y;
+    taken[pair.of_moved] = true;
+  }
+  return places;
+}
+
 double widest_gap(const ContactSearch& search, const ContactJump& jump) {
   WheelsetPose pose{.y = jump.y};
   pose.z = search.touch_height(jump.y, 0.0, 0.0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "railtab/runtime/contact/contact_search.hpp"
@@ -16,6 +17,12 @@ struct ContactJump {
 /// All jumps of first touch of more than 1 mm along the rail, in increasing y.
 [[nodiscard]] std::vector<ContactJump> contact_jumps(const ContactSearch& search, const Interval& lateral, double roll,
                                                      double yaw);
+
+/// Where the jumps of a reference are among those of a wheelset with other roll and yaw [m], as many as of the
+/// reference: the same jump is that which shares most of its stretch of the rail. A wide jump is split in two where a
+/// place of its stretch touches first; of the two the wider one goes on with it. None where a jump is absent.
+[[nodiscard]] std::vector<std::optional<double>> same_jumps(const std::vector<ContactJump>& reference,
+                                                            const std::vector<ContactJump>& moved);
 
 /// Where between the two places of a jump the gap between wheel and rail is largest [m].
 [[nodiscard]] double widest_gap(const ContactSearch& search, const ContactJump& jump);

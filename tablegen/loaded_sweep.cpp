@@ -97,7 +97,9 @@ class LoadedSweep {
   }
 
   void set_warps() {
-    const Interval wide{options_.lateral.low, options_.lateral.high};
+    // Jumps enter the range from beside it: they move by 0.4 to 0.8 m per rad, places without one by the radius.
+    const double beside = 0.4 * std::max(roll_.back() - reference_roll(), reference_roll() - roll_.front());
+    const Interval wide{options_.lateral.low - beside, options_.lateral.high + beside};
     std::vector<ContactJump> reference = contact_jumps(search_, wide, reference_roll(), 0.0);
     std::vector<std::vector<std::optional<double>>> moved;
     for (const double roll : roll_) {
@@ -105,9 +107,7 @@ class LoadedSweep {
         const double reach = 1.2e-3 + 1.5 * std::abs(roll - reference_roll());  // some 0.5 to 0.8 m per rad
         const std::vector<ContactJump> jumps =
             contact_jumps(search_, {wide.low - reach, wide.high + reach}, roll, std::sqrt(squared));
-        std::vector<std::optional<double>> places;
-        for (const ContactJump& jump : reference) places.push_back(same_jump(jumps, jump));
-        moved.push_back(places);
+        moved.push_back(same_jumps(reference, jumps));
       }
     }
     std::vector<double> y0;
@@ -125,20 +125,6 @@ class LoadedSweep {
       warp_.emplace_back(y0, through[k], search_.pair().nominal_radius() * roll);
     }
     set_cuts();
-  }
-
-  /// The jump between about the same places of the rail.
-  static std::optional<double> same_jump(const std::vector<ContactJump>& jumps, const ContactJump& jump) {
-    constexpr double near = 4e-3;
-    std::optional<double> found;
-    double least = near;
-    for (const ContactJump& j : jumps) {
-      const double distance = std::abs(j.s_below - jump.s_below) + std::abs(j.s_above - jump.s_above);
-      if (distance >= least) continue;
-      least = distance;
-      found = j.y;
-    }
-    return found;
   }
 
   void set_cuts() {
@@ -193,7 +179,9 @@ class LoadedSweep {
   std::vector<double> lateral_nodes() {
     constexpr double widest = 1e-3;
     std::vector<double> nodes{options_.lateral.low, options_.lateral.high};
-    for (const ContactJump& jump : jumps_) nodes.push_back(jump.y);
+    for (const ContactJump& jump : jumps_) {
+      if (jump.y > options_.lateral.low && jump.y < options_.lateral.high) nodes.push_back(jump.y);
+    }
     std::sort(nodes.begin(), nodes.end());
     std::vector<double> all;
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include "loaded_table_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact_files/contact_table_file.hpp"
+#include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/scene/scene_contact.hpp"
 #include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tablegen/loaded_verification.hpp"
@@ -277,6 +279,62 @@ TEST(LateralWarp, GoesThroughTheJumpsWithAContinuousSlope) {
     EXPECT_GT(warp.at(y0).slope, 0.5);
   }
   EXPECT_NEAR(LateralWarp({}, {}, 2e-3).at(1e-3).y, 3e-3, 1e-15);
+}
+
+// S1002 with 1 mm worn off the tread and 0.4 mm off the root.
+const ContactSearch& hollow_on_60e1() {
+  static const ContactSearch search = [] {
+    ProfileKnots wheel = standard_profile(ProfileKind::wheel, "S1002", 0.0);
+    for (std::size_t i = 0; i < wheel.y.size(); ++i) {
+      const double tread = (wheel.y[i] - 0.002) / 0.014, root = (wheel.y[i] + 0.033) / 0.006;
+      wheel.z[i] -= 1e-3 * std::exp(-tread * tread) + 0.4e-3 * std::exp(-root * root);
+    }
+    return ContactSearch(
+        WheelRailPair(ProfileCurve(spline_through_points(ProfileKind::wheel, "hollow", wheel.y, wheel.z)),
+                      ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), PairDimensions{}));
+  }();
+  return search;
+}
+
+TEST(ContactJumps, AreFollowedWhereTheySplitAndMerge) {
+  const std::vector<ContactJump> whole{{-1e-3, 79e-3, 49e-3}, {6.5e-3, 45e-3, 30e-3}};
+  const std::vector<ContactJump> split{{-4e-3, 78e-3, 48e-3}, {4.0e-3, 44e-3, 39e-3}, {4.1e-3, 39e-3, 30e-3}};
+  const std::vector<std::optional<double>> after = same_jumps(whole, split), before = same_jumps(split, whole);
+  ASSERT_EQ(after.size(), 2U);
+  EXPECT_EQ(after[0], -4e-3);
+  EXPECT_EQ(after[1], 4.1e-3);  // the wider part
+  ASSERT_EQ(before.size(), 3U);
+  EXPECT_EQ(before[0], -1e-3);
+  EXPECT_FALSE(before[1].has_value());
+  EXPECT_EQ(before[2], 6.5e-3);
+  EXPECT_FALSE(same_jumps(whole, {{1e-3, 48e-3, 46e-3}})[0].has_value());  // elsewhere on the rail
+}
+
+// The root's jump of the hollow wheel from 45 to 30 mm along the rail is at a roll of -5 mrad two jumps, 0.1 mm apart.
+TEST(LoadedSweep, FollowsAJumpThatSplitsWithRoll) {
+  const ContactSearch& search = hollow_on_60e1();
+  ASSERT_EQ(contact_jumps(search, {6e-3, 7e-3}, 0.0, 0.0).size(), 1U);
+  ASSERT_EQ(contact_jumps(search, {3.7e-3, 4.4e-3}, -5e-3, 0.0).size(), 2U);
+  LoadedSweepOptions options;
+  options.lateral = {6.4e-3, 6.6e-3};
+  options.roll = {-5e-3, 0.0};
+  options.yaw = 0.0;
+  options.roll_nodes = 3;
+  options.levels = 5;
+  options.largest_load = 50e3;
+  options.force_error = options.light_error = 0.1;
+  options.least_interval = 2e-5;
+  options.contact.elements.across_narrowest = 10;
+  const LoadedTableData data = sweep_loaded(search, options);
+  const double jump = contact_jumps(search, options.lateral, 0.0, 0.0).front().y;
+  ASSERT_EQ(data.parts(), 2U);
+  const auto node = std::find(data.lateral.begin(), data.lateral.end(), jump) - data.lateral.begin();
+  ASSERT_LT(node, std::ssize(data.lateral));
+  for (std::size_t k = 0; k < data.columns(); ++k) {
+    const double y = data.shift[2 * (static_cast<std::size_t>(node) * data.columns() + k)];
+    const auto place = [&](double at) { return search.first_touch(at, data.roll[k], 0.0).s_rail; };
+    EXPECT_GT(place(y - 1e-8) - place(y + 1e-8), 8e-3) << "at roll " << data.roll[k];
+  }
 }
 
 // A table that its own generation has found to be wrong is read only where it is asked for.
