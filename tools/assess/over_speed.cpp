@@ -68,7 +68,7 @@ std::vector<SpeedBand> merged(std::vector<SpeedBand> bands, const Clause& clause
 
 /// Why the acceleration is smaller on a track; empty where axles that come on to a free end have no part in it.
 std::string overestimated(const ModalDeck& deck, const AxleTrain& train, const DeckPeak& peak) {
-  constexpr double part = 0.1;
+  constexpr double part = 0.1;  // of the value: a smaller one decides nothing
   if (train.load.empty()) return {};
   const double sudden = sudden_acceleration(deck, peak.x) * std::ranges::max(train.load);
   if (sudden <= part * peak.value) return {};
