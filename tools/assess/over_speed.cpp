@@ -182,7 +182,7 @@ std::vector<MeasuredValue> largest_of_passages(const DeckAssessment& deck, const
   }
   std::vector<MeasuredValue> found;
   for (std::optional<MeasuredValue>* value : {&largest, &overestimated}) {
-    if (*value) found.push_back(**std::move(value));
+    if (*value) found.push_back(*std::move(*value));
   }
   return found;
 }
