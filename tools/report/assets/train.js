@@ -234,7 +234,8 @@
     c.textAlign = 'center';
     for (let x = Math.ceil(r[0] / step) * step; x <= r[1]; x += step) {
       c.beginPath(); c.moveTo(X(x), 246); c.lineTo(X(x), 251); c.stroke();
-      c.fillText(shown(Math.abs(x) < 1e-9 ? 0 : x) + ' m', Math.max(18, Math.min(s.width - 22, X(x))), 264);
+      if (X(x) < 18 || X(x) > s.width - 22) continue;  // no room for its label
+      c.fillText(shown(Math.abs(x) < 1e-9 ? 0 : x) + ' m', X(x), 264);
     }
     train_canvas.setAttribute('aria-label', 'Train at x = ' + shown(position[frame]) + ' m, t = ' + shown(time[frame]) +
       ' s' + (deck ? '; largest displacement of the recorded deck nodes ' + shown(1e3 * deck_now()) + ' mm' : ''));
