@@ -1,11 +1,12 @@
 #include "railtab/tablegen/force_over_lowering.hpp"
 
 #include <algorithm>
-#include <array>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cassert>
 #include <cmath>
 
 #include "railtab/runtime/profile/cubic_spline.hpp"
+#include "railtab/tables/hermite_basis.hpp"
 
 namespace railtab {
 
@@ -20,19 +21,14 @@ ForceOverLowering::ForceOverLowering(std::vector<double> lowering, const std::ve
 }
 
 double ForceOverLowering::force_in(std::size_t i, double from_begin) const {
-  const double width = lowering_[i + 1] - lowering_[i], rise = root_[i + 1] - root_[i], t = from_begin / width;
-  const double begins = width * slope_[i] - rise, ends = rise - width * slope_[i + 1];
-  return std::pow(root_[i] + t * rise + t * (1.0 - t) * ((1.0 - t) * begins + t * ends), 1.5);
+  const double width = lowering_[i + 1] - lowering_[i];
+  const HermiteBasis basis(from_begin / width, width);
+  return std::pow(HermiteBasis::sum(basis.value, {root_[i], slope_[i], root_[i + 1], slope_[i + 1]}), 1.5);
 }
 
-/// Gauss's rule with five points.
 double ForceOverLowering::work_in(std::size_t i, double from_begin) const {
-  constexpr std::array place{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
-  constexpr std::array weight{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
-                              0.2369268850561891};
-  double sum = 0.0;
-  for (std::size_t k = 0; k < place.size(); ++k) sum += weight[k] * force_in(i, 0.5 * from_begin * (1.0 + place[k]));
-  return 0.5 * from_begin * sum;
+  const auto force = [&](double at) { return force_in(i, at); };
+  return boost::math::quadrature::gauss<double, 5>::integrate(force, 0.0, from_begin);
 }
 
 double ForceOverLowering::force(double lowering) const {

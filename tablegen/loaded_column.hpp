@@ -17,8 +17,8 @@ struct LoadedNode {
 };
 
 /// The loaded contact over the levels w_k = k·largest_level/(levels − 1), at one y, roll and yaw. The energy w⁵ is the
-/// work of the force F_z from first touch on: that of the discrete solutions, ½ ∫ p h dA, differs from it by some 0.2 %
-/// where the normals of wheel and rail differ within the contact, and force and stiffness would not agree.
+/// work of the force F_z from first touch on: that of the discrete solutions, ½ ∫ p h dA, differs from it by up to 0.2
+/// % where the normals of wheel and rail differ within the contact, and force and stiffness would not agree.
 struct LoadedColumn {
   std::vector<LoadedNode> level;
   long solutions = 0;  ///< of the half-space problem

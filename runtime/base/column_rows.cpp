@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "railtab/runtime/base/file_signatures.hpp"
+
 namespace railtab {
 
 namespace {
@@ -54,7 +56,6 @@ bool ColumnRows::next() {
 bool ColumnRows::next_row() {
   while (reader_.next()) {
     std::string_view text = reader_.line();
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // some spreadsheets begin a file with it
     if (reader_.line_number() == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     text = stripped(text);
     if (text.empty() || text.front() == '#') continue;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "railtab/runtime/base/file_signatures.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 
@@ -94,15 +95,11 @@ class BoundsCheck {
   int line_ = 1, parts_ = 1, depth_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 /// What a file is that begins so and has no text; empty: it may be text.
 std::string_view binary_kind(std::string_view begin) {
-  if (begin.starts_with("\x89HDF\r\n\x1a\n")) return "an HDF5 file";
-  if (begin.starts_with("railtab\n")) return "a table or results of railtab";
-  if (begin.starts_with("PK\x03\x04")) return "a ZIP archive";
+  if (begin.starts_with(hdf5_signature)) return "an HDF5 file";
+  if (begin.starts_with(sealed_file_signature)) return "a table or results of railtab";
+  if (begin.starts_with(zip_signature)) return "a ZIP archive";
   return begin.substr(0, 512).find('\0') != std::string_view::npos ? "a binary file" : "";
 }
 

@@ -5,13 +5,13 @@
 #include <charconv>
 #include <cmath>
 
+#include "railtab/runtime/base/file_signatures.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
 
 namespace {
 constexpr std::string_view blanks = " \t\r\f\v";
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // UTF-8, as Windows programs write it
 }  // namespace
 
 std::optional<std::string> ProfileText::next() {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/base/file_signatures.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -18,8 +19,7 @@
 namespace railtab {
 namespace {
 
-constexpr std::string_view mark = "railtab\n";
-constexpr std::string_view hdf5_signature("\x89HDF\r\n\x1a\n", 8);
+constexpr std::string_view mark = sealed_file_signature;
 static_assert(mark.size() == hdf5_signature.size());
 
 /// The whole block, so that damage to any of its bytes shows: mark, length of the rest, checksum of the rest, zeros.

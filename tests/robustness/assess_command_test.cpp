@@ -132,8 +132,8 @@ TEST_F(AssessCommand, TellsOfAFreeEndOfADeck) {
   const json free = object(vsi("assess free.toml" + stage));
   const std::string note = "An end of deck " + free["decks"][0]["name"].get<std::string>() +
                            " is free to move: an axle load that comes on accelerates it at once, while rails, sleepers "
-                           "and ballast would spread the load. The acceleration there is overestimated and fails "
-                           "no limit; runs with contact have the track.";
+                           "and ballast would spread the load. Where that can be over a tenth of the largest "
+                           "acceleration, it is overestimated and fails no limit; runs with contact have the track.";
   const auto told = [&](const json& assessment) {
     const json& notes = assessment["stages"]["moving-load"]["notes"];
     return std::find(notes.begin(), notes.end(), note) != notes.end();

@@ -209,8 +209,8 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
     if (!has_free_end(deck.deck)) continue;
     report.notes.push_back(fmt::format(
         "An end of deck {} is free to move: an axle load that comes on accelerates it at once, while rails, "
-        "sleepers and ballast would spread the load. The acceleration there is overestimated and fails no limit; runs "
-        "with contact have the track.",
+        "sleepers and ballast would spread the load. Where that can be over a tenth of the largest acceleration, it is "
+        "overestimated and fails no limit; runs with contact have the track.",
         deck.deck.name));
   }
 }

@@ -70,9 +70,10 @@ Description of_array_file(const std::string& file) {
 
 Description of_toml(const std::string& file) {
   const toml::table table = parse_toml(read_toml_text(file, "a TOML file"), file);
-  Description d{std::string(kind_name(toml_kind(table))), {}, {}};
+  const TomlKind kind = toml_kind(table);
+  Description d{std::string(kind_name(kind)), {}, {}};
   if (const auto name = table["name"].value<std::string>()) d.facts.push_back(printable(*name));
-  switch (toml_kind(table)) {
+  switch (kind) {
     case TomlKind::scene:
       d.commands = {fmt::format("vsi check {}", file), fmt::format("vsi run {} --plan", file),
                     fmt::format("vsi run {}", file), fmt::format("vsi sweep {} --speed LO:HI:STEP -o DIR", file)};
