@@ -56,6 +56,10 @@ Matrix orthogonal_complement(const Matrix& A) {
   return orthogonal_factor(A, last);
 }
 
+void LuFactor::factor(const Matrix& A) { lu_.compute(A); }
+
+void LuFactor::solve(const Vector& b, Vector& x) const { x = lu_.solve(b); }
+
 CholeskyFactor::CholeskyFactor(const Matrix& M) : L_(M.llt().matrixLLT()) {}
 
 Matrix CholeskyFactor::solve_L(const Matrix& B) const { return L_.triangularView<Eigen::Lower>().solve(B); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace railtab {
 
@@ -43,6 +44,18 @@ struct GeneralSpectrum {
 
 /// An orthonormal basis of what is orthogonal to the columns of A, which are independent.
 [[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& A);
+
+/// LU decomposition with partial pivoting of a regular matrix, for many right-hand sides. Nothing is allocated where
+/// the size stays.
+class LuFactor {
+ public:
+  void factor(const Eigen::MatrixXd& A);
+  /// x <- A⁻¹ b; they may not be one vector.
+  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
+
+ private:
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+};
 
 /// M = L Lᵀ, M symmetric and positive definite.
 class CholeskyFactor {

@@ -1,8 +1,9 @@
 #include "railtab/runtime/reliability/response_surface.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 namespace railtab {
 namespace {
@@ -40,7 +41,7 @@ ResponseSurface::ResponseSurface(const std::vector<std::vector<double>>& points,
       right += y[i] * terms;
     }
     normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();  // points that all lie on a plane have a fit too
-    const Eigen::VectorXd c = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    const Eigen::VectorXd c = symmetric_solution(normal, right);
     constant_ = c(0);
     Eigen::Map<Eigen::VectorXd>(linear_.data(), n) = c.segment(1, n);
     Eigen::Map<Eigen::VectorXd>(square_.data(), n) = c.tail(n);

@@ -1,12 +1,12 @@
 #include "railtab/runtime/start/static_equilibrium.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
@@ -74,7 +74,7 @@ class WheelsetConstraint {
       dof_.push_back(dof);
     }
     response_ = vehicle.inverse()(Eigen::all, dof_);
-    compliance_.compute(vehicle.inverse()(dof_, dof_));
+    compliance_.factor(vehicle.inverse()(dof_, dof_));
     first_unknown_ = wheelset_unknowns * model.wheelsets_per_vehicle();
   }
 
@@ -85,7 +85,8 @@ class WheelsetConstraint {
     for (std::size_t i = 0; i < dof_.size(); ++i) {
       apart[static_cast<Eigen::Index>(i)] = q[first_unknown_ * v + unknown_[i]] - apart[static_cast<Eigen::Index>(i)];
     }
-    const Eigen::VectorXd force = compliance_.solve(apart);
+    Eigen::VectorXd force;
+    compliance_.solve(apart, force);
     dofs += response_ * force;
     return force.cwiseAbs().maxCoeff();
   }
@@ -93,7 +94,7 @@ class WheelsetConstraint {
  private:
   std::vector<int> unknown_, dof_;
   Eigen::MatrixXd response_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> compliance_;
+  LuFactor compliance_;
   int first_unknown_ = 0;
 };
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
@@ -179,8 +179,8 @@ class DeckSurface {
       depth += weight * p * n.node.position[2];
     }
     if (near.size() < 4) return std::nullopt;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(moments);
-    if (spectrum.eigenvalues()[0] < least * spectrum.eigenvalues()[2]) return std::nullopt;
+    const Eigen::VectorXd spectrum = symmetric_spectrum(moments).values;
+    if (spectrum[0] < least * spectrum[2]) return std::nullopt;
     if (std::hypot(moments(0, 1), moments(0, 2)) > inside * moments(0, 0)) {
       throw input_error(place(x, y), "deck nodes on one side only: the track lies beyond their edge",
                         "a deck under both halves of the sleepers");

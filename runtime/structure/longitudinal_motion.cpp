@@ -1,9 +1,9 @@
 #include "railtab/runtime/structure/longitudinal_motion.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/stiffness_factor.hpp"
 
@@ -46,8 +46,7 @@ double change_on_piece(TrackParameters piece, const std::vector<BridgeParameters
         kept.push_back(C);
         continue;
       }
-      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ratio(C, kept[i], Eigen::EigenvaluesOnly);
-      change = std::max(change, (ratio.eigenvalues().array() - 1.0).abs().maxCoeff());
+      change = std::max(change, (generalised_eigenvalues(C, kept[i]).array() - 1.0).abs().maxCoeff());
     }
   }
   return change;

@@ -1,11 +1,11 @@
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "railtab/runtime/algebra/inverse_side_by_side.hpp"
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/element_forces.hpp"
@@ -88,7 +88,7 @@ void invert_group(const ContactProblem& problem, int group, NewtonWorkspace& ws)
   for (int j = 0; j < range.end - range.first; ++j) {
     jacobian.middleCols<12>(12 * j) -= stiffened.middleCols<12>(12 * j) * ws.tangent[index(range.first + j)];
   }
-  ws.inverse[index(group)] = jacobian.partialPivLu().inverse();
+  ws.inverse[index(group)] = dense_inverse(jacobian);
 }
 
 // (I − C T)⁻¹ of up to eight wheelsets side by side. C couples the motions of the wheelset with each other, and those

@@ -141,7 +141,7 @@ void ElementForces::factor(const ElementCompliance& compliance) {
   if (same(slope_, factored_slope_) && same(compliance.own, factored_compliance_)) return;
   jacobian_.setIdentity(x_.size(), x_.size());
   jacobian_.noalias() += compliance.own * slope_;
-  solver_.compute(jacobian_);
+  solver_.factor(jacobian_);
   factored_slope_ = slope_;
   factored_compliance_ = compliance.own;
 }
@@ -161,7 +161,7 @@ bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::Vect
   double size = residual();
   for (int iteration = 0; iteration < most_iterations && !(size <= rounding); ++iteration) {
     factor(compliance);
-    correction_ = solver_.solve(residual_);
+    solver_.solve(residual_, correction_);
     x_before_ = x_;
     const double before = size;
     double part = 1.0;
@@ -179,7 +179,7 @@ bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::Vect
 Eigen::MatrixXd ElementForces::stiffening(const ElementCompliance& compliance) const {
   const Eigen::Index n = x_.size();
   const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(n, n) + compliance.own * slope_;
-  return compliance.to_wheelsets * slope_ * jacobian.partialPivLu().solve(compliance.from_wheelsets);
+  return compliance.to_wheelsets * slope_ * dense_solution(jacobian, compliance.from_wheelsets);
 }
 
 TrainElements::TrainElements(const VehicleModel& kind, std::size_t vehicles)

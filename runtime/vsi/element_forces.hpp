@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <span>
 #include <vector>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/vehicle/separate_systems.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
@@ -102,7 +102,7 @@ class ElementForces {
   Eigen::MatrixXd slope_;  // ∂share/∂x
   Eigen::VectorXd residual_, correction_, x_before_;
   Eigen::MatrixXd jacobian_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> solver_;
+  LuFactor solver_;
   Eigen::MatrixXd factored_slope_, factored_compliance_;  // of solver_
 };
 

@@ -1,10 +1,10 @@
 // Wheels that follow the rails as the contact law of a step (NormalContact::rigid).
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <optional>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
@@ -275,27 +275,29 @@ class RigidWheels : public ContactLaw {
       return WheelsetRange{first + of_vehicle.first, first + of_vehicle.end};
     };
     system_.setIdentity(wheelsets, wheelsets);
-    force_ = free_force_;
+    right_ = free_force_;
     for (int i = 0; i < wheelsets; ++i) {
       const auto [first, end] = coupled(i);
-      for (int k = first; k < end; ++k) force_[i] += impedance(i, k).dot(free[index(k)]);
+      for (int k = first; k < end; ++k) right_[i] += impedance(i, k).dot(free[index(k)]);
     }
     for (const LineCoupling& c : couplings_) {
       const Vector3d motion = followed(c.line, rate * c.line, step.hht.acceleration_rate() * c.line[0], running_);
       const auto [first, end] = coupled(c.i);
       for (int i = first; i < end; ++i) system_(i, c.j) += impedance(i, c.i).dot(motion);
     }
-    force_ = system_.partialPivLu().solve(force_).eval();
+    factor_.factor(system_);
+    factor_.solve(right_, force_);
   }
 
   int per_vehicle_;
-  std::vector<Prediction> prediction_;         // per vehicle
-  std::vector<Eigen::VectorXd> remainder_;     // per vehicle: R
-  const VsiState* state_ = nullptr;            // at the begin of the step
-  std::optional<TrainElements> elements_;      // where vehicles have force elements
-  std::vector<Eigen::VectorXd> element_load_;  // per vehicle: on its dofs, in R
-  Eigen::VectorXd free_force_, force_;         // per wheelset: without heave, and solved [N]
+  std::vector<Prediction> prediction_;          // per vehicle
+  std::vector<Eigen::VectorXd> remainder_;      // per vehicle: R
+  const VsiState* state_ = nullptr;             // at the begin of the step
+  std::optional<TrainElements> elements_;       // where vehicles have force elements
+  std::vector<Eigen::VectorXd> element_load_;   // per vehicle: on its dofs, in R
+  Eigen::VectorXd free_force_, right_, force_;  // per wheelset: without heave, right-hand side, and solved [N]
   Eigen::MatrixXd system_;
+  LuFactor factor_;
   Running running_{};
   std::vector<LineCoupling> couplings_;
   std::vector<Vector3d> known_;      // (z, v, a) of irregularity and predictor

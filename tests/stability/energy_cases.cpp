@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <optional>
 
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "watched_run.hpp"
@@ -29,12 +29,12 @@ void for_vertical_dofs(const VsiModel& model, VsiState& state, const Change& cha
 void balance_accelerations(const VsiModel& model, VsiState& state) {
   const Eigen::MatrixXd damping = model.vehicle_damping(model.contact.speed);
   for (LinearMotion& m : state.vehicle) {
-    m.acceleration = model.vehicle.mass.ldlt().solve(model.vehicle.static_load - damping * m.velocity -
-                                                     model.vehicle.stiffness * m.displacement);
+    m.acceleration = symmetric_solution(model.vehicle.mass, model.vehicle.static_load - damping * m.velocity -
+                                                                model.vehicle.stiffness * m.displacement);
   }
   if (!model.structure) return;
   LinearMotion& m = state.structure;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(model.structure->mass);
+  const SparseLdlt mass(model.structure->mass, "the structure's mass is not positive definite");
   m.acceleration = mass.solve(-(model.structure->damping * m.velocity) - model.structure->stiffness * m.displacement);
 }
 

@@ -1,8 +1,8 @@
 #include "railtab/runtime/structure/longitudinal_motion.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ Eigen::VectorXd rail_under(const StructureModel& model, double x, double left, d
       if (rows.dof[k] != held) load[rows.dof[k]] += (side == RailSide::left ? left : right) * rows.z[k];
     }
   }
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(model.stiffness);
+  const SparseLdlt factor = stiffness_factor(model.stiffness);
   const Eigen::VectorXd moved = factor.solve(load);
   Eigen::VectorXd rail(2 * static_cast<Eigen::Index>(model.rail[0].dof.size()));
   for (std::size_t i = 0; i < model.rail[0].dof.size(); ++i) {

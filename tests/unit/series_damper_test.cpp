@@ -1,5 +1,6 @@
 // Dampers in series with a stiffness (Maxwell elements) against their closed forms.
 #include "railtab/runtime/vehicle/series_damper.hpp"
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -115,10 +116,10 @@ Eigen::Matrix3d system_matrix() {
 }
 
 Eigen::Vector3d closed_form(const Eigen::Vector3d& start, double time) {
-  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(system_matrix());
-  const Eigen::Vector3cd part = eigen.eigenvectors().inverse() * start.cast<Complex>();
-  const Eigen::Vector3cd grown = (time * eigen.eigenvalues()).array().exp() * part.array();
-  return (eigen.eigenvectors() * grown).real();
+  const GeneralSpectrum eigen = general_spectrum(system_matrix());
+  const Eigen::Vector3cd part = Eigen::Matrix3cd(eigen.vectors).inverse() * start.cast<Complex>();
+  const Eigen::Vector3cd grown = (time * eigen.values).array().exp() * part.array();
+  return (eigen.vectors * grown).real();
 }
 
 /// Largest error of the mass' displacement over two periods.
@@ -153,7 +154,7 @@ TEST(SeriesDamper, StepsOfSecondOrderMeetTheClosedForm) {
 }
 
 TEST(SeriesDamper, NaturalMotionsAreRootsOfTheClosedForm) {
-  const Eigen::Vector3cd roots = Eigen::EigenSolver<Eigen::Matrix3d>(system_matrix()).eigenvalues();
+  const Eigen::Vector3cd roots = general_spectrum(system_matrix()).values;
   for (const VehicleMode& mode : natural_modes(mass_on_series_damper(), 5)) {
     const double omega = 2.0 * M_PI * mode.frequency;
     const Complex s(-mode.damping * omega, omega * std::sqrt(std::max(0.0, 1.0 - mode.damping * mode.damping)));

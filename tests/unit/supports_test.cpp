@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
@@ -37,7 +37,7 @@ struct Translation {
 Translation translation(const StructureModel& m, int component) {
   Translation t{Eigen::VectorXd::Zero(m.dofs()), Eigen::VectorXd::Zero(m.supports.columns())};
   for (int i = component; i < m.supports.columns(); i += 2) t.supports[i] = 1.0;
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(m.stiffness);
+  const SparseLdlt factor = stiffness_factor(m.stiffness);
   t.unknowns = factor.solve(-(m.supports.stiffness * t.supports));
   return t;
 }
@@ -74,7 +74,7 @@ TEST(Supports, OneSupportThatSettlesTurnsItsSpan) {
   // supports in order: both ends of the first span, both ends of the second
   Eigen::VectorXd settled = Eigen::VectorXd::Zero(m.supports.columns());
   settled[2 * 1 + 1] = settled[2 * 2 + 1] = 0.01;  // the pier between them
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(m.stiffness);
+  const SparseLdlt factor = stiffness_factor(m.stiffness);
   const Eigen::VectorXd u = factor.solve(-(m.supports.stiffness * settled));
   // nearly rigid spans: the rails hold them back by less than a thousandth
   EXPECT_NEAR(u[m.nodes[0].dof[2]], 0.005, 5e-6) << m.nodes[0].name;
@@ -91,7 +91,7 @@ TEST(VerticalPlane, TrackAndBridgeDeflectAsInThreeDimensions) {
     for (const RailSide side : {RailSide::left, RailSide::right}) {
       add_rail_load(rail_contact(*m, side, 5.13), {0.0, 50e3, 0.0}, load);
     }
-    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(m->stiffness);
+    const SparseLdlt factor = stiffness_factor(m->stiffness);
     const Eigen::VectorXd u = factor.solve(load);
     Eigen::VectorXd& line = deflection[m == &plane ? 0 : 1];
     line.resize(60);

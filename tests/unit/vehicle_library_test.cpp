@@ -1,10 +1,10 @@
 // Every vehicle of the library against its source's sums and against closed forms of its own.
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
+#include "railtab/runtime/base/dense_solvers.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -76,8 +76,7 @@ std::vector<double> chain(const std::vector<double>& m, const std::vector<double
     K(i + 1, i) -= stiffness;
   }
   const Eigen::VectorXd scale = Eigen::Map<const Eigen::VectorXd>(m.data(), n).cwiseSqrt().cwiseInverse();
-  const Eigen::VectorXd omega2 =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scale.asDiagonal() * K * scale.asDiagonal()).eigenvalues();
+  const Eigen::VectorXd omega2 = symmetric_spectrum(scale.asDiagonal() * K * scale.asDiagonal()).values;
   std::vector<double> frequencies;
   for (const double value : omega2) frequencies.push_back(std::sqrt(value) / (2.0 * std::numbers::pi));
   return frequencies;

@@ -3,14 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <numbers>
 #include <string>
 
 #include "../measured.hpp"
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 
 namespace railtab {
@@ -19,9 +20,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 Eigen::VectorXd circular_frequencies(const StructureModel& model) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(model.stiffness),
-                                                                         Eigen::MatrixXd(model.mass));
-  return solver.eigenvalues().cwiseSqrt();
+  return generalised_eigenvalues(Eigen::MatrixXd(model.stiffness), Eigen::MatrixXd(model.mass)).cwiseSqrt();
 }
 
 TEST(SimpleBeam, FirstFrequencyIsThePublishedOne) {

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 #include <map>
 #include <string>
 
 #include "../measured.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "shell_deck.hpp"
@@ -28,7 +28,7 @@ Eigen::VectorXd under_train(const StructureModel& model, double from, double to,
       }
     }
   }
-  return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(model.stiffness).solve(load);
+  return stiffness_factor(model.stiffness).solve(load);
 }
 
 TEST_F(ShellDeck, EdgesTwistAndRollAreThoseOfCalculix) {

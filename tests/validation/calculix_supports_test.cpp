@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
+#include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 
@@ -124,7 +124,7 @@ StructureModel laid(ImportParameters parameters) {
 double departure(const StructureModel& model) {
   Eigen::VectorXd alike = Eigen::VectorXd::Zero(model.supports.columns());
   for (Eigen::Index k = 1; k < alike.size(); k += 2) alike[k] = 1.0;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(model.stiffness);
+  const SparseLdlt factor = stiffness_factor(model.stiffness);
   const Eigen::VectorXd u = factor.solve(-(model.supports.stiffness * alike));
   return std::abs(u[model.nodes.front().dof[2]] - 1.0);
 }

@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
@@ -66,7 +67,7 @@ double pole_modulus(const std::vector<double>& y, double dx) {
     a.row(i) << y[k + 1], y[k];
     b[i] = y[k + 2];
   }
-  const Eigen::Vector2d pq = a.colPivHouseholderQr().solve(b);
+  const Eigen::Vector2d pq = least_squares_solution(a, b);
   const std::complex<double> root = std::sqrt(std::complex<double>(pq[0] * pq[0] / 4.0 + pq[1]));
   const std::complex<double> s1 = std::log(pq[0] / 2.0 + root) / dx;
   const std::complex<double> s2 = std::log(pq[0] / 2.0 - root) / dx;

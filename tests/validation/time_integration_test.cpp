@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <complex>
 #include <cstdio>
 #include <numbers>
 #include <vector>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
@@ -72,7 +73,7 @@ std::complex<double> principal_root(double alpha, double step) {
   const double A3 = alpha * W * (beta - gamma + 0.5) / D;
   Eigen::Matrix3d companion;
   companion << 2 * A1, -A2, A3, 1, 0, 0, 0, 1, 0;
-  const Eigen::Vector3cd roots = companion.eigenvalues();
+  const Eigen::Vector3cd roots = general_spectrum(companion).values;
   std::complex<double> principal = roots[0];
   for (int i = 1; i < 3; ++i) {
     if (std::abs(roots[i].imag()) > std::abs(principal.imag())) principal = roots[i];
@@ -90,7 +91,7 @@ std::complex<double> measured_root(const std::vector<double>& u, std::size_t fir
     a.row(i) << u[k + 1], u[k];
     b[i] = u[k + 2];
   }
-  const Eigen::Vector2d pq = a.colPivHouseholderQr().solve(b);
+  const Eigen::Vector2d pq = least_squares_solution(a, b);
   return pq[0] / 2 + std::sqrt(std::complex<double>(pq[0] * pq[0] / 4 + pq[1]));
 }
 
