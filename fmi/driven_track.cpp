@@ -134,6 +134,8 @@ void exchange(Archive& archive, DrivenTrack& track) {
     exchange_list(archive, rail.x);
     exchange_list(archive, rail.dof);
     archive.values(&rail.head_height, 1);
+    for (double* stiffness : {&rail.stiffness.EIy, &rail.stiffness.EIz, &rail.stiffness.GJ})
+      archive.values(stiffness, 1);
   }
   archive.size(structure.nodes);
   for (StructureNode& node : structure.nodes) {
@@ -159,6 +161,11 @@ bool increases(const std::vector<double>& x) {
   return true;
 }
 
+bool is_known_or_not(const RailStiffness& stiffness) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+  return stiffness == RailStiffness{} || (positive(stiffness.EIy) && positive(stiffness.EIz) && positive(stiffness.GJ));
+}
+
 // Whether indices and counts of what was read fit each other, and it can be stepped.
 bool is_consistent(const DrivenTrack& track) {
   const StructureModel& s = track.structure;
@@ -169,6 +176,7 @@ bool is_consistent(const DrivenTrack& track) {
               s.dof_line.size() == s.dof_x.size() && track.scheme.time_step > 0.0 &&
               track.scheme.alpha >= smallest_alpha && track.scheme.alpha <= 0.0;
   for (const RailLine& rail : s.rail) {
+    fits = fits && is_known_or_not(rail.stiffness);
     fits = fits && rail.x.size() >= 2 && rail.dof.size() == rail.x.size() && increases(rail.x);
     for (const DofIndices& dofs : rail.dof) fits = fits && are_dofs(dofs, n);
   }

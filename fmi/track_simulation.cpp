@@ -21,6 +21,18 @@ long steps_in(double length, double time_step) {
   return std::lround(steps);
 }
 
+double mean_x(const std::vector<double>& input) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < input.size(); i += inputs_per_wheelset) sum += input[i];
+  return sum * inputs_per_wheelset / static_cast<double>(input.size());
+}
+
+Eigen::VectorXd forces(const std::vector<RailLoad>& loads) {
+  Eigen::VectorXd forces(3 * static_cast<Eigen::Index>(loads.size()));
+  for (std::size_t i = 0; i < loads.size(); ++i) forces.segment<3>(3 * static_cast<Eigen::Index>(i)) = loads[i].load;
+  return forces;
+}
+
 }  // namespace
 
 TrackSimulation::TrackSimulation(DrivenTrack track)
@@ -35,7 +47,9 @@ void TrackSimulation::reset() {
   }
   state_.applied = state_.input;
   state_.motion = LinearMotion(track_.structure.dofs());
-  loads_ = loads(state_.applied);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(6 * static_cast<Eigen::Index>(track_.wheelset_x.size()));
+  state_.deflection = {none, none, none};
+  place();
 }
 
 void TrackSimulation::set(std::size_t input, double value) {
@@ -59,6 +73,18 @@ void TrackSimulation::rest() {
   state_.applied = state_.input;
   loads_ = loads(state_.applied);
   state_.motion = rest_under(track_.structure, loads_);
+  state_.deflection.force = state_.deflection.slope_force = forces(loads_);
+  state_.deflection.rate.setZero();
+  state_.speed = 0.0;
+  place();
+}
+
+void TrackSimulation::place() {
+  loads_ = loads(state_.applied);
+  std::vector<RailContact> contacts;
+  for (const RailLoad& load : loads_) contacts.push_back(load.place);
+  const ElementDeflection& d = state_.deflection;
+  element_motion(contacts, d.force, d.rate, d.slope_force, state_.speed, elements_);
 }
 
 void TrackSimulation::step(double length) {
@@ -70,14 +96,19 @@ void TrackSimulation::step(double length) {
   }
   const std::vector<double> before = state_.applied;
   for (long k = 1; k <= steps; ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(steps);
+    const double share = static_cast<double>(k) / static_cast<double>(steps), from = mean_x(state_.applied);
     for (std::size_t i = 0; i < before.size(); ++i) {
       state_.applied[i] = k == steps ? state_.input[i] : before[i] + share * (state_.input[i] - before[i]);
     }
     loads_ = loads(state_.applied);
+    state_.speed = (mean_x(state_.applied) - from) / time_step;
     advance_structure(response_, track_.scheme, loads_, state_.motion, workspace_);
+    const ElementStep of_step(track_.scheme);
+    Eigen::VectorXd end = of_step.free(state_.deflection) + of_step.share * forces(loads_);
+    of_step.close(end, state_.deflection);
     ++state_.steps;
   }
+  place();
 }
 
 double TrackSimulation::value(std::size_t variable) const {
@@ -87,9 +118,11 @@ double TrackSimulation::value(std::size_t variable) const {
   if (wheel < loads_.size()) {
     const RailContact& place = loads_[wheel].place;
     const std::size_t k = output % outputs_per_wheel;
-    if (k < 3) return rail_head(place, motion.displacement)[static_cast<Eigen::Index>(k)];
-    if (k < 6) return rail_head(place, motion.velocity)[static_cast<Eigen::Index>(k - 3)];
-    return rail_slopes(place, motion.displacement)[static_cast<Eigen::Index>(k - 6)];
+    const RailHeadMotion& element = elements_[wheel];
+    if (k < 3) return (rail_head(place, motion.displacement) + element.displacement)[static_cast<Eigen::Index>(k)];
+    if (k < 6) return (rail_head(place, motion.velocity) + element.velocity)[static_cast<Eigen::Index>(k - 3)];
+    return rail_slopes(place, motion.displacement)[static_cast<Eigen::Index>(k - 6)] +
+           (k == 6 ? element.yaw : -element.slope);
   }
   const std::size_t of_nodes = output - outputs_per_wheel * loads_.size(), k = of_nodes % outputs_per_node;
   constexpr std::size_t y = 1;
@@ -99,7 +132,7 @@ double TrackSimulation::value(std::size_t variable) const {
 
 void TrackSimulation::set_state(const TrackState& state) {
   state_ = state;
-  loads_ = loads(state_.applied);
+  place();
 }
 
 namespace {
@@ -110,8 +143,11 @@ void visit_numbers(State& state, Visitor&& visit) {
   visit(&state.begin, 1);
   visit(state.input.data(), state.input.size());
   visit(state.applied.data(), state.applied.size());
+  visit(&state.speed, 1);
   auto& m = state.motion;
-  for (auto* vector : {&m.displacement, &m.velocity, &m.acceleration, &m.contact_load}) {
+  auto& d = state.deflection;
+  for (auto* vector :
+       {&m.displacement, &m.velocity, &m.acceleration, &m.contact_load, &d.force, &d.rate, &d.slope_force}) {
     visit(vector->data(), static_cast<std::size_t>(vector->size()));
   }
 }

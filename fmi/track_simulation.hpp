@@ -5,6 +5,7 @@
 
 #include "railtab/fmi/driven_track.hpp"
 #include "railtab/fmi/track_variables.hpp"
+#include "railtab/runtime/vsi/element_deflection.hpp"
 #include "railtab/runtime/vsi/structure_step.hpp"
 
 namespace railtab::fmi {
@@ -16,6 +17,8 @@ struct TrackState {
   std::vector<double> input;    ///< as set, for the end of the next step
   std::vector<double> applied;  ///< at the present time
   LinearMotion motion{};
+  ElementDeflection deflection{};  ///< of rails under the wheels
+  double speed = 0.0;              ///< of the wheelsets over the last step, their mean [m/s]
 };
 
 /// A track in motion under inputs, the variables of track_variables().
@@ -51,13 +54,16 @@ class TrackSimulation {
 
  private:
   [[nodiscard]] std::vector<RailLoad> loads(const std::vector<double>& input) const;
+  /// loads_ and elements_ of the state.
+  void place();
 
   DrivenTrack track_;
   std::vector<TrackVariable> variables_;
   StructureResponse response_;
   StructureStepWorkspace workspace_;
   TrackState state_;
-  std::vector<RailLoad> loads_;  ///< of state_.applied
+  std::vector<RailLoad> loads_;           ///< of state_.applied
+  std::vector<RailHeadMotion> elements_;  ///< per wheel, of rails between the nodes of their elements
 };
 
 /// A state as numbers.

@@ -166,7 +166,8 @@ VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model, shared);
   if (shared) model.store = shared->structures();
   if (scene.track_kind != TrackKind::rigid) {
-    model.structure = build_structure(scene);
+    model.structure =
+        scene.contact.normal == NormalContact::hertz ? build_structure_under_contacts(scene) : build_structure(scene);
     model.structure_warnings = model.structure->warnings;
   }
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);

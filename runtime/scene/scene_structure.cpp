@@ -1,6 +1,11 @@
 #include "railtab/runtime/scene/scene_structure.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -18,6 +23,31 @@ bool has_deck_nodes(const SceneParameters& scene) noexcept {
   const bool bridge = !scene.spans.empty() || scene.structure.files.given();
   if (scene.track_kind != TrackKind::imported) return scene.track_kind == TrackKind::flexible && bridge;
   return bridge && !scene.structure.files.nodes.empty() && scene.structure.deck.given();
+}
+
+namespace {
+
+/// Lowest natural frequency of a rail whose nodes, at the sleepers, are held: in bending or torsion [Hz]
+double lowest_frequency_of_bay(const TrackParameters& track) {
+  constexpr double pi = std::numbers::pi, clamped = 22.373;  // (βL)² of a beam with clamped ends
+  const RailBeamParameters& rail = track.rail;
+  const double L = track.sleeper_spacing;
+  const double bending = clamped / (2.0 * pi * L * L) * std::sqrt(rail.E * std::min(rail.Iy, rail.Iz) / rail.mass);
+  return std::min(bending, std::sqrt(rail.GJ / rail.rotary_inertia) / (2.0 * L));
+}
+
+}  // namespace
+
+StructureModel build_structure_under_contacts(SceneParameters scene) {
+  const bool built = scene.track_kind == TrackKind::flexible;
+  if (!built || scene.track.elements_per_bay != 0) return build_structure(scene);
+  scene.track.elements_per_bay = 1;
+  StructureModel structure = build_structure(scene);
+  structure.left_out.push_back(fmt::format(
+      "rail nodes between sleepers: under a wheel a rail deflects there as at rest; at the frequency f its inertia "
+      "changes the share (f / {:.3g} Hz)² of that",
+      lowest_frequency_of_bay(scene.track)));
+  return structure;
 }
 
 StructureModel build_structure(const SceneParameters& scene) {

@@ -12,5 +12,8 @@ namespace railtab {
 
 /// The structure of a scene whose track is not rigid. @throws InputError
 [[nodiscard]] StructureModel build_structure(const SceneParameters& scene);
+/// The same for wheels with profiles, under which elements of built rails deflect between their nodes too: one element
+/// per bay where the scene leaves their number open.
+[[nodiscard]] StructureModel build_structure_under_contacts(SceneParameters scene);
 
 }  // namespace railtab

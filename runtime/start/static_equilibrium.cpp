@@ -98,7 +98,8 @@ class WheelsetConstraint {
   int first_unknown_ = 0;
 };
 
-std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::vector<RailContact>& contacts) {
+std::vector<RailCoupling> all_couplings(const VsiModel& model, const RestOperators& rest,
+                                        const std::vector<RailContact>& contacts) {
   StructureResponse& response = *rest.structure;
   const Eigen::MatrixXd compliance = response.compliance_at(contacts);
   std::vector<RailCoupling> rail;
@@ -106,6 +107,8 @@ std::vector<RailCoupling> all_couplings(const RestOperators& rest, const std::ve
   for (int i = 0; i < wheels; ++i) {
     for (int j = 0; j < wheels; ++j) {
       rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
+      if (model.normal_contact == NormalContact::rigid) continue;
+      rail.back().compliance += element_compliance(contacts[index(i)], contacts[index(j)]);
     }
   }
   return rail;
@@ -139,7 +142,7 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
     problem.vehicle_compliance.col(k).setZero();
     if (free_pitch) problem.vehicle_compliance(k, k) = pitch_rate_compliance;
   }
-  if (rest.structure) problem.rail = all_couplings(rest, contacts);
+  if (rest.structure) problem.rail = all_couplings(model, rest, contacts);
   problem.largest_move = 1e-3;
   return problem;
 }
@@ -186,6 +189,17 @@ struct RestShares {
   double E = 1.0;          // of the Young's modulus of wheel and rail
 };
 
+// Slopes of rails between the nodes of their elements, which the next solution's forces change little.
+void add_element_slopes(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                        ContactProblem& problem) {
+  std::vector<RailHeadMotion> between;
+  const Eigen::VectorXd on_rails = rail_part(force);
+  element_motion(contacts, on_rails, on_rails, on_rails, 0.0, between);
+  for (std::size_t wheel = 0; wheel < between.size(); ++wheel) {
+    add_slopes(between[wheel], problem.deviation[wheel / 2][wheel % 2]);
+  }
+}
+
 // Equilibrium at state.time with `structure_load` on the structure besides the wheels.
 EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model, const RestOperators& rest,
                                  const Eigen::VectorXd& structure_load, VsiState& state) {
@@ -217,6 +231,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
 
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
     rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+    if (model.normal_contact == NormalContact::hertz) add_element_slopes(contacts, state.contact.force, problem);
     if (share.deviation < 1.0) scale(share.deviation, problem.deviation);
     for (int v = 0; v < vehicles; ++v) {
       const LinearMotion& motion = state.vehicle[index(v)];
@@ -273,6 +288,8 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   }
   if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
   state.contact.step_load = state.contact.force;
+  state.deflection.force = state.deflection.slope_force = rail_part(state.contact.force);
+  state.deflection.rate.setZero();
   for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;
   state.structure.step_load = state.structure.contact_load;
   // The pitch unknowns are rates: hand them to the vehicles as such.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <array>
 #include <limits>
@@ -12,11 +13,20 @@
 
 namespace railtab {
 
+/// Bending and torsion of a rail as a beam.
+struct RailStiffness {
+  double EIy = 0.0;  ///< vertical bending [N m²]
+  double EIz = 0.0;  ///< lateral bending [N m²]
+  double GJ = 0.0;   ///< torsion [N m²]; 0: none of the three is known, as of imported rails
+  bool operator==(const RailStiffness&) const = default;
+};
+
 /// A rail as a line of beam nodes along x.
 struct RailLine {
   std::vector<double> x;        ///< strictly increasing node positions [m]
   std::vector<DofIndices> dof;  ///< of each node
   double head_height = 0.0;     ///< of the rail-head top above the beam axis [m]
+  RailStiffness stiffness{};
 };
 
 /// Rows that give the rail head's motion at a position from the 12 dofs of the beam element there (cubic Hermite for
@@ -33,6 +43,16 @@ struct RailInterpolation {
 /// @pre x lies on the rail (contains(rail, x)).
 [[nodiscard]] RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept;
 [[nodiscard]] bool contains(const RailLine& rail, double x) noexcept;
+
+/// Displacement (y, z, roll) of the rail head at x from unit loads (lateral and vertical force, moment about x) on the
+/// rail head at `loaded` with the nodes of the element held: what rail_interpolation() has not of a load between nodes.
+/// With a, b from `loaded` to the element's ends and L = a + b, at the load itself a³b³/(3 EI L³) [Przemieniecki1968]
+/// and (ab/L − λ sinh(a/λ) sinh(b/λ)/sinh(L/λ))/GJ: warping smooths the twist over λ = 0.04 m
+/// (docs/theory/coupling.md). Zero where the two are not on one element or the stiffness is not known.
+/// @pre both lie on the rail
+[[nodiscard]] Eigen::Matrix3d element_compliance(const RailLine& rail, double x, double loaded) noexcept;
+/// Derivative of element_compliance(rail, x, x) along x.
+[[nodiscard]] Eigen::Matrix3d element_compliance_slope(const RailLine& rail, double x) noexcept;
 
 /// A node whose motion is asked for by name ("deck-midspan").
 struct StructureNode {

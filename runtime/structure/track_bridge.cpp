@@ -230,10 +230,11 @@ void set_rows(Bridge& bridge, const OrderAlongTrack& order, StructureModel& mode
   set_channels(bridge.deck, model);
 }
 
-/// The track with this decided. A sleeper has pads at its top and ballast at its bottom, and pitches freely: at rest it
-/// bears no force along x, and neither holds the rail's foot nor the deck. Above some 100 Hz its inertia does hold the
-/// foot, through the pad's damper.
+/// The track with this and the number of rail elements decided. A sleeper has pads at its top and ballast at its
+/// bottom, and pitches freely: at rest it bears no force along x, and neither holds the rail's foot nor the deck. Above
+/// some 100 Hz its inertia does hold the foot, through the pad's damper.
 TrackParameters with(LongitudinalMotion motion, TrackParameters track) {
+  if (track.elements_per_bay == 0) track.elements_per_bay = 2;
   track.longitudinal = motion;
   if (motion == LongitudinalMotion::left_out) track.pad.kx = track.ballast_deck.kx = track.ballast_deck.cx = 0.0;
   return track;
@@ -291,7 +292,8 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
     model.left_out.push_back(longitudinal_left_out(nodes, plane, longitudinal.change));
   }
   for (size_t side = 0; side < 2; ++side) {
-    model.rail[side] = {nodes.rail[side].x, nodes.rail[side].dof, rail.head_height};
+    model.rail[side] = {
+        nodes.rail[side].x, nodes.rail[side].dof, rail.head_height, {rail.E * rail.Iy, rail.E * rail.Iz, rail.GJ}};
   }
   return model;
 }

@@ -53,7 +53,7 @@ struct TrackParameters {
   SleeperParameters sleeper;
   double sleeper_spacing = 0.6;      ///< [m]
   double half_rail_distance = 0.75;  ///< track centre to rail-head centre [m]
-  int elements_per_bay = 2;          ///< rail elements between sleepers, 1..20
+  int elements_per_bay = 0;          ///< rail elements between sleepers, 1..20; 0: two
   LongitudinalMotion longitudinal = LongitudinalMotion::automatic;
   double length_before = 60.0;  ///< track before x = 0 [m]; rounded up to whole bays
   double length_after = 60.0;   ///< track after the end of the last span, or after x = 0 where there is none [m]

@@ -49,7 +49,7 @@ void TrackParameters::validate() const {
   check_sleeper(sleeper);
   require_between("track.sleeper_spacing", sleeper_spacing, 0.05, 10.0, "m");
   require_between("track.half_rail_distance", half_rail_distance, 0.25, 1.1, "m");
-  require_between("track.elements_per_bay", elements_per_bay, 1, 20, "-");
+  require_between("track.elements_per_bay", elements_per_bay, 0, 20, "-");
   require_positive("track.length_before", length_before, "m");
   require_between("track.length_before", length_before, 0.0, longest_track, "m");
   require_positive("track.length_after", length_after, "m");

@@ -53,6 +53,13 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
     const LinearMotion& m = state.structure;
     b.kinetic += 0.5 * m.velocity.dot(model_.structure->mass * m.velocity);
     b.strain += 0.5 * m.displacement.dot(model_.structure->stiffness * m.displacement);
+    const std::vector<RailContact> contacts = place_wheels(model_, state.time);
+    std::vector<RailHeadMotion> between;
+    const Eigen::VectorXd& g = state.deflection.force;
+    element_motion(contacts, g, state.deflection.rate, g, 0.0, between);
+    for (int wheel = 0; wheel < static_cast<int>(between.size()); ++wheel) {
+      b.strain += 0.5 * between[index(wheel)].displacement.dot(g.segment<3>(3 * wheel));
+    }
     now.structure_velocity = m.velocity;
   }
   contact_.set_speed(model_.speed(state.time));

@@ -13,6 +13,13 @@ namespace railtab {
 
 namespace {
 
+// What the load weight is to the structure, to the rails' elements: a share of the force at the end of the step. Under
+// ContactForceRule::energy that is the one whose mean with the force at the start is the step's mean.
+double element_weight(const HhtScheme& hht) {
+  const double of_force = hht.contact_force == ContactForceRule::energy ? 2.0 * hht.gamma() * hht.load_weight() : 1.0;
+  return ElementStep(hht).share * of_force;
+}
+
 void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   const std::vector<RailContact>& contacts = step.contacts;
   rail.clear();
@@ -23,7 +30,8 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
     // symmetric.
     for (int i = j; i < wheels; ++i) {
       const Eigen::Matrix3d c =
-          step.hht.load_weight() * step.operators.structure->compliance(contacts[index(i)], contacts[index(j)]);
+          step.hht.load_weight() * step.operators.structure->compliance(contacts[index(i)], contacts[index(j)]) +
+          element_weight(step.hht) * element_compliance(contacts[index(i)], contacts[index(j)]);
       if (c.isZero(0.0)) break;
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
@@ -42,6 +50,7 @@ class HertzContacts : public ContactLaw {
     if (!model.vehicle.elements.empty()) elements_.emplace(model.vehicle, n);
     problem_.free = problem_.predicted = problem_.predicted_velocity = begin_velocity_ =
         Eigen::VectorXd::Zero(wheelset_unknowns * model.wheelsets());
+    predicted_nodes_ = Eigen::VectorXd::Zero(6 * model.wheelsets());
   }
 
   void predict_vehicles(const StepContext& step, const VsiState& state, StepWorkspace& ws) override {
@@ -83,6 +92,7 @@ class HertzContacts : public ContactLaw {
       couple_rails(step, problem_.rail);
     }
     rail_deviation(step.model, step.contacts, step.end, ws.structure_prediction.displacement, problem_.deviation);
+    if (step.model.structure) predict_elements(step, state);
     problem_.velocity_rate = Vector6::Constant(step.hht.velocity_rate());
     problem_.rail_velocity_rate = step.hht.velocity_rate();
     weigh_compliance(step);
@@ -116,12 +126,15 @@ class HertzContacts : public ContactLaw {
 
   double correct_far_field(const StepContext& step, StepWorkspace& ws) override {
     double largest = 0.0;
+    load_elements(step, ws.solution);
+    element_motion(step.contacts, element_force_, element_rate_, element_force_, 0.0, end_elements_);
     for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
       const int k = rail_unknown(wheel);
       // What the contact solution has the rail do under its forces: where Newton ended, and its residual.
       const Vector3 expected = ws.solution.displacement.segment<3>(k) + newton_.residual.segment<3>(k);
-      const Vector3 missing =
-          problem_.predicted.segment<3>(k) + rail_head(step.contacts[index(wheel)], ws.structure_free) - expected;
+      const Vector3 missing = predicted_nodes_.segment<3>(3 * wheel) +
+                              rail_head(step.contacts[index(wheel)], ws.structure_free) +
+                              end_elements_[index(wheel)].displacement - expected;
       largest = std::max(largest, missing.cwiseAbs().maxCoeff());
       problem_.free.segment<3>(k) += missing;
       ws.far_field.segment<3>(3 * wheel) += missing;
@@ -146,6 +159,7 @@ class HertzContacts : public ContactLaw {
       }
       update(hht, prediction_[index(v)], increment, motion);
     }
+    if (step.model.structure) close_elements(step, ws.solution, state.deflection);
     newton_.trend.learn(ws.solution.displacement);
     ws.solution.step_load = state.contact.step_load;
     close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
@@ -184,8 +198,38 @@ class HertzContacts : public ContactLaw {
     gather_rails(step.contacts, ws.structure_free, problem_.free);
     for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
       const int k = rail_unknown(wheel);
+      predicted_nodes_.segment<3>(3 * wheel) = problem_.predicted.segment<3>(k);
       problem_.free.segment<3>(k) += problem_.predicted.segment<3>(k) + state.far_field.segment<3>(3 * wheel);
     }
+  }
+
+  void predict_elements(const StepContext& step, const VsiState& state) {
+    const ElementStep of_step(step.hht);
+    const ElementDeflection& begin = state.deflection;
+    const double V = step.model.speed(step.end);
+    element_rate_ = -of_step.back * begin.rate;
+    element_motion(step.contacts, begin.force, element_rate_, begin.force, V, predicted_elements_);
+    element_free_ = of_step.free(begin);
+    element_motion(step.contacts, element_free_, begin.rate, begin.force, V, free_elements_);
+    for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
+      const int k = rail_unknown(wheel);
+      const RailHeadMotion& predicted = predicted_elements_[index(wheel)];
+      problem_.predicted.segment<3>(k) += predicted.displacement;
+      problem_.predicted_velocity.segment<3>(k) += predicted.velocity;
+      problem_.free.segment<3>(k) += free_elements_[index(wheel)].displacement;
+      begin_velocity_.segment<3>(k) += free_elements_[index(wheel)].velocity;
+      add_slopes(predicted, problem_.deviation[index(wheel / 2)][index(wheel % 2)]);
+    }
+  }
+
+  // g at the end of the step, under the forces of the solution.
+  void load_elements(const StepContext& step, const ContactSolution& solution) {
+    element_force_ = element_free_ + element_weight(step.hht) * rail_part(solution.force);
+  }
+
+  void close_elements(const StepContext& step, const ContactSolution& solution, ElementDeflection& deflection) {
+    load_elements(step, solution);
+    ElementStep(step.hht).close(element_force_, deflection);
   }
 
   // Made when first needed.
@@ -203,7 +247,12 @@ class HertzContacts : public ContactLaw {
   std::vector<Prediction> prediction_;     // per vehicle
   std::vector<Eigen::VectorXd> free_;      // per vehicle: increment without contact forces
   Eigen::VectorXd begin_velocity_;         // of wheelsets and rail heads, in the order of the unknowns
-  NewtonWorkspace newton_;                 // tangents and loads are kept from step to step, until reinitialise()
+  Eigen::VectorXd predicted_nodes_;        // of rail heads, as their elements' nodes have them: 3 per wheel
+  // Motion of rail heads between the nodes of their elements, per wheel: predicted, without the forces of this step,
+  // and with them; and the forces that go with it, 3 per wheel.
+  std::vector<RailHeadMotion> predicted_elements_, free_elements_, end_elements_;
+  Eigen::VectorXd element_rate_, element_free_, element_force_;
+  NewtonWorkspace newton_;  // tangents and loads are kept from step to step, until reinitialise()
 };
 
 }  // namespace

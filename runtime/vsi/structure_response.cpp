@@ -54,7 +54,15 @@ RailContact rail_contact(const StructureModel& structure, RailSide side, double 
   contact.element = static_cast<int>(interval_at(rail.x, x));
   contact.x = x;
   contact.rows = rail_interpolation(rail, x);
+  contact.rail = &rail;
+  contact.own_compliance = element_compliance(rail, x, x);
+  contact.own_slope = element_compliance_slope(rail, x);
   return contact;
+}
+
+Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept {
+  if (!i.on_rail || !j.on_rail || i.side != j.side || i.element != j.element) return Eigen::Matrix3d::Zero();
+  return i.x == j.x ? j.own_compliance : element_compliance(*j.rail, i.x, j.x);
 }
 
 void append_dofs(const RailContact& contact, std::vector<int>& dofs) {

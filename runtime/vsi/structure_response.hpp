@@ -19,8 +19,14 @@ struct RailContact {
   int element = 0;  ///< left node of the beam element
   double x = 0.0;   ///< along the track [m]
   RailInterpolation rows{};
+  const RailLine* rail = nullptr;  ///< of the structure; set where on_rail is
+  /// element_compliance(rail, x, x), and its derivative along x
+  Eigen::Matrix3d own_compliance = Eigen::Matrix3d::Zero(), own_slope = Eigen::Matrix3d::Zero();
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
+
+/// element_compliance() of rail head i from loads on rail head j; zero unless both stand on one element.
+[[nodiscard]] Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept;
 
 /// Append the structure's unknowns that a wheel loads.
 void append_dofs(const RailContact& contact, std::vector<int>& dofs);

@@ -18,7 +18,7 @@ bool equal(const Sparse& a, const Sparse& b) {
 }
 
 bool equal(const RailLine& a, const RailLine& b) {
-  return a.x == b.x && a.dof == b.dof && a.head_height == b.head_height;
+  return a.x == b.x && a.dof == b.dof && a.head_height == b.head_height && a.stiffness == b.stiffness;
 }
 
 bool equal(const StructureModel& a, const StructureModel& b) {

@@ -70,6 +70,7 @@ VsiState::VsiState(const VsiModel& model)
   contact.creep_power.assign(index(2 * wheelsets), 0.0);
   contact.pressure.assign(index(2 * wheelsets), 0.0);
   far_field = Eigen::VectorXd::Zero(6 * wheelsets);
+  deflection = {far_field, far_field, far_field};
   if (model.window) left_behind = Eigen::VectorXd::Zero(model.window->numbers());
 }
 
@@ -95,6 +96,9 @@ void visit_numbers(State& state, Visitor&& visit) {
   visit_vector(state.contact.step_load);
   visit_vector(state.contact.rail_x);
   visit_vector(state.far_field);
+  for (auto* numbers : {&state.deflection.force, &state.deflection.rate, &state.deflection.slope_force}) {
+    visit_vector(*numbers);
+  }
   for (auto* extreme : {&state.wheel_extremes.largest_Q, &state.wheel_extremes.smallest_Q,
                         &state.wheel_extremes.derailment, &state.wheel_extremes.unloading}) {
     visit(&extreme->value, 1);
@@ -306,6 +310,16 @@ ContactProblem present_contact(const VsiModel& model, const VsiState& state) {
   gather_rails(contacts, state.structure.displacement, problem.predicted);
   gather_rails(contacts, state.structure.velocity, problem.predicted_velocity);
   rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+  if (model.normal_contact != NormalContact::hertz) return problem;
+  std::vector<RailHeadMotion> between;
+  const ElementDeflection& d = state.deflection;
+  element_motion(contacts, d.force, d.rate, d.slope_force, model.speed(state.time), between);
+  for (int wheel = 0; wheel < static_cast<int>(between.size()); ++wheel) {
+    const RailHeadMotion& m = between[index(wheel)];
+    problem.predicted.segment<3>(rail_unknown(wheel)) += m.displacement;
+    problem.predicted_velocity.segment<3>(rail_unknown(wheel)) += m.velocity;
+    add_slopes(m, problem.deviation[index(wheel / 2)][index(wheel % 2)]);
+  }
   return problem;
 }
 

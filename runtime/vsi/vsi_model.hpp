@@ -17,6 +17,7 @@
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
+#include "railtab/runtime/vsi/element_deflection.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 #include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/normal_contact.hpp"
@@ -113,6 +114,7 @@ struct VsiState {
   /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
   /// rad].
   Eigen::VectorXd far_field;
+  ElementDeflection deflection;  ///< of rails between the nodes of their elements
   WheelExtremes wheel_extremes;
   /// Where the force rule is left to the run [s]; runs begin before 0: until when steps are no longer than
   /// IntegrationParameters::impact_step, since a wheel has met its rail, until when an impact lasts, in steps up to

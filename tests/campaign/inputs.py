@@ -45,7 +45,7 @@ def work_of(text):
     spans = [span for span in spans if isinstance(span, dict)] if isinstance(spans, list) else []
     length = number(track, "length_before", 120.0) + number(track, "length_after", 60.0)
     length += sum(number(span, "length", 32.0) * max(1.0, number(span, "count", 1)) for span in spans)
-    elements = abs(length / max(1e-9, number(track, "sleeper_spacing", 0.6)) * number(track, "elements_per_bay", 2))
+    elements = abs(length / max(1e-9, number(track, "sleeper_spacing", 0.6)) * max(1.0, number(track, "elements_per_bay", 1)))
     elements += sum(abs(number(span, "count", 1) * number(span, "elements", 32)) for span in spans)
     if isinstance(track, dict) and track.get("kind") in ("rigid", "imported"):
         elements = 10.0

@@ -46,6 +46,10 @@ class Record {
   void add(const VsiState& state, double time) {
     row_.clear();
     const std::vector<RailContact> contacts = place_wheels(model_, time);
+    const ElementDeflection& d = state.deflection;
+    std::vector<RailHeadMotion> elements;
+    const double speed = named_ ? model_.speed(time) : 0.0;  // an FMU learns of it by its first step
+    element_motion(contacts, d.force, d.rate, d.slope_force, speed, elements);
     for (int wheel = 0; wheel < 2 * model_.wheelsets(); ++wheel) {
       const std::string wheelset = "wheelset[" + std::to_string(wheel / 2 + 1) + "]";
       if (wheel % 2 == 0) value(wheelset + ".x", model_.wheelset_x(wheel / 2, time));
@@ -53,10 +57,12 @@ class Record {
       const Eigen::Vector3d load = state.contact.end_force.segment<3>(rail_unknown(wheel));
       const RailContact& contact = contacts[static_cast<std::size_t>(wheel)];
       const LinearMotion& motion = state.structure;
+      const RailHeadMotion& element = elements[static_cast<std::size_t>(wheel)];
       values(name, {"Y", "Q", "Mx"}, load);
-      values(name + "rail_", {"y", "z", "roll"}, rail_head(contact, motion.displacement));
-      values(name + "rail_", {"y_rate", "z_rate", "roll_rate"}, rail_head(contact, motion.velocity));
-      values(name + "rail_", {"yaw", "pitch"}, rail_slopes(contact, motion.displacement));
+      values(name + "rail_", {"y", "z", "roll"}, rail_head(contact, motion.displacement) + element.displacement);
+      values(name + "rail_", {"y_rate", "z_rate", "roll_rate"}, rail_head(contact, motion.velocity) + element.velocity);
+      values(name + "rail_", {"yaw", "pitch"},
+             rail_slopes(contact, motion.displacement) + Eigen::Vector2d(element.yaw, -element.slope));
     }
     StepRecord record;
     fill_record(model_, state, record);

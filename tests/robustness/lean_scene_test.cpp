@@ -108,6 +108,7 @@ TEST_F(LeanScene, PlanSaysWhatIsLeftOut) {
   EXPECT_NE(left_out.find("lateral, roll and yaw degrees of freedom of the vehicles"), std::string::npos);
   EXPECT_NE(left_out.find("creep forces"), std::string::npos);
   vertical.track_kind = TrackKind::flexible;
+  vertical.track.elements_per_bay = 2;
   vertical.structure.files = {};
   const RunPlan track = plan_run(vertical);
   EXPECT_GT(track.structure_dofs, 1000);

@@ -52,6 +52,7 @@ CaseResult closed_system(SceneParameters scene) {
     if (model.structure) {
       for (Eigen::Index i = 0; i < state.structure.velocity.size(); i += 7) state.structure.velocity[i] += 0.1;
     }
+    for (Eigen::VectorXd* of_wheels : {&state.deflection.force, &state.deflection.slope_force}) of_wheels->setZero();
     balance_accelerations(model, state);
   });
   CaseResult result = judged(run);

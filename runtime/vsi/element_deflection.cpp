@@ -1,0 +1,43 @@
+#include "railtab/runtime/vsi/element_deflection.hpp"
+
+#include "railtab/runtime/base/index.hpp"
+#include "railtab/runtime/vsi/contact_newton.hpp"
+
+namespace railtab {
+
+void element_motion(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force, const Eigen::VectorXd& rate,
+                    const Eigen::VectorXd& slope_force, double speed, std::vector<RailHeadMotion>& motion) {
+  motion.assign(contacts.size(), {});
+  const int wheels = static_cast<int>(contacts.size());
+  const auto add = [&](int i, const Eigen::Matrix3d& C, int j) {
+    motion[index(i)].displacement += C * force.segment<3>(3 * j);
+    motion[index(i)].velocity += C * rate.segment<3>(3 * j);
+  };
+  for (int i = 0; i < wheels; ++i) {
+    const RailContact& at = contacts[index(i)];
+    if (!at.on_rail || !(at.rail->stiffness.GJ > 0.0)) continue;
+    RailHeadMotion& m = motion[index(i)];
+    const Vector3 slope = 0.5 * at.own_slope * slope_force.segment<3>(3 * i);
+    add(i, at.own_compliance, i);
+    m.velocity += speed * slope;
+    m.yaw = slope[0];
+    m.slope = slope[1];
+    // Wheels of one rail are two apart, in the order of the train.
+    for (int j = i + 2; j < wheels && contacts[index(j)].on_rail && contacts[index(j)].element == at.element; j += 2) {
+      const Eigen::Matrix3d other = element_compliance(at, contacts[index(j)]);
+      add(i, other, j);
+      add(j, other, i);
+    }
+  }
+}
+
+Eigen::VectorXd rail_part(const Eigen::VectorXd& of_wheelsets) {
+  const int wheels = 2 * static_cast<int>(of_wheelsets.size()) / wheelset_unknowns;
+  Eigen::VectorXd part(3 * wheels);
+  for (int wheel = 0; wheel < wheels; ++wheel) {
+    part.segment<3>(3 * wheel) = of_wheelsets.segment<3>(rail_unknown(wheel));
+  }
+  return part;
+}
+
+}  // namespace railtab
