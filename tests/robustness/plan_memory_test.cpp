@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "vsi_fixture.hpp"
@@ -96,6 +97,21 @@ TEST_F(PlanMemory, BoundsARunWhoseTableOfCompliancesMoves) {
       "[track]\nlength_before = 40.0\nlength_after = 40.0\nsleeper_spacing = 1.0\nelements_per_bay = 10\n"
       "[integration]\ntime_step = 1e-3\nduration = 0.12\ncontact_force = \"endpoint\"\n",
       0.8);
+}
+
+// A long train in 10⁹ steps: 130 TB.
+TEST_F(PlanMemory, WarnsOfResultsThatTheDiskHasNoRoomFor) {
+  write("scene.toml",
+        "[train]\ncount = 64\n[contact]\nmode = \"online\"\ncreep_law = \"polach\"\n[track]\nkind = \"rigid\"\n"
+        "[integration]\ntime_step = 1e-5\nduration = 1e4\n");
+  const std::string warning = "output.every writes fewer records";
+  const Outcome as_text = vsi("run scene.toml --plan"), as_json = vsi("run scene.toml --plan --json");
+  EXPECT_NE(as_text.output.find(warning), std::string::npos) << as_text.output;
+  ASSERT_EQ(as_json.exit_code, 0) << as_json.output;
+  const nlohmann::json warnings = nlohmann::json::parse(as_json.output)["warnings"];
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [&](const nlohmann::json& text) {
+    return text.get<std::string>().find(warning) != std::string::npos;
+  })) << as_json.output;
 }
 
 }  // namespace

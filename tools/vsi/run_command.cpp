@@ -51,26 +51,28 @@ std::string bytes_text(double bytes) {
   return fmt::format("{:.4g} MB", 1e-6 * bytes);
 }
 
-/// What this machine has too little of.
-void warn_of_room(const PlannedMemory& memory, const std::filesystem::path& results) {
+/// Adds to a plan's warnings what this machine has too little of.
+void warn_of_room(const std::filesystem::path& results, RunPlan& plan) {
+  const PlannedMemory& memory = plan.memory;
   if (const double here = installed_memory(); here > 0.0 && memory.most > here) {
-    print_warning(fmt::format("the run may need {} of memory, and this machine has {}", bytes_text(memory.most),
-                              bytes_text(here)));
+    plan.warnings.push_back(fmt::format("the run may need {} of memory, and this machine has {}",
+                                        bytes_text(memory.most), bytes_text(here)));
   }
   std::error_code unknown;
   const std::filesystem::path folder = results.has_parent_path() ? results.parent_path() : ".";
   const std::filesystem::space_info room = std::filesystem::space(folder, unknown);
   if (!unknown && memory.results > static_cast<double>(room.available)) {
-    print_warning(fmt::format("the results take {}, and {} are free in {}; output.every writes fewer records",
-                              bytes_text(memory.results), bytes_text(static_cast<double>(room.available)),
-                              folder.string()));
+    plan.warnings.push_back(fmt::format("the results take {}, and {} are free in {}; output.every writes fewer records",
+                                        bytes_text(memory.results), bytes_text(static_cast<double>(room.available)),
+                                        folder.string()));
   }
 }
 
 int print_plan(const SceneParameters& scene, const RunOptions& options) {
   SetupProgress progress(!options.quiet && !options.json);
-  const RunPlan plan = plan_run(scene, [&](std::string_view part) { progress.show(part); });
+  RunPlan plan = plan_run(scene, [&](std::string_view part) { progress.show(part); });
   progress.end();
+  warn_of_room(options.output, plan);
   if (options.json) {
     print_json_line({{"scene", scene.name},
                      {"structure_dofs", plan.structure_dofs},
@@ -90,7 +92,6 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
     return 0;
   }
   for (const std::string& warning : plan.warnings) print_warning(warning);
-  warn_of_room(plan.memory, options.output);
   if (options.quiet) return 0;
   print_formatted("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
   print_formatted("  {} degrees of freedom of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
