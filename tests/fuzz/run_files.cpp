@@ -37,7 +37,8 @@ bool is_large(const SceneParameters& scene) {
   const double bays = length / scene.track.sleeper_spacing;
   constexpr double most_rail_elements = 60.0, longest_random_track = 1000.0;
   return scene.train.count > 3 || elements > 200 ||
-         (scene.track_kind == TrackKind::flexible && bays * std::max(1, scene.track.elements_per_bay) > most_rail_elements) ||
+         (scene.track_kind == TrackKind::flexible &&
+          bays * std::max(1, scene.track.elements_per_bay) > most_rail_elements) ||
          (scene.spectrum && scene.integration.duration * scene.train.speed > longest_random_track);
 }
 
