@@ -49,7 +49,8 @@ void TrackSimulation::reset() {
   state_.motion = LinearMotion(track_.structure.dofs());
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(6 * static_cast<Eigen::Index>(track_.wheelset_x.size()));
   state_.deflection = {none, none, none};
-  place();
+  loads_ = loads(state_.applied);
+  move_elements();
 }
 
 void TrackSimulation::set(std::size_t input, double value) {
@@ -76,11 +77,10 @@ void TrackSimulation::rest() {
   state_.deflection.force = state_.deflection.slope_force = forces(loads_);
   state_.deflection.rate.setZero();
   state_.speed = 0.0;
-  place();
+  move_elements();
 }
 
-void TrackSimulation::place() {
-  loads_ = loads(state_.applied);
+void TrackSimulation::move_elements() {
   std::vector<RailContact> contacts;
   for (const RailLoad& load : loads_) contacts.push_back(load.place);
   const ElementDeflection& d = state_.deflection;
@@ -108,7 +108,7 @@ void TrackSimulation::step(double length) {
     of_step.close(end, state_.deflection);
     ++state_.steps;
   }
-  place();
+  move_elements();
 }
 
 double TrackSimulation::value(std::size_t variable) const {
@@ -132,7 +132,8 @@ double TrackSimulation::value(std::size_t variable) const {
 
 void TrackSimulation::set_state(const TrackState& state) {
   state_ = state;
-  place();
+  loads_ = loads(state_.applied);
+  move_elements();
 }
 
 namespace {

@@ -54,8 +54,8 @@ class TrackSimulation {
 
  private:
   [[nodiscard]] std::vector<RailLoad> loads(const std::vector<double>& input) const;
-  /// loads_ and elements_ of the state.
-  void place();
+  /// elements_ under loads_, as the state has them.
+  void move_elements();
 
   DrivenTrack track_;
   std::vector<TrackVariable> variables_;

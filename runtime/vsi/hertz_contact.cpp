@@ -24,6 +24,7 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   const std::vector<RailContact>& contacts = step.contacts;
   rail.clear();
   const int wheels = static_cast<int>(contacts.size());
+  const double of_elements = element_weight(step.hht);
   for (int j = 0; j < wheels; ++j) {
     if (!contacts[index(j)].on_rail) continue;
     // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
@@ -31,7 +32,7 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
     for (int i = j; i < wheels; ++i) {
       const Eigen::Matrix3d c =
           step.hht.load_weight() * step.operators.structure->compliance(contacts[index(i)], contacts[index(j)]) +
-          element_weight(step.hht) * element_compliance(contacts[index(i)], contacts[index(j)]);
+          of_elements * element_compliance(contacts[index(i)], contacts[index(j)]);
       if (c.isZero(0.0)) break;
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});

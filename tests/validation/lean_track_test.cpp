@@ -72,8 +72,7 @@ TEST(LeanTrack, MotionsAlongTheTrackChangeRunsByLessThanOnePercent) {
 }
 
 // The deflection of elements between their nodes is exact at rest but for the warping of their twist. What is left are
-// waves shorter than some elements, and jumps of Y at the 7 nodes that eight elements have more: five, ten and thirteen
-// elements differ from eight by Q 2.4 %, Y 1.6 % and deck 0.6 %, two without that deflection by 4.5, 1.5 and 6.3 %.
+// waves shorter than some elements, and jumps of Y at the 7 nodes that eight elements have more.
 TEST(LeanTrack, OneRailElementPerBayIsCloseToEight) {
   SceneParameters scene = rough_span(LongitudinalMotion::automatic);
   scene.integration.time_step = 5e-4;
