@@ -26,9 +26,8 @@ void LoadedSweepOptions::validate() const {
   require(yaw >= 0.0 && yaw <= 0.2, "yaw", yaw, "0..0.2 rad");
   require(largest_load >= 1e3 && largest_load <= 1e7, "largest load", largest_load, "1e3..1e7 N");
   require(levels >= 5 && levels <= 1000, "levels", levels, "5..1000");
-  const int most = static_cast<int>(LoadedTable::most_nodes);
-  require(roll_nodes >= 2 && roll_nodes <= most, "roll nodes", roll_nodes, "2..9");
-  require(yaw_nodes >= 2 && yaw_nodes <= most, "yaw nodes", yaw_nodes, "2..9");
+  require(roll_spacing >= 1e-5 && roll_spacing <= 0.1, "roll spacing", roll_spacing, "1e-5..0.1 rad");
+  require(yaw_nodes >= 2 && yaw_nodes <= static_cast<int>(LoadedTable::most_yaws), "yaw nodes", yaw_nodes, "2..9");
   require(force_error >= 1e-5 && force_error <= 0.1, "force error", force_error, "1e-5..0.1");
   require(light_error >= 1e-5 && light_error <= 0.1, "error of light loads", light_error, "1e-5..0.1");
   require(least_interval >= 1e-8 && least_interval <= 1e-3, "least interval", least_interval, "1e-8..1e-3 m");
@@ -36,6 +35,18 @@ void LoadedSweepOptions::validate() const {
 }
 
 namespace {
+
+/// Equal distances, at most `spacing`.
+std::vector<double> roll_nodes(const Interval& roll, double spacing) {
+  constexpr double rounding = 1e-9;
+  const int intervals = std::max(2, static_cast<int>(std::ceil((roll.high - roll.low) / spacing - rounding)));
+  std::vector<double> nodes;
+  for (int i = 0; i <= intervals; ++i) {
+    const double share = static_cast<double>(i) / intervals;
+    nodes.push_back((1.0 - share) * roll.low + share * roll.high);
+  }
+  return nodes;
+}
 
 /// Points of Chebyshev and Lobatto, ends included.
 std::vector<double> chebyshev_nodes(double low, double high, int count) {
@@ -72,7 +83,7 @@ class LoadedSweep {
       const ColumnPlace place{column.y0, column.roll, column.yaw};
       solved_.emplace(place, std::move(column));
     }
-    roll_ = chebyshev_nodes(options.roll.low, options.roll.high, options.roll_nodes);
+    roll_ = roll_nodes(options.roll, options.roll_spacing);
     yaw_squared_ = yaw_squared_nodes(options.yaw, options.yaw_nodes);
     column_.contact = options.contact;
     column_.levels = options.levels;

@@ -12,12 +12,13 @@ namespace railtab {
 
 /// What the loaded part of a table covers, and how finely.
 struct LoadedSweepOptions {
-  Interval lateral{-0.008, 0.008};    ///< of the reduced lateral shift y0, low < high, within ±0.1 [m]
-  Interval roll{-0.005, 0.005};       ///< of the wheelset against the rail head, within ±0.1 [rad]; low < high
-  double yaw = 0.010;                 ///< largest, 0..0.2 [rad]; 0: without yaw
-  double largest_load = 300e3;        ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
-  int levels = 33;                    ///< of energy, 5..1000
-  int roll_nodes = 5, yaw_nodes = 4;  ///< 2..LoadedTable::most_nodes where not fixed
+  Interval lateral{-0.008, 0.008};  ///< of the reduced lateral shift y0, low < high, within ±0.1 [m]
+  Interval roll{-0.005, 0.005};     ///< of the wheelset against the rail head, within ±0.1 [rad]; low < high
+  double yaw = 0.010;               ///< largest, 0..0.2 [rad]; 0: without yaw
+  double largest_load = 300e3;      ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
+  int levels = 33;                  ///< of energy, 5..1000
+  double roll_spacing = 1e-3;       ///< of nodes of roll at most, 3 nodes at least, 1e-5..0.1 [rad]
+  int yaw_nodes = 4;                ///< 2..LoadedTable::most_yaws where not fixed
   double force_error = 2.5e-3;  ///< of the vertical force above 5 kN, at which an interval of y0 is halved, 1e-5..0.1
   double light_error = 8e-3;    ///< the same from 1 to 5 kN
   double least_interval =

@@ -34,7 +34,7 @@ void require_size(const std::string& place, std::size_t found, std::size_t expec
 // The polynomials of Lagrange with value 1 at one node, with two derivatives.
 template <class V>
 struct Lagrange {
-  std::array<V, LoadedTable::most_nodes> value, first, second;
+  std::array<V, LoadedTable::most_yaws> value, first, second;
 
   /// @param inverse 1/(node i − node j), j fastest
   Lagrange(const std::vector<double>& node, const std::vector<double>& inverse, const V& x) noexcept {
@@ -63,28 +63,117 @@ std::vector<double> inverse_distances(const std::vector<double>& node) {
 }
 
 constexpr std::size_t buckets = 2048;
-constexpr std::size_t most_columns = LoadedTable::most_nodes * LoadedTable::most_nodes;
+constexpr std::size_t most_columns = LoadedTable::rolls_read * LoadedTable::most_yaws;
 
 // Derivatives along roll and yaw.
 enum Direction : std::size_t { here, by_roll, by_yaw, by_roll_roll, by_roll_yaw, by_yaw_yaw, directions };
 
 }  // namespace
 
-/// Weights of the columns (roll, yaw²) in the value and in derivatives with respect to roll and yaw.
+namespace {
+
+// The derivative at a node of the parabola through it and the nodes beside it, as weights of the nodes from `first` on.
+Pack parabola_slope(const std::vector<double>& node, std::size_t at, std::size_t first) {
+  const std::size_t points = std::min<std::size_t>(3, node.size());
+  const std::size_t from = std::min(at > 0 ? at - 1 : 0, node.size() - points), to = from + points - 1;
+  Pack weight{};
+  for (std::size_t k = from; k <= to; ++k) {
+    for (std::size_t m = from; m <= to; ++m) {
+      if (m == k) continue;
+      double product = 1.0 / (node[k] - node[m]);
+      for (std::size_t j = from; j <= to; ++j)
+        if (j != k && j != m) product *= (node[at] - node[j]) / (node[k] - node[j]);
+      weight[k - first] += product;
+    }
+  }
+  return weight;
+}
+
+}  // namespace
+
+LoadedTable::RollCubic::RollCubic(const std::vector<double>& node, std::size_t low) noexcept
+    : first(std::min(low > 0 ? low - 1 : 0, node.size() - std::min(rolls_read, node.size()))),
+      begin(node[low]),
+      inverse(1.0 / (node[low + 1] - node[low])) {
+  const double width = node[low + 1] - begin;
+  Pack below{}, above{};
+  below[low - first] = above[low + 1 - first] = 1.0;
+  const Pack slope_below = width * parabola_slope(node, low, first);
+  const Pack slope_above = width * parabola_slope(node, low + 1, first);
+  const std::array<Pack, 4> coefficients{below, slope_below, 3.0 * (above - below) - 2.0 * slope_below - slope_above,
+                                         2.0 * (below - above) + slope_below + slope_above};
+  std::memcpy(power.data(), coefficients.data(), sizeof power);
+}
+
+/// Weights of the nodes of roll and of yaw² that are read: in the value, and in the first and second derivatives with
+/// respect to roll and yaw. The weight of a column is a product of both.
 template <class V>
 struct LoadedTable::Weights {
-  std::size_t columns;
-  std::array<std::array<V, directions>, most_columns> column;
+  enum Order : std::size_t { value, first, second, orders };
 
-  Weights(const LoadedTable& table, const V& roll, const V& yaw) noexcept : columns(table.data_.columns()) {
+  std::size_t rolls, yaws;                          ///< that are read
+  std::array<std::size_t, lanes_of<V>> first_roll;  ///< of the nodes, by place
+  std::array<std::array<V, rolls_read>, orders> roll;
+  std::array<std::array<V, most_yaws>, orders> yaw;
+
+  Weights(const LoadedTable& table, const V& at_roll, const V& at_yaw) noexcept
+      : rolls(std::min(rolls_read, table.data_.roll.size())), yaws(table.data_.yaw_squared.size()) {
     const LoadedTableData& data = table.data_;
-    const Lagrange<V> r(data.roll, table.inverse_roll_, roll), s(data.yaw_squared, table.inverse_yaw_, yaw * yaw);
-    std::size_t k = 0;
-    for (std::size_t i = 0; i < data.roll.size(); ++i) {
-      for (std::size_t j = 0; j < data.yaw_squared.size(); ++j, ++k) {
-        const V yaw_1 = 2.0 * yaw * s.first[j], yaw_2 = 2.0 * s.first[j] + 4.0 * yaw * yaw * s.second[j];
-        column[k] = {r.value[i] * s.value[j],  r.first[i] * s.value[j], r.value[i] * yaw_1,
-                     r.second[i] * s.value[j], r.first[i] * yaw_1,      r.value[i] * yaw_2};
+    for (int i = 0; i < lanes_of<V>; ++i) {
+      const double x = lane(at_roll, i);
+      const auto above = std::upper_bound(data.roll.begin() + 1, data.roll.end() - 1, x);
+      const RollCubic& cubic = table.roll_cubic_[static_cast<std::size_t>(above - data.roll.begin()) - 1];
+      first_roll[static_cast<std::size_t>(i)] = cubic.first;
+      const double t = (x - cubic.begin) * cubic.inverse;
+      std::array<Pack, 4> p;
+      std::memcpy(p.data(), cubic.power.data(), sizeof p);
+      const Pack weight[orders]{p[0] + t * (p[1] + t * (p[2] + t * p[3])),
+                                cubic.inverse * (p[1] + t * (2.0 * p[2] + (3.0 * t) * p[3])),
+                                cubic.inverse * cubic.inverse * (2.0 * p[2] + (6.0 * t) * p[3])};
+      for (std::size_t order = 0; order < orders; ++order)
+        for (std::size_t k = 0; k < rolls_read; ++k) lane(roll[order][k], i) = weight[order][k];
+    }
+    const Lagrange<V> s(data.yaw_squared, table.inverse_yaw_, at_yaw * at_yaw);
+    for (std::size_t j = 0; j < yaws; ++j) {
+      yaw[value][j] = s.value[j];
+      yaw[first][j] = 2.0 * at_yaw * s.first[j];
+      yaw[second][j] = 2.0 * s.first[j] + 4.0 * at_yaw * at_yaw * s.second[j];
+    }
+  }
+};
+
+/// Sums over the nodes of roll and yaw² of one pose, in the directions that are wanted.
+template <bool slopes>
+struct LoadedTable::NodeSums {
+  static constexpr std::size_t wanted = slopes ? directions : by_yaw + 1, orders = slopes ? 3 : 2;
+
+  std::size_t rolls, yaws;
+  double roll[orders][rolls_read], yaw[orders][most_yaws];
+
+  template <class V>
+  NodeSums(const Weights<V>& weights, int place) noexcept : rolls(weights.rolls), yaws(weights.yaws) {
+    for (std::size_t order = 0; order < orders; ++order) {
+      for (std::size_t i = 0; i < rolls; ++i) roll[order][i] = lane(weights.roll[order][i], place);
+      for (std::size_t j = 0; j < yaws; ++j) yaw[order][j] = lane(weights.yaw[order][j], place);
+    }
+  }
+
+  /// @param of the numbers of a node, by its place among those that are read
+  template <class Numbers>
+  void add(auto&& of, std::array<Numbers, wanted>& sum) const noexcept {
+    for (std::size_t i = 0, k = 0; i < rolls; ++i) {
+      Numbers over_yaw[orders]{};
+      for (std::size_t j = 0; j < yaws; ++j, ++k) {
+        const Numbers numbers = of(k);
+        for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw[order][j] * numbers;
+      }
+      sum[here] += roll[0][i] * over_yaw[0];
+      sum[by_roll] += roll[1][i] * over_yaw[0];
+      sum[by_yaw] += roll[0][i] * over_yaw[1];
+      if constexpr (slopes) {
+        sum[by_roll_roll] += roll[2][i] * over_yaw[0];
+        sum[by_roll_yaw] += roll[1][i] * over_yaw[1];
+        sum[by_yaw_yaw] += roll[0][i] * over_yaw[2];
       }
     }
   }
@@ -92,14 +181,17 @@ struct LoadedTable::Weights {
 
 /// The weights of one pose in the value, each twice: for a quantity and its slope.
 struct LoadedTable::ColumnWeights {
-  std::size_t columns;
+  std::size_t columns, first;  ///< those that are read, and the first of them
   std::array<double, 2 * most_columns> twice;
 
   template <class V>
   void set(const Weights<V>& weights, int place) noexcept {
-    columns = weights.columns;
-    for (std::size_t k = 0; k < columns; ++k) {
-      twice[2 * k] = twice[2 * k + 1] = lane(weights.column[k][here], place);
+    columns = weights.rolls * weights.yaws;
+    first = weights.first_roll[static_cast<std::size_t>(place)] * weights.yaws;
+    for (std::size_t i = 0, k = 0; i < weights.rolls; ++i) {
+      for (std::size_t j = 0; j < weights.yaws; ++j, ++k) {
+        twice[2 * k] = twice[2 * k + 1] = lane(weights.roll[0][i], place) * lane(weights.yaw[0][j], place);
+      }
     }
   }
   [[nodiscard]] double value(std::size_t k) const noexcept { return twice[2 * k]; }
@@ -115,8 +207,8 @@ void require_consistent(const LoadedTableData& table, const std::string& source)
   constexpr std::size_t many = 100000;
   const auto place = [&](const char* name) { return fmt::format("{}: {}", source, name); };
   require_increasing(place("lateral"), table.lateral, 2, many);
-  require_increasing(place("roll"), table.roll, 2, LoadedTable::most_nodes);
-  require_increasing(place("yaw_squared"), table.yaw_squared, 1, LoadedTable::most_nodes);
+  require_increasing(place("roll"), table.roll, 2, LoadedTable::most_rolls);
+  require_increasing(place("yaw_squared"), table.yaw_squared, 1, LoadedTable::most_yaws);
   if (table.levels < 3 || table.levels > 10000 || !(table.largest_level > 0.0)) {
     throw input_error(place("levels"), fmt::format("{} up to {}", table.levels, table.largest_level),
                       "3..10000, up to more than 0");
@@ -148,7 +240,7 @@ LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
     part_at_.push_back(part_size);
     part_size += static_cast<std::size_t>(std::popcount(pressed)) * columns * LoadedPart::quantities;
   }
-  inverse_roll_ = inverse_distances(data_.roll);
+  for (std::size_t i = 0; i + 1 < data_.roll.size(); ++i) roll_cubic_.emplace_back(data_.roll, i);
   inverse_yaw_ = inverse_distances(data_.yaw_squared);
   level_step_ = data_.largest_level / (data_.levels - 1);
   for (std::size_t i = 0, node = 0; i < buckets; ++i) {
@@ -171,7 +263,7 @@ bool LoadedTable::find_lateral(double y, const ColumnWeights& weight, std::size_
                                std::array<double, 4>& corner) const noexcept {
   // y and its derivative at a node.
   const auto place = [&](std::size_t at, double& derivative) {
-    const double* const shift = &data_.shift[2 * at * weight.columns];
+    const double* const shift = &data_.shift[2 * (at * data_.columns() + weight.first)];
     Pack even{}, odd{}, a, b;
     std::size_t k = 0;
     for (; k + 4 <= weight.columns; k += 4) {
@@ -216,13 +308,13 @@ bool LoadedTable::find_lateral(double y, const ColumnWeights& weight, std::size_
 
 int LoadedTable::find_level(double z, std::size_t node, const std::array<double, 4>& across, double t,
                             const ColumnWeights& weight) const noexcept {
-  const std::size_t columns = weight.columns, levels = static_cast<std::size_t>(data_.levels);
-  const float* const low = &data_.height[4 * node * levels * columns];
+  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
+  const float* const low = &data_.height[4 * (node * levels * columns + weight.first)];
   const float* const high = low + 4 * levels * columns;
-  const double* const touch = &data_.touch[node * columns];
+  const double* const touch = &data_.touch[node * columns + weight.first];
   Pack at_low{}, at_high{};  // value and slope across are the first and the third
   double touch_low = 0.0, touch_high = 0.0;
-  for (std::size_t k = 0; k < columns; ++k) {
+  for (std::size_t k = 0; k < weight.columns; ++k) {
     Pack stored;
     widen(low + 4 * k, stored);
     at_low += weight.value(k) * stored;
@@ -262,33 +354,30 @@ struct LoadedTable::Corners {
 };
 
 /// The corners in the directions that are wanted.
-template <bool slopes, class V>
-void LoadedTable::add_corners(std::size_t node, int level, const Weights<V>& weights, int place,
+template <bool slopes>
+void LoadedTable::add_corners(std::size_t node, int level, std::size_t first, const NodeSums<slopes>& sums,
                               Corners& corners) const noexcept {
-  constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
-  const std::size_t columns = weights.columns, levels = static_cast<std::size_t>(data_.levels);
+  constexpr std::size_t wanted = NodeSums<slopes>::wanted;
+  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
   for (std::size_t lateral = 0; lateral < 2; ++lateral) {
-    const float* const height =
-        &data_.height[4 * ((node + lateral) * levels + static_cast<std::size_t>(level)) * columns];
-    const double* const touch = &data_.touch[(node + lateral) * columns];
-    Pack at_low[wanted]{}, at_high[wanted]{};
-    double touches[wanted]{};
-    for (std::size_t k = 0; k < columns; ++k) {
-      Pack below, above;
-      widen(height + 4 * k, below);
-      widen(height + 4 * (columns + k), above);
+    const double* const touch = &data_.touch[(node + lateral) * columns + first];
+    std::array<double, wanted> touches{};
+    sums.add([&](std::size_t k) { return touch[k]; }, touches);
+    for (std::size_t above = 0; above < 2; ++above) {
+      const std::size_t at = (node + lateral) * levels + static_cast<std::size_t>(level) + above;
+      const float* const height = &data_.height[4 * (at * columns + first)];
+      std::array<Pack, wanted> sum{};
+      sums.add(
+          [&](std::size_t k) {
+            Pack stored;
+            widen(height + 4 * k, stored);
+            return stored;
+          },
+          sum);
       for (std::size_t d = 0; d < wanted; ++d) {
-        const double weight = lane(weights.column[k][d], place);
-        at_low[d] += weight * below;
-        at_high[d] += weight * above;
-        touches[d] += weight * touch[k];
+        sum[d][0] += touches[d];
+        corners.of[2 * lateral + above][d] = sum[d];
       }
-    }
-    for (std::size_t d = 0; d < wanted; ++d) {
-      at_low[d][0] += touches[d];
-      at_high[d][0] += touches[d];
-      corners.of[2 * lateral][d] = at_low[d];
-      corners.of[2 * lateral + 1][d] = at_high[d];
     }
   }
 }
@@ -331,14 +420,18 @@ void fetch(const void* from, std::size_t bytes) {
 
 }  // namespace
 
-void LoadedTable::fetch_corners(std::size_t node, int level) const noexcept {
+void LoadedTable::fetch_corners(std::size_t node, int level, const ColumnWeights& weight) const noexcept {
   const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
-  const std::size_t levels_read = level == 0 ? 1 : 2;
   for (const std::size_t lateral : {node, node + 1}) {
     const std::size_t at = lateral * levels + static_cast<std::size_t>(level);
-    fetch(&data_.height[4 * at * columns], levels_read * 4 * columns * sizeof(float));
-    if (level == 0) fetch(&rise_[at], levels * sizeof(float));
-    if (level == 0) fetch(&data_.touch[lateral * columns], columns * sizeof(double));
+    const float* const height = &data_.height[4 * (at * columns + weight.first)];
+    fetch(height, 4 * weight.columns * sizeof(float));
+    if (level == 0) {
+      fetch(&rise_[at], levels * sizeof(float));
+      fetch(&data_.touch[lateral * columns + weight.first], weight.columns * sizeof(double));
+    } else {
+      fetch(height + 4 * columns, 4 * weight.columns * sizeof(float));
+    }
   }
 }
 
@@ -520,7 +613,7 @@ class LoadedTable::LookUp {
       for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends[j];
       lane(from, i) = data_.lateral[lateral_[k]];
       lane(width_, i) = data_.lateral[lateral_[k] + 1] - data_.lateral[lateral_[k]];
-      table_.fetch_corners(lateral_[k], 0);
+      table_.fetch_corners(lateral_[k], 0, weight_[k]);
     });
     using std::abs;
     t_ = (pose_.y - corner[0]) / (corner[2] - corner[0]);
@@ -548,16 +641,17 @@ class LoadedTable::LookUp {
       level_[k] = table_.find_level(lane(pose_.z, i), lateral_[k], at(across_.value, i), lane(t_, i), weight_[k]);
       if (level_[k] < 0) return;
       lane(found_, i) = 1.0;
-      table_.fetch_corners(lateral_[k], level_[k]);
+      table_.fetch_corners(lateral_[k], level_[k], weight_[k]);
     });
     each([&](int i, std::size_t k) {
       if (lane(found_, i) == 0.0) return;
       const std::array<double, 4> value = at(across_.value, i);
       const double z = lane(pose_.z, i);
+      const NodeSums<slopes> sums(weights_, i);
       Corners corners;
       std::array<double, 4> line;
       for (int moved = 0;;) {
-        table_.add_corners<slopes>(lateral_[k], level_[k], weights_, i, corners);
+        table_.add_corners(lateral_[k], level_[k], weight_[k].first, sums, corners);
         line = corners.across(value, here);
         if (z < line[0] && level_[k] > 0 && moved <= 0) {
           moved = -1;
@@ -577,7 +671,7 @@ class LoadedTable::LookUp {
       lane(touches_, i) = 1.0;
       lane(level_number_, i) = level_[k];
       set_lines(i, corners, line);
-      set_shift(i, lateral_[k]);
+      set_shift(i, lateral_[k], weight_[k].first, sums);
     });
   }
 
@@ -599,16 +693,12 @@ class LoadedTable::LookUp {
     set(over_y0_yaw, corners.across(first, by_yaw));
   }
 
-  void set_shift(int i, std::size_t lateral) {
-    constexpr std::size_t wanted = slopes ? directions : by_yaw + 1;
-    const double* const shift = &data_.shift[2 * lateral * weights_.columns];
-    Pack place[wanted]{};
-    for (std::size_t c = 0; c < weights_.columns; ++c) {
-      const double *const low = shift + 2 * c, *const high = low + 2 * weights_.columns;
-      const Pack stored{low[0], low[1], high[0], high[1]};
-      for (std::size_t d = 0; d < wanted; ++d) place[d] += lane(weights_.column[c][d], i) * stored;
-    }
-    for (std::size_t d = 0; d < wanted; ++d)
+  void set_shift(int i, std::size_t lateral, std::size_t first, const NodeSums<slopes>& sums) {
+    const double *const low = &data_.shift[2 * (lateral * data_.columns() + first)], *const high =
+                                                                                         low + 2 * data_.columns();
+    std::array<Pack, NodeSums<slopes>::wanted> place{};
+    sums.add([&](std::size_t c) { return Pack{low[2 * c], low[2 * c + 1], high[2 * c], high[2 * c + 1]}; }, place);
+    for (std::size_t d = 0; d < place.size(); ++d)
       for (int j = 0; j < 4; ++j) lane(y_[d][static_cast<std::size_t>(j)], i) = place[d][j];
   }
 

@@ -23,8 +23,9 @@ namespace railtab {
 ///   U = w⁵,  z = Z(w, y0, roll, yaw²),  y = Y(y0, roll, yaw²).
 ///
 /// For a Hertzian contact z is a parabola of w whose vertex is the height of first touch. Z is bicubic in (w, y0) with
-/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −F_y/F_z, and a polynomial in roll and yaw². At y0 the
-/// contact jumps between the same places of the rail whatever roll and yaw (docs/theory/contact_table.md).
+/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −F_y/F_z, cubic between nodes of roll, and a polynomial
+/// in yaw². At y0 the contact jumps between the same places of the rail whatever roll and yaw
+/// (docs/theory/contact_table.md).
 struct LoadedTableData {
   std::vector<double> lateral;      ///< nodes of y0, increasing [m]
   std::vector<double> roll;         ///< nodes, two or more, increasing [rad]
@@ -149,8 +150,9 @@ class LoadedTable {
   /// @throws InputError as require_consistent()
   explicit LoadedTable(LoadedTableData data);
 
-  static constexpr std::size_t most_nodes = 9;  ///< of roll, and of yaw²
-  static constexpr double border = 0.05;        ///< width of the blend, share of the range of each axis
+  static constexpr std::size_t most_rolls = 20001, most_yaws = 9;  ///< nodes
+  static constexpr std::size_t rolls_read = 4;                  ///< by one look-up, at most
+  static constexpr double border = 0.05;                        ///< width of the blend, share of the range of each axis
 
   /// @param y, z of the wheelset centre [m] (WheelsetPose) @param roll, yaw [rad]
   [[nodiscard]] LoadedLookup lookup(double y, double z, double roll, double yaw) const noexcept {
@@ -175,9 +177,21 @@ class LoadedTable {
  private:
   template <class V>
   struct Weights;
+  template <bool slopes>
+  struct NodeSums;
   template <bool slopes, class V>
   class LookUp;
   struct ColumnWeights;
+  /// Cubic interpolation over roll between two nodes: value and slope are continuous at the nodes, where the slope is
+  /// that of the parabola through the three nearest.
+  struct RollCubic {
+    RollCubic(const std::vector<double>& node, std::size_t low) noexcept;
+
+    std::size_t first;      ///< of the nodes that are read, rolls_read or all
+    double begin, inverse;  ///< the lower node [rad], one over the distance to the next
+    /// Weights of these nodes: coefficients of powers of the place between the two nodes, node fastest.
+    std::array<std::array<double, rolls_read>, 4> power;
+  };
   struct Corners;
   struct PartPlace;
   struct PartSums;
@@ -189,11 +203,12 @@ class LoadedTable {
   /// The level below z, or one near it, and heights of first touch at both nodes. -1: no contact.
   [[nodiscard]] int find_level(double z, std::size_t node, const std::array<double, 4>& across, double t,
                                const ColumnWeights& weight) const noexcept;
-  template <bool slopes, class V>
-  void add_corners(std::size_t node, int level, const Weights<V>& weights, int place, Corners& corners) const noexcept;
+  template <bool slopes>
+  void add_corners(std::size_t node, int level, std::size_t first, const NodeSums<slopes>& sums,
+                   Corners& corners) const noexcept;
   /// Ask the memory for what the next steps of a look-up will read: of level 0 to find the level, else its corners;
   /// the parts.
-  void fetch_corners(std::size_t node, int level) const noexcept;
+  void fetch_corners(std::size_t node, int level, const ColumnWeights& weight) const noexcept;
   void fetch_parts(std::size_t node, int level, double roll, double yaw) const noexcept;
   template <bool slopes>
   [[nodiscard]] bool sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept;
@@ -202,7 +217,8 @@ class LoadedTable {
   std::vector<float> rise_;            ///< of each (lateral, level), z − z_touch in the middle of roll at yaw 0
   std::vector<std::size_t> part_at_;   ///< of each (lateral, level), where its parts begin
   std::vector<std::uint32_t> bucket_;  ///< of equal stretches of y0, the node at or below their beginning
-  std::vector<double> inverse_roll_, inverse_yaw_;  ///< inverse distances between nodes of roll, and of yaw²
+  std::vector<RollCubic> roll_cubic_;  ///< between nodes of roll
+  std::vector<double> inverse_yaw_;    ///< inverse distances between nodes of yaw²
   double level_step_ = 0.0;
 };
 

@@ -24,6 +24,7 @@ po::options_description loaded_options() {
       ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"), "wheelset lateral shift without roll and yaw")    //
       ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                               //
       ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head, LO below HI")  //
+      ("roll-spacing", text_value("0.001")->value_name("RAD"), "distance of the table's nodes of roll, at most")     //
       ("largest-load", text_value("300e3")->value_name("N"),
        "vertical force of the centred wheel at the last level of energy")  //
       ("levels", text_value("33")->value_name("N"), "levels of energy")    //
@@ -41,6 +42,7 @@ LoadedSweepOptions requested(const TableCommandLine& line) {
   options.lateral = line.interval("lateral");
   options.yaw = line.number("yaw");
   options.roll = line.interval("roll");
+  options.roll_spacing = line.number("roll-spacing");
   options.largest_load = line.number("largest-load");
   options.levels = static_cast<int>(line.whole_number("levels", 5, 1000));
   options.force_error = line.number("force-error");

@@ -20,7 +20,7 @@ inline LoadedSweepOptions tread_options() {
   options.lateral = {-3e-3, -0.5e-3};
   options.roll = {-1e-3, 1e-3};
   options.yaw = 4e-3;
-  options.roll_nodes = 3;
+  options.roll_spacing = 5e-4;
   options.yaw_nodes = 2;
   options.levels = 13;
   options.largest_load = 150e3;

@@ -249,7 +249,7 @@ TEST(LoadedSweep, RejectsOptionsOutOfRange) {
   broken([](LoadedSweepOptions& o) { o.lateral = {1e-3, -1e-3}; });
   broken([](LoadedSweepOptions& o) { o.yaw = -1e-3; });
   broken([](LoadedSweepOptions& o) { o.levels = 4; });
-  broken([](LoadedSweepOptions& o) { o.roll_nodes = 10; });
+  broken([](LoadedSweepOptions& o) { o.roll_spacing = 0.0; });
   broken([](LoadedSweepOptions& o) { o.largest_load = 0.0; });
 }
 
@@ -319,7 +319,7 @@ TEST(LoadedSweep, FollowsAJumpThatSplitsWithRoll) {
   options.lateral = {6.4e-3, 6.6e-3};
   options.roll = {-5e-3, 0.0};
   options.yaw = 0.0;
-  options.roll_nodes = 3;
+  options.roll_spacing = 0.1;
   options.levels = 5;
   options.largest_load = 50e3;
   options.force_error = options.light_error = 0.1;

@@ -29,7 +29,7 @@ ContactGeometry loaded_tread(const ContactSearch& search) {
   options.lateral = {-0.5e-3, 0.5e-3};
   options.roll = {-1e-3, 1e-3};
   options.yaw = 1e-3;
-  options.roll_nodes = 2;
+  options.roll_spacing = 0.1;
   options.yaw_nodes = 2;
   options.levels = 13;
   options.largest_load = 600e3;

@@ -64,7 +64,8 @@ ContactGeometry geometry_with_table(const ContactSearch& search) {
   loaded.roll = wider(roll);
   loaded.yaw = 1.12 * yaw;
   loaded.levels = 21;
-  loaded.roll_nodes = loaded.yaw_nodes = 3;
+  loaded.roll_spacing = 0.1;
+  loaded.yaw_nodes = 3;
   loaded.largest_load = 4.0 * largest_load;  // at y = 0: on the flange the same load has more energy
   loaded.force_error = 5e-3;
   loaded.light_error = 2e-2;
