@@ -62,6 +62,16 @@ GroundVector GroundRecord::peak() const noexcept {
   return largest;
 }
 
+GroundRecord::LongestInterval GroundRecord::longest_interval() const {
+  std::vector<double> interval;
+  for (std::size_t i = 0; i + 1 < time_.size(); ++i) interval.push_back(time_[i + 1] - time_[i]);
+  const auto longest = std::max_element(interval.begin(), interval.end());
+  const double begin = time_[static_cast<std::size_t>(longest - interval.begin())], length = *longest;
+  const auto middle = interval.begin() + static_cast<std::ptrdiff_t>(interval.size() / 2);
+  std::nth_element(interval.begin(), middle, interval.end());
+  return {begin, length, *middle};
+}
+
 void GroundRecord::integrate() {
   velocity_.assign(time_.size(), GroundVector::Zero());
   displacement_ = velocity_;

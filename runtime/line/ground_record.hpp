@@ -38,6 +38,11 @@ class GroundRecord {
   [[nodiscard]] GroundVector peak() const noexcept;
   [[nodiscard]] double begin() const noexcept { return time_.front(); }
   [[nodiscard]] double end() const noexcept { return time_.back(); }
+  struct LongestInterval {
+    double begin, length, usual;  ///< [s]; usual: the median of all
+  };
+  /// The longest between two neighbouring points.
+  [[nodiscard]] LongestInterval longest_interval() const;
   /// Move the record in time [s] and scale it.
   void shift(double time) noexcept;
   void scale(double factor) noexcept;

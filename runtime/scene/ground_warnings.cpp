@@ -63,6 +63,34 @@ const Warning ground_at_rest{
       }
     }};
 
+const Warning ground_too_strong{
+    "the peak is above 20 m/s² with the factor", [](const SceneCase& at, Warnings& list) {
+      constexpr double strongest = 20.0;  // [m/s²]: no record of an earthquake has twice gravity
+      for (std::size_t i = 0; i < at.records.size(); ++i) {
+        const double factor = std::abs(at.scene.ground_motion[i].factor);
+        const double peak = factor * at.records[i].given_peak().maxCoeff();
+        if (peak <= strongest) continue;
+        list.push_back(
+            fmt::format("{} has a peak of {:.3g} m/s² with ground_motion.factor = {:g}: are file and factor in "
+                        "these units?",
+                        place_of_motion(at, i), peak, at.scene.ground_motion[i].factor));
+      }
+    }};
+
+const Warning ground_with_gap{"two points lie more than twenty times as far apart as most",
+                              [](const SceneCase& at, Warnings& list) {
+                                constexpr double gap = 20.0;
+                                for (std::size_t i = 0; i < at.records.size(); ++i) {
+                                  const auto [begin, length, usual] = at.records[i].longest_interval();
+                                  if (length <= gap * usual) continue;
+                                  list.push_back(
+                                      fmt::format("{} has no point from t = {:.6g} to {:.6g} s, where most are {:.3g} "
+                                                  "s apart: the curve between is made up; is "
+                                                  "the record complete?",
+                                                  place_of_motion(at, i), begin, begin + length, usual));
+                                }
+                              }};
+
 const Warning ground_drift{"the drift correction changes a record by more than a tenth of its peak",
                            [](const SceneCase& at, Warnings& list) {
                              for (std::size_t i = 0; i < at.records.size(); ++i) {

@@ -22,10 +22,19 @@ ChoiceKey contact_force_rules() {
 
 std::vector<KeyRow> time_step_keys() {
   return {
-      {"integration.time_step", "s", "time step",
-       NumberKey{of_integration<&IntegrationParameters::time_step>, {1e-9, 0.1}}},
+      {"integration.time_step",
+       "s",
+       "time step",
+       NumberKey{of_integration<&IntegrationParameters::time_step>, {1e-9, 0.1}},
+       {},
+       {&steps_too_long}},
       {"integration.duration", "s", "0: until the last wheelset has left the last span",
        NumberKey{of_integration<&IntegrationParameters::duration>, {1e-9, 1e5, true}}},
+      {"integration.free_vibration",
+       "s",
+       "how long the run goes on after that",
+       NumberKey{of_integration<&IntegrationParameters::free_vibration>, {1e-9, 1e3, true}},
+       {&without_duration}},
       {"integration.alpha", "1", "α of the HHT method; 0: trapezoidal rule",
        NumberKey{of_integration<&IntegrationParameters::alpha>, {-1.0 / 3.0, 0.0}}},
       {"integration.contact_force",
@@ -51,7 +60,12 @@ std::vector<KeyRow> time_step_keys() {
 
 std::vector<KeyRow> output_keys() {
   return {
-      {"output.every", "1", "steps between records", IntegerKey{of_output<&OutputParameters::every>, 1, 1000000}},
+      {"output.every",
+       "1",
+       "steps between records",
+       IntegerKey{of_output<&OutputParameters::every>, 1, 1000000},
+       {},
+       {&records_too_few}},
       {"output.wheels", "", "record contact forces and positions", SwitchKey{of_output<&OutputParameters::wheels>}},
       {"output.energy", "", "energy balance of the normal contacts, for the summary",
        SwitchKey{of_output<&OutputParameters::energy>}},

@@ -55,6 +55,10 @@ const Condition without_damping_type{"no bridge.damping_type", [](At at) {
                                        return unless(!at.names("bridge.damping_type"), "bridge.damping_type too");
                                      }};
 
+const Condition without_duration{"no integration.duration", [](At at) {
+                                   return unless(at.scene.integration.duration == 0.0, "integration.duration too");
+                                 }};
+
 const Condition without_consist{"no train.consist",
                                 [](At at) { return unless(at.scene.train.consist.empty(), "train.consist too"); }};
 const Condition without_imported_vehicle{

@@ -30,7 +30,7 @@ struct Condition {
 
 // Keys of which a scene names only one.
 extern const Condition without_speed_kmh, without_speed_file, without_contact_table, without_irregularity_file,
-    without_damping_type, without_friction_file;
+    without_damping_type, without_friction_file, without_duration;
 // Vehicles and contact.
 extern const Condition without_consist, without_imported_vehicle;
 extern const Condition with_imported_vehicle, with_contact_table, with_hertz_contact, with_creep_table_law,

@@ -188,7 +188,13 @@ double run_duration(const SceneParameters& scene, const VsiModel& model) {
       throw input_error("scene: train.start", fmt::format("the last wheelset at x = {:.6g} m", last),
                         fmt::format("it before x = {:.6g} m, where the run ends, or integration.duration", x));
     }
-    return model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
+    const double crossing = model.speed_profile ? model.speed_profile->time_at(way) : way / model.contact.speed;
+    if (!std::isfinite(crossing)) {
+      throw input_error("scene: train.speed_file",
+                        fmt::format("a train that stops before its last wheelset is at x = {:.6g} m", x),
+                        "one that leaves the bridge, or integration.duration");
+    }
+    return crossing + scene.integration.free_vibration;
   };
   if (track_on_import(scene)) {
     // the track goes on for length_after, rounded up to whole bays

@@ -293,14 +293,17 @@ std::vector<std::string> lost_by_modes(const ModalStructure& structure, const Im
 
 /// Where modes leave so much of the static flexibility out that accelerations come out too small.
 std::vector<std::string> missing_flexibility(const ModalStructure& structure, const ImportParameters& parameters) {
-  constexpr double much = 0.05;
+  constexpr double much = 0.05, nearly_all = 0.9;
   std::vector<std::string> sentences;
   for (const StaticFlexibility& at : static_flexibility(structure, parameters)) {
     if (!at.whole || at.lost() <= much) continue;
     sentences.push_back(fmt::format(
-        "structure.modes: the {} modes, up to {:.4g} Hz, lack {:.2g} % of the static flexibility at x = {:.6g} m: "
-        "deflections, and accelerations above the highest mode, come out too small; export more modes",
-        structure.omega.size(), structure.omega.maxCoeff() / (2.0 * std::numbers::pi), 100.0 * at.lost(), at.x));
+        "structure.mode_table: the {} modes, up to {:.4g} Hz, lack {:.1f} % of the static flexibility at x = {:.6g} m: "
+        "{}",
+        structure.omega.size(), structure.omega.maxCoeff() / (2.0 * std::numbers::pi), 100.0 * at.lost(), at.x,
+        at.lost() > nearly_all ? "is structure.static_flexibility in the units of the modes?"
+                               : "deflections, and accelerations above the highest mode, come out too small; export "
+                                 "more modes"));
   }
   return sentences;
 }

@@ -7,9 +7,10 @@
 namespace railtab {
 
 struct IntegrationParameters {
-  double time_step = 5e-4;  ///< [s]
-  double duration = 0.0;    ///< [s]; 0: until the last wheelset has left the last span
-  double alpha = -0.05;     ///< HHT alpha, -1/3..0
+  double time_step = 5e-4;      ///< [s]
+  double duration = 0.0;        ///< [s]; 0: until the last wheelset has left the last span, and free_vibration
+  double free_vibration = 0.0;  ///< [s]
+  double alpha = -0.05;         ///< HHT alpha, -1/3..0
   /// None: automatic, `energy` in steps in which a wheel meets or leaves its rail and for some time after, else
   /// `endpoint`.
   std::optional<ContactForceRule> contact_force;

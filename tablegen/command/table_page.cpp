@@ -53,7 +53,8 @@ std::string contact_lines(const WheelRailPair& pair, const WheelsetFunctions& fu
       "d=\"{}\"/></g>",
       left, y0, x1 - x0, bottom - y0, right ? 1 : -1, outline(pair.rail().knots(), 0, 0, rail_depth),
       outline(pair.wheel().knots(), shift, -clearance, 1e3), lines);
-  const double scale_x = left + 6.0;
+  // beside the rail, which stands towards the track's centre
+  const double scale_x = right ? left + 6.0 : left + (x1 - x0) - 26.0;
   fmt::format_to(
       std::back_inserter(svg),
       "<path class=\"scale\" d=\"M{0:.1f} {1:.1f}v2h20v-2\"/><text x=\"{2:.1f}\" y=\"{3:.1f}\">20 mm</text></svg>",

@@ -184,6 +184,17 @@ TEST_F(AssessCommand, ABridgeThatPassesAllStages) {
   EXPECT_EQ(text_of("out/moving_load.csv").find("deck,train,speed[m/s]"), 0U);
 }
 
+// The deck's acceleration is 3.0 m/s² while the coach is on it, and 3.95 m/s² after it has left.
+TEST_F(AssessCommand, FollowsTheFreeVibrationOfADeck) {
+  write("scene.toml",
+        "[train]\nspeed_kmh = 250\n[contact]\nnormal = \"rigid\"\n[[bridge]]\nlength = 12.0\nmass = 9e3\nE = 30e9\n"
+        "Iy = 0.12\nA = 4.0\ndamping_ratio = 0.01\n");
+  const json found = object(vsi("assess scene.toml --stage contact --speed-kmh 250 -o out --json"));
+  const json limit = verdict(found, "en1990.deck-acceleration.ballasted", "contact");
+  EXPECT_EQ(limit["outcome"], "fail") << limit;
+  EXPECT_NEAR(limit["value"].get<double>(), 3.95, 0.05);
+}
+
 TEST_F(AssessCommand, FinishedRunsAreKeptAndOthersMadeAgain) {
   write("scene.toml", vertical + stiff_span);
   const std::string command = "assess scene.toml --stage contact --speed-kmh 140:160:20 -o out --json";

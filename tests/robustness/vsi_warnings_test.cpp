@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <string>
 
 #include "vsi_fixture.hpp"
@@ -87,6 +89,40 @@ TEST_F(SceneWarnings, OfRecordsThatMoveNothing) {
          "scene.toml:6: [[ground_motion]] 1 of 1: found lateral motion alone with contact.normal = \"rigid\"");
   expect(plan(ground("both.csv") + ground("both.csv")),
          "scene.toml:8: [[ground_motion]] 2 of 2: found a station at x = 0 m after one at 0 m");
+}
+
+TEST_F(SceneWarnings, OfRecordsWithAGapOrTooStrong) {
+  std::string gap = "t[s],z[m/s2]\n";
+  for (int i = 0; i < 100; ++i) {
+    if (i < 40 || i > 70) gap += std::to_string(0.01 * i) + "," + std::to_string(i % 4 < 2 ? 5 : -5) + "\n";
+  }
+  write("gap.csv", gap);
+  expect(plan("[[ground_motion]]\nfile = \"gap.csv\"\n"),
+         "[[ground_motion]] 1 of 1 has no point from t = 0.39 to 0.71 s, where most are 0.01 s apart");
+  expect(plan("[[ground_motion]]\nfile = \"gap.csv\"\nfactor = 9.81\n"),
+         "[[ground_motion]] 1 of 1 has a peak of 49.1 m/s² with ground_motion.factor = 9.81");
+}
+
+TEST_F(SceneWarnings, OfStepsAndRecordsTooFarApart) {
+  const auto at = [this](const std::string& steps, const std::string& more = "") {
+    write("scene.toml",
+          "[contact]\nmode = \"online\"\n[train]\nspeed = 60.0\n" + more + "[integration]\nduration = 0.5\n" + steps);
+    return vsi("run scene.toml --plan").output;
+  };
+  const std::string track = "[track]\nlength_before = 40\nlength_after = 60\n", rigid = "[track]\nkind = \"rigid\"\n";
+  expect(at("time_step = 0.006\n", track), "a step is 0.36 m long, the distance between sleepers is 0.6 m");
+  expect(at("time_step = 0.003\n", rigid + "[irregularity]\nspectrum = \"german-low\"\nshortest_wave = 0.5\n"),
+         "a step is 0.18 m long, the shortest wave of the track is 0.5 m");
+  expect(at("[output]\nevery = 1000\n", track), "output.every: records are 0.5 s apart, more than 0.05 s");
+  EXPECT_EQ(at("time_step = 0.002\n[output]\nevery = 10\n", track).find("apart"), std::string::npos);
+  EXPECT_EQ(at("time_step = 0.002\n", track).find("a step is"), std::string::npos);
+}
+
+TEST_F(SceneWarnings, OfSpansThatTheTrainHardlyReaches) {
+  expect(plan("[[bridge]]\nlength = 1.5\n"),
+         "bridge.length = 1.5 m is less than 3 times track.sleeper_spacing = 0.6 m");
+  expect(plan("[[bridge]]\nlength = 20.0\ntrack_offset = 50.0\n"),
+         "bridge.track_offset = 50 m: the track is that far from the beam axis");
 }
 
 TEST_F(SceneWarnings, OfLoadsAndSpeedsThatChangeNothing) {
@@ -204,6 +240,23 @@ TEST_F(VsiCommand, NoStaticEquilibriumNamesTheCause) {
   expect(output_of("", "dimensions.flange_back = 1.50\n"), "flange backs 1.5 m apart");
   write("aside.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n-90,0,0,0,0\n0,0.4,0,0.4,0\n90,0,0,0,0\n");
   expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "deviations of the rails under it (0.");
+}
+
+TEST_F(VsiCommand, ARunGoesOnForTheFreeVibrationOfItsBridge) {
+  const auto duration = [this](const std::string& more) {
+    write("scene.toml", "[contact]\nmode = \"online\"\n[train]\nspeed = 50.0\n[[bridge]]\nlength = 20.0\n" + more);
+    const Outcome outcome = vsi("run scene.toml --plan --json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output)["duration"].get<double>();
+  };
+  EXPECT_NEAR(duration("[integration]\nfree_vibration = 0.4\n") - duration(""), 0.4, 5.1e-4);
+  write("stops.csv", "t[s],V[m/s]\n0,30\n0.5,0\n");
+  write("stops.toml", "[contact]\nmode = \"online\"\n[train]\nspeed_file = \"stops.csv\"\n[[bridge]]\nlength = 20.0\n");
+  const Outcome stops = vsi("run stops.toml --plan");
+  EXPECT_EQ(stops.exit_code, 2);
+  EXPECT_NE(stops.output.find("train.speed_file: found a train that stops before its last wheelset is at x = 20 m"),
+            std::string::npos)
+      << stops.output;
 }
 
 TEST_F(VsiCommand, APlanCountsWholeSteps) {

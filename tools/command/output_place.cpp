@@ -32,8 +32,9 @@ void require_writable_place(const std::string& file, const std::string& option) 
 
 void require_fitting_name(const std::string& file, const std::string& option, std::string_view content,
                           std::initializer_list<std::string_view> endings) {
-  constexpr std::array known{".html", ".htm", ".pdf",  ".png", ".jpg",  ".jpeg", ".svg", ".csv",  ".h5",  ".hdf5",
-                             ".toml", ".txt", ".json", ".md",  ".xlsx", ".xls",  ".doc", ".docx", ".vtu", ".zip"};
+  constexpr std::array known{".html", ".htm",  ".pdf", ".png",  ".jpg", ".jpeg", ".svg", ".csv", ".h5",
+                             ".hdf5", ".toml", ".txt", ".json", ".md",  ".xlsx", ".xls", ".doc", ".docx",
+                             ".vtu",  ".zip",  ".fmu", ".xml",  ".vtk", ".pvd",  ".mat"};
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;

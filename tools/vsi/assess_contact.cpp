@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -39,12 +40,31 @@ void fade_in(ContactPlan& plan) {
   plan.notes.push_back(std::move(note));
 }
 
-/// The track goes on until the last wheelset has left the bridge.
-void lengthen_track(const AxleTrain& own, ContactPlan& plan) {
+/// Decks vibrate on freely behind the train, at times more than under it.
+void follow_free_vibration(const std::vector<assess::DeckAssessment>& decks, ContactPlan& plan) {
+  constexpr double periods = 3.0;
+  if (plan.scene.track_kind != TrackKind::flexible) return;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const assess::DeckAssessment& deck : decks) lowest = std::min(lowest, deck.deck.frequency(0));
+  IntegrationParameters& integration = plan.scene.integration;
+  integration.free_vibration = std::max(integration.free_vibration, periods / lowest);
+  plan.notes.push_back(
+      fmt::format("A run goes on for {:.2g} s after the train has left, {:g} periods of the lowest frequency or more "
+                  "(integration.free_vibration).",
+                  integration.free_vibration, periods));
+  if (integration.duration > 0.0) {
+    integration.duration = 0.0;
+    plan.notes.emplace_back("integration.duration does not count.");
+  }
+}
+
+/// The track goes on until the last wheelset has left the bridge, and for the free vibration after it.
+void lengthen_track(const AxleTrain& own, double fastest, ContactPlan& plan) {
   constexpr double margin = 5.0;  // [m]
   SceneParameters& scene = plan.scene;
   if (scene.track_kind != TrackKind::flexible) return;
-  const double behind = own.reach() + margin - scene.train.start, after = own.reach() + margin;
+  const double behind = own.reach() + margin - scene.train.start;
+  const double after = own.reach() + margin + fastest * scene.integration.free_vibration;
   if (behind > scene.track.length_before) {
     scene.track.length_before = behind;
     plan.notes.push_back(fmt::format("track.length_before is {:.4g} m, so that the whole train stands on it.", behind));
@@ -53,10 +73,6 @@ void lengthen_track(const AxleTrain& own, ContactPlan& plan) {
     scene.track.length_after = after;
     plan.notes.push_back(
         fmt::format("track.length_after is {:.4g} m, so that the whole train leaves the bridge.", after));
-  }
-  if (scene.integration.duration > 0.0) {
-    scene.integration.duration = 0.0;
-    plan.notes.push_back("integration.duration does not count: a run ends when the train has left the bridge.");
   }
 }
 
@@ -201,7 +217,8 @@ ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::Dec
                          const std::vector<double>& speeds, int seeds) {
   ContactPlan plan{train.name, train.own, *train.scene, {}, {}, {}};
   fade_in(plan);
-  lengthen_track(train.axles, plan);
+  follow_free_vibration(decks, plan);
+  lengthen_track(train.axles, *std::max_element(speeds.begin(), speeds.end()), plan);
   record_what_is_judged(plan.scene);
   const SceneParameters& made = plan.scene;
   plan.window = judged_window(made);
@@ -220,8 +237,10 @@ ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::Dec
   }
   follow_deck_of(plan);
   plan.scene.text += "\n# vsi assess:";
-  plan.scene.text += fmt::format(" train.start = {:.9g}, track.length_before = {:.9g}, track.length_after = {:.9g}",
-                                 made.train.start, made.track.length_before, made.track.length_after);
+  plan.scene.text += fmt::format(
+      " train.start = {:.9g}, track.length_before = {:.9g}, track.length_after = {:.9g}, integration.free_vibration = "
+      "{:.9g}",
+      made.train.start, made.track.length_before, made.track.length_after, made.integration.free_vibration);
   if (made.output.deck_envelope)
     plan.scene.text += fmt::format(", output.deck_cut_off = {:.9g}", made.output.deck_cut_off);
   if (made.spectrum) plan.scene.text += fmt::format(", irregularity.fade_in = {:.9g}", made.spectrum->fade_length());

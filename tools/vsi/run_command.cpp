@@ -167,8 +167,11 @@ int conclude(const SceneParameters& scene, const report::Headline& headline, con
         headline.simulated_time, options.output));
     return by_interrupt;
   }
-  print_message(fmt::format("vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
-                            headline.simulated_time, summary.message, options.output));
+  print_message(summary.steps == 0
+                    ? fmt::format("vsi run: {}; no step was made, and {} holds no more than this\n", summary.message,
+                                  options.output)
+                    : fmt::format("vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
+                                  headline.simulated_time, summary.message, options.output));
   return 1;
 }
 
@@ -251,8 +254,26 @@ void check_output(const SceneParameters& scene, const std::filesystem::path& sce
 
 }  // namespace
 
+namespace {
+
+/// What --resume does where it does not go on from a checkpoint.
+void say_how_it_resumes(const RecordedRun& run, const RunOptions& options) {
+  if (run.is_complete()) {
+    print_message(fmt::format("vsi run: note: {} holds the whole run, which is left as it is\n", options.output));
+  } else if (run.before() && !run.is_resumed()) {
+    print_message(
+        fmt::format("vsi run: note: {} holds {} records and no checkpoint yet, of which the first is after {} steps: "
+                    "the run begins "
+                    "anew\n",
+                    options.output, run.before()->steps.size(), IntegrationParameters{}.reinitialise_every));
+  }
+}
+
+}  // namespace
+
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
   RecordedRun run(scene, options.output, options.resume);
+  if (!options.quiet) say_how_it_resumes(run, options);
   if (run.is_complete()) return conclude(scene, report::headline_of(*run.before()), run.before()->summary, options);
   RunDisplay display(options);
   if (run.is_resumed()) display.take_up(*run.before(), run.records_before());

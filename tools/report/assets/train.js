@@ -305,11 +305,15 @@
       left ? x0 + 4 : x0 + width - 4, height - 8);
     c.restore();
   }
+  function places_text(first, second) {
+    if (!isFinite(first)) return '';
+    return ' at y = ' + shown(1e3 * first) + (isFinite(second) ? ' and ' + shown(1e3 * second) : '') + ' mm on the rail';
+  }
   function side_text(w) {
     const from = source(w), q = wheel('Q', w), patches = Math.round(wheel('patches', w));
     return (w % 2 ? 'right' : 'left') + ' Q ' + kN(q) + ', Y ' + kN(wheel('Y', w)) +
       (q > 0 ? ', Y/Q ' + shown(wheel('Y', w) / q) : '') + (outlines ? ', ' + patches + (patches === 1 ? ' patch' : ' patches') : '') +
-      (isFinite(wheel('y_rail', w)) ? ' at y = ' + shown(1e3 * wheel('y_rail', w)) + ' mm on the rail' : '') +
+      places_text(wheel('y_rail', w), wheel('second_y_rail', w)) +
       (from ? ', by the ' + from : '');
   }
   function draw_wheelset() {
