@@ -154,7 +154,7 @@ AxleTrain find_axle_train(std::string_view text, double deck_length) {
     if (entry.train.name != name) continue;
     return repeated(entry.lines.empty() ? entry.train : with_line_forces(entry, deck_length), count);
   }
-  throw input_error("axle train", fmt::format("'{}'", name),
+  throw input_error("axle train", fmt::format("'{}'", text),
                     fmt::format("a file that ends with .csv, hslm-a (all ten), or one of {}; wagons also as NAME*N",
                                 fmt::join(train_names(), ", ")));
 }

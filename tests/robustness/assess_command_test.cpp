@@ -325,7 +325,10 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
   const auto first = [&](std::size_t train) { return mixed[train]["passages"][0]["acceleration"].get<double>(); };
   EXPECT_NEAR(first(2), first(0), 1e-9 * first(0)) << "the same axles by another way";
   EXPECT_GT(std::abs(first(3) - first(0)), 0.01 * first(0));
-  expect_refused("assess scene.toml --train nobody -o out", "train: found 'nobody', expected");
+  expect_refused("assess scene.toml --train nobody -o out",
+                 "--train, assessment.trains: found 'nobody', expected a vehicle (vsi vehicle lists them) or "
+                 "VEHICLE.toml, several as VEHICLE*N+VEHICLE; axle loads AXLES.csv; hslm-a for all ten;");
+  expect_refused("assess scene.toml --train 'hslm-a*3' -o out", "found 'hslm-a*3', expected a vehicle");
   expect_refused("assess scene.toml --train lm71 -o out",
                  "found 'lm71', a load model at rest, expected trains that move");
   write("spatial.toml", "[contact]\nmode = \"online\"\n" + stiff_span);
@@ -358,10 +361,29 @@ TEST_F(AssessCommand, ShardsShareTheRuns) {
   expect_refused("assess scene.toml --stage check --shard 1/2 -o out", "--shard: found stages without runs");
 }
 
+// What vsi run would warn of stands on the terminal, on the page and in the file, also where the runs are there
+// already.
+TEST_F(AssessCommand, WarningsOfItsRuns) {
+  write("scene.toml", vertical + stiff_span + "[[load]]\nFz = 1.0\nstart = 500\ngust_duration = 4\n");
+  const std::string command = "assess scene.toml --stage contact --speed-kmh 140:160:20 -o out ";
+  for (const char* made : {"now", "before"}) {
+    const Outcome outcome = vsi(command + "--json");
+    const std::string begin = "[[load]] 1 of 1 is specified for t = 500 to 504 s";
+    EXPECT_NE(outcome.output.find("vsi assess: warning: " + begin), std::string::npos) << made << outcome.output;
+    const json warnings = object(outcome)["warnings"];
+    ASSERT_EQ(warnings.size(), 1U) << warnings;
+    const std::string warning = warnings[0];
+    EXPECT_TRUE(warning.starts_with(begin)) << warning;
+    EXPECT_TRUE(warning.ends_with("(run v038.889, and alike in 1 more)")) << warning;
+    EXPECT_NE(text_of("out/assessment.html").find("<h2>Warnings of the runs</h2><ul><li>" + begin), std::string::npos);
+  }
+  EXPECT_EQ(vsi(command + "--quiet").output, "");
+}
+
 TEST_F(AssessCommand, WrongInput) {
   write("scene.toml", vertical + light_span);
   write("no_bridge.toml", vertical);
-  expect_refused("assess", "the argument --scene is missing");
+  expect_refused("assess", "found no SCENE.toml\nusage: vsi assess SCENE.toml");
   expect_refused("assess no_bridge.toml -o out", "no bridge");
   expect_refused("assess scene.toml --stage all -o out", "--stage: found all, expected check, moving-load or contact");
   expect_refused("assess scene.toml --fail-on all -o out", "--fail-on: found all, expected any or verified");
@@ -372,6 +394,9 @@ TEST_F(AssessCommand, WrongInput) {
   write("rules.toml", vertical + light_span + "[assessment]\nrules = [\"europe\"]\n");
   expect_refused("assess rules.toml -o out",
                  "assessment.rules: found \"europe\", expected names of China, Europe, Japan");
+  expect_refused("assess scene.toml --speed-kmh 100:2000:500 --stage contact -o out",
+                 "--speed-kmh: found 1100, expected 0.0036 to 720 km/h");
+  expect_refused("assess scene.toml -o ''", "-o: found an empty name, expected the name of a folder");
   expect_refused("assess scene.toml --seeds 3 --stage contact -o out2", "irregularity.spectrum");
 }
 

@@ -105,7 +105,7 @@ TEST_F(CreepCommand, ShardsThatDoNotBelongTogetherAreRefused) {
   fs::resize_file(folder_ / "2.h5", fs::file_size(folder_ / "2.h5") - 100);
   expect_refused("merge 1.h5 2.h5 3.h5 -o out.h5", {"2.h5"});
   expect_refused("merge 1.h5 2.h5 3.h5 -o 1.h5", {"1.h5", "a file that this command reads"});
-  expect_refused("merge -o out.h5", {"shard is missing"});
+  expect_refused("merge -o out.h5", {"found no SHARD.h5"});
   for (const char* command : {"info", "verify"}) {
     expect_refused(std::string(command) + " 1.h5", {"1.h5", "a shard of a creep table", "merge"});
   }
@@ -125,7 +125,7 @@ TEST_F(CreepCommand, APartialFileBelongsToItsJob) {
 }
 
 TEST_F(CreepCommand, WrongOptions) {
-  expect_refused("creep", {"output is missing"});
+  expect_refused("creep", {"found no -o "});
   expect_refused("creep -o none/out.h5", {"none"});
   expect_refused("creep --poisson 0.6 -o out.h5", {"0.6", "0..0.5"});
   expect_refused("creep --elements 41 -o out.h5", {"41", "even"});

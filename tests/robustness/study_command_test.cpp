@@ -127,7 +127,53 @@ TEST_F(StudyCommand, VariesTheTrain) {
             1.1 * std::stod(column("out/runs.csv", "wheel_force[N]")[0]))
       << "a heavier coach";
   write("coach.toml", vsi("vehicle manchester-coach --toml").output + "# changed\n");
-  EXPECT_NE(vsi("study plan.toml -o out").output.find("out/scene.toml: found another scene"), std::string::npos);
+  const std::string changed = vsi("study plan.toml -o out").output;
+  EXPECT_NE(changed.find("out/scene.toml: found another scene"), std::string::npos) << changed;
+  EXPECT_NE(changed.find("; the contents of coach.toml have changed\n"), std::string::npos) << changed;
+}
+
+// Flexible track without a bridge, as vsi new writes it.
+TEST_F(StudyCommand, RunsWithoutABridge) {
+  write("scene.toml",
+        "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 40\nlength_after = 20\n[integration]\n"
+        "time_step = 1e-3\nduration = 0.1\n");
+  write("plan.toml", "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [100]\n");
+  ASSERT_EQ(study("plan.toml -o track"), 0);
+  EXPECT_NE(column("track/runs.csv", "wheel_force[N]")[0], "");
+  const std::string limit = "[probability]\nmethod = \"monte-carlo\"\nmeasure = \"deck_acceleration\"\nlimit = 1\n";
+  write("plan.toml", std::string(speeds) + seeds + "[sampling]\nsamples = 2\n" + limit);
+  write("scene.toml", scene);
+  for (const char* command : {"study plan.toml -o no", "study plan.toml --count"}) {
+    expect_refused(
+        command,
+        "plan.toml:12: probability.measure: found \"deck_acceleration\", expected a measure of wheels or car "
+        "bodies, or a scene with a bridge: scene.toml has none");
+  }
+}
+
+// What a run says names its command and what varies, and no results that are gone.
+TEST_F(StudyCommand, TellsWhichRunEndedEarlyOrWarns) {
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 3.0\n"
+        "[[load]]\nFy = 3e5\nMx = 6e5\nstart = 0.05\ngust_duration = 4.0\n"
+        "[[load]]\nFy = 1.0\nstart = 500\ngust_duration = 4.0\n");
+  write("plan.toml", "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [140, 150]\n");
+  const Outcome outcome = vsi("study plan.toml -o out");
+  EXPECT_EQ(outcome.exit_code, 1);
+  for (const char* speed : {"140", "150"}) {
+    const std::string run = std::string(", train.speed_kmh = ") + speed + ": the run ended at t = ";
+    const std::size_t at = outcome.output.find(run);
+    ASSERT_NE(at, std::string::npos) << outcome.output;
+    EXPECT_EQ(outcome.output.rfind("vsi study: r", at), outcome.output.rfind('\n', at) + 1) << outcome.output;
+  }
+  EXPECT_EQ(outcome.output.find(".h5"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("vsi run"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("vsi study: warning: [[load]] 2 of 2 is specified for t = 500 to 504 s"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find(", and alike in 1 more)\n"), std::string::npos) << outcome.output;
+  const std::string again = vsi("study plan.toml -o out --json").output;
+  EXPECT_EQ(nlohmann::json::parse(again.substr(again.find('{')))["warnings"].size(), 1U) << again;
 }
 
 // Decks are judged at all their nodes, as vsi assess judges them: the largest of what the run followed, not midspan.
@@ -388,9 +434,9 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
   };
   const std::string begin = "scene = \"scene.toml\"\n[[vary]]\n";
   refused(begin + "key = \"train.sped\"\nvalues = [1]\n",
-          "plan.toml:2: vary[1].train.sped: scene.toml:1: unknown key 'train.sped'; did you mean 'train.speed'?");
+          "plan.toml:2: vary[1].train.sped: unknown key 'train.sped'; did you mean 'train.speed'?");
   refused(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
-          "plan.toml:2: vary[1].train.speed_kmh: scene.toml:2: train.speed_kmh: found 9000, expected");
+          "plan.toml:2: vary[1].train.speed_kmh: found 9000, expected");
   refused(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
           "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
   refused(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",
@@ -430,7 +476,11 @@ TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {
   EXPECT_EQ(text("mine/runs.csv"), "my numbers\n");
   ASSERT_EQ(study("plan.toml -o one"), 0);
   write("scene.toml", std::string(scene) + "time_step = 5e-4\n");
-  EXPECT_NE(vsi("study plan.toml -o one").output.find("one/scene.toml: found another scene"), std::string::npos);
+  const std::string other = vsi("study plan.toml -o one").output;
+  EXPECT_NE(other.find("one/scene.toml: found another scene, expected that of the runs in this folder, or another "
+                       "folder for -o; line 12 was '' and is 'time_step = 5e-4'\n"),
+            std::string::npos)
+      << other;
 }
 
 }  // namespace

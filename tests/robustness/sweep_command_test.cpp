@@ -268,9 +268,64 @@ TEST_F(SweepCommand, InputThatIsWrongForAllRunsIsNamedOnce) {
   EXPECT_EQ(log.find(message, first + 1), std::string::npos) << log;
 }
 
+// Ctrl-C that the pool alone is told of ends the runs of its workers too, each with a checkpoint.
+TEST_F(SweepCommand, AnInterruptEndsTheRunsInProgress) {
+  write("long.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 2000\n"
+        "[output]\nevery = 100000\n");
+  const pid_t process = start({"sweep", "long.toml", "--speed", "30:32:1", "--threads", "2", "-o", "out"});
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto in_time = [&] { return std::chrono::steady_clock::now() < deadline; };
+  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+  while (!fs::exists(folder_ / "out/v031.000.h5") && in_time()) pause();
+  kill(process, SIGINT);
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = waitpid(process, &status, WNOHANG)) == 0 && in_time()) pause();
+  if (ended == 0) kill(process, SIGKILL);
+  ASSERT_EQ(ended, process) << "runs went on";
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_EQ(text("log"), "vsi sweep: interrupted; the same command goes on\n");
+  EXPECT_FALSE(fs::exists(folder_ / "out/v031.000.row"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/v032.000.h5")) << "another run was begun";
+  EXPECT_TRUE(railtab::ResultWriter::read_checkpoint(folder_ / "out/v031.000.h5").has_value());
+}
+
+// Each warning once, however many runs have it; those of finished runs are told again.
+TEST_F(SweepCommand, WarningsOfItsRuns) {
+  write("smooth.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.02\n"
+        "[[load]]\nFy = 1.0\nstart = 30\ngust_duration = 4\n");
+  const std::string warning = "vsi sweep: warning: [[load]] 1 of 1 is specified for t = 30 to 34 s";
+  for (int times = 1; times <= 2; ++times) {
+    ASSERT_EQ(vsi({"sweep", "smooth.toml", "--speed", "30:32:1", "-o", "out"}), 0) << text("log");
+    const std::vector<std::string> log = lines_of(text("log"));
+    ASSERT_EQ(log.size(), std::size_t(times)) << text("log");
+    EXPECT_TRUE(log.back().starts_with(warning)) << log.back();
+    EXPECT_TRUE(log.back().ends_with(" (run v030.000, and alike in 2 more)")) << log.back();
+  }
+  EXPECT_EQ(vsi({"sweep", "smooth.toml", "--speed", "33", "-o", "out"}), 0);
+  EXPECT_NE(text("log").find("vsi sweep: note: 3 finished runs of other speeds or seeds in this folder are not in "
+                             "summary.csv\n"),
+            std::string::npos)
+      << text("log");
+  EXPECT_EQ(lines_of(text("out/summary.csv")).size(), 2U);
+}
+
 TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   write("scene.toml", scene);
   write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
+  write("v.csv", "t[s],V[m/s]\n0,30\n12,40\n");
+  write("faster.toml", std::string("[train]\nspeed_file = \"v.csv\"\n") + scene);
+  const auto named = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    EXPECT_EQ(vsi(arguments), 2);
+    EXPECT_NE(text("log").find(message), std::string::npos) << message << "\n" << text("log");
+  };
+  named({"sweep", "scene.toml", "--speed-kmh", "0", "-o", "out"},
+        "--speed-kmh: found 0, expected 0.0036 to 720 km/h\n");
+  named({"sweep", "scene.toml", "--speed-kmh", "100:2000:500", "-o", "out"}, "--speed-kmh: found 1100, expected");
+  named({"sweep", "faster.toml", "--speed-kmh", "100", "-o", "out"},
+        "--speed-kmh: found a scene with train.speed_file, expected");
   const auto refused = [&](const std::vector<std::string>& arguments) { EXPECT_EQ(vsi(arguments), 2) << text("log"); };
   refused({"sweep", "scene.toml", "-o", "out"});
   refused({"sweep", "scene.toml", "--speed", "10:20", "-o", "out"});
@@ -285,7 +340,9 @@ TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_FALSE(fs::exists(folder_ / "none"));
   ASSERT_EQ(vsi({"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"}), 0) << text("log");
-  refused({"sweep", "scene.toml", "--speed", "30", "-o", "out"});  // another scene's folder
+  named({"sweep", "scene.toml", "--speed", "30", "-o", "out"},
+        "out/scene.toml: found another scene, expected that of the runs in this folder, or another folder for -o; line "
+        "5 was '[integration]' and is '[irregularity]'\n");
 }
 
 }  // namespace

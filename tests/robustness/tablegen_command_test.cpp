@@ -49,9 +49,9 @@ TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
 
 TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused("", "no command");
-  expect_refused("geomtry", "unknown command 'geomtry'");
-  expect_refused("geometry --wheel S1002 --rail 60E1", "output is missing");
-  expect_refused("geometry --rail 60E1 -o out.h5", "wheel is missing");
+  expect_refused("geomtry", "unknown command 'geomtry'; did you mean 'geometry'?\ntablegen --help lists the commands");
+  expect_refused("geometry --wheel S1002 --rail 60E1", "found no -o FILE.h5\nusage: tablegen geometry");
+  expect_refused("geometry --rail 60E1 -o out.h5", "found no --wheel ");
   expect_refused(std::string(small) + "--tollerance 1e-8", "--tollerance");
   expect_refused(std::string(small) + "--tol 1e-8", "--tol");
   expect_refused(std::string(small) + "--roll 0.01", "LO:HI");
@@ -65,7 +65,7 @@ TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused("geometry --wheel missing.prw --rail 60E1 -o out.h5", "missing.prw");
   expect_refused("geometry --wheel S1002 --rail 60E1 --lateral 0.002:0.002 -o out.h5", "lateral");
   expect_refused("geometry --wheel S1002 --rail 60E1 -o none/out.h5", "none");
-  expect_refused("info", "file is missing");
+  expect_refused("info", "found no FILE.h5\nusage: tablegen info FILE.h5");
   expect_refused("info none.h5", "none.h5");
   expect_refused("verify none.h5", "none.h5");
   expect_refused("conicity none.h5", "none.h5");

@@ -31,14 +31,28 @@ TEST_F(VsiCommand, StandardOutputThatCannotBeWrittenIsAFailure) {
 
 TEST_F(VsiCommand, WrongCommandLines) {
   expect_refused("", "no command");
-  expect_refused("rnu", "unknown command 'rnu'");
-  expect_refused("run", "found no SCENE.toml: the argument --scene is missing");
+  expect_refused("rnu", "unknown command 'rnu'; did you mean 'run'?\nvsi --help lists the commands\n");
+  expect_refused("help rnu", "unknown command 'rnu'; did you mean 'run'?");
+  EXPECT_EQ(vsi("rnu").output.find("Usage"), std::string::npos) << "not all commands";
+  expect_refused("run", "found no SCENE.toml\nusage: vsi run SCENE.toml");
   expect_refused("run scene.toml --contcat table", "--contcat");
   expect_refused("run scene.toml --threads -1", "threads");
   expect_refused("run scene.toml --threads many", "threads");
-  expect_refused("report results.h5", "output");
+  expect_refused("report results.h5", "found no -o REPORT.html\nusage: ");
   expect_refused("contact pair.h5 -o out", "query");
   expect_refused("contact pair.h5 --query q.csv -o none/out", "no folder none");
+}
+
+TEST_F(VsiCommand, HelpOfACommandByItsName) {
+  EXPECT_EQ(vsi("help run").output, vsi("run --help").output);
+  EXPECT_EQ(vsi("help").output, vsi("--help").output);
+  EXPECT_EQ(vsi("help run").exit_code, 0);
+}
+
+TEST_F(VsiCommand, OutputsWithoutAName) {
+  write("scene.toml", rigid_scene + "duration = 0.02\n");
+  expect_refused("run scene.toml -o ''", "-o: found an empty name, expected the name of a file");
+  expect_refused("new ''", "vsi new: found an empty name, expected the name of a file");
 }
 
 TEST_F(VsiCommand, MissingFiles) {

@@ -31,6 +31,12 @@ TEST_F(FirstMinute, EveryKindOfFileIsNamedWithItsCommands) {
   expect_said("r.h5", {"r.h5: results of a run", "A scene: complete", "8 wheels", "> vsi report r.h5 -o report.html"});
   ASSERT_EQ(vsi("report r.h5 -o r.html -q").exit_code, 0);
   expect_said("r.html", {"a page of railtab: run report"});
+  write("t.html",
+        "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"generator\" "
+        "content=\"railtab: contact geometry table\">\n<title>");
+  expect_said("t.html", {"a page of railtab: contact geometry table", "> open it in a browser"});
+  ASSERT_EQ(vsi("check s.toml -o s.svg -q").exit_code, 0);
+  expect_said("s.svg", {"a picture (SVG)", "> open it in a browser"});
   ASSERT_EQ(run("'" VSI_COMMAND "' vehicle manchester-coach --toml > v.toml").exit_code, 0);
   expect_said("v.toml", {"v.toml: a vehicle", "> vsi vehicle v.toml"});
   write("K.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 2.0\n");
@@ -58,6 +64,8 @@ TEST_F(FirstMinute, WhatIsNoFileOfRailtabIsSaid) {
   expect_refused("absent.toml", "absent.toml: found no such file, expected a file, or a command");
   expect_refused("./", "./: found a folder");
   expect_refused("absent", "unknown command 'absent'");
+  std::filesystem::create_directory(folder_ / "ex");
+  expect_refused("ex", "ex: found a folder, expected a file, as of those in this folder, or a command (vsi --help)");
 }
 
 TEST_F(FirstMinute, ATrainBehindTheEndOfItsRunIsSaid) {

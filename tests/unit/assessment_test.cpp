@@ -172,6 +172,11 @@ TEST(Assessment, OneLimitWithItsValuesByStage) {
       std::string::npos);
   EXPECT_NE(page.find("<li>wheel–rail contact: 3.900 m/s², at most 3.500 m/s² permitted, with train r, deck"),
             std::string::npos);
+  a.values[1].value = 2.0;
+  a.verdicts = judge(a.clauses, a.facts, a.values, {});
+  const std::string half = assessment_page(a);
+  EXPECT_NE(half.find("<li>wheel–rail contact (pass): 2.000 m/s²"), std::string::npos) << "not among the failures";
+  EXPECT_NE(half.find("<li>moving forces: 4.200 m/s²"), std::string::npos);
   // a stage of which a part is missing leaves a limit open that the other meets
   a.values[0].value = 3.0;
   a.values[1].value = 2.0;

@@ -47,6 +47,7 @@ struct Assessment {
   AssessmentFacts facts;
   double low_speed = 0.0, high_speed = 0.0;  ///< of moving loads [m/s]
   std::vector<StageReport> stages;
+  std::vector<std::string> warnings;  ///< of the runs, each with the runs that have it
   std::vector<DeckAssessment> decks;
   std::vector<RunAssessment> runs;
   WheelSeries wheel;                    ///< of the run with the largest unloading

@@ -132,6 +132,7 @@ Json assessment_json(const Assessment& assessment) {
         {"done", stage.done}, {"skipped", stage.skipped}, {"notes", stage.notes}, {"seconds", stage.seconds}};
   }
   json["stages"] = stages;
+  json["warnings"] = assessment.warnings;
   Json verdicts = Json::array(), decks = Json::array(), runs = Json::array(), measures = Json::array();
   for (const Verdict& verdict : assessment.verdicts) verdicts.push_back(verdict_json(assessment, verdict));
   for (const DeckAssessment& deck : assessment.decks) decks.push_back(deck_json(deck));

@@ -123,7 +123,8 @@ std::string failure(const Assessment& assessment, const LimitVerdicts& limit) {
   std::string html = fmt::format("<p><b>{}</b> ({} {}, limit {})</p><ul>", escaped(clause.title),
                                  escaped(clause.edition), escaped(clause.clause), standing_in_words(clause));
   for (const Verdict* v : limit.stages) {
-    html += fmt::format("<li>{}: {}, {} {} {}, {} {}", stage_in_words(*v->stage),
+    html += fmt::format("<li>{}{}: {}, {} {} {}, {} {}", stage_in_words(*v->stage),
+                        v->failed() ? "" : fmt::format(" ({})", mark_text(*v)),
                         amount_in_words(v->at->value, clause.unit), clause.limit.lower ? "at least" : "at most",
                         amount_in_words(v->limit, clause.unit), clause.limit.lower ? "required" : "permitted",
                         v->at->train.empty() ? "at" : "with", escaped(place_in_words(*v->at)));
@@ -213,16 +214,20 @@ std::string measure_table(const Assessment& assessment) {
          rows + "</table></div>";
 }
 
+std::string list_of(const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return "";
+  std::string html = "<ul>";
+  for (const std::string& sentence : sentences) html += "<li>" + escaped(sentence) + "</li>";
+  return html + "</ul>";
+}
+
 std::string stage_list(const Assessment& assessment) {
   std::string html;
   for (const StageReport& stage : assessment.stages) {
     html +=
         fmt::format("<h3>{}</h3><p class=\"lead\">{}</p>", stage_name(stage.stage),
                     stage.done ? fmt::format("done in {:.2f} s", stage.seconds) : "skipped: " + escaped(stage.skipped));
-    if (stage.notes.empty()) continue;
-    html += "<ul>";
-    for (const std::string& note : stage.notes) html += "<li>" + escaped(note) + "</li>";
-    html += "</ul>";
+    html += list_of(stage.notes);
   }
   return html;
 }
@@ -254,6 +259,7 @@ std::string assessment_page(const Assessment& assessment) {
                                         3.6 * assessment.low_speed, 3.6 * assessment.high_speed)
                           : "No moving loads");
   body += banner(assessment);
+  body += report::html_section("Warnings of the runs", list_of(assessment.warnings));
   body += report::html_section("Limits", verdict_table(assessment, true));
   body += report::html_section("Decks", deck_table(assessment));
   body += report::html_section("Resonance of moving loads", resonance_charts(assessment));

@@ -36,15 +36,18 @@ std::optional<Pair> parse_pair(std::string_view text, char separator) {
 
 bool is_whole(double value) { return value == std::floor(value); }
 
-InputError missing(const po::options_description& options, const std::string& name, const std::string& usage) {
-  return InputError(fmt::format("found no {}: the argument --{} is missing\nusage: {}",
-                                options.find(name, false).format_parameter(), name, usage));
-}
-
 /// "o" of "-o [ --output ]", which is all that Boost says of it; none of "--plan".
 std::string short_name(const po::option_description& option) {
   const std::string names = option.format_name();
   return names[1] == '-' ? "" : names.substr(1, 1);
+}
+
+/// What the usage calls an argument: "SCENE.toml" where it stands without an option, "-o DIR", "--rail P".
+InputError missing(const po::option_description& option, bool positional, const std::string& usage) {
+  const std::string letter = short_name(option);
+  const std::string flag = letter.empty() ? "--" + option.long_name() : "-" + letter;
+  return InputError(
+      fmt::format("found no {}{}\nusage: {}", positional ? "" : flag + " ", option.format_parameter(), usage));
 }
 
 /// Boost writes a default behind the value's name: "N (=40)".
@@ -118,13 +121,20 @@ void CommandLine::print_interface() const {
   print_json(json);
 }
 
+void CommandLine::require(const std::string& name) const {
+  if (given(name)) return;
+  const bool positional = std::any_of(positional_.begin(), positional_.end(),
+                                      [&](const std::string& place) { return place == name || place == name + "..."; });
+  throw missing(all_.find(name, false), positional, usage_);
+}
+
 std::string CommandLine::required(const std::string& name) const {
-  if (!given(name)) throw missing(all_, name, usage_);
+  require(name);
   return text(name);
 }
 
 std::vector<std::string> CommandLine::required_many(const std::string& name) const {
-  if (!given(name)) throw missing(all_, name, usage_);
+  require(name);
   return values_[name].as<std::vector<std::string>>();
 }
 

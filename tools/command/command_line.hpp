@@ -59,6 +59,8 @@ class CommandLine {
   [[nodiscard]] bool quiet() const { return given("quiet"); }
 
  private:
+  /// @throws InputError where the option is missing
+  void require(const std::string& name) const;
   /// Usage, places without a flag and options as one JSON object.
   void print_interface() const;
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command/print.hpp"
+#include "railtab/runtime/base/edit_distance.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/version.hpp"
 
@@ -34,6 +35,15 @@ std::string usage(const CommandTable& table) {
 }
 
 std::string quoted(std::string_view text) { return nlohmann::json(text).dump(); }
+
+/// "; did you mean 'run'?" where a subcommand has nearly this name.
+std::string suggestion(const CommandTable& table, std::string_view name) {
+  constexpr std::size_t near = 2;
+  const auto distance = [&](const Subcommand& command) { return edit_distance(command.name, name); };
+  const auto nearest = std::ranges::min_element(table.subcommands, {}, distance);
+  const bool alike = distance(*nearest) <= near && distance(*nearest) < nearest->name.size();
+  return alike ? fmt::format("; did you mean '{}'?", nearest->name) : "";
+}
 
 /// Each subcommand prints its own interface, in its place in the program's.
 int print_interface(const CommandTable& table) {
@@ -70,7 +80,9 @@ int run_command_table(const CommandTable& table, const std::vector<std::string>&
   const std::string& first = arguments.front();
   if (const Subcommand* command = table.find(first)) return command->run({arguments.begin() + 1, arguments.end()});
   if (first == "--json-usage") return print_interface(table);
-  if (first == "--help" || first == "-h") {
+  const Subcommand* topic = first == "help" && arguments.size() > 1 ? table.find(arguments[1]) : nullptr;
+  if (topic) return topic->run({"--help"});
+  if (first == "--help" || first == "-h" || (first == "help" && arguments.size() == 1)) {
     print_text(usage(table));
     return exit_code::done;
   }
@@ -78,7 +90,9 @@ int run_command_table(const CommandTable& table, const std::vector<std::string>&
     print_formatted("railtab {}\n", version());
     return exit_code::done;
   }
-  throw InputError(fmt::format("unknown command '{}'\n{}", first, usage(table)));
+  const std::string& unknown = first == "help" ? arguments[1] : first;
+  throw InputError(fmt::format("unknown command '{}'{}\n{} --help lists the commands", unknown,
+                               suggestion(table, unknown), table.program));
 }
 
 }  // namespace railtab

@@ -33,8 +33,9 @@ struct CommandTable {
   [[nodiscard]] const Subcommand* find(std::string_view name) const;
 };
 
-/// Runs what the arguments of the program ask for: a subcommand, --help, --version, or --json-usage, the whole
-/// interface as JSON. @return the exit code. @throws InputError where the first argument is none of these
+/// Runs what the arguments of the program ask for: a subcommand, --help, help with or without the name of one,
+/// --version, or --json-usage, the whole interface as JSON. @return the exit code. @throws InputError where the first
+/// argument is none of these, with the subcommand of a similar name
 int run_command_table(const CommandTable& table, const std::vector<std::string>& arguments);
 
 }  // namespace railtab

@@ -14,6 +14,7 @@
 namespace railtab {
 
 void require_writable_place(const std::string& file, const std::string& option) {
+  if (file.empty()) throw input_error(option, "an empty name", "the name of a file");
   const std::filesystem::path path = output_file(file);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const std::string place = fmt::format("{} {}", option, file);

@@ -70,7 +70,7 @@ struct Request {
   std::string fail_on;
   PartOf shard;
   int threads = 1;
-  bool progress = false, json = false;
+  bool progress = false, json = false, quiet = false;
   [[nodiscard]] bool asks(AssessmentStage stage) const {
     return std::find(stages.begin(), stages.end(), stage) != stages.end();
   }
@@ -89,23 +89,13 @@ std::vector<AssessmentStage> stages_of(const CommandLine& line) {
   return stages;
 }
 
-std::vector<double> assess_speeds(const CommandLine& line) {
-  const bool si = line.given("speed"), kmh = line.given("speed-kmh");
-  if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
-  if (!si && !kmh) return {};
-  const std::string option = si ? "speed" : "speed-kmh";
-  std::vector<double> speeds = values_of_range("--" + option, line.text(option));
-  for (double& speed : speeds) speed *= si ? 1.0 : 1.0 / 3.6;
-  return speeds;
-}
-
 Request request_of(const CommandLine& line) {
   Request request;
   request.scene_file = line.required("scene");
   request.folder = line.given("output") ? fs::path(line.text("output"))
                                         : fs::path(request.scene_file.stem().string() + ".assessment");
   request.stages = stages_of(line);
-  request.speeds = assess_speeds(line);
+  request.speeds = speeds_of_options(line);
   constexpr int most_seeds = 1000;
   if (line.given("seeds")) request.seeds = static_cast<int>(line.whole_number("seeds", 1, most_seeds));
   if (line.given("fail-on")) {
@@ -122,6 +112,7 @@ Request request_of(const CommandLine& line) {
   request.threads = line.workers();
   request.progress = !line.quiet() && !line.json();
   request.json = line.json();
+  request.quiet = line.quiet();
   return request;
 }
 
@@ -281,6 +272,14 @@ std::vector<ContactPlan> contact_plans(const std::vector<AssessTrain>& trains, c
   return plans;
 }
 
+std::vector<std::string> warnings_of(const std::vector<ContactPlan>& plans, const Request& request) {
+  std::vector<RunRow> rows;
+  for (const ContactPlan& plan : plans) {
+    for (const SweepRun& run : plan.runs) rows.push_back({run.name, row_begin(run)});
+  }
+  return warnings_of_runs(RunPool(request.scene_file, request.folder / "runs", {"vsi assess"}), rows);
+}
+
 int contact_runs(const std::vector<AssessTrain>& trains, const SceneParameters& scene, const Request& request,
                  StageReport& report, Assessment& assessment) {
   const std::vector<ContactPlan> plans = contact_plans(trains, scene, request, report, assessment);
@@ -290,6 +289,8 @@ int contact_runs(const std::vector<AssessTrain>& trains, const SceneParameters& 
   ContactRuns runs(plans, request.scene_file, request.folder / "runs", [&](double share) { bar.show(share); });
   const int code = runs.make(request.shard, request.threads);
   bar.wipe();
+  assessment.warnings = warnings_of(plans, request);
+  if (!request.quiet) print_warnings("vsi assess", assessment.warnings);
   if (code == wrong_input || code == interrupted) return code;
   if (request.shard.count == 1) {
     runs.measure(assessment);
@@ -337,7 +338,7 @@ int write_outputs(const Request& request, const Assessment& assessment, bool jso
   return fails ? clause_fails : done;
 }
 
-void print_interrupted() { print_message("vsi assess: interrupted; the same command goes on from what is finished\n"); }
+void print_interrupted() { print_message("vsi assess: interrupted; the same command goes on\n"); }
 
 /// Part of the runs, without a verdict.
 int assess_shard(const std::vector<AssessTrain>& trains, const SceneParameters& scene, const Request& request,

@@ -84,7 +84,9 @@ void record_what_is_judged(SceneParameters& scene) {
   scene.output.every = std::max(1, static_cast<int>(std::min(1e6, steps)));
   scene.output.wheels = true;
   scene.output.bodies = {scene.train.vehicle == imported_vehicle ? "*" : "*car-body"};
-  scene.output.nodes = {scene.track_kind == TrackKind::flexible ? "deck*" : "*"};
+  scene.output.nodes.clear();  // no deck: its pattern would fit no node
+  if (scene.track_kind != TrackKind::flexible) scene.output.nodes = {"*"};
+  if (scene.track_kind == TrackKind::flexible && has_deck_nodes(scene)) scene.output.nodes = {"deck*"};
 }
 
 namespace {

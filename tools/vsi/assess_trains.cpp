@@ -16,6 +16,7 @@ namespace railtab::vsi {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* train_options = "--train, assessment.trains";
 
 /// The vehicles of "a+b*8"; none where one of them is no vehicle.
 std::vector<ConsistEntry> vehicles_of(const std::string& name, const fs::path& folder) {
@@ -57,20 +58,33 @@ AssessTrain train_of_vehicles(const SceneParameters& scene, const std::string& n
     train.axles.name = name;
     return train;
   } catch (const InputError& wrong) {
-    throw InputError(fmt::format("--train, assessment.trains: '{}': {}", name, without_scene(wrong.what())));
+    throw InputError(fmt::format("{}: '{}': {}", train_options, name, without_scene(wrong.what())));
   }
+}
+
+/// @throws InputError where a train is neither a file nor one of the library
+void require_known_axles(const std::string& name) {
+  const std::vector<std::string> known = train_names();
+  const std::string once = name.substr(0, name.rfind('*'));
+  if (name.ends_with(".csv") || std::find(known.begin(), known.end(), once) != known.end()) return;
+  throw input_error(train_options, fmt::format("'{}'", name),
+                    fmt::format("a vehicle (vsi vehicle lists them) or VEHICLE.toml, several as VEHICLE*N+VEHICLE; "
+                                "axle loads AXLES.csv; hslm-a for all ten; or one of {}, of which wagons (en15528-…) "
+                                "also as NAME*N",
+                                fmt::join(known, ", ")));
 }
 
 AssessTrain find_train(const SceneParameters& scene, const std::string& name, const fs::path& folder) {
   if (std::vector<ConsistEntry> entries = vehicles_of(name, folder); !entries.empty()) {
     return train_of_vehicles(scene, name, std::move(entries));
   }
+  require_known_axles(name);
   constexpr double any_deck = 1.0;  // static load models alone depend on it
   AssessTrain train{
       name, find_axle_train(name.ends_with(".csv") ? (folder / name).string() : name, any_deck), {}, false};
   train.axles.name = name;
   if (train.axles.only_static) {
-    throw input_error("--train, assessment.trains", fmt::format("'{}', a load model at rest", name),
+    throw input_error(train_options, fmt::format("'{}', a load model at rest", name),
                       "trains that move; stage check takes lm71");
   }
   return train;

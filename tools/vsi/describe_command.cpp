@@ -108,6 +108,15 @@ Description of_toml(const std::string& file) {
   return d;
 }
 
+/// "run report" from the first line of a page of railtab; empty for other files.
+std::string kind_of_page(std::string_view first) {
+  constexpr std::string_view end = "\">";
+  const std::string nameless = report::html_first_line("");
+  const std::string_view begin = std::string_view(nameless).substr(0, nameless.rfind(end));
+  if (!first.starts_with(begin) || !first.ends_with(end)) return "";
+  return std::string(first.substr(begin.size(), first.size() - begin.size() - end.size()));
+}
+
 Description of_text(const std::string& file, const std::string& first, const std::string& ending) {
   static const std::map<std::string, std::string> profiles{
       {".prw", "wheel"}, {".whl", "wheel"}, {".prr", "rail"}, {".ban", "rail"}};
@@ -131,11 +140,10 @@ Description of_text(const std::string& file, const std::string& first, const std
                          "structure.format = \"abaqus\"",
                          file)}};
   }
-  for (const std::string_view kind : {"run report", "contact table"}) {
-    if ((first + "\n").starts_with(report::html_first_line(kind))) {
-      return {fmt::format("a page of railtab: {}", kind), {}, {"open it in a browser"}};
-    }
+  if (const std::string kind = kind_of_page(first); !kind.empty()) {
+    return {fmt::format("a page of railtab: {}", printable(kind)), {}, {"open it in a browser"}};
   }
+  if (first.starts_with("<svg ")) return {"a picture (SVG)", {}, {"open it in a browser"}};
   if (ending == ".csv") {
     if (first.starts_with("ratio,")) {
       return {"queries of creep forces", {printable(first)}, {fmt::format("vsi creep --query {} -o R.csv", file)}};

@@ -44,8 +44,14 @@ int run_arguments(const Arguments& arguments) {
   if (arguments.empty() || commands().find(arguments.front())) return run_command_table(commands(), arguments);
   const std::string& name = arguments.front();
   if (is_file(name)) return describe_command(arguments);
+  const std::string_view there = what_is_at(name);
+  const bool folder = there == "a folder";
   const bool meant_as_file = !name.starts_with('-') && name.find_first_of("./") != std::string::npos;
-  if (meant_as_file) throw input_error(name, std::string(what_is_at(name)), "a file, or a command (vsi --help)");
+  if (folder || meant_as_file) {
+    throw input_error(
+        name, there,
+        folder ? "a file, as of those in this folder, or a command (vsi --help)" : "a file, or a command (vsi --help)");
+  }
   return run_command_table(commands(), arguments);
 }
 

@@ -35,6 +35,8 @@ namespace railtab::vsi {
 namespace po = boost::program_options;
 namespace {
 
+using exit_code::done, exit_code::failed, exit_code::interrupted;
+
 ContactMode contact_mode(const std::string& name) {
   if (name == "table") return ContactMode::table;
   if (name == "online") return ContactMode::online;
@@ -43,6 +45,11 @@ ContactMode contact_mode(const std::string& name) {
 }
 
 void print_warning(std::string_view warning) { print_message(fmt::format("vsi run: warning: {}\n", warning)); }
+
+void warn(const RunOptions& options, std::string_view warning) {
+  if (options.warning) return options.warning(warning);
+  if (!options.quiet) print_warning(warning);
+}
 
 std::string bytes_text(double bytes) {
   for (const auto& [unit, name] : {std::pair(1e12, "TB"), std::pair(1e9, "GB")}) {
@@ -106,15 +113,16 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
 }
 
 /// Wheel forces that the scene's track or contact cannot give, wherever they come from.
-void warn_of_negative_force(const report::Headline& headline, const SceneParameters& scene) {
+void warn_of_negative_force(const report::Headline& headline, const SceneParameters& scene, const RunOptions& options) {
   const report::Extreme& least = headline.smallest_Q;
   if (!least.found()) return;
   const std::string where = fmt::format("{}, t = {:.3f} s", least.where, least.time);
   if (scene.contact.normal == NormalContact::rigid && least.value < 0.0) {
-    print_warning(fmt::format(
-        "negative contact force (smallest Q {:.4g} kN, {}): the wheel would lift off there, but contact.normal = "
-        "\"rigid\" holds it on its rail; contact.normal = \"hertz\" computes lift-off and landing",
-        1e-3 * least.value, where));
+    warn(options,
+         fmt::format(
+             "negative contact force (smallest Q {:.4g} kN, {}): the wheel would lift off there, but contact.normal = "
+             "\"rigid\" holds it on its rail; contact.normal = \"hertz\" computes lift-off and landing",
+             1e-3 * least.value, where));
   }
 }
 
@@ -135,44 +143,45 @@ class Interrupt {
 
 /// What a run says that could not begin, and its exit code. Results of another run that are in its place stay there.
 int conclude_without_results(const RunSummary& summary, const RunOptions& options) {
-  if (options.ended) options.ended({}, summary);
+  if (options.ended) {
+    options.ended({}, summary);
+    return failed;
+  }
   if (options.json) print_json_line(report::headline_json({}, summary));
   print_message(
       fmt::format("vsi run: {}; no step was made, and {} stays as it was\n", summary.message, options.output));
-  return 1;
+  return failed;
 }
 
 /// What a run that has ended says, and its exit code.
 int conclude(const SceneParameters& scene, const report::Headline& headline, const RunSummary& summary,
              const RunOptions& options) {
-  if (options.ended) options.ended(headline, summary);
-  constexpr int by_interrupt = 130;  // as a shell says of a program that Ctrl-C has ended
-  if (options.json) {
+  if (options.ended) {
+    options.ended(headline, summary);
+  } else if (options.json) {
     nlohmann::ordered_json json = report::headline_json(headline, summary);
     json["results"] = options.output;
     print_json_line(json);
   } else if (!options.quiet && summary.steps > 0) {
     print_formatted("{}Results: {}\n", report::headline_text(headline, summary), options.output);
   }
-  if (!options.quiet) {
-    const std::string uncovered = report::uncovered_queries(summary);
-    if (!uncovered.empty()) print_warning(uncovered);
-    warn_of_negative_force(headline, scene);
-  }
-  if (summary.complete) return 0;
+  if (const std::string uncovered = report::uncovered_queries(summary); !uncovered.empty()) warn(options, uncovered);
+  warn_of_negative_force(headline, scene, options);
+  if (summary.complete) return done;
+  if (options.ended) return summary.interrupted ? interrupted : failed;
   if (summary.interrupted) {
     print_message(fmt::format(
         "vsi run: interrupted at t = {:.6g} s; everything up to there is in {}; the same command with --resume "
         "goes on from there\n",
         headline.simulated_time, options.output));
-    return by_interrupt;
+    return interrupted;
   }
   print_message(summary.steps == 0
                     ? fmt::format("vsi run: {}; no step was made, and {} holds no more than this\n", summary.message,
                                   options.output)
                     : fmt::format("vsi run: the run ended at t = {:.6g} s: {}; everything up to there is in {}\n",
                                   headline.simulated_time, summary.message, options.output));
-  return 1;
+  return failed;
 }
 
 /// The results of a run that came to its end are worth a word before they are gone.
@@ -205,15 +214,13 @@ class RunDisplay {
     observer.note = [this](std::string_view note) {
       if (!options_.quiet) print_message(fmt::format("vsi run: note: {}\n", note));
     };
-    observer.warning = [this](std::string_view warning) {
-      if (!options_.quiet) print_warning(warning);
-    };
+    observer.warning = [this](std::string_view warning) { warn(options_, warning); };
     observer.ready = [this, resumed] {
       if (!resumed) say_what_is_replaced(options_);
       setup_.end();
       Interrupt::listen();
     };
-    observer.stop = [] { return Interrupt::asked(); };
+    observer.stop = [this] { return Interrupt::asked() || (options_.stop && options_.stop()); };
     observer.start = [this, resumed](const ResultHeader& header) {
       if (!resumed) collector_.emplace(header);
     };
@@ -282,8 +289,8 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     return display.finish(scene, summary, run.has_results());
   } catch (const ComputationError& failure) {
     if (!run.is_resumable()) throw;
-    throw ComputationError(fmt::format("{}; the same command with --resume goes on from the last checkpoint in {}",
-                                       failure.what(), options.output));
+    throw ComputationError(fmt::format("{}; the same command{} goes on from the last checkpoint in {}", failure.what(),
+                                       options.ended ? "" : " with --resume", options.output));
   }
 }
 

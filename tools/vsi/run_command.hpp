@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "headline.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -12,8 +13,10 @@ namespace railtab::vsi {
 struct RunOptions {
   std::string output;
   bool json = false, quiet = false, resume = false;
-  /// Told how a run has ended, before the program says it; may be empty.
+  /// Of a run among many: told its end and its warnings, in place of the program's own words; may be empty.
   std::function<void(const report::Headline&, const RunSummary&)> ended{};
+  std::function<void(std::string_view)> warning{};
+  std::function<bool()> stop{};                  ///< whether to end after this step, besides Ctrl-C; may be empty
   std::function<void(double share)> progress{};  ///< of the steps done, 0..1; may be empty
   SharedSetUp* shared = nullptr;                 ///< as of run_scene()
 };

@@ -7,8 +7,11 @@
 #include <set>
 #include <sstream>
 
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/printable_text.hpp"
+#include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/temporary_file.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
@@ -73,18 +76,79 @@ RunCount count_rows(const RunPool& pool, const std::vector<RunRow>& runs, std::s
   return count;
 }
 
+std::vector<std::string> warnings_of_runs(const RunPool& pool, const std::vector<RunRow>& runs) {
+  struct Found {
+    std::string alike, warning, first_run;
+    std::size_t others = 0;
+  };
+  std::vector<Found> all;
+  for (const RunRow& run : runs) {
+    if (!pool.finished(run.name)) continue;
+    std::set<std::string> of_run;
+    std::ifstream stream(pool.file(run.name, ".warnings"));
+    for (std::string warning; std::getline(stream, warning);) {
+      std::string alike = warning;
+      std::erase_if(alike, [](char letter) { return letter == '.' || (letter >= '0' && letter <= '9'); });
+      if (!of_run.insert(alike).second) continue;
+      const auto known = std::ranges::find(all, alike, &Found::alike);
+      if (known == all.end()) {
+        all.push_back({alike, warning, run.name});
+      } else {
+        ++known->others;
+      }
+    }
+  }
+  std::vector<std::string> warnings;
+  for (const Found& found : all) {
+    const std::string others = found.others == 0 ? "" : fmt::format(", and alike in {} more", found.others);
+    warnings.push_back(fmt::format("{} (run {}{})", found.warning, found.first_run, others));
+  }
+  return warnings;
+}
+
+void print_warnings(std::string_view command, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) print_message(fmt::format("{}: warning: {}\n", command, warning));
+}
+
+namespace {
+
+/// How the line of an input's checksum begins.
+std::string checksum_mark(const fs::path& input) { return fmt::format("# {}: ", input.string()); }
+
+/// What differs first between the text that a folder is bound to and another one.
+std::string first_difference(const std::string& bound, const std::string& text, const std::vector<fs::path>& files) {
+  std::istringstream there(bound), now(text);
+  std::string before, after;
+  for (int line = 1;; ++line) {
+    const bool ends_there = !std::getline(there, before), ends_now = !std::getline(now, after);
+    if (!ends_there && !ends_now && before == after) continue;
+    if (ends_there) return fmt::format("line {} is new: {}", line, railtab::quoted(after));
+    if (ends_now) return fmt::format("line {} is gone: {}", line, railtab::quoted(before));
+    for (const fs::path& input : files) {
+      const std::string label = checksum_mark(input);
+      if (before.starts_with(label) && after.starts_with(label)) {
+        return fmt::format("the contents of {} have changed", printable(input.string()));
+      }
+    }
+    return fmt::format("line {} was {} and is {}", line, railtab::quoted(before), railtab::quoted(after));
+  }
+}
+
+}  // namespace
+
 void check_same_scene(std::string text, const std::vector<fs::path>& files, const fs::path& folder) {
   const fs::path file = folder / "scene.toml";
-  for (const fs::path& input : files) text += fmt::format("\n# {}: {}", input.string(), file_checksum(input));
+  for (const fs::path& input : files) text += fmt::format("\n{}{}", checksum_mark(input), file_checksum(input));
   text += '\n';
   try {
     if (!fs::exists(file)) write_text_file(file, text);
   } catch (const std::runtime_error&) {
     if (!fs::exists(file)) throw;  // else another shard was first
   }
-  if (whole_text(file) != text) {
-    throw input_error(file.string(), "another scene, or other contents of the files that it names",
-                      "the scene of this sweep, or another folder for -o");
+  if (const std::string bound = whole_text(file); bound != text) {
+    throw input_error(file.string(), "another scene",
+                      fmt::format("that of the runs in this folder, or another folder for -o; {}",
+                                  first_difference(bound, text, files)));
   }
 }
 
@@ -92,7 +156,7 @@ void remove_abandoned_runs(const std::vector<RunRow>& runs, const std::vector<st
                            const fs::path& folder) {
   std::set<std::string> outputs(others.begin(), others.end());
   for (const RunRow& run : runs) {
-    for (const char* suffix : {".h5", ".row"}) outputs.insert(run.name + suffix);
+    for (const char* suffix : {".h5", ".row", ".warnings"}) outputs.insert(run.name + suffix);
   }
   remove_abandoned_in(folder, [&](const std::string& output) { return outputs.contains(output); });
 }

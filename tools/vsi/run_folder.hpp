@@ -31,8 +31,14 @@ struct RunCount {
 /// All runs that are finished, whichever process or shard made them; their rows are added to `rows`. @throws InputError
 RunCount count_rows(const RunPool& pool, const std::vector<RunRow>& runs, std::string_view columns, std::string& rows);
 
+/// Warnings of the finished runs, each once with the runs that have it; warnings that differ in their numbers alone
+/// count as one, which is that of the first run.
+[[nodiscard]] std::vector<std::string> warnings_of_runs(const RunPool& pool, const std::vector<RunRow>& runs);
+/// @param command "vsi sweep"
+void print_warnings(std::string_view command, const std::vector<std::string>& warnings);
+
 /// A folder holds the runs of one scene and of the same contents of the files that it names, or is bound to them here
-/// by its file scene.toml. @throws InputError
+/// by its file scene.toml. @throws InputError with the first difference
 void check_same_scene(std::string text, const std::vector<std::filesystem::path>& files,
                       const std::filesystem::path& folder);
 

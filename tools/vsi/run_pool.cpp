@@ -21,6 +21,7 @@
 #include "command/print.hpp"
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/printable_text.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/result_file.hpp"
@@ -35,6 +36,14 @@ namespace {
 using exit_code::done, exit_code::failed, exit_code::wrong_input, exit_code::interrupted;
 constexpr int kept = 3;  // of a run that was finished before
 volatile std::sig_atomic_t asked = 0;
+
+/// A first Ctrl-C asks all runs to end after their step, a second one ends the program.
+void listen_to_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { asked = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+}
 
 bool is_readable(const fs::path& results) {
   try {
@@ -57,6 +66,7 @@ struct RunPool::Board {
 
   std::atomic<std::size_t> next{0};                       ///< run that nobody has begun
   std::atomic<bool> stop{false};                          ///< no further run is begun
+  std::atomic<bool> interrupted{false};                   ///< those in progress end after their step
   std::atomic<bool> one_ended{false};                     ///< otherwise than by wrong input
   std::array<std::atomic<std::size_t>, most_workers> at;  ///< run that each worker makes, or none
   double* share;                                          ///< how far each run is, 0..1, as many as there are runs
@@ -122,7 +132,7 @@ class ReportPipe {
 
 int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
   if (runs.empty()) return done;
-  signal(SIGINT, [](int) { asked = 1; });
+  listen_to_interrupts();
   runs_ = &runs;
   const SharedMemory memory(sizeof(Board)), shares(runs.size() * sizeof(double));
   Board& board = *new (memory.get()) Board;
@@ -143,7 +153,7 @@ int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
     for (auto end = reports.wait(longest); end; end = reports.wait(at_once)) ended(*end);
   };
   while (!workers_.empty()) {
-    if (asked != 0) board.stop = true;
+    if (asked != 0) board.stop = board.interrupted = true;
     constexpr int moment = 100;  // ms
     hear(moment);
     for (pid_t process = 0; (process = ::waitpid(-1, nullptr, WNOHANG)) > 0;) {
@@ -194,7 +204,7 @@ void RunPool::work(Board& board, std::size_t worker, int report) const {
     const std::size_t run = board.next++;
     if (run >= runs_->size()) return;
     board.at[worker] = run;
-    EndOfRun end{run, make((*runs_)[run], board.share[run], shared), false};
+    EndOfRun end{run, make(board, run, shared), false};
     board.share[run] = 1.0;
     end.wrong_for_all = end.code == wrong_input && !board.one_ended;
     if (end.wrong_for_all) board.stop = true;
@@ -252,11 +262,12 @@ void RunPool::set_others_aside(const std::string& name, const SceneParameters& s
   if (fs::exists(file(name, ".row"))) set_aside(name, ".row", why);
 }
 
-int RunPool::make(const PooledRun& run, double& share, SharedSetUp& shared) const {
+int RunPool::make(Board& board, std::size_t number, SharedSetUp& shared) const {
+  const PooledRun& run = (*runs_)[number];
   std::optional<SceneParameters> scene;
   try {
     scene = run.scene();
-    return make_row(run, *scene, share, shared);
+    return make_row(board, number, *scene, shared);
   } catch (const InputError& wrong) {
     const InputError placed = scene ? with_scene_line(wrong, *scene, scene_file_) : wrong;
     print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, placed.what()));
@@ -268,7 +279,8 @@ int RunPool::make(const PooledRun& run, double& share, SharedSetUp& shared) cons
 }
 
 /// The run, where it is not finished, and its row.
-int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double& share, SharedSetUp& shared) const {
+int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& scene, SharedSetUp& shared) const {
+  const PooledRun& run = (*runs_)[number];
   const fs::path results = file(run.name, ".h5");
   const auto tidy = [&] {
     if (!options_.keep_results && finished(run.name)) fs::remove(results);
@@ -280,15 +292,40 @@ int RunPool::make_row(const PooledRun& run, const SceneParameters& scene, double
   }
   std::optional<std::pair<report::Headline, RunSummary>> end;
   RunOptions options{results.string(), false, true, true};
-  options.progress = [&share](double done_so_far) { share = done_so_far; };
+  options.progress = [&](double done_so_far) { board.share[number] = done_so_far; };
+  options.stop = [&] { return board.interrupted.load(); };
   options.shared = &shared;
+  std::string warnings;
+  options.warning = [&](std::string_view warning) { warnings += printable(warning) + "\n"; };
   options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
-    if (!summary.interrupted) end.emplace(headline, summary);
+    if (summary.interrupted) return;
+    end.emplace(headline, summary);
+    if (!summary.complete) say_early_end(run.name, scene, headline, summary);
   };
   const int code = run_to_file(scene, options);
-  if (end && fs::exists(results)) write_text_file(file(run.name, ".row"), run.row(end->first, end->second, results));
+  if (end && fs::exists(results)) {
+    write_warnings(run.name, warnings);
+    write_text_file(file(run.name, ".row"), run.row(end->first, end->second, results));
+  }
   tidy();
   return code;
+}
+
+void RunPool::write_warnings(const std::string& name, const std::string& warnings) const {
+  const fs::path output = file(name, ".warnings");
+  fs::remove(output);  // those of an earlier run of this name
+  if (!warnings.empty()) write_text_file(output, warnings);
+}
+
+void RunPool::say_early_end(const std::string& name, const SceneParameters& scene, const report::Headline& headline,
+                            const RunSummary& summary) const {
+  const std::string when = summary.steps > 0 ? fmt::format("the run ended at t = {:.6g} s", headline.simulated_time)
+                                             : std::string("no step was made");
+  const std::string where = summary.steps > 0 && options_.keep_results
+                                ? fmt::format("; everything up to there is in {}", file(name, ".h5").string())
+                                : std::string();
+  print_message(
+      fmt::format("{}: {}: {}: {}: {}{}\n", options_.command, name, scene.name, when, summary.message, where));
 }
 
 /// @param code of the run, 0: it came to its end
@@ -299,6 +336,7 @@ void RunPool::say_end(const PooledRun& run, int code) {
 }
 
 void make_output_folder(const fs::path& folder) {
+  if (folder.empty()) throw input_error("-o", "an empty name", "the name of a folder");
   if (fs::is_directory(folder)) return;
   if (fs::exists(folder)) throw input_error("-o", folder.string() + ", which is a file", "a folder");
   const fs::path parent = fs::absolute(folder / "").parent_path().parent_path();

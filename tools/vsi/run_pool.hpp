@@ -29,7 +29,8 @@ struct RunPoolOptions {
 
 /// Runs in worker processes, each of which makes one run after the other and keeps what they have in common
 /// (SharedSetUp). A worker that dies loses the run that it makes, and another takes its place; every run can be
-/// resumed. A run has two files in the folder: NAME.h5, its results, and NAME.row, written last.
+/// resumed. A run has up to three files in the folder: NAME.h5, its results, NAME.warnings, a line for each of its
+/// warnings, where it has any, and NAME.row, written last.
 class RunPool {
  public:
   RunPool(std::filesystem::path scene_file, std::filesystem::path folder, RunPoolOptions options);
@@ -51,9 +52,11 @@ class RunPool {
   void set_aside(const std::string& name, const char* suffix, const std::string& why) const;
   void check_results(const std::string& name, const SceneParameters& scene) const;
   void set_others_aside(const std::string& name, const SceneParameters& scene) const;
-  [[nodiscard]] int make(const PooledRun& run, double& share, SharedSetUp& shared) const;
-  [[nodiscard]] int make_row(const PooledRun& run, const SceneParameters& scene, double& share,
-                             SharedSetUp& shared) const;
+  [[nodiscard]] int make(Board& board, std::size_t run, SharedSetUp& shared) const;
+  [[nodiscard]] int make_row(Board& board, std::size_t run, const SceneParameters& scene, SharedSetUp& shared) const;
+  void write_warnings(const std::string& name, const std::string& warnings) const;
+  void say_early_end(const std::string& name, const SceneParameters& scene, const report::Headline& headline,
+                     const RunSummary& summary) const;
   void say_end(const PooledRun& run, int code);
 
   std::filesystem::path scene_file_, folder_;

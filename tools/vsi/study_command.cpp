@@ -43,6 +43,13 @@ int print_count(const StudyPlan& plan, bool json) {
   return done;
 }
 
+std::vector<std::string> print_study_warnings(const StudyRuns& runs, const std::vector<StudyPoint>& points,
+                                              const CommandLine& line) {
+  std::vector<std::string> warnings = runs.warnings(points);
+  if (!line.quiet()) print_warnings("vsi study", warnings);
+  return warnings;
+}
+
 int run_shard(const StudyPlan& plan, StudyRuns& runs, const PartOf& shard, const CommandLine& line) {
   if (plan.method == StudyMethod::subset || plan.method == StudyMethod::peak || plan.method == StudyMethod::threshold ||
       plan.method == StudyMethod::importance) {
@@ -53,10 +60,14 @@ int run_shard(const StudyPlan& plan, StudyRuns& runs, const PartOf& shard, const
   ProgressBar bar(fmt::format("{} runs", own.size()), !line.quiet() && !line.json());
   const int code = runs.make(own, [&](double share) { bar.show(share); });
   bar.wipe();
+  const std::vector<std::string> warnings = print_study_warnings(runs, own, line);
   std::string rows;
   const RunCount count = runs.table(own, rows);
   if (line.json()) {
-    print_json_line({{"runs", own.size()}, {"finished", count.finished}, {"ended_early", count.ended_early}});
+    print_json_line({{"runs", own.size()},
+                     {"finished", count.finished},
+                     {"ended_early", count.ended_early},
+                     {"warnings", warnings}});
   } else if (!line.quiet()) {
     print_formatted(
         "shard {} of {}: {} of its {} runs finished, {} of them ended early; the same command without --shard writes "
@@ -95,9 +106,11 @@ int report_study(const StudyPlan& plan, const SceneParameters& scene, const Stud
     report.points.push_back(point);
   }
   write_study(report, rows, folder);
+  const std::vector<std::string> warnings = print_study_warnings(runs, result.points, line);
   if (line.json()) {
     nlohmann::ordered_json json = study_json(report);
     json["table"] = (folder / "runs.csv").string();
+    json["warnings"] = warnings;
     print_json_line(json);
   } else if (!line.quiet()) {
     print_formatted("{}{} runs finished, {} of them ended early: {}\n", study_text(report), report.count.finished,
@@ -124,6 +137,14 @@ int run_study(const StudyPlan& plan, const CommandLine& line) {
   return std::max(code, report_study(plan, scene, runs, result, line));
 }
 
+int code_of_study(const StudyPlan& plan, const CommandLine& line) {
+  try {
+    return run_study(plan, line);
+  } catch (const StudyStopped& stopped) {
+    return stopped.code;
+  }
+}
+
 }  // namespace
 
 int study_command(const Arguments& arguments) {
@@ -135,14 +156,9 @@ int study_command(const Arguments& arguments) {
     StudyRuns(plan, scene, {".", 1, true}).check(planned_points(plan));
     return print_count(plan, line.json());
   }
-  try {
-    return run_study(plan, line);
-  } catch (const StudyStopped& stopped) {
-    if (stopped.code == interrupted) {
-      print_message("vsi study: interrupted; the same command goes on from what is finished\n");
-    }
-    return stopped.code;
-  }
+  const int code = code_of_study(plan, line);
+  if (code == interrupted) print_message("vsi study: interrupted; the same command goes on\n");
+  return code;
 }
 
 }  // namespace railtab::vsi

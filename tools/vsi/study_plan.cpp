@@ -244,12 +244,13 @@ void read_sampling(TomlSection& s, StudyPlan& plan) {
   s.reject_others();
 }
 
-std::string read_measure(TomlSection& s) {
+void read_measure(TomlSection& s, StudyPlan& plan) {
   std::vector<std::string> names;
   for (const MeasureKind& kind : measure_kinds()) {
     if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) > 0) names.emplace_back(kind.name);
   }
-  return s.text_of("measure", names);
+  plan.measure = s.text_of("measure", names);
+  plan.measure_place = s.place();
 }
 
 /// The variable with numbers as values that a key names.
@@ -283,7 +284,7 @@ void read_probability(TomlSection& s, StudyPlan& plan) {
   plan.method = method == "subset"      ? StudyMethod::subset
                 : method == "fragility" ? StudyMethod::fragility
                                         : StudyMethod::probability;
-  plan.measure = read_measure(s);
+  read_measure(s, plan);
   plan.limit = s.number("limit", {"", -any, any});
   plan.confidence = s.number("confidence", {"", 0.5, 0.9999}, plan.confidence);
   if (plan.method == StudyMethod::subset) read_subset(s, plan);
@@ -300,14 +301,14 @@ void read_probability(TomlSection& s, StudyPlan& plan) {
 
 void read_peak(TomlSection& s, StudyPlan& plan) {
   plan.method = StudyMethod::peak;
-  plan.measure = read_measure(s);
+  read_measure(s, plan);
   plan.coarse_step = whole(s, "coarse_step", 2, 1000, plan.coarse_step);
   s.reject_others();
 }
 
 void read_threshold(TomlSection& s, StudyPlan& plan) {
   plan.method = StudyMethod::threshold;
-  plan.measure = read_measure(s);
+  read_measure(s, plan);
   plan.limit = s.number("limit", {"", -any, any});
   plan.intensity = read_gridded(s, "variable", plan);
   const std::vector<StudyValue>& values = plan.variables[plan.intensity].values;
@@ -321,7 +322,7 @@ void read_threshold(TomlSection& s, StudyPlan& plan) {
 
 void read_importance(TomlSection& s, StudyPlan& plan) {
   plan.method = StudyMethod::importance;
-  plan.measure = read_measure(s);
+  read_measure(s, plan);
   if (!s.has("samples"))
     throw s.error("samples", "nothing", "an integer 8 to 100000: runs are samples · (variables + 2)");
   plan.sampling.samples = whole(s, "samples", 8, 100000, 8);

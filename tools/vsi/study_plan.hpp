@@ -62,8 +62,9 @@ struct StudyPlan {
   std::vector<StudyVariable> variables;
   StudySampling sampling;
   StudyMethod method = StudyMethod::table;
-  std::string measure;  ///< of all methods but `table`
-  double limit = 0.0;   ///< of probability, fragility, subset and threshold
+  std::string measure;        ///< of all methods but `table`
+  std::string measure_place;  ///< "plan.toml:12: peak", for messages
+  double limit = 0.0;         ///< of probability, fragility, subset and threshold
   double confidence = 0.95;
   std::size_t replicates = 1000;   ///< of bootstraps
   std::size_t intensity = 0;       ///< variable of a fragility curve or a threshold

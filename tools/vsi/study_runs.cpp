@@ -90,6 +90,41 @@ std::string in_scene(const StudyKey& key, const StudyValue& value) {
   return fmt::format("[\"{}\"]", fmt::join(vehicles_of(train), "\", \""));
 }
 
+/// @throws InputError where no run could have the measure
+void require_deck_of_measure(const StudyPlan& plan, const SceneParameters& scene) {
+  const bool of_deck =
+      plan.measure.starts_with("deck_") || plan.measure == "track_twist" || plan.measure == "horizontal_rotation";
+  if (!of_deck || !scene.spans.empty() || scene.structure.files.given()) return;
+  throw input_error(plan.measure_place + ".measure", fmt::format("\"{}\"", plan.measure),
+                    fmt::format("a measure of wheels or car bodies, or a scene with a bridge: {} has none",
+                                plan.scene_file.string()));
+}
+
+/// A message about a key without the line of the scene: its value stands in the plan.
+std::string without_scene_line(const std::string& message, const std::string& key, const std::string& scene_file) {
+  if (!message.starts_with(scene_file + ":")) return message;
+  const std::string rest = message.substr(message.find(": ", scene_file.size()) + 2);
+  const bool of_key = rest.substr(0, rest.find(": found")).find(key) != rest.npos;
+  return of_key ? rest : message;
+}
+
+/// With the variable whose key the message names, and its line of the plan.
+InputError with_plan_line(const InputError& wrong, const StudyPlan& plan) {
+  const std::string message = wrong.what(), found = message.substr(0, message.find("(changed:"));
+  if (message.starts_with(plan.file.string() + ":")) return wrong;
+  for (const StudyVariable& variable : plan.variables) {
+    for (const StudyKey& key : variable.keys) {
+      // as the key is written in messages, a number of a [[section]] apart
+      const std::string last = key.key.substr(key.key.rfind('.') + 1);
+      if (found.find(last) == found.npos) continue;
+      const std::string rest = without_scene_line(message, last, plan.scene_file.string());
+      if (rest.starts_with(key.key + ": ")) return InputError(fmt::format("{}.{}", variable.place, rest));
+      return InputError(fmt::format("{}.{}: {}", variable.place, key.key, rest));
+    }
+  }
+  return InputError(fmt::format("{}: {}", plan.file.string(), message));
+}
+
 }  // namespace
 
 std::vector<StudyPoint> planned_points(const StudyPlan& plan) {
@@ -178,6 +213,16 @@ RunRow StudyRuns::row_of(const StudyPoint& point) const {
   return {name, fmt::format("{},{}", name, cells)};
 }
 
+std::vector<RunRow> StudyRuns::rows_of(const std::vector<StudyPoint>& points) const {
+  std::vector<RunRow> runs;
+  std::set<std::string> names;
+  for (const StudyPoint& point : points) {
+    RunRow run = row_of(point);
+    if (names.insert(run.name).second) runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
 /// The scene as it was when the study began, with the values of a point, and what is judged recorded.
 SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
   SceneParameters scene = read_scene(plan_.scene_file, changes_of(point));
@@ -197,18 +242,9 @@ SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
 void StudyRuns::check(const std::vector<StudyPoint>& points) const {
   for (const StudyPoint& point : points) {
     try {
-      static_cast<void>(scene_of(point));
+      require_deck_of_measure(plan_, scene_of(point));
     } catch (const InputError& wrong) {
-      const std::string message = wrong.what(), found = message.substr(0, message.find("(changed:"));
-      for (const StudyVariable& variable : plan_.variables) {
-        for (const StudyKey& key : variable.keys) {
-          // as the key is written in messages, a number of a [[section]] apart
-          const std::string last = key.key.substr(key.key.rfind('.') + 1);
-          if (found.find(last) == found.npos) continue;
-          throw InputError(fmt::format("{}.{}: {}", variable.place, key.key, message));
-        }
-      }
-      throw InputError(fmt::format("{}: {}", plan_.file.string(), message));
+      throw with_plan_line(wrong, plan_);
     }
   }
 }
@@ -281,13 +317,11 @@ std::string StudyRuns::columns() const {
 }
 
 RunCount StudyRuns::table(const std::vector<StudyPoint>& points, std::string& rows) const {
-  std::vector<RunRow> runs;
-  std::set<std::string> names;
-  for (const StudyPoint& point : points) {
-    RunRow run = row_of(point);
-    if (names.insert(run.name).second) runs.push_back(std::move(run));
-  }
-  return count_rows(pool({}), runs, columns(), rows);
+  return count_rows(pool({}), rows_of(points), columns(), rows);
+}
+
+std::vector<std::string> StudyRuns::warnings(const std::vector<StudyPoint>& points) const {
+  return warnings_of_runs(pool({}), rows_of(points));
 }
 
 std::optional<StudyRow> StudyRuns::find_row(const StudyPoint& point) const {

@@ -52,7 +52,8 @@ class StudyRuns {
   /// @param plan and scene outlive it @throws InputError where a deck's frequencies cannot be found
   StudyRuns(const StudyPlan& plan, const SceneParameters& scene, StudyRunsOptions options);
 
-  /// Reads the scene of every point. @throws InputError naming the variable and its line of the plan
+  /// Reads the scene of every point. @throws InputError naming the variable and its line of the plan, or the measure
+  /// that a scene without a bridge does not have
   void check(const std::vector<StudyPoint>& points) const;
   /// Binds the folder, which is there, to the scene. @throws InputError where it holds the runs of another one
   void bind_folder() const;
@@ -66,6 +67,8 @@ class StudyRuns {
   [[nodiscard]] std::string columns() const;
   /// Rows of the runs that are finished, each once, in the order of the points.
   [[nodiscard]] RunCount table(const std::vector<StudyPoint>& points, std::string& rows) const;
+  /// Of the runs that are finished, see warnings_of_runs().
+  [[nodiscard]] std::vector<std::string> warnings(const std::vector<StudyPoint>& points) const;
   /// Empty where the run is not finished.
   [[nodiscard]] std::optional<StudyRow> find_row(const StudyPoint& point) const;
   [[nodiscard]] std::string name_of(const StudyPoint& point) const { return row_of(point).name; }
@@ -73,6 +76,8 @@ class StudyRuns {
 
  private:
   [[nodiscard]] RunRow row_of(const StudyPoint& point) const;
+  /// Of these points, each run once.
+  [[nodiscard]] std::vector<RunRow> rows_of(const std::vector<StudyPoint>& points) const;
   [[nodiscard]] std::vector<KeyChange> changes_of(const StudyPoint& point) const;
   [[nodiscard]] SceneParameters scene_of(const StudyPoint& point) const;
   [[nodiscard]] RunPool pool(const std::function<void(double)>& progress) const;

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
@@ -20,7 +20,7 @@ namespace po = boost::program_options;
 namespace {
 
 namespace fs = std::filesystem;
-using exit_code::done, exit_code::failed;
+using exit_code::done, exit_code::failed, exit_code::interrupted;
 
 RunRow row_of(const SweepRun& run) { return {run.name, row_begin(run)}; }
 
@@ -30,13 +30,13 @@ std::vector<RunRow> rows_of(const std::vector<SweepRun>& runs) {
   return rows;
 }
 
-std::vector<double> sweep_speeds(const CommandLine& line) {
-  const bool si = line.given("speed"), kmh = line.given("speed-kmh");
-  if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
-  if (!si && !kmh) throw input_error("--speed", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
-  const std::string option = si ? "speed" : "speed-kmh";
-  std::vector<double> speeds = values_of_range("--" + option, line.text(option));
-  if (kmh) std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double v) { return v / 3.6; });
+std::vector<double> sweep_speeds(const CommandLine& line, const SceneParameters& scene) {
+  std::vector<double> speeds = speeds_of_options(line);
+  if (speeds.empty()) throw input_error("--speed", "no speeds", "--speed LO:HI:STEP (m/s) or --speed-kmh LO:HI:STEP");
+  if (!scene.train.speed_file.empty()) {
+    throw input_error(line.given("speed") ? "--speed" : "--speed-kmh", "a scene with train.speed_file",
+                      "a scene without it, whose speed is constant");
+  }
   return speeds;
 }
 
@@ -52,12 +52,24 @@ po::options_description sweep_options() {
   return own;
 }
 
+/// Finished runs of earlier sweeps into the folder.
+std::size_t count_other_runs(const std::vector<SweepRun>& all, const fs::path& folder) {
+  std::set<std::string> names;
+  for (const SweepRun& run : all) names.insert(run.name);
+  std::size_t others = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    others += entry.path().extension() == ".row" && !names.contains(entry.path().stem().string());
+  }
+  return others;
+}
+
 /// What the whole sweep has come to, or one of its shards, which writes no summary.
 void print_outcome(const CommandLine& line, const RunCount& count, std::size_t own, std::size_t all,
-                   const std::string& summary) {
+                   const std::vector<std::string>& warnings, const std::string& summary) {
   if (line.json()) {
     nlohmann::ordered_json json{{"runs", own}, {"finished", count.finished}, {"ended_early", count.ended_early}};
     if (!summary.empty()) json["summary"] = summary;
+    json["warnings"] = warnings;
     print_json_line(json);
   } else if (!line.quiet() && !summary.empty()) {
     print_formatted("{} of {} runs finished, {} of them ended early: {}\n", count.finished, all, count.ended_early,
@@ -82,7 +94,7 @@ int sweep_command(const Arguments& arguments) {
   const SceneParameters scene = read_scene(scene_file);
   constexpr int most_seeds = 100000;
   const int seeds = static_cast<int>(line.whole_number("seeds", 1, most_seeds));
-  const std::vector<SweepRun> all = sweep_runs(scene, sweep_speeds(line), seeds);
+  const std::vector<SweepRun> all = sweep_runs(scene, sweep_speeds(line, scene), seeds);
   for (const SweepRun& run : all) static_cast<void>(scene_of(scene, run));
   const PartOf shard = line.part("shard");
   const std::vector<SweepRun> own = own_part(all, shard);
@@ -100,7 +112,16 @@ int sweep_command(const Arguments& arguments) {
   std::string text = summary_columns();
   const RunCount count = count_rows(sweep, rows_of(whole ? all : own), summary_columns(), text);
   if (whole) write_text_file(summary, text);
-  print_outcome(line, count, own.size(), all.size(), whole ? summary.string() : "");
+  const std::vector<std::string> warnings = warnings_of_runs(sweep, rows_of(whole ? all : own));
+  if (!line.quiet()) print_warnings("vsi sweep", warnings);
+  print_outcome(line, count, own.size(), all.size(), warnings, whole ? summary.string() : "");
+  const std::size_t others = whole ? count_other_runs(all, folder) : 0;
+  if (others > 0 && !line.quiet()) {
+    print_message(fmt::format(
+        "vsi sweep: note: {} finished run{} of other speeds or seeds in this folder {} not in summary.csv\n", others,
+        others == 1 ? "" : "s", others == 1 ? "is" : "are"));
+  }
+  if (code == interrupted) print_message("vsi sweep: interrupted; the same command goes on\n");
   return code == done && count.ended_early > 0 ? failed : code;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -46,12 +45,27 @@ std::vector<double> values_of_range(const std::string& option, const std::string
   return values;
 }
 
+std::vector<double> speeds_of_options(const CommandLine& line) {
+  const bool si = line.given("speed"), kmh = line.given("speed-kmh");
+  if (si && kmh) throw input_error("--speed-kmh", "--speed too", "one of them");
+  if (!si && !kmh) return {};
+  const std::string option = si ? "speed" : "speed-kmh";
+  const double unit = si ? 1.0 : 1.0 / 3.6;
+  constexpr double lowest = 1e-3, highest = 200.0;  // [m/s]
+  std::vector<double> speeds = values_of_range("--" + option, line.text(option));
+  for (double& speed : speeds) {
+    const double amount = speed;
+    speed *= unit;
+    if (speed >= lowest && speed <= highest) continue;
+    throw input_error("--" + option, fmt::format("{:g}", amount),
+                      fmt::format("{:g} to {:g} {}", lowest / unit, highest / unit, si ? "m/s" : "km/h"));
+  }
+  return speeds;
+}
+
 std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector<double>& speeds, int seeds) {
   if (seeds > 1 && !scene.spectrum) {
     throw input_error("--seeds", fmt::format("{} and no random track", seeds), "irregularity.spectrum in the scene");
-  }
-  if (!scene.train.speed_file.empty()) {
-    throw input_error("--speed", "a scene with train.speed_file", "a scene with a constant speed");
   }
   if (static_cast<double>(seeds) * static_cast<double>(speeds.size()) > most_runs) {
     throw input_error("--seeds", fmt::format("{} at {} speeds", seeds, speeds.size()),
@@ -59,15 +73,13 @@ std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector
   }
   std::vector<SweepRun> runs;
   for (double speed : speeds) {
-    if (!(speed >= 1e-3 && speed <= 200.0)) {
-      throw input_error("--speed", fmt::format("{} m/s", speed), "0.001 to 200 m/s (--speed-kmh takes km/h)");
-    }
     for (int k = 0; k < seeds; ++k) {
       const int seed = scene.spectrum ? scene.spectrum->seed + k : 0;
       std::string name = fmt::format("v{:07.3f}", speed);
       if (scene.spectrum) name += fmt::format("-s{:03}", seed);
       if (!runs.empty() && runs.back().name == name) {
-        throw input_error("--speed", fmt::format("two runs of the name {}", name), "steps of at least 0.001 m/s");
+        throw input_error("speeds", fmt::format("two runs of the name {}", name),
+                          "steps of at least 0.001 m/s (0.0036 km/h)");
       }
       runs.push_back({speed, seed, std::move(name)});
     }

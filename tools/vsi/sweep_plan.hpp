@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command/command_line.hpp"
 #include "headline.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "run_pool.hpp"
@@ -15,6 +16,10 @@ namespace railtab::vsi {
 [[nodiscard]] std::vector<double> values_of_range(const std::string& option, const std::string& text,
                                                   std::string_view forms = "LO:HI:STEP, three numbers, or one number");
 
+/// The speeds of --speed or --speed-kmh [m/s]; none without either.
+/// @throws InputError naming the option, in its own unit
+[[nodiscard]] std::vector<double> speeds_of_options(const CommandLine& line);
+
 /// One run of a sweep.
 struct SweepRun {
   double speed = 0.0;  ///< [m/s]
@@ -23,7 +28,7 @@ struct SweepRun {
 };
 
 /// Every speed with every seed, seeds first. Without a random track there is one seed only.
-/// @throws InputError where there are seeds and no random track, or a speed is out of range
+/// @throws InputError where there are seeds and no random track, or speeds too near to each other for their names
 [[nodiscard]] std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector<double>& speeds,
                                                int seeds);
 
