@@ -16,8 +16,7 @@ namespace {
 
 void check_range(const char* name, double value, double low, double high) {
   if (!(value >= low && value <= high)) {
-    throw input_error(fmt::format("geometry sweep: {}", name), fmt::format("{}", value),
-                      fmt::format("a number in {}..{}", low, high));
+    throw input_error(name, fmt::format("{}", value), fmt::format("a number in {}..{}", low, high));
   }
 }
 
@@ -25,8 +24,7 @@ void check_interval(const char* name, const Interval& interval, double limit) {
   check_range(name, interval.low, -limit, limit);
   check_range(name, interval.high, -limit, limit);
   if (interval.low > interval.high) {
-    throw input_error(fmt::format("geometry sweep: {}", name), fmt::format("{}:{}", interval.low, interval.high),
-                      "low:high with low not above high");
+    throw input_error(name, fmt::format("{}:{}", interval.low, interval.high), "LO:HI with LO not above HI");
   }
 }
 
@@ -89,23 +87,22 @@ void append_trees(const std::vector<CellTree>& trees, GeometryTableData& table) 
 }  // namespace
 
 void GeometrySweepOptions::validate() const {
-  check_interval("lateral [m]", lateral, 0.1);
-  check_interval("yaw [rad]", yaw, 0.2);
-  check_interval("roll [rad]", roll, 0.1);
+  check_interval("--lateral [m]", lateral, 0.1);
+  check_interval("--yaw [rad]", yaw, 0.2);
+  check_interval("--roll [rad]", roll, 0.1);
   if (!(lateral.low < lateral.high)) {
-    throw input_error("geometry sweep: lateral [m]", fmt::format("{}:{}", lateral.low, lateral.high),
-                      "low:high with low below high");
+    throw input_error("--lateral [m]", fmt::format("{}:{}", lateral.low, lateral.high), "LO:HI with LO below HI");
   }
-  check_range("lateral root [m]", lateral_root, 1e-6, 1e-2);
-  check_range("yaw roots", yaw_roots, 1, 1000);
-  check_range("roll root [rad]", roll_root, 1e-5, 0.05);
-  check_range("searched lowering [m]", searched_lowering, 1e-6, 0.01);
-  check_range("start error [m]", start_error, 1e-9, 1e-3);
-  check_range("iterated cell", iterated_cell, 1e-12, 1);
-  check_range("fallback cell", fallback_cell, 1e-12, 1);
-  check_range("tolerance [m]", tolerance, 1e-12, 1e-3);
+  check_range("geometry sweep: lateral root [m]", lateral_root, 1e-6, 1e-2);
+  check_range("geometry sweep: yaw roots", yaw_roots, 1, 1000);
+  check_range("geometry sweep: roll root [rad]", roll_root, 1e-5, 0.05);
+  check_range("geometry sweep: searched lowering [m]", searched_lowering, 1e-6, 0.01);
+  check_range("geometry sweep: start error [m]", start_error, 1e-9, 1e-3);
+  check_range("geometry sweep: iterated cell", iterated_cell, 1e-12, 1);
+  check_range("geometry sweep: fallback cell", fallback_cell, 1e-12, 1);
+  check_range("--tolerance [m]", tolerance, 1e-12, 1e-3);
   if (!(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count)) {
-    throw input_error("geometry sweep: shard", fmt::format("{}/{}", shard.index, shard.count), "I/N with I in 1..N");
+    throw input_error("--shard", fmt::format("{}/{}", shard.index, shard.count), "I/N with I in 1..N");
   }
 }
 
@@ -183,13 +180,13 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
                                  const Progress& progress) {
   GeometryTableData table = geometry_heading(search, options);
   if (root_cells(table) < options.shard.count) {
-    throw input_error("geometry sweep: shard", fmt::format("{} parts", options.shard.count),
+    throw input_error("--shard", fmt::format("{} parts", options.shard.count),
                       fmt::format("at most {}, one per root cell", root_cells(table)));
   }
   append_trees(make_trees(search, options, table, progress), table);
   if (options.shard.whole() && table.coefficient.empty()) {
-    throw ComputationError(
-        "geometry sweep: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
+    throw InputError(
+        "geometry table: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
         "side, units), --gauge, --flange-back and --lateral");
   }
   return table;

@@ -17,20 +17,22 @@ namespace railtab {
 
 void LoadedSweepOptions::validate() const {
   const auto require = [](bool holds, const char* name, double found, const char* expected) {
-    if (!holds) throw input_error(fmt::format("loaded table: {}", name), fmt::format("{}", found), expected);
+    if (!holds) throw input_error(name, fmt::format("{}", found), expected);
   };
-  require(lateral.low >= -0.1 && lateral.high <= 0.1, "lateral", lateral.low, "within -0.1..0.1 m");
-  require(lateral.low < lateral.high, "lateral", lateral.high, "more than the lower end");
-  require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low < roll.high, "roll", roll.low,
+  require(lateral.low >= -0.1 && lateral.high <= 0.1, "--lateral", lateral.low, "within -0.1..0.1 m");
+  require(lateral.low < lateral.high, "--lateral", lateral.high, "more than the lower end");
+  require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low < roll.high, "--roll", roll.low,
           "LO:HI within +-0.1 rad, LO below HI: moments are derivatives with respect to roll");
-  require(yaw >= 0.0 && yaw <= 0.2, "yaw", yaw, "0..0.2 rad");
-  require(largest_load >= 1e3 && largest_load <= 1e7, "largest load", largest_load, "1e3..1e7 N");
-  require(levels >= 5 && levels <= 1000, "levels", levels, "5..1000");
-  require(roll_spacing >= 1e-5 && roll_spacing <= 0.1, "roll spacing", roll_spacing, "1e-5..0.1 rad");
-  require(yaw_nodes >= 2 && yaw_nodes <= static_cast<int>(LoadedTable::most_yaws), "yaw nodes", yaw_nodes, "2..9");
-  require(force_error >= 1e-5 && force_error <= 0.1, "force error", force_error, "1e-5..0.1");
-  require(light_error >= 1e-5 && light_error <= 0.1, "error of light loads", light_error, "1e-5..0.1");
-  require(least_interval >= 1e-8 && least_interval <= 1e-3, "least interval", least_interval, "1e-8..1e-3 m");
+  require(yaw >= 0.0 && yaw <= 0.2, "--yaw", yaw, "0..0.2 rad");
+  require(largest_load >= 1e3 && largest_load <= 1e7, "--largest-load", largest_load, "1e3..1e7 N");
+  require(levels >= 5 && levels <= 1000, "--levels", levels, "5..1000");
+  require(roll_spacing >= 1e-5 && roll_spacing <= 0.1, "--roll-spacing", roll_spacing, "1e-5..0.1 rad");
+  require(yaw_nodes >= 2 && yaw_nodes <= static_cast<int>(LoadedTable::most_yaws), "loaded table: yaw nodes", yaw_nodes,
+          "2..9");
+  require(force_error >= 1e-5 && force_error <= 0.1, "--force-error", force_error, "1e-5..0.1");
+  require(light_error >= 1e-5 && light_error <= 0.1, "--light-error", light_error, "1e-5..0.1");
+  require(least_interval >= 1e-8 && least_interval <= 1e-3, "loaded table: least interval", least_interval,
+          "1e-8..1e-3 m");
   contact.validate();
 }
 

@@ -91,9 +91,10 @@ GeometryTableData refined_until_it_meets_tolerance(const GeometrySweepOptions& o
     certificate = certify(table);
     if (meets_tolerance(certificate, options.tolerance)) return table;
   }
-  throw ComputationError(
-      fmt::format("geometry table: after {} refinements {}. Ask for less (--tolerance), or start finer (--refinement)",
-                  refinements, shortfall(certificate, options.tolerance)));
+  throw ComputationError(fmt::format(
+      "geometry table: after {} refinements {}. Ask for less (--tolerance), start finer (--refinement), or smooth "
+      "measured profiles (--smoothing)",
+      refinements, shortfall(certificate, options.tolerance)));
 }
 
 std::filesystem::path part_file(const std::filesystem::path& file, int refinement, int part) {
@@ -140,8 +141,8 @@ GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySwee
   }
   GeometryTableData table = merge_geometry_tables(std::move(parts));
   if (table.coefficient.empty()) {
-    throw ComputationError(
-        "geometry sweep: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
+    throw InputError(
+        "geometry table: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
         "side, units), --gauge, --flange-back and --lateral");
   }
   return table;

@@ -7,6 +7,12 @@
 
 namespace railtab {
 
+namespace {
+
+constexpr double shortest = 4.0, longest = 100.0;  // spans with limits of the first natural frequency [m]
+
+}  // namespace
+
 std::string_view need_name(DynamicNeed need) noexcept {
   switch (need) {
     case DynamicNeed::not_required:
@@ -25,8 +31,19 @@ double lower_frequency_limit(double span) noexcept {
   return span <= short_span ? 80.0 / span : 23.58 * std::pow(span, -0.592);
 }
 
+std::string frequency_unlike_a_bridge(double span, double first_frequency) {
+  constexpr double factor = 3.0;
+  if (span < shortest || span > longest) return {};
+  const double low = lower_frequency_limit(span), high = upper_frequency_limit(span);
+  if (first_frequency >= low / factor && first_frequency <= factor * high) return {};
+  return fmt::format(
+      "a span of {:.6g} m has its first natural frequency at {:.3g} Hz, as a simply supported beam; spans of that "
+      "length have {:.3g} to {:.3g} Hz [EN 1991-2, Figure 6.10]",
+      span, first_frequency, low, high);
+}
+
 DynamicNeedResult dynamic_need(double line_speed, double span, double first_frequency, bool simple) {
-  constexpr double shortest = 4.0, longest = 100.0, long_span = 40.0, rounding = 1e-9;
+  constexpr double long_span = 40.0, rounding = 1e-9;
   const double kmh = 3.6 * line_speed;
   const bool slow = kmh <= 200.0 * (1.0 + rounding);
   if (!simple) {

@@ -19,6 +19,10 @@ struct DynamicNeedResult {
 [[nodiscard]] double upper_frequency_limit(double span) noexcept;
 [[nodiscard]] double lower_frequency_limit(double span) noexcept;
 
+/// A sentence on a simply supported span whose first natural frequency [Hz] is below a third of the lower limit or
+/// above three times the upper one; empty for others, and for spans without limits. @param span [m]
+[[nodiscard]] std::string frequency_unlike_a_bridge(double span, double first_frequency);
+
 /// The flow chart of [EN1991-2, Figure 6.9]. Above 200 km/h and below 40 m of span it goes on to tables of Annex F,
 /// which are not evaluated: a dynamic analysis counts as required there.
 /// @param line_speed [m/s] @param span [m], 0: not known @param first_frequency [Hz]

@@ -13,10 +13,11 @@
 namespace railtab {
 namespace {
 
-FileColumn header_column(const LineReader& reader, std::string_view cell) {
+FileColumn header_column(const LineReader& reader, std::string_view cell, std::string_view example) {
   const std::size_t bracket = cell.find('[');
   if (bracket == std::string_view::npos || bracket == 0 || cell.back() != ']') {
-    throw reader.error("header " + quoted(cell), "name[unit]");
+    throw reader.error("header " + quoted(cell),
+                       example.empty() ? "name[unit]" : fmt::format("name[unit], as in {}", example));
   }
   FileColumn column;
   column.name = std::string(stripped(cell.substr(0, bracket)));
@@ -66,12 +67,12 @@ std::vector<std::size_t> column_order(const ColumnRows& file, const std::vector<
 
 std::string FileColumn::place(std::size_t row) const { return place_of(fmt::format("{}:{}", file, line[row]), name); }
 
-std::vector<FileColumn> read_columns(const std::filesystem::path& file) {
+std::vector<FileColumn> read_columns(const std::filesystem::path& file, std::string_view example) {
   ColumnRows rows(file, "a text file with columns");
   rows.require_commas("columns separated by commas");
   std::vector<FileColumn> columns;
   for (const std::string& cell : rows.header()) {
-    columns.push_back(header_column(rows.reader(), cell));
+    columns.push_back(header_column(rows.reader(), cell, example));
     columns.back().file = file.string();
     columns.back().line.push_back(rows.header_line());
   }

@@ -20,8 +20,8 @@ struct FileColumn {
 
 /// Read a text file of numbers: comment lines "#", one header row "name[unit],…", then rows of as many finite numbers,
 /// the first column strictly increasing, at least two rows (docs/file_formats/histories.md).
-/// @throws InputError with file and line
-[[nodiscard]] std::vector<FileColumn> read_columns(const std::filesystem::path& file);
+/// @param example of a header row, for messages @throws InputError with file and line
+[[nodiscard]] std::vector<FileColumn> read_columns(const std::filesystem::path& file, std::string_view example = {});
 
 /// "columns t, v", for messages.
 [[nodiscard]] std::string names_of(const std::vector<FileColumn>& columns);

@@ -42,6 +42,25 @@ std::vector<double> shares(const Aerodynamics& vehicle, const Wind& wind, const 
   return places;
 }
 
+/// The yaw angle follows from the ratio of both speeds, which between two points of a history is monotonic: the largest
+/// one is at a point.
+void require_yaw_angles(const Aerodynamics& vehicle, const Wind& wind, const std::vector<double>& train,
+                        const std::vector<double>& gust) {
+  double widest = -1.0;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < train.size(); ++i) {
+    const double yaw = std::abs(relative_wind(wind, train[i], gust[i]).yaw);
+    if (!(yaw > widest)) continue;
+    widest = yaw;
+    at = i;
+  }
+  if (widest <= vehicle.yaw.back() * (1.0 + 1e-9)) return;
+  throw input_error(
+      vehicle.source, fmt::format("coefficients up to a yaw angle of {:.4g}°", vehicle.yaw.back() / degree),
+      fmt::format("up to {:.4g}°, the largest angle of the run: the train runs at {:.4g} m/s in wind of {:.4g} m/s",
+                  std::ceil(1e2 * widest / degree) / 1e2, train[at], gust[at]));
+}
+
 /// Mirrored at the track's vertical plane.
 ForceAndMoment mirrored(ForceAndMoment load) {
   for (const Eigen::Index k : {1, 3, 5}) load[k] = -load[k];
@@ -61,7 +80,8 @@ ForceAndMoment Aerodynamics::at(double angle) const noexcept {
 Aerodynamics read_aerodynamics(const std::filesystem::path& file) {
   constexpr std::array<std::string_view, 6> names{"", "C_Fy", "C_Fz", "C_Mx", "C_My", "C_Mz"};
   constexpr double largest = 1e3;
-  const std::vector<FileColumn> columns = read_columns(file);
+  const std::vector<FileColumn> columns =
+      read_columns(file, "yaw[deg],C_Fy[1],C_Fz[1],C_Mx[1],C_My[1],C_Mz[1]; columns that are 0 may be absent");
   const FileColumn& yaw = columns[0];
   if (yaw.name != "yaw") throw input_error(yaw.place(0), fmt::format("column '{}'", yaw.name), "yaw[deg] first");
   Aerodynamics vehicle;
@@ -113,7 +133,7 @@ ForceAndMoment wind_load(const Aerodynamics& vehicle, const Wind& wind, double t
 }
 
 WindHistory read_wind_history(const std::filesystem::path& file, double start) {
-  const std::vector<FileColumn> columns = read_columns(file);
+  const std::vector<FileColumn> columns = read_columns(file, "t[s],U[m/s]");
   const bool over_time = columns[0].name == "t";
   if (columns.size() != 2 || (!over_time && columns[0].name != "x") || columns[1].name != "U") {
     throw input_error(columns[0].place(0), names_of(columns), "t[s] or x[m], and U[m/s], the speed of the wind");
@@ -167,16 +187,10 @@ LoadHistory wind_load_history(const Aerodynamics& vehicle, const Wind& wind, con
   for (const double point : history.points) train.push_back(train_speed(point));
   const double top_speed = std::max({1e-9, *std::max_element(train.begin(), train.end()),
                                      *std::max_element(history.speed.begin(), history.speed.end())});
+  require_yaw_angles(vehicle, wind, train, history.speed);
   std::vector<double> points;
   std::vector<ForceAndMoment> loads;
   const auto add = [&](double point, double train_at, double wind_at) {
-    const double yaw = std::abs(relative_wind(wind, train_at, wind_at).yaw);
-    if (yaw > vehicle.yaw.back() * (1.0 + 1e-9)) {
-      throw input_error(vehicle.source,
-                        fmt::format("coefficients up to a yaw angle of {:.4g}°", vehicle.yaw.back() / degree),
-                        fmt::format("up to {:.4g}°: the train runs at {:.4g} m/s in wind of {:.4g} m/s", yaw / degree,
-                                    train_at, wind_at));
-    }
     if (!points.empty() && point - points.back() < least_step) return;
     if (points.size() == most_points) {
       throw input_error(vehicle.source, fmt::format("a wind of {} rows that rises and falls", history.points.size()),

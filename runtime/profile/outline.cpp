@@ -16,23 +16,44 @@ namespace railtab {
 namespace {
 
 constexpr std::size_t fewest_points = 4;
-// The limits that CONTACT sets to the chord of a profile: what lies outside was read in the wrong unit.
-constexpr double smallest_extent = 0.005;  // [m]
-constexpr double largest_extent = 0.5;     // [m]
+// Treads and rail heads are wider, and nothing of a profile is longer: what lies outside was read in the wrong unit.
+constexpr double narrowest_wheel = 0.06;      // [m]
+constexpr double narrowest_rail_head = 0.02;  // [m]
+constexpr double largest_extent = 0.5;        // [m]
 
 std::string place(const std::string& file, const OutlinePoint& p) { return fmt::format("{}:{}", file, p.line); }
 
 std::string text(const OutlinePoint& p) { return fmt::format("({:.9g}, {:.9g}) m", p.y, p.z); }
 
-void check_extent(const std::string& file, const std::vector<OutlinePoint>& points) {
+/// Of a narrow profile: columns exchanged, or numbers that are not in mm; empty where neither fits.
+std::string cause_of_width(double width, double height, double narrowest) {
+  constexpr double usual = 0.25;  // of wheels and rails [m]
+  struct Unit {
+    const char* name;
+    double times;
+  };
+  if (height > width && height >= narrowest && height <= usual) return "; are y and z exchanged?";
+  std::string fitting;
+  for (const Unit& unit : {Unit{"cm", 10.0}, Unit{"inches", 25.4}, Unit{"m", 1000.0}}) {
+    const double as = unit.times * width;
+    if (as < narrowest || as > usual) continue;
+    fitting += fmt::format("{}{:.3g} mm wide if the file is in {}", fitting.empty() ? ": " : ", ", 1e3 * as, unit.name);
+  }
+  return fitting;
+}
+
+void check_extent(const std::string& file, ProfileKind kind, const std::vector<OutlinePoint>& points) {
   const auto [y0, y1] = std::minmax_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.y < b.y; });
   const auto [z0, z1] = std::minmax_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.z < b.z; });
   const double width = y1->y - y0->y;
   const double height = z1->z - z0->z;
-  if (width >= smallest_extent && std::max(width, height) <= largest_extent) return;
+  const bool wheel = kind == ProfileKind::wheel;
+  const double narrowest = wheel ? narrowest_wheel : narrowest_rail_head;
+  if (width >= narrowest && std::max(width, height) <= largest_extent) return;
   throw input_error(
       file, fmt::format("a profile {:.6g} m wide and {:.6g} m high", width, height),
-      fmt::format("a width from {} m and no extent above {} m; check the units", smallest_extent, largest_extent));
+      fmt::format("a {} at least {} m wide, and no extent above {} m; check the units{}", wheel ? "wheel" : "rail head",
+                  narrowest, largest_extent, cause_of_width(width, height, narrowest)));
 }
 
 void check_steps(const std::string& file, const std::vector<OutlinePoint>& points) {
@@ -84,11 +105,11 @@ void check_crossing(const std::string& file, const std::vector<OutlinePoint>& po
 
 }  // namespace
 
-void check_outline(const std::string& file, const std::vector<OutlinePoint>& points) {
+void check_outline(const std::string& file, ProfileKind kind, const std::vector<OutlinePoint>& points) {
   if (points.size() < fewest_points) {
     throw input_error(file, fmt::format("{} points", points.size()), fmt::format("at least {}", fewest_points));
   }
-  check_extent(file, points);
+  check_extent(file, kind, points);
   check_steps(file, points);
   check_crossing(file, points);
 }

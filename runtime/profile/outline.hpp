@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "railtab/tables/profile_knots.hpp"
+
 namespace railtab {
 
 /// One point of a profile file, with the line that it stands on for messages.
@@ -21,7 +23,7 @@ struct ProfilePoints {
 /// wheel's or rail's, points that turn back by more than 120 degrees (wrong order), and an outline that crosses or
 /// touches itself. Points that follow each other lie apart.
 /// @throws InputError
-void check_outline(const std::string& file, const std::vector<OutlinePoint>& points);
+void check_outline(const std::string& file, ProfileKind kind, const std::vector<OutlinePoint>& points);
 
 /// Removes what measured outlines have too much of, with a note for each kind:
 /// - points that repeat the one before within 1 nm;

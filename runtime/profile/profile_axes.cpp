@@ -140,6 +140,12 @@ void extend_gauge_face(const std::string& file, ProfilePoints& outline) {
                   (end.z - top) / mm, wanted / mm));
 }
 
+bool is_tall(const std::vector<OutlinePoint>& points) {
+  const auto [y0, y1] = std::minmax_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.y < b.y; });
+  const auto [z0, z1] = std::minmax_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.z < b.z; });
+  return z1->z - z0->z > y1->y - y0->y;
+}
+
 void orient_rail(const std::string& file, ProfilePoints& outline) {
   const auto interior = [&](std::size_t i) { return i > 0 && i + 1 < outline.points.size(); };
   if (!interior(top_of(outline.points))) {
@@ -150,7 +156,8 @@ void orient_rail(const std::string& file, ProfilePoints& outline) {
     constexpr double sides = 3 * mm;
     if (!interior(top) || side < sides) {
       throw input_error(file, "a rail profile whose highest point is one of its ends",
-                        "z positive downwards and points on both sides of the head's top");
+                        fmt::format("z positive downwards and points on both sides of the head's top{}",
+                                    is_tall(outline.points) ? "; are y and z exchanged?" : ""));
     }
     outline.notes.push_back(file + ": z mirrored, since the sides of the head point up");
   }

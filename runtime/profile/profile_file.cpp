@@ -62,7 +62,7 @@ ProfileKnots read_profile_file(const std::filesystem::path& file, ProfileKind ki
   if (!in || std::filesystem::is_directory(file)) throw input_error(name, "no readable file", "a profile file");
   ProfilePoints outline = read_points(in, file, kind);
   repair_outline(name, outline);
-  check_outline(name, outline.points);
+  check_outline(name, kind, outline.points);
   orient(name, kind, outline);
   std::vector<double> y, z;
   for (const OutlinePoint& p : outline.points) {

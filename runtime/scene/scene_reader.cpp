@@ -61,11 +61,14 @@ struct Assign {
     member.clear();
     for (const std::string& text : texts(expected)) {
       std::optional<ConsistEntry> entry = parse_consist_entry(text);
-      if (!entry) throw leaf_error(file, leaf, fmt::format("\"{}\" in the list", text), expected);
+      if (!entry) {
+        throw leaf_error(file, leaf, fmt::format("\"{}\" in the list", text),
+                         "\"NAME\", \"-NAME\" or \"NAME*N\" with N from 1 to 100, without blanks around the *");
+      }
       entry->vehicle = vehicle_named(entry->vehicle, vehicle_names());
       member.push_back(*std::move(entry));
     }
-    if (member.empty()) throw error(expected);
+    if (member.empty()) throw leaf_error(file, leaf, "an empty list", expected);
   }
   void operator()(const ChoiceKey& key) const {
     const std::string name = one_of(key.names);

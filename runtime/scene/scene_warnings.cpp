@@ -55,18 +55,12 @@ const Warning span_unlike_a_bridge{
     "the first natural frequency of a span of 4 m to 100 m is below a third of the lower or above three times the "
     "upper limit of EN 1991-2, Figure 6.10",
     [](const SceneCase& at, Warnings& list) {
-      constexpr double factor = 3.0, shortest = 4.0, longest = 100.0;
       for (const BridgeParameters& span : at.scene.spans) {
-        if (span.length < shortest || span.length > longest) continue;
         const double frequency =
             0.5 * std::numbers::pi / (span.length * span.length) * std::sqrt(span.E * span.Iy / span.mass);
-        const double low = lower_frequency_limit(span.length), high = upper_frequency_limit(span.length);
-        if (frequency >= low / factor && frequency <= factor * high) continue;
-        list.push_back(fmt::format(
-            "a span of {:.6g} m has its first natural frequency at {:.3g} Hz, as a simply supported beam; spans of "
-            "that length have {:.3g} to {:.3g} Hz [EN 1991-2, Figure 6.10]: are bridge.mass (per metre) and E Iy meant "
-            "so?",
-            span.length, frequency, low, high));
+        const std::string unlike = frequency_unlike_a_bridge(span.length, frequency);
+        if (unlike.empty()) continue;
+        list.push_back(unlike + ": are bridge.mass (per metre) and E Iy meant so?");
         return;
       }
     }};

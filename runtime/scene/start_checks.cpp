@@ -1,11 +1,14 @@
 #include "railtab/runtime/scene/start_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
+#include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
@@ -33,6 +36,23 @@ VsiModel with_steel(const VsiModel& model) {
   VsiModel steel = model;
   steel.contact.normal.material = {};
   return steel;
+}
+
+/// Of profile files that the online search takes as they are: curves through noisy points have bumps, between which the
+/// search for an equilibrium goes to and fro.
+std::string noise_hint(const ContactGeometry& geometry) {
+  if (geometry.is_table()) return {};
+  std::vector<std::string> files;
+  for (const ProfileCurve* profile : {&geometry.pair().wheel(), &geometry.pair().rail()}) {
+    const ProfileKnots& knots = profile->knots();
+    const std::vector<std::string> built_in = standard_profile_names(knots.kind);
+    if (std::find(built_in.begin(), built_in.end(), knots.name) == built_in.end()) files.push_back(knots.name);
+  }
+  if (files.empty()) return {};
+  return fmt::format(
+      "; if the points of {} are measured, their noise may be the cause: make a table by tablegen geometry --smoothing "
+      "SIGMA (3e-6 for 3 um) and name it in contact.table",
+      fmt::join(files, " and "));
 }
 
 /// The deviations of the rails under the train, where they alone prevent its equilibrium.
@@ -100,10 +120,10 @@ std::string no_equilibrium_message(const VsiModel& model, const EquilibriumRepor
   const WheelRailPair& pair = model.geometry->pair();
   return fmt::format(
       "{}, {}; check that the wheels fit the rails: {} on {}, track gauge {} m, flange backs {} m apart, and the "
-      "origins of the profile files",
+      "origins of the profile files{}",
       what, loads || acceleration != 0.0 ? "nor without the loads at t = 0" : "under its weight alone",
-      pair.wheel().knots().name, pair.rail().knots().name, pair.dimensions().track_gauge,
-      pair.dimensions().flange_back);
+      pair.wheel().knots().name, pair.rail().knots().name, pair.dimensions().track_gauge, pair.dimensions().flange_back,
+      noise_hint(*model.geometry));
 }
 
 std::string steady_start_warning(const EquilibriumReport& start) {

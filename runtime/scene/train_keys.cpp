@@ -23,7 +23,7 @@ std::vector<KeyRow> train_keys() {
        "imported: the vehicle of [vehicle], the default if that section has keys",
        VehicleKey{of_train<&TrainParameters::vehicle>},
        {&without_consist},
-       {&vehicle_above_top_speed, &vehicle_above_critical_speed, &vehicle_linearised}},
+       {&vehicle_implausible, &vehicle_above_top_speed, &vehicle_above_critical_speed, &vehicle_linearised}},
       {"train.count",
        "1",
        "number of coaches",

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
@@ -11,6 +12,7 @@
 #include "railtab/runtime/scene/scene_wheels.hpp"
 #include "railtab/runtime/stability/linear_stability.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
+#include "railtab/runtime/vehicle/vehicle_plausibility.hpp"
 
 // What a vehicle's data say against the run.
 
@@ -75,6 +77,13 @@ std::vector<HuntingSystem> vehicles_alone(const SceneCase& at, std::vector<std::
   return systems;
 }
 
+/// A motion that grows, for a sentence.
+std::string text_of(const LeastStableMotion& motion) {
+  if (motion.frequency > 0.0)
+    return fmt::format("a small motion of {:.3g} Hz grows by {:.3g} per second", motion.frequency, motion.growth);
+  return fmt::format("a small motion without oscillation grows by {:.3g} per second", motion.growth);
+}
+
 /// Growth of small motions at rest, and with the equivalent conicity of 3 mm, at which vehicles are assessed [EN15302]:
 /// a sign, no proof, of limit cycles below the critical speed at rest.
 void add_growth(const HuntingSystem& system, const VsiModel& contacts, double speed, Warnings& list) {
@@ -83,20 +92,22 @@ void add_growth(const HuntingSystem& system, const VsiModel& contacts, double sp
   const LeastStableMotion at_rest = least_stable_motion(model, speed);
   if (at_rest.grows()) {
     list.push_back(fmt::format(
-        "the train runs at {:.6g} km/h, above a linear critical speed of {} on these profiles: a small motion of "
-        "{:.3g} Hz grows by {:.3g} per second, until flanges or slip bound it (vsi critical-speed finds the speed)",
-        to_kmh * speed, system.name, at_rest.frequency, at_rest.growth));
+        "the train runs at {:.6g} km/h, above a linear critical speed of {} on these profiles: {}, until flanges or "
+        "slip bound it (vsi critical-speed finds the speed)",
+        to_kmh * speed, system.name, text_of(at_rest)));
     return;
   }
   const std::optional<double> conicity = equivalent_conicity(model.geometry->pair(), amplitude);
   if (!conicity) return;
   const LeastStableMotion disturbed = least_stable_motion(model, speed, conicity);
   if (!disturbed.grows()) return;
+  const std::string motion = disturbed.frequency > 0.0
+                                 ? fmt::format("into a limit cycle of about {:.3g} Hz", disturbed.frequency)
+                                 : std::string("without oscillation");
   list.push_back(fmt::format(
       "the train runs at {:.6g} km/h, above the critical speed of {} at the equivalent conicity {:.3g} of 3 mm: small "
-      "motions decay, but one of that amplitude may grow into a limit cycle of about {:.3g} Hz (vsi critical-speed "
-      "--limit-cycles)",
-      to_kmh * speed, system.name, *conicity, disturbed.frequency));
+      "motions decay, but one of that amplitude may grow {} (vsi critical-speed --limit-cycles)",
+      to_kmh * speed, system.name, *conicity, motion));
 }
 
 void above_critical_speed(const SceneCase& at, Warnings& list) {
@@ -132,8 +143,22 @@ void linear_stand_ins(const SceneCase& at, Warnings& list) {
       fmt::format("{} has force elements that are not linear: {}", vehicle.name, fmt::join(vehicle.linearised, "; ")));
 }
 
+void implausible_vehicles(const SceneCase& at, Warnings& list) {
+  if (at.scene.train.vehicle == imported_vehicle) return;
+  std::set<std::string> kinds;
+  for (const ConsistEntry& entry : at.scene.train.entries()) kinds.insert(entry.vehicle);
+  for (const std::string& kind : kinds) {
+    const std::vector<std::string> sentences = implausible_values(find_vehicle(kind));
+    list.insert(list.end(), sentences.begin(), sentences.end());
+  }
+}
+
 }  // namespace
 
+const Warning vehicle_implausible{
+    "springs of the vehicle deflect by more than 0.5 m under the weight, its wheels overlap, or its car body is "
+    "lighter than its wheelsets",
+    implausible_vehicles};
 const Warning vehicle_above_top_speed{"the speed is above the top speed that the vehicle's data state",
                                       above_top_speed};
 const Warning vehicle_above_critical_speed{

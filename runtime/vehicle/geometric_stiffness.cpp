@@ -44,6 +44,16 @@ Eigen::Matrix<double, 12, 1> pair_motion(const VehicleModel& vehicle, const Susp
   return motion;
 }
 
+// The row that moves most in the softest motion, by its energy.
+Eigen::Index softest_row(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M) {
+  const CholeskyFactor mass(M);
+  const Eigen::MatrixXd half = mass.solve_L(K);
+  const Eigen::VectorXd motion = mass.solve_LT(symmetric_spectrum(mass.solve_L(half.transpose())).vectors.col(0));
+  Eigen::Index row = 0;
+  M.diagonal().cwiseSqrt().cwiseProduct(motion).cwiseAbs().maxCoeff(&row);
+  return row;
+}
+
 // The bodies on standing wheelsets must not fall over.
 void check_standing(const VehicleModel& vehicle) {
   constexpr double softest_omega2 = -0.004;  // rad²/s²: 0.01 Hz
@@ -59,20 +69,24 @@ void check_standing(const VehicleModel& vehicle) {
   const double lowest = generalised_eigenvalues(K, M)[0];
   if (lowest >= softest_omega2) return;
   throw input_error(vehicle.name,
-                    fmt::format("a vehicle that falls over under its weight, ω² = {:.3g} rad²/s²", lowest),
+                    fmt::format("a vehicle that falls over under its weight, {} first, ω² = {:.3g} rad²/s²",
+                                body_of(vehicle, moving[static_cast<std::size_t>(softest_row(K, M))]), lowest),
                     "springs that resist roll and pitch by more than weights times their heights above them");
 }
 
 }  // namespace
 
+Eigen::Vector3d elongation(const VehicleModel& vehicle, const Suspension& unit, const Eigen::VectorXd& displacement) {
+  const SpringKinematics kinematics = spring_kinematics(unit.point - vehicle.bodies[unit.body_a].position,
+                                                        unit.point - vehicle.bodies[unit.body_b].position);
+  return (kinematics * pair_motion(vehicle, unit, displacement)).head<3>();
+}
+
 void add_geometric_stiffness(VehicleModel& vehicle, const std::vector<Suspension>& suspension,
                              const Eigen::VectorXd& rest) {
   for (const Suspension& unit : suspension) {
-    const SpringKinematics kinematics = spring_kinematics(unit.point - vehicle.bodies[unit.body_a].position,
-                                                          unit.point - vehicle.bodies[unit.body_b].position);
-    const Eigen::Vector3d elongation = (kinematics * pair_motion(vehicle, unit, rest)).head<3>();
-    add_preload(vehicle,
-                {unit.body_a, unit.body_b, unit.point, unit.stiffness.cwiseProduct(elongation), unit.couple_share});
+    const Eigen::Vector3d force = unit.stiffness.cwiseProduct(elongation(vehicle, unit, rest));
+    add_preload(vehicle, {unit.body_a, unit.body_b, unit.point, force, unit.couple_share});
   }
   check_standing(vehicle);
 }

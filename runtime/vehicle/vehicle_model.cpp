@@ -132,12 +132,20 @@ void add_rolling(VehicleModel& vehicle, std::size_t wheelset, double Jy) {
   vehicle.gyroscopic(yaw, roll) -= per_speed;
 }
 
-/// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
-/// of the singular system is an equilibrium; a residual means that something is not carried.
 bool is_wheelset(const VehicleModel& vehicle, int body) noexcept {
   return std::find(vehicle.wheelsets.begin(), vehicle.wheelsets.end(), body) != vehicle.wheelsets.end();
 }
 
+std::string body_of(const VehicleModel& vehicle, int row) {
+  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    const DofIndices& dof = vehicle.dof[b];
+    if (std::find(dof.begin(), dof.end(), row) != dof.end()) return vehicle.bodies[b].name;
+  }
+  return "an inner degree of freedom";
+}
+
+/// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
+/// of the singular system is an equilibrium; a residual means that something is not carried.
 StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& weight) {
   const int n = vehicle.dofs();
   std::vector<bool> is_supported(n, false);
@@ -157,7 +165,11 @@ StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& wei
   const Eigen::MatrixXd residual = K * sag - load;
   for (Eigen::Index k = 0; k < weight.cols(); ++k) {
     if (residual.col(k).norm() <= 1e-6 * weight.col(k).norm()) continue;
-    throw input_error(vehicle.name, fmt::format("a weight of {:.3g} N that no spring carries", residual.col(k).norm()),
+    Eigen::Index row = 0;
+    residual.col(k).cwiseAbs().maxCoeff(&row);
+    throw input_error(vehicle.name,
+                      fmt::format("a weight of {:.3g} N of {} that no spring carries", residual.col(k).norm(),
+                                  body_of(vehicle, carried[static_cast<std::size_t>(row)])),
                       "every body carried by the wheelsets through springs");
   }
   rest.reaction.setZero();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
 
@@ -15,6 +17,13 @@ void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndi
 
 /// Whether a body is one of the vehicle's wheelsets.
 [[nodiscard]] bool is_wheelset(const VehicleModel& vehicle, int body) noexcept;
+
+/// Name of the body that a row moves, for messages; "an inner degree of freedom" where it is of none.
+[[nodiscard]] std::string body_of(const VehicleModel& vehicle, int row);
+
+/// Of a unit between two bodies that have moved [m]. @param displacement all dofs
+[[nodiscard]] Eigen::Vector3d elongation(const VehicleModel& vehicle, const Suspension& unit,
+                                         const Eigen::VectorXd& displacement);
 
 /// A vehicle at rest under its weight, its wheelsets held in z and roll; all dofs × cases of weight.
 struct StandingVehicle {

@@ -63,7 +63,7 @@ class Run {
     if (first < last) integrator_.prepare(state_);
     integrator_.reinitialise(state_);
     if (observer_.ready) observer_.ready();
-    bool recorded = true;  // what has been reached
+    bool recorded = first % record_every_ == 0;  // what has been reached
     summary.steps = summary.counted_from = first;
     if (first == 0) {
       record_wheel_extremes(model_, state_);

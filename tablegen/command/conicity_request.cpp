@@ -58,7 +58,7 @@ void require_rail_file(const TableCommandLine& line, const std::string& rail_nam
 
 WheelRailPair requested_side(const TableCommandLine& line, const std::string& wheel_name, const std::string& rail_name,
                              double noise) {
-  const double inclination = line.slope("rail-inclination");
+  const double inclination = requested_inclination(line);
   const bool by_origins = line.chosen("half-spacing");
   const RailOrigin origin = by_origins ? RailOrigin::of_file : RailOrigin::highest_point;
   ProfileCurve wheel(load_profile(wheel_name, ProfileKind::wheel, inclination, noise));
@@ -71,7 +71,9 @@ WheelRailPair requested_side(const TableCommandLine& line, const std::string& wh
     dimensions.flange_back = 2.0 * (half_spacing - PairDimensions::tape_circle_to_flange_back);
     dimensions.track_gauge = track_gauge(rail, half_spacing, dimensions.gauge_height);
   }
-  return {std::move(wheel), std::move(rail), dimensions};
+  WheelRailPair pair(std::move(wheel), std::move(rail), dimensions);
+  if (!by_origins) require_flanges_between_rails(pair);
+  return pair;
 }
 
 WheelsetPair requested_wheelset(const TableCommandLine& line, double noise) {

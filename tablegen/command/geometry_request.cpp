@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
@@ -12,27 +15,80 @@
 
 namespace railtab {
 
+namespace {
+
+double length_between(const TableCommandLine& line, const std::string& option, double low, double high) {
+  const double length = line.number(option);
+  require_between("--" + option, length, low, high, "m");
+  return length;
+}
+
+/// y of the flange's face, `depth` below the tread, in the wheel's frame; none of a wheel without a flange.
+std::optional<double> flange_face(const ProfileCurve& wheel, double depth) {
+  const ProfileKnots& k = wheel.knots();
+  const auto tread =
+      static_cast<std::size_t>(std::lower_bound(k.s.begin(), k.s.end(), wheel.s_at_y(0.0)) - k.s.begin());
+  for (std::size_t i = tread; i-- > 0;) {
+    if (k.z[i] >= depth) return k.y[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 PairDimensions requested_dimensions(const TableCommandLine& line) {
   PairDimensions d;
-  d.track_gauge = line.number("gauge");
-  d.gauge_height = line.number("gauge-height");
-  d.flange_back = line.number("flange-back");
-  d.nominal_radius = line.number("wheel-radius");
+  d.track_gauge = length_between(line, "gauge", 0.5, 2.0);
+  d.gauge_height = length_between(line, "gauge-height", 0.0, 0.05);
+  d.flange_back = length_between(line, "flange-back", 0.4, 2.0);
+  d.nominal_radius = length_between(line, "wheel-radius", 0.1, 1.0);
   return d;
 }
 
+double requested_inclination(const TableCommandLine& line) {
+  const double inclination = line.slope("rail-inclination");
+  if (inclination >= 0.0 && inclination <= 0.1) return inclination;
+  throw input_error("--rail-inclination", line.text("rail-inclination"), "0 (upright) to 0.1, such as 1:40 or 0.025");
+}
+
 double requested_noise(const TableCommandLine& line) {
+  constexpr double largest = 1e-3;  // m
   const double noise = line.number("smoothing");
-  if (!(noise >= 0.0)) throw input_error("--smoothing", line.text("smoothing"), "a length, 0 or above");
-  return noise;
+  if (noise >= 0.0 && noise <= largest) return noise;
+  throw input_error("--smoothing", line.text("smoothing"),
+                    fmt::format("0 to {} m, the standard deviation of the noise, such as 3e-6", largest));
+}
+
+void require_profile_to_smooth(const TableCommandLine& line) {
+  if (requested_noise(line) == 0.0 || is_file(line.required("wheel")) || is_file(line.required("rail"))) return;
+  throw input_error("--smoothing",
+                    fmt::format("{} with the built-in profiles {} and {}", line.text("smoothing"), line.text("wheel"),
+                                line.text("rail")),
+                    "a profile file, or no --smoothing: built-in profiles have no noise");
+}
+
+void require_flanges_between_rails(const WheelRailPair& pair) {
+  const PairDimensions& d = pair.dimensions();
+  const std::optional<double> face = flange_face(pair.wheel(), d.gauge_height);
+  if (!face) return;
+  const double width = 2.0 * (pair.tape_circle_offset() + *face);
+  if (width < d.track_gauge) return;
+  throw input_error("--flange-back",
+                    fmt::format("{} m, with which the flanges are {:.4g} m wide over their outer faces, {:.3g} mm "
+                                "below the tread",
+                                d.flange_back, width, 1e3 * d.gauge_height),
+                    fmt::format("flanges that fit between the rails, narrower than the track gauge of {} m (--gauge)",
+                                d.track_gauge));
 }
 
 WheelRailPair requested_pair(const TableCommandLine& line) {
-  const double inclination = line.slope("rail-inclination");
+  const double inclination = requested_inclination(line);
   const double noise = requested_noise(line);
   ProfileCurve wheel(load_profile(line.required("wheel"), ProfileKind::wheel, inclination, noise));
   ProfileCurve rail(load_profile(line.required("rail"), ProfileKind::rail, inclination, noise));
-  return WheelRailPair(std::move(wheel), std::move(rail), requested_dimensions(line));
+  WheelRailPair pair(std::move(wheel), std::move(rail), requested_dimensions(line));
+  require_flanges_between_rails(pair);
+  return pair;
 }
 
 GeometryRequest geometry_request(const TableCommandLine& line) {

@@ -17,9 +17,16 @@ struct GeometryRequest {
   ContactSearch search;
 };
 
-/// Of pair_options(): dimensions, and the noise of the profiles' points. @throws InputError
+/// Of pair_options(): dimensions, the rail's inclination, and the noise of the profiles' points. @throws InputError
 [[nodiscard]] PairDimensions requested_dimensions(const TableCommandLine& line);
+[[nodiscard]] double requested_inclination(const TableCommandLine& line);
 [[nodiscard]] double requested_noise(const TableCommandLine& line);
+
+/// @throws InputError where --smoothing meets built-in profiles alone, on which it does not act
+void require_profile_to_smooth(const TableCommandLine& line);
+
+/// @throws InputError where the flanges are wider apart at the gauge height than the track gauge
+void require_flanges_between_rails(const WheelRailPair& pair);
 
 /// The pair that pair_options() ask for, its profiles loaded. @throws InputError
 [[nodiscard]] WheelRailPair requested_pair(const TableCommandLine& line);

@@ -25,6 +25,9 @@ namespace {
 
 namespace po = boost::program_options;
 
+constexpr double largest_lowering = 2e-3;  // below first touch [m]
+constexpr double largest_load = 1e7;       // [N]
+
 constexpr const char* csv_header = "x,s_rail,y,z,angle,overlap,pressure,traction_x,traction_y,band";
 
 /// What was asked for and what was found.
@@ -40,7 +43,12 @@ struct Case {
 };
 
 ContactSearch requested_search(const TableCommandLine& line) {
-  if (!line.given("table")) return ContactSearch(requested_pair(line));
+  if (!line.given("table")) {
+    require_profile_to_smooth(line);
+    ContactSearch search(requested_pair(line));
+    if (!line.quiet()) print_notes("contact", search.pair());
+    return search;
+  }
   for (const char* other : {"wheel", "rail"}) {
     if (line.given(other)) {
       throw input_error(fmt::format("--{}", other), line.text(other), "no profiles beside --table, which has its own");
@@ -92,6 +100,14 @@ WheelsetPose requested_pose(const TableCommandLine& line) {
   return {numbers[0], 0.0, numbers[2], numbers[1]};
 }
 
+/// The contact of half-spaces is one of small overlaps.
+void require_small_lowering(const TableCommandLine& line, double lowering) {
+  if (lowering <= largest_lowering) return;
+  throw input_error("--load",
+                    fmt::format("{} N, which lowers the wheel by {:.3g} mm", line.text("load"), 1e3 * lowering),
+                    fmt::format("a load that lowers it by at most {:g} mm; is it in N?", 1e3 * largest_lowering));
+}
+
 void solve(const TableCommandLine& line, Case& c) {
   if (line.given("load") == line.given("dz")) {
     throw input_error("tablegen contact --pose",
@@ -106,15 +122,24 @@ void solve(const TableCommandLine& line, Case& c) {
     }
     return found;
   };
+  const double touch = c.search.touch_height(c.pose.y, c.pose.roll, c.pose.yaw);
+  if (!std::isfinite(touch)) {
+    throw input_error("--pose", line.text("pose"),
+                      "one at which wheel and rail can touch; where none is, check the profiles (axes, origin, units), "
+                      "--gauge and --flange-back");
+  }
   if (line.given("load")) {
     FrictionShare share;
     if (c.rolling) share = [&](const LoadedContact& contact) { return roll(contact).on_rail.force.z(); };
-    c.found = contact_at_load(c.search, c.pose, line.number("load"), c.options, share);
+    const double load = line.number("load");
+    if (!(load > 0.0 && load <= largest_load)) {
+      throw input_error("--load", line.text("load"), fmt::format("above 0, at most {:g} N", largest_load));
+    }
+    c.found = contact_at_load(c.search, c.pose, load, c.options, share);
+    require_small_lowering(line, c.found.contact.pose.z - touch);
   } else {
-    const double touch = c.search.touch_height(c.pose.y, c.pose.roll, c.pose.yaw);
-    if (!std::isfinite(touch)) throw input_error("--pose", line.text("pose"), "one at which wheel and rail can touch");
     const double dz = line.number("dz");
-    if (!(dz >= 0.0 && dz <= 2e-3)) throw input_error("--dz", line.text("dz"), "0..2e-3 m");
+    if (!(dz >= 0.0 && dz <= largest_lowering)) throw input_error("--dz", line.text("dz"), "0..2e-3 m");
     c.pose.z = touch + dz;
     c.found.contact = loaded_contact(c.search, c.pose, c.options);
     c.found.evaluations = 1;

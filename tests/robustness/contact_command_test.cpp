@@ -134,6 +134,20 @@ TEST(ContactCommand, FrictionAndTheFileOfPressures) {
   std::filesystem::remove(file);
 }
 
+TEST(ContactCommand, RepairsOfProfileFilesAreSaid) {
+  const std::filesystem::path wheel = std::filesystem::path(::testing::TempDir()) / "contact_command_wheel.txt";
+  std::ofstream file(wheel);
+  for (int y = -30; y <= 30; ++y) file << y << ' ' << 1e-4 * y * y - 0.05 * y << '\n';
+  file.close();
+  const std::string at = "--wheel '" + wheel.string() + "' --rail 60E1 --pose 0,0,0 --dz 1e-5 --elements 8";
+  const Outcome said = contact(at);
+  EXPECT_EQ(said.exit_code, 0) << said.text;
+  EXPECT_NE(said.text.find("tablegen contact: note: "), std::string::npos) << said.text;
+  EXPECT_NE(said.text.find("taken as mm from the width of 60"), std::string::npos) << said.text;
+  EXPECT_EQ(contact(at + " --quiet").text, "");
+  std::filesystem::remove(wheel);
+}
+
 TEST(ContactCommand, RefusesALoadedContactThatIsWrong) {
   const std::string at = std::string(pair) + "--pose 0,0,0 ";
   expect_refused(std::string(pair) + "--pose 0,0 --load 1e4", "Y,YAW,ROLL");
@@ -141,7 +155,11 @@ TEST(ContactCommand, RefusesALoadedContactThatIsWrong) {
   expect_refused(std::string(pair) + "--pose 0.5,0,0 --load 1e4", "0.1");
   expect_refused(at, "neither --load nor --dz");
   expect_refused(at + "--load 1e4 --dz 1e-4", "both --load and --dz");
-  expect_refused(at + "--load 0", "load");
+  expect_refused(at + "--load 0", "--load: found 0, expected above 0");
+  expect_refused(at + "--load 75000e3", "--load: found 75000e3, expected above 0, at most 1e+07 N");
+  expect_refused(at + "--load 1e6 --modulus 1e10 --elements 8", "a load that lowers it by at most 2 mm; is it in N?");
+  expect_refused(at + "--load 1e4 --smoothing 3e-6", "--smoothing: found 3e-6 with the built-in profiles");
+  expect_refused(at + "--load 1e4 --gauge 2 --flange-back 1.4", "--pose: found 0,0,0, expected one at which wheel");
   expect_refused(at + "--dz 1", "0..2e-3");
   expect_refused(at + "--load 1e4 --ratio 2", "--ratio");
   expect_refused(at + "--load 1e4 --pitch-rate -60", "--friction");

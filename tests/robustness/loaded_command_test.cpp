@@ -100,6 +100,11 @@ TEST_F(LoadedCommand, WrongInputIsSaid) {
   write("q.csv", "y,yaw,roll,load\n0,0,0,-5\n");
   make_table();
   expect_refused("contact t.h5 --query q.csv -o out", "load = -5, expected above 0");
+  const std::string expected = "expected the columns y,yaw,roll and one of dz and load, separated by commas";
+  write("q.csv", "y,yaw,roll,dz,load\n0,0,0,1e-5,1\n");
+  expect_refused("contact t.h5 --query q.csv -o out", "q.csv:1: found columns dz and load, " + expected);
+  write("q.csv", "y,yaw,roll\n0,0,0\n");
+  expect_refused("contact t.h5 --query q.csv -o out", "q.csv:1: found no column dz or load, " + expected);
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = tablegen("loaded " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.output;

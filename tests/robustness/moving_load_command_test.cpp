@@ -77,6 +77,42 @@ TEST_F(MovingLoadCommand, AnOwnListOfAxles) {
   expect_refused(span + "--train tram.csv --speed 20", "tram.csv:3: x[m]: found -1.8 after 0");
 }
 
+// Tonnes and kN in place of kg and N.
+TEST_F(MovingLoadCommand, ASpanOfWrongUnitsIsSaid) {
+  expect_refused("moving-load --length 25 --mass 15 --bending-stiffness 30e6 --damping 0.01 --speed 40:90",
+                 "--mass: found 15, expected 100 to 1");
+  const std::string stiffness = "moving-load --length 25 --mass 15e3 --bending-stiffness 30e6 --damping 0.01 ";
+  const char* const warning =
+      "vsi moving-load: warning: a span of 25 m has its first natural frequency at 0.112 Hz, as a simply supported "
+      "beam; spans of that length have 3.51 to 8.53 Hz [EN 1991-2, Figure 6.10]: are --mass (in kg/m) and "
+      "--bending-stiffness (in N m²) meant so?\n";
+  EXPECT_TRUE(vsi(stiffness + "--train lm71").output.starts_with(warning)) << vsi(stiffness + "--train lm71").output;
+  EXPECT_EQ(vsi(stiffness + "--train lm71 -q").output, "");
+  EXPECT_EQ(vsi(span + "--train lm71").output.find("warning"), std::string::npos);
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"flexible\"\n[[bridge]]\nlength = 25\nmass = 1e7\n");
+  EXPECT_NE(vsi("moving-load scene.toml --train lm71").output.find("are bridge.mass (per metre) and E Iy meant so?"),
+            std::string::npos);
+}
+
+// The acceleration grows up to the end of the speeds, the first and the last one.
+TEST_F(MovingLoadCommand, LargestValuesAtAnEndOfTheSpeedsAreMarked) {
+  const auto found = [&](const std::string& speeds) {
+    const Outcome outcome = vsi(span + "--train hslm-a1 --speed " + speeds + " --json");
+    return json::parse(outcome.output)["decks"][0];
+  };
+  const json whole = found("40:80:1"), peak = whole["trains"][0]["acceleration"];
+  EXPECT_FALSE(peak["at_end_of_speeds"].get<bool>()) << peak;
+  const double speed = peak["speed"].get<double>();
+  const json part = found("40:" + std::to_string(speed) + ":1");
+  EXPECT_TRUE(part["trains"][0]["acceleration"]["at_end_of_speeds"].get<bool>()) << part["trains"][0]["acceleration"];
+  EXPECT_TRUE(part["acceleration"]["at_end_of_speeds"].get<bool>());
+  EXPECT_FALSE(found("40")["acceleration"]["at_end_of_speeds"].get<bool>()) << "one speed has no ends";
+  const std::string text = vsi(span + "--train hslm-a1 --speed 40:" + std::to_string(speed) + ":1").output;
+  EXPECT_NE(text.find("  *: at an end of the speeds; a wider range may have a larger value\n"), std::string::npos)
+      << text;
+}
+
 TEST_F(MovingLoadCommand, WrongInput) {
   expect_refused(span, "found no speeds");
   expect_refused(span + "--speed 90:40", "--speed");
@@ -94,7 +130,7 @@ TEST_F(MovingLoadCommand, WrongInput) {
                  "--bending-stiffness");
   expect_refused("moving-load --length 25 --mass 1e300 --bending-stiffness 30e9 --damping 0.01 --speed 40:90",
                  "--mass");
-  expect_refused("moving-load --length 25 --mass 1 --bending-stiffness 1 --damping 0.01 --speed 40:90",
+  expect_refused("moving-load --length 25 --mass 100 --bending-stiffness 100 --damping 0.01 --speed 40:90",
                  "a first natural frequency of 0.002513 Hz");
   expect_refused(span + "--speed 1:2 --modes 100", "fewer --modes");
   write("scene.toml", rigid_scene);

@@ -49,9 +49,11 @@ TEST_F(VsiCommand, AVehicleThatCannotStandIsNamedWithItsFile) {
       "joins = [[\"wheelset-1\", \"car-body\"], [\"wheelset-2\", \"car-body\"]]\ny = 1.0\nboth_sides = true\n"
       "height = 0.46\nkx = 5e6\nky = 3e6\n";
   write("hanging.toml", wagon + "cz = 2e4\n");
-  expect_refused("vehicle hanging.toml", "hanging.toml: wagon: found a weight of ");
+  expect_refused("vehicle hanging.toml",
+                 "hanging.toml: wagon: found a weight of 1.96e+05 N of car-body that no spring carries");
   write("falling.toml", wagon + "kz = 1e4\n");
-  expect_refused("vehicle falling.toml", "falling.toml: wagon: found a vehicle that falls over under its weight");
+  expect_refused("vehicle falling.toml",
+                 "falling.toml: wagon: found a vehicle that falls over under its weight, car-body first, ω² = ");
 }
 
 TEST_F(VsiCommand, AGaugeHeightThatTheRailDoesNotReachNamesTheScene) {

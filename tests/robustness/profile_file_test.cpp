@@ -54,7 +54,27 @@ TEST_F(ProfileFile, RefusesWrongUnits) {
   expect_refused("head.txt", rail_points("") + "# units: mm\n", ProfileKind::rail, {"head.txt:62:", "before all"});
   expect_refused("head.txt", rail_points("# units: inch\n"), ProfileKind::rail, {"head.txt:1:", "inch", "mm"});
   expect_refused("head.txt", rail_points("# units: m\n"), ProfileKind::rail, {"60 m wide", "check the units"});
-  expect_refused("head.txt", rail_points("# units: mm\n", 1e-3), ProfileKind::rail, {"check the units"});
+  expect_refused("head.txt", rail_points("# units: mm\n", 1e-3), ProfileKind::rail, {"60 mm wide if the file is in m"});
+}
+
+// 100 mm wide in cm and in inches; the same with y and z exchanged.
+TEST_F(ProfileFile, RefusesProfilesTooNarrowForTheirKind) {
+  const ProfileKnots k = read_profile_file(write("wheel.txt", wheel_points), ProfileKind::wheel);
+  const auto listed = [&](double per_metre, bool exchanged) {
+    std::string text;
+    for (std::size_t i = 0; i < k.y.size(); ++i) {
+      const double y = per_metre * k.y[i], z = per_metre * k.z[i];
+      text += fmt::format("{} {}\n", exchanged ? z : y, exchanged ? y : z);
+    }
+    return text;
+  };
+  expect_refused(
+      "cm.txt", listed(100.0, false), ProfileKind::wheel,
+      {"cm.txt: found a profile 0.01 m wide", "a wheel at least 0.06 m wide", "100 mm wide if the file is in cm"});
+  expect_refused("wide.txt", listed(1e3 / 16.0, false), ProfileKind::wheel, {"159 mm wide if the file is in inches"});
+  expect_refused("swapped.txt", listed(1e3, true), ProfileKind::wheel, {"0.1 m high", "are y and z exchanged?"});
+  expect_refused("cm.txt", rail_points("", 0.1), ProfileKind::rail,
+                 {"a rail head at least 0.02 m wide", "60 mm wide if the file is in cm"});
 }
 
 TEST_F(ProfileFile, RefusesFieldsThatAreNoNumbers) {

@@ -109,7 +109,7 @@ TEST_F(ProfileRepair, WheelAxesFollowFromTheFlange) {
 }
 
 TEST_F(ProfileRepair, AMissingFlangeIsSaid) {
-  const ProfileKnots k = wheel("# units: mm\n-30 3\n-20 1.2\n-10 0.5\n0 0\n10 -0.5\n20 -1\n");
+  const ProfileKnots k = wheel("# units: mm\n-30 3\n-20 1.2\n-10 0.5\n0 0\n10 -0.5\n20 -1\n30 -1.5\n");
   expect_notes(k, {"no flange"});
 }
 
@@ -142,6 +142,14 @@ TEST_F(ProfileRepair, RailOfTheWrongSideOrUprightIsSaid) {
     upright += std::string(p) + "\n";
   }
   expect_notes(read_profile_file(write("r.txt", upright), ProfileKind::rail), {"stands upright"});
+}
+
+TEST_F(ProfileRepair, ARailHeadWithExchangedColumnsIsSaid) {
+  std::string exchanged = "# units: mm\n";
+  for (const char* p : {"30 -36", "16 -35.5", "8 -33", "3 -25", "0 0", "3 25", "8 33", "16 35.5", "30.1 36"}) {
+    exchanged += std::string(p) + "\n";
+  }
+  expect_refused("r.txt", exchanged, ProfileKind::rail, {"highest point", "are y and z exchanged?"});
 }
 
 TEST_F(ProfileRepair, AGaugeFaceNotMeasuredDeepEnoughIsContinued) {

@@ -443,6 +443,8 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
           "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
   write("plan.toml", "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.sped\"\nvalues = [1]\n");
   expect_refused("study plan.toml --count -o out", "unknown key 'train.sped'");
+  refused(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
+          "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
   refused(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n", "plan.toml:4: vary[1].values: found 1 twice");
   refused(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
   refused(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",

@@ -58,7 +58,11 @@ TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused(std::string(small) + "--roll 0.01:-0.01", "LO:HI");
   expect_refused(std::string(small) + "--tolerance 0", "tolerance");
   expect_refused(std::string(small) + "--tolerance nan", "--tolerance");
-  expect_refused(std::string(small) + "--gauge 1435", "gauge");
+  expect_refused(std::string(small) + "--gauge 1435", "--gauge: found 1435");
+  expect_refused(std::string(small) + "--wheel-radius 460", "--wheel-radius: found 460");
+  expect_refused(std::string(small) + "--rail-inclination 40", "--rail-inclination: found 40");
+  expect_refused(std::string(small) + "--roll=-5:5", "--roll [rad]: found -5");
+  expect_refused("loaded out.h5 --largest-load 1", "--largest-load: found 1");
   expect_refused(std::string(small) + "--rail-inclination 1:zero", "--rail-inclination");
   expect_refused(std::string(small) + "--threads 1.5", "--threads");
   expect_refused("geometry --wheel S1003 --rail 60E1 -o out.h5", "S1003");
@@ -71,6 +75,16 @@ TEST_F(TablegenCommand, WrongCommandLines) {
   expect_refused("conicity none.h5", "none.h5");
   expect_refused("conicity none.h5 --amplitude 0", "--amplitude");
   expect_refused("conicity none.h5 --roll free", "--roll");
+}
+
+TEST_F(TablegenCommand, OptionsThatCannotActOrFitAreRefused) {
+  expect_refused(std::string(small) + "--smoothing 3e-6",
+                 "--smoothing: found 3e-6 with the built-in profiles S1002 and 60E1");
+  expect_refused(std::string(small) + "--smoothing 3", "--smoothing: found 3, expected 0 to 0.001 m");
+  expect_refused(std::string(small) + "--flange-back 1.5",
+                 "--flange-back: found 1.5 m, with which the flanges are 1.5");
+  expect_refused(std::string(small) + "--gauge 1.0", "narrower than the track gauge of 1 m (--gauge)");
+  expect_refused(std::string(quick) + "--gauge 2.0", "the wheel does not meet the rail anywhere in the range");
 }
 
 TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {

@@ -475,16 +475,57 @@ TEST_F(VsiCommand, VehicleShowsWhatFollowsFromItsFile) {
   const Outcome shown = vsi("vehicle metro-gz18");
   EXPECT_EQ(shown.exit_code, 0);
   for (const char* part : {"55685 kg, 22.8 m over couplers, wheels of 0.42 m radius", "68.284         13.921",
-                           "car body bounce", "not linear: yaw damper along x", "within range: mass 55685 kg",
-                           "bogie.height = 0.5 m: assumed, source: none", "SIMPACK"}) {
+                           "mm  primary suspension", "car body bounce", "not linear: yaw damper along x",
+                           "within range: mass 55685 kg", "bogie.height = 0.5 m: assumed, source: none", "SIMPACK"}) {
     EXPECT_NE(shown.output.find(part), std::string::npos) << part << "\n" << shown.output;
   }
   const Outcome json = vsi("vehicle velaro-e-coach --json --modes 2");
   EXPECT_EQ(json.exit_code, 0);
-  for (const char* part : {"{\"name\": \"velaro-e-coach\"", "\"motion\": \"vertical\"", "\"top_speed\": 97.2",
-                           "\"dofs\": 10", "\"axle_load\": 155", "\"standing\": \"verified\""}) {
+  for (const char* part :
+       {"{\"name\": \"velaro-e-coach\"", "\"motion\": \"vertical\"", "\"top_speed\": 97.2", "\"dofs\": 10",
+        "\"axle_load\": 155", "\"static_deflections\": [{\"suspension\": ", "\"standing\": \"verified\""}) {
     EXPECT_NE(json.output.find(part), std::string::npos) << part << "\n" << json.output;
   }
+}
+
+TEST_F(VsiCommand, VehicleSaysWhatNoVehicleHas) {
+  EXPECT_EQ(vsi("vehicle manchester-coach --toml > mine.toml").exit_code, 0);
+  const auto changed = [&](const std::string& what, const std::string& by) {
+    std::ifstream in(folder_ / "mine.toml");
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    text.erase(text.find("[check]"));
+    text.replace(text.find(what), what.size(), by);
+    write("changed.toml", text);
+    const Outcome outcome = vsi("vehicle changed.toml");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return outcome.output;
+  };
+  const auto expect = [](const std::string& output, const std::string& text) {
+    EXPECT_NE(output.find(text), std::string::npos) << output;
+  };
+  expect(changed("mass = 32000.0", "mass = 32.0"),
+         "vsi vehicle: warning: manchester-coach: the car body of 32 kg is lighter than the wheelsets, 7252 kg in all");
+  expect(changed("half_wheelbase = ", "half_wheelbase = 0.1 # "), "the wheels of wheelset-1 and wheelset-2 overlap");
+  const std::string soft = changed("kz = 0.430e6", "kz = 4.3e3");
+  expect(soft, "the springs of secondary suspension deflect by 18");
+  EXPECT_EQ(soft.find("primary suspension deflect"), std::string::npos) << soft;
+  write("scene.toml", "[train]\nvehicle = \"changed.toml\"\n" + rigid_scene + "duration = 0.1\n");
+  expect(vsi("run scene.toml --plan").output,
+         "vsi run: warning: manchester-coach: the springs of secondary suspension");
+  EXPECT_EQ(vsi("vehicle manchester-coach").output.find("warning"), std::string::npos);
+}
+
+// As a run rejects it.
+TEST_F(VsiCommand, VehicleThatMissesItsChecksIsWrongInput) {
+  EXPECT_EQ(vsi("vehicle manchester-coach --toml | sed 's/^mass = 32000.0/mass = 33000.0/' > heavy.toml").exit_code, 0);
+  for (const char* form : {"", " --json"}) {
+    const Outcome outcome = vsi(std::string("vehicle heavy.toml") + form);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find("vsi: heavy.toml: check: mass: found 45482 kg by the file's own values"),
+              std::string::npos)
+        << outcome.output;
+  }
+  expect_refused("vehicle manchester-coach --toml --json", "--json: found --toml too, expected one of them");
 }
 
 TEST_F(VsiCommand, VehicleWritesAFileThatScenesAndItselfTake) {

@@ -6,6 +6,8 @@
 
 #include <string>
 
+#include "railtab/runtime/profile/profile_curve.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
 #include "vsi_fixture.hpp"
 
 namespace railtab {
@@ -238,6 +240,16 @@ TEST_F(VsiCommand, NoStaticEquilibriumNamesTheCause) {
   expect(output_of("[train]\nspeed_file = \"stop.csv\"\n"), "without the acceleration: -85 m/s² at t = ");
   expect(output_of("[[load]]\nFy = 3e6\n"), "% of the loads that act at t = 0 s: reduce them");
   expect(output_of("", "dimensions.flange_back = 1.50\n"), "flange backs 1.5 m apart");
+  const ProfileCurve s1002(standard_profile(ProfileKind::wheel, "S1002", 0.0));
+  std::string points;
+  for (double s = s1002.s_begin(); s <= s1002.s_end(); s += 0.2e-3) {
+    points += std::to_string(1e3 * s1002.at(s).y) + ' ' + std::to_string(1e3 * s1002.at(s).z) + '\n';
+  }
+  write("wheel.txt", points);
+  expect(
+      output_of("", "wheel = \"wheel.txt\"\ndimensions.flange_back = 1.50\n"),
+      "the origins of the profile files; if the points of wheel.txt are measured, their noise may be the cause: make "
+      "a table by tablegen geometry --smoothing SIGMA (3e-6 for 3 um) and name it in contact.table");
   write("aside.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n-90,0,0,0,0\n0,0.4,0,0.4,0\n90,0,0,0,0\n");
   expect(output_of("[irregularity]\nfile = \"aside.csv\"\n"), "deviations of the rails under it (0.");
 }
@@ -257,6 +269,18 @@ TEST_F(VsiCommand, ARunGoesOnForTheFreeVibrationOfItsBridge) {
   EXPECT_NE(stops.output.find("train.speed_file: found a train that stops before its last wheelset is at x = 20 m"),
             std::string::npos)
       << stops.output;
+}
+
+// Treads that rise to the field side drive wheelsets off the centre.
+TEST_F(VsiCommand, AMotionThatGrowsWithoutOscillationHasNoFrequency) {
+  std::string points;
+  for (int y = -40; y <= 40; ++y) points += std::to_string(y) + ' ' + std::to_string(0.2 * y) + '\n';
+  write("wheel.txt", points);
+  std::string text = rigid_scene + "duration = 0.01\n[train]\nspeed_kmh = 200\n";
+  write("scene.toml", text.insert(text.find("[track]"), "wheel = \"wheel.txt\"\n"));
+  const Outcome plan = vsi("run scene.toml --plan");
+  EXPECT_NE(plan.output.find("on these profiles: a small motion without oscillation grows by "), std::string::npos)
+      << plan.output;
 }
 
 TEST_F(VsiCommand, APlanCountsWholeSteps) {

@@ -322,6 +322,13 @@ TEST_F(ConsistFiles, SceneNamesCoachesAndBodies) {
     return message_of([&] { static_cast<void>(read_scene(folder_ / "wrong.toml")); });
   };
   EXPECT_NE(wrong("consist = [\"manchester-coach*0\"]").find("\"manchester-coach*0\" in the list"), std::string::npos);
+  for (const char* entry : {"manchester-coach*0", "manchester-coach*101", "manchester-coach * 2"}) {
+    const std::string message = wrong(std::string("consist = [\"") + entry + "\"]");
+    EXPECT_NE(message.find("\"NAME*N\" with N from 1 to 100, without blanks around the *"), std::string::npos)
+        << message;
+  }
+  EXPECT_NE(wrong("consist = []").find("train.consist: found an empty list, expected a list of vehicles"),
+            std::string::npos);
   EXPECT_NE(wrong("consist = [\"manchester\"]").find("manchester-coach"), std::string::npos);
   EXPECT_NE(wrong("consist = [\"manchester-coach\"]\ncount = 2").find("train.consist too"), std::string::npos);
   EXPECT_NE(wrong("consist = [\"manchester-coach*60\", \"velaro-e-coach*60\"]").find("120 vehicles"),

@@ -171,6 +171,21 @@ TEST(DeckEnvelope, OfAResumedRunIsThatOfTheWholeOne) {
   EXPECT_THROW(static_cast<void>(run(scene, without.checkpoints[0])), InputError) << "no envelope in that checkpoint";
 }
 
+// A process may end between the checkpoint of the last step and the record of it, which no multiple asks for.
+TEST(Checkpoint, AtTheEndOfARunLeavesItsLastRecordToMake) {
+  SceneParameters scene = crossing();
+  scene.output.every = 7;
+  scene.integration.duration = 200 * scene.integration.time_step;
+  scene.integration.reinitialise_every = 100;
+  const Passage whole = run(scene);
+  ASSERT_EQ(whole.checkpoints.size(), 2U);
+  const Passage resumed = run(scene, whole.checkpoints.back());
+  ASSERT_EQ(resumed.records.size(), 1U);
+  const StepRecord &last = whole.records.back(), &made = resumed.records.back();
+  EXPECT_EQ(made.time, last.time);
+  ASSERT_EQ(std::memcmp(made.nodes.data(), last.nodes.data(), last.nodes.size() * sizeof(last.nodes[0])), 0);
+}
+
 TEST(DeckEnvelope, HoldsNoMoreTheLongerTheRun) {
   SceneParameters scene = crossing();
   scene.integration.reinitialise_every = 100;

@@ -216,13 +216,16 @@ TEST_F(HistoryFile, CoefficientsThatDoNotHoldAreNamed) {
             "h.csv:3: column yaw: found 190 deg, expected at most 180°");
   EXPECT_EQ(message("yaw[deg],C_Fx[1]\n0,0\n90,1\n", read),
             "h.csv:1: column C_Fx: found column 'C_Fx', expected each of C_Fy, C_Fz, C_Mx, C_My, C_Mz at most once");
-  // A yaw angle that the tunnel did not reach.
+  EXPECT_EQ(message("yaw,C_Fy\n0,0\n90,1\n", read),
+            "h.csv:1: found header 'yaw', expected name[unit], as in "
+            "yaw[deg],C_Fy[1],C_Fz[1],C_Mx[1],C_My[1],C_Mz[1]; columns that are 0 may be absent");
+  // A yaw angle that the tunnel did not reach: the largest of the gust, not the first beyond the table.
   const Aerodynamics vehicle = read_aerodynamics(file("yaw[deg],C_Fy[1]\n0,0\n30,1\n"));
   const WindHistory gust = wind_gust(30.0, 0.0, 1.0);
   const auto slow = [](double) { return 40.0; };
   EXPECT_TRUE(message("", [&](const auto&) {
                 return wind_load_history(vehicle, {0.5 * pi}, gust, slow, 1.8);
-              }).starts_with("h.csv: found coefficients up to a yaw angle of 30°, expected up to 3"));
+              }).starts_with("h.csv: found coefficients up to a yaw angle of 30°, expected up to 36.87°, the largest"));
   EXPECT_NO_THROW(static_cast<void>(wind_load_history(vehicle, {0.5 * pi}, wind_gust(20, 0, 1), slow, 1.8)));
 }
 

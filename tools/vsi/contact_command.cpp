@@ -11,6 +11,7 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/column_file.hpp"
+#include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/frictionless_contact.hpp"
@@ -66,6 +67,18 @@ void append_patches(const Queries& queries, const WheelsetPose& pose, std::size_
   }
 }
 
+/// Whether the poses have a load in place of a lowering. @throws InputError
+bool has_loads(const std::string& query) {
+  constexpr const char* expected = "the columns y,yaw,roll and one of dz and load, separated by commas";
+  const ColumnRows rows(query, "a CSV file");
+  rows.require_commas(expected);
+  const auto has = [&](const char* name) {
+    return std::find(rows.header().begin(), rows.header().end(), name) != rows.header().end();
+  };
+  if (has("load") != has("dz")) return has("load");
+  throw rows.reader().error(has("load") ? "columns dz and load" : "no column dz or load", expected);
+}
+
 std::string header(const Queries& queries, bool total) {
   if (total) return fmt::format("{}\n", total_header);
   return fmt::format("{}{}\n", patch_header, queries.geometry.loaded() ? loaded_columns : "");
@@ -109,7 +122,7 @@ int contact_command(const Arguments& arguments) {
   require_writable_place(output, "-o");
   require_no_input(output, {query, table});
   const ContactTable contact = read_contact_table(table);
-  const bool by_load = has_column(query, "load"), total = line.given("total");
+  const bool by_load = has_loads(query), total = line.given("total");
   const Queries queries{contact.patches, contact.geometry,
                         read_number_rows(query, {"y", "yaw", "roll", by_load ? "load" : "dz"}), by_load,
                         line.given("online")};

@@ -36,8 +36,10 @@ void print(const Stability& s) {
   print_formatted("{}\n", name_of(s));
   if (s.found.critical) {
     const LeastStableMotion& c = *s.found.critical;
-    print_formatted("  linear critical speed {:.2f} km/h: a motion of {:.3f} Hz, {:.2f} m long\n", to_kmh * c.speed,
-                    c.frequency, c.frequency > 0.0 ? c.speed / c.frequency : 0.0);
+    const std::string motion =
+        c.frequency > 0.0 ? fmt::format("a motion of {:.3f} Hz, {:.2f} m long", c.frequency, c.speed / c.frequency)
+                          : std::string("a motion that grows without oscillation");
+    print_formatted("  linear critical speed {:.2f} km/h: {}\n", to_kmh * c.speed, motion);
   } else {
     print_formatted("  no linear critical speed up to {:.6g} km/h\n", to_kmh * s.search.high);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "command/command_line.hpp"
 #include "command/output_place.hpp"
@@ -11,6 +12,7 @@
 #include "command/progress_bar.hpp"
 #include "commands.hpp"
 #include "moving_load_output.hpp"
+#include "railtab/runtime/assessment/dynamic_need.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/stopwatch.hpp"
@@ -89,7 +91,7 @@ ModalDeck deck_of_options(const CommandLine& line, const DynamicModes& modes) {
   span.Iy = 1.0;
   span.damping_ratio = line.number("damping");
   require_between("--length", span.length, 0.5, 1000.0, "m");
-  require_between("--mass", span.mass, 1.0, 1e7, "kg/m");
+  require_between("--mass", span.mass, 100.0, 1e7, "kg/m");
   require_between("--bending-stiffness", span.E, 1.0, 1e16, "N m²");
   require_between("--damping", span.damping_ratio, 0.0, 0.5, "-");
   ModalDeck deck = simply_supported_deck(span, modes);
@@ -97,15 +99,32 @@ ModalDeck deck_of_options(const CommandLine& line, const DynamicModes& modes) {
   return deck;
 }
 
+/// Of simply supported spans: their mass or stiffness may be in another unit.
+void warn_of_frequencies(const CommandLine& line, const std::vector<ModalDeck>& spans, std::string_view keys) {
+  if (line.quiet()) return;
+  for (const ModalDeck& span : spans) {
+    const std::string unlike = frequency_unlike_a_bridge(span.length(), span.frequency(0));
+    if (unlike.empty()) continue;
+    print_message(fmt::format("vsi moving-load: warning: {}: are {} meant so?\n", unlike, keys));
+    return;
+  }
+}
+
 std::vector<ModalDeck> decks_of(const CommandLine& line, const DynamicModes& modes) {
-  if (!line.given("scene")) return {deck_of_options(line, modes)};
+  if (!line.given("scene")) {
+    const std::vector<ModalDeck> span{deck_of_options(line, modes)};
+    warn_of_frequencies(line, span, "--mass (in kg/m) and --bending-stiffness (in N m²)");
+    return span;
+  }
   for (const char* option : {"length", "mass", "bending-stiffness", "damping"}) {
     if (line.given(option)) throw input_error(fmt::format("--{}", option), "a scene too", "one of them");
   }
   const std::filesystem::path file = line.required("scene");
   const SceneParameters scene = read_scene(file);
   try {
-    return decks_of_scene(scene, modes);
+    std::vector<ModalDeck> decks = decks_of_scene(scene, modes);
+    if (!scene.spans.empty()) warn_of_frequencies(line, decks, "bridge.mass (per metre) and E Iy");
+    return decks;
   } catch (const InputError& wrong) {
     throw with_scene_line(wrong, scene, file);
   }

@@ -14,10 +14,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Whether a largest value lies at an end of the speeds, where a larger one may follow. One speed has no range.
+bool is_at_end(const TrainResponse& response, const PassagePeaks& passage) {
+  const std::vector<PassagePeaks>& all = response.passages;
+  return all.size() > 1 && (passage.speed == all.front().speed || passage.speed == all.back().speed);
+}
+
 /// A train of a deck and its passage at which a quantity is largest.
 struct Critical {
   const AxleTrain* train = nullptr;
   const PassagePeaks* passage = nullptr;
+  bool at_end = false;  ///< of the speeds
 };
 
 Critical critical(const DeckResponse& deck, bool acceleration) {
@@ -29,9 +36,15 @@ Critical critical(const DeckResponse& deck, bool acceleration) {
     const double value = acceleration ? passage.acceleration.value : passage.displacement.value;
     if (!(value > largest)) continue;
     largest = value;
-    best = {&deck.trains[response.train], &passage};
+    best = {&deck.trains[response.train], &passage, is_at_end(response, passage)};
   }
   return best;
+}
+
+bool any_at_end(const DeckResponse& deck) {
+  return std::any_of(deck.responses.begin(), deck.responses.end(), [](const TrainResponse& r) {
+    return !r.passages.empty() && (is_at_end(r, r.critical_acceleration()) || is_at_end(r, r.critical_displacement()));
+  });
 }
 
 std::vector<double> frequencies(const ModalDeck& deck) {
@@ -55,17 +68,19 @@ void print_deck(const DeckResponse& deck) {
     if (!response.passages.empty()) {
       const PassagePeaks& a = response.critical_acceleration();
       const PassagePeaks& w = response.critical_displacement();
-      print_formatted(" {:10.4f} {:8.2f} {:7.2f} {:8.3f} {:10.4f} {:8.2f} {:7.2f} {:8.3f} {:7.3f}",
-                      a.acceleration.value, 3.6 * a.speed, a.acceleration.x, a.acceleration.time,
-                      1e3 * w.displacement.value, 3.6 * w.speed, w.displacement.x, w.displacement.time,
+      print_formatted(" {:10.4f} {:8.2f}{} {:6.2f} {:8.3f} {:10.4f} {:8.2f}{} {:6.2f} {:8.3f} {:7.3f}",
+                      a.acceleration.value, 3.6 * a.speed, is_at_end(response, a) ? '*' : ' ', a.acceleration.x,
+                      a.acceleration.time, 1e3 * w.displacement.value, 3.6 * w.speed,
+                      is_at_end(response, w) ? '*' : ' ', w.displacement.x, w.displacement.time,
                       w.displacement.value / standing);
     }
     print_formatted("\n");
   }
+  if (any_at_end(deck)) print_formatted("  *: at an end of the speeds; a wider range may have a larger value\n");
 }
 
-Json peak_as_json(const DeckPeak& peak, double speed) {
-  return {{"value", peak.value}, {"speed", speed}, {"x", peak.x}, {"time", peak.time}};
+Json peak_as_json(const DeckPeak& peak, double speed, bool at_end) {
+  return {{"value", peak.value}, {"speed", speed}, {"x", peak.x}, {"time", peak.time}, {"at_end_of_speeds", at_end}};
 }
 
 Json train_as_json(const AxleTrain& train) {
@@ -85,8 +100,8 @@ Json response_as_json(const AxleTrain& train, const TrainResponse& response) {
   if (response.passages.empty()) return json;
   const PassagePeaks& a = response.critical_acceleration();
   const PassagePeaks& w = response.critical_displacement();
-  json["acceleration"] = peak_as_json(a.acceleration, a.speed);
-  json["displacement"] = peak_as_json(w.displacement, w.speed);
+  json["acceleration"] = peak_as_json(a.acceleration, a.speed, is_at_end(response, a));
+  json["displacement"] = peak_as_json(w.displacement, w.speed, is_at_end(response, w));
   json["dynamic_amplification"] = w.displacement.value / response.standing.value;
   Json passages = Json::array();
   for (const PassagePeaks& p : response.passages) {
@@ -163,9 +178,9 @@ void print_responses_as_json(const std::vector<DeckResponse>& responses, double 
               {"trains", trains}};
     const Critical a = critical(deck, true), w = critical(deck, false);
     if (a.train) {
-      json["acceleration"] = peak_as_json(a.passage->acceleration, a.passage->speed);
+      json["acceleration"] = peak_as_json(a.passage->acceleration, a.passage->speed, a.at_end);
       json["acceleration"]["train"] = a.train->name;
-      json["displacement"] = peak_as_json(w.passage->displacement, w.passage->speed);
+      json["displacement"] = peak_as_json(w.passage->displacement, w.passage->speed, w.at_end);
       json["displacement"]["train"] = w.train->name;
     }
     decks.push_back(std::move(json));

@@ -127,7 +127,9 @@ StudyValue value_of(const toml::node& node, const TomlSection& s) {
 
 std::vector<StudyValue> read_values(const toml::table& table, const TomlSection& s) {
   const toml::array* list = table.get("values")->as_array();
-  if (!list || list->empty()) throw s.error("values", found_text(*table.get("values")), "a list, [0.1, 0.2, 0.3]");
+  if (!list || list->empty()) {
+    throw s.error("values", list ? "an empty list" : found_text(*table.get("values")), "a list, [0.1, 0.2, 0.3]");
+  }
   std::vector<StudyValue> values;
   std::set<std::string> cells;
   for (const toml::node& node : *list) {

@@ -17,6 +17,7 @@
 #include "railtab/runtime/stability/linear_stability.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vehicle/vehicle_modes.hpp"
+#include "railtab/runtime/vehicle/vehicle_plausibility.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
@@ -41,7 +42,9 @@ struct Described {
   VehicleModel model;
   VehicleSummary summary;
   std::vector<VehicleMode> modes;
+  std::vector<StaticDeflection> deflections;
   std::vector<ClosingCheck> checks;
+  std::vector<std::string> warnings;
   std::optional<HuntingSpeed> hunting;  // on the table that the command names
 };
 
@@ -80,7 +83,9 @@ Described describe(const std::string& name, int modes) {
   v.model = build_vehicle(v.data, v.data.motion);
   v.summary = summarise(v.model, 0);
   v.modes = natural_modes(v.model, modes);
+  v.deflections = static_deflections(v.data);
   v.checks = closing_checks(v.data);
+  v.warnings = implausible_values(v.data);
   return v;
 }
 
@@ -156,8 +161,10 @@ void print(const HuntingSpeed& hunting) {
     print_formatted("    no linear critical speed up to {:.6g} km/h\n", to_kmh * hunting.search.high);
     return;
   }
-  print_formatted("    linear critical speed {:.2f} km/h: a motion of {:.3f} Hz\n", to_kmh * hunting.critical->speed,
-                  hunting.critical->frequency);
+  const LeastStableMotion& critical = *hunting.critical;
+  print_formatted("    linear critical speed {:.2f} km/h: {}\n", to_kmh * critical.speed,
+                  critical.frequency > 0.0 ? fmt::format("a motion of {:.3f} Hz", critical.frequency)
+                                           : std::string("a motion that grows without oscillation"));
 }
 
 void print(const Described& v) {
@@ -177,6 +184,10 @@ void print(const Described& v) {
                     1e-3 * load, 2e-3 * load / v.model.gravity);
   }
   print_bodies(v);
+  print_formatted("  static deflections\n");
+  for (const auto& [suspension, deflection] : v.deflections) {
+    print_formatted("    {:8.1f} mm  {}\n", 1e3 * deflection, suspension);
+  }
   print_formatted("  natural frequencies on standing wheelsets\n");
   for (const VehicleMode& mode : v.modes) {
     print_formatted("    {:8.3f} Hz, damping ratio {:5.3f}  {}{}\n", mode.frequency, mode.damping, mode.motion,
@@ -243,12 +254,15 @@ Json values_as_json(const VehicleData& data) {
 
 Json as_json(const Described& v) {
   const VehicleData& data = v.data;
-  Json wheelsets = Json::array(), modes = Json::array(), checks = Json::array();
+  Json wheelsets = Json::array(), deflections = Json::array(), modes = Json::array(), checks = Json::array();
   for (std::size_t w = 0; w < v.summary.wheel_load.size(); ++w) {
     const double load = v.summary.wheel_load[w];
     wheelsets.push_back({{"x", v.model.bodies[static_cast<std::size_t>(v.model.wheelsets[w])].position.x()},
                          {"wheel_load", load},
                          {"axle_load", 2.0 * load / v.model.gravity}});
+  }
+  for (const auto& [suspension, deflection] : v.deflections) {
+    deflections.push_back({{"suspension", suspension}, {"deflection", deflection}});
   }
   for (const VehicleMode& mode : v.modes) {
     modes.push_back({{"frequency", mode.frequency}, {"damping_ratio", mode.damping}, {"motion", mode.motion}});
@@ -271,12 +285,14 @@ Json as_json(const Described& v) {
           {"dofs", v.model.dofs()},
           {"wheelsets", wheelsets},
           {"bodies", bodies_as_json(data)},
+          {"static_deflections", deflections},
           {"modes", modes},
           {"hunting", v.hunting ? as_json(*v.hunting) : Json()},
           {"nonlinear", data.nonlinear},
           {"linearised", data.linearised},
           {"left_out", data.left_out},
           {"checks", checks},
+          {"warnings", v.warnings},
           {"values", values_as_json(data)}};
 }
 
@@ -307,6 +323,7 @@ int vehicle_command(const Arguments& arguments) {
   }
   const std::string name = line.text("vehicle");
   if (line.given("toml")) {
+    if (line.json()) throw input_error("--json", "--toml too", "one of them");
     print_formatted("{}", find_vehicle(name).text);
     return 0;
   }
@@ -320,6 +337,10 @@ int vehicle_command(const Arguments& arguments) {
   } else {
     print(vehicle);
   }
+  for (const std::string& warning : vehicle.warnings) {
+    print_message(fmt::format("vsi vehicle: warning: {}\n", warning));
+  }
+  require_closing(vehicle.data);
   return 0;
 }
 

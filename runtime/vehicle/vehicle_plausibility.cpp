@@ -1,0 +1,94 @@
+#include "railtab/runtime/vehicle/vehicle_plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/vehicle/vehicle_terms.hpp"
+
+namespace railtab {
+
+namespace {
+
+Eigen::VectorXd rest_under_weight(const VehicleModel& vehicle) {
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(vehicle.dofs());
+  for (const DofIndices& dof : vehicle.dof) {
+    const int z = dof[z_dof];
+    if (z != held) weight[z] = vehicle.gravity * vehicle.mass(z, z);
+  }
+  return standing(vehicle, weight).displacement;
+}
+
+void add_deflections(const VehicleData& data, std::vector<std::string>& sentences) {
+  constexpr double largest = 0.5;  // [m]: springs of vehicles deflect by up to 0.3 m
+  for (const auto& [suspension, deflection] : static_deflections(data)) {
+    if (deflection <= largest) continue;
+    sentences.push_back(fmt::format(
+        "{}: the springs of {} deflect by {:.3g} m under the weight, and none of a vehicle by more than {} m: is kz in "
+        "N/m?",
+        data.name, suspension, deflection, largest));
+  }
+}
+
+double wheel_radius(const VehicleDescription& parts, std::size_t wheelset) {
+  return parts.wheel_radius.empty() ? parts.nominal_radius : parts.wheel_radius[wheelset];
+}
+
+void add_overlapping_wheels(const VehicleData& data, std::vector<std::string>& sentences) {
+  const VehicleDescription& parts = data.parts;
+  for (std::size_t w = 0; w + 1 < parts.wheelsets.size(); ++w) {
+    const RigidBody& ahead = parts.bodies[static_cast<std::size_t>(parts.wheelsets[w])];
+    const RigidBody& behind = parts.bodies[static_cast<std::size_t>(parts.wheelsets[w + 1])];
+    const double distance = ahead.position.x() - behind.position.x();
+    const double radii = wheel_radius(parts, w) + wheel_radius(parts, w + 1);
+    if (distance >= radii) continue;
+    sentences.push_back(
+        fmt::format("{}: the wheels of {} and {} overlap: their axles are {:.3g} m apart, and their radii add up to "
+                    "{:.3g} m; are their positions in m?",
+                    data.name, ahead.name, behind.name, distance, radii));
+    return;
+  }
+}
+
+void add_light_car_body(const VehicleData& data, std::vector<std::string>& sentences) {
+  const VehicleDescription& parts = data.parts;
+  double wheelsets = 0.0;
+  for (const int w : parts.wheelsets) wheelsets += parts.bodies[static_cast<std::size_t>(w)].mass;
+  for (const RigidBody& body : parts.bodies) {
+    if (body.name != "car-body" || body.mass >= wheelsets) continue;
+    sentences.push_back(
+        fmt::format("{}: the car body of {:.6g} kg is lighter than the wheelsets, {:.6g} kg in all: is "
+                    "its mass in kg?",
+                    data.name, body.mass, wheelsets));
+  }
+}
+
+}  // namespace
+
+std::vector<StaticDeflection> static_deflections(const VehicleData& data) {
+  if (data.stands_on_joints) return {};
+  const VehicleModel vehicle = build_vehicle(data, data.motion, {standard_gravity, GeometricStiffness::omitted});
+  const Eigen::VectorXd rest = rest_under_weight(vehicle);
+  std::vector<StaticDeflection> deflections;
+  for (const Suspension& unit : data.parts.suspension) {
+    if (unit.stiffness.z() <= 0.0) continue;
+    auto known = std::find_if(deflections.begin(), deflections.end(),
+                              [&](const StaticDeflection& d) { return d.suspension == unit.name; });
+    if (known == deflections.end()) known = deflections.insert(known, StaticDeflection{unit.name, 0.0});
+    known->deflection = std::max(known->deflection, std::abs(elongation(vehicle, unit, rest).z()));
+  }
+  return deflections;
+}
+
+std::vector<std::string> implausible_values(const VehicleData& data) {
+  std::vector<std::string> sentences;
+  add_deflections(data, sentences);
+  add_overlapping_wheels(data, sentences);
+  add_light_car_body(data, sentences);
+  return sentences;
+}
+
+}  // namespace railtab
