@@ -151,8 +151,8 @@ class LoadedTable {
   explicit LoadedTable(LoadedTableData data);
 
   static constexpr std::size_t most_rolls = 20001, most_yaws = 9;  ///< nodes
-  static constexpr std::size_t rolls_read = 4;                  ///< by one look-up, at most
-  static constexpr double border = 0.05;                        ///< width of the blend, share of the range of each axis
+  static constexpr std::size_t rolls_read = 4;                     ///< by one look-up, at most
+  static constexpr double border = 0.05;  ///< width of the blend, share of the range of each axis
 
   /// @param y, z of the wheelset centre [m] (WheelsetPose) @param roll, yaw [rad]
   [[nodiscard]] LoadedLookup lookup(double y, double z, double roll, double yaw) const noexcept {
