@@ -32,7 +32,7 @@ std::vector<KeyRow> time_step_keys() {
        NumberKey{of_integration<&IntegrationParameters::duration>, {1e-9, 1e5, true}}},
       {"integration.free_vibration",
        "s",
-       "how long the run goes on after that",
+       "how long a run goes on after the last wheelset has left",
        NumberKey{of_integration<&IntegrationParameters::free_vibration>, {1e-9, 1e3, true}},
        {&without_duration}},
       {"integration.alpha", "1", "α of the HHT method; 0: trapezoidal rule",

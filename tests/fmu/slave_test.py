@@ -240,7 +240,7 @@ def archive(vsi, folder):
     before = (folder / "foreign.fmu").read_bytes()
     for arguments, text in ((("scene.toml", "-o", "foreign.fmu"), "found a file that is no FMU of railtab"),
                             (("scene.toml", "-o", "scene.toml"), "found the ending .toml, expected .fmu"),
-                            (("scene.toml",), "--output"),
+                            (("scene.toml",), "found no -o TRACK.fmu"),
                             (("rigid.toml", "-o", "none.fmu"), "rigid.toml:8: track.kind: found \"rigid\""),
                             (("ground.toml", "-o", "none.fmu"), "ground_motion: found ground that moves")):
         done = run(vsi, folder, "fmu", *arguments)

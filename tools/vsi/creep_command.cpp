@@ -88,7 +88,6 @@ int creep_command(const Arguments& arguments) {
   }
   const std::string query = line.required("query"), output = line.required("output");
   require_writable_place(output, "-o");
-  require_fitting_name(output, "-o", "a table in CSV", {".csv"});
   require_no_input(output, {query});
   if (line.given("table")) require_no_input(output, {line.text("table")});
   if (line.given("table") && name != "table") {
