@@ -268,11 +268,9 @@ void say_how_it_resumes(const RecordedRun& run, const RunOptions& options) {
   if (run.is_complete()) {
     print_message(fmt::format("vsi run: note: {} holds the whole run, which is left as it is\n", options.output));
   } else if (run.before() && !run.is_resumed()) {
-    print_message(
-        fmt::format("vsi run: note: {} holds {} records and no checkpoint yet, of which the first is after {} steps: "
-                    "the run begins "
-                    "anew\n",
-                    options.output, run.before()->steps.size(), IntegrationParameters{}.reinitialise_every));
+    print_message(fmt::format(
+        "vsi run: note: {} holds {} records and no checkpoint yet (the first is after {} steps): the run begins anew\n",
+        options.output, run.before()->steps.size(), IntegrationParameters{}.reinitialise_every));
   }
 }
 
