@@ -26,6 +26,11 @@ struct SceneCase {
   std::vector<GroundRecord> records;  ///< of scene.ground_motion
 };
 
+/// The highest speed of the run [m/s].
+[[nodiscard]] double highest_speed(const SceneCase& at);
+/// First natural frequency of a span as a simply supported beam [Hz].
+[[nodiscard]] double first_frequency(const BridgeParameters& span);
+
 /// "x = 0 to 40 m"
 [[nodiscard]] std::string text(const Interval& interval, std::string_view name, std::string_view unit);
 

@@ -19,6 +19,10 @@ std::string text(const Interval& interval, std::string_view name, std::string_vi
   return fmt::format("{} = {:.6g} to {:.6g} {}", name, interval.low, interval.high, unit);
 }
 
+double first_frequency(const BridgeParameters& span) {
+  return 0.5 * std::numbers::pi / (span.length * span.length) * std::sqrt(span.E * span.Iy / span.mass);
+}
+
 const Warning energy_rule_with_paper_search{
     "it is \"energy\" with contact.mode = \"paper\"", [](const SceneCase& at, Warnings& list) {
       const ContactParameters& contact = at.scene.contact;
@@ -56,9 +60,7 @@ const Warning span_unlike_a_bridge{
     "upper limit of EN 1991-2, Figure 6.10",
     [](const SceneCase& at, Warnings& list) {
       for (const BridgeParameters& span : at.scene.spans) {
-        const double frequency =
-            0.5 * std::numbers::pi / (span.length * span.length) * std::sqrt(span.E * span.Iy / span.mass);
-        const std::string unlike = frequency_unlike_a_bridge(span.length, frequency);
+        const std::string unlike = frequency_unlike_a_bridge(span.length, first_frequency(span));
         if (unlike.empty()) continue;
         list.push_back(unlike + ": are bridge.mass (per metre) and E Iy meant so?");
         return;

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "railtab/runtime/scene/scene_case.hpp"
 
@@ -11,22 +9,11 @@
 namespace railtab::scene {
 namespace {
 
-double top_speed(const SceneCase& at) {
-  if (!at.model.speed_profile) return at.model.contact.speed;
-  double highest = 0.0;
-  constexpr int samples = 200;
-  for (int i = 0; i <= samples; ++i) {
-    highest = std::max(highest, at.model.speed_profile->speed(at.duration * i / samples));
-  }
-  return highest;
-}
-
 /// The first natural period of the span that has the shortest, as a simply supported beam; 0: no span.
 double shortest_first_period(const SceneCase& at) {
   double shortest = 0.0;
   for (const BridgeParameters& span : at.scene.spans) {
-    const double period =
-        2.0 * span.length * span.length / std::numbers::pi * std::sqrt(span.mass / (span.E * span.Iy));
+    const double period = 1.0 / first_frequency(span);
     shortest = shortest == 0.0 ? period : std::min(shortest, period);
   }
   return shortest;
@@ -38,7 +25,7 @@ const Warning steps_too_long{
     "in a step the train travels more than half the distance between sleepers, or a quarter of the shortest wave of a "
     "random track; or it is longer than a tenth of a span's first natural period",
     [](const SceneCase& at, Warnings& list) {
-      const double step = at.scene.integration.time_step, travel = step * top_speed(at);
+      const double step = at.scene.integration.time_step, travel = step * highest_speed(at);
       const auto warn = [&](double found, const char* unit, double compared, const char* name) {
         list.push_back(fmt::format(
             "integration.time_step = {:g} s: a step is {:.3g} {} long, {} is {:.3g} {}: forces and accelerations of so "

@@ -17,9 +17,7 @@
 // What a vehicle's data say against the run.
 
 namespace railtab::scene {
-namespace {
 
-/// The highest speed of the run [m/s].
 double highest_speed(const SceneCase& at) {
   if (!at.model.speed_profile) return at.model.contact.speed;
   constexpr int samples = 1000;
@@ -27,6 +25,8 @@ double highest_speed(const SceneCase& at) {
   for (int i = 0; i <= samples; ++i) highest = std::max(highest, at.model.speed(at.duration * i / samples));
   return highest;
 }
+
+namespace {
 
 void above_top_speed(const SceneCase& at, Warnings& list) {
   constexpr double rounding = 1e-6, to_kmh = 3.6;
