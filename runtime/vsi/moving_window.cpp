@@ -19,6 +19,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr int span_modes = 16;   // of a span with its track: those of the deck that matter after a train
 constexpr double stride = 10.0;  // m: the window moves on by as much at a time
+constexpr int together = 8;      // dofs, of which a span's motion is computed side by side
 
 // Unknowns with from <= x <= to.
 DofRange dofs_between(const std::vector<double>& x, double from, double to) {
@@ -128,13 +129,19 @@ void add_followed(const StructureModel& structure, const SpanModes& span, std::v
 MovingWindow::MovingWindow(const VsiModel& model, double time_step)
     : model_(model), scheme_{.alpha = 0.0, .time_step = time_step} {
   for (const SpanModes& span : model.window->spans) {
-    std::vector<int>& dofs = nodes_.emplace_back();
+    Followed& followed = followed_.emplace_back();
+    std::vector<int>& dofs = followed.dofs;
     for (const StructureNode& node : model.structure->nodes) {
       if (node.x < span.from || node.x > span.to) continue;
       std::copy_if(node.dof.begin(), node.dof.end(), std::back_inserter(dofs),
                    [&](int dof) { return dof != held && dof >= span.dofs.begin && dof < span.dofs.end(); });
     }
     add_followed(*model.structure, span, dofs);
+    const auto count = static_cast<Eigen::Index>(dofs.size());
+    followed.shape.setZero((count + together - 1) / together * together, span.shape.cols());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      followed.shape.row(i) = span.shape.row(dofs[static_cast<std::size_t>(i)] - span.dofs.begin);
+    }
   }
 }
 
@@ -262,8 +269,9 @@ void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotio
 }
 
 // Eq. 12 mode by mode. @param load of the modes; null: none
-void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd* load,
+void MovingWindow::step_span(std::size_t index, Eigen::Index first, const Eigen::VectorXd* load,
                              VsiState& state) const {
+  const SpanModes& span = model_.window->spans[index];
   const Eigen::Index modes = span.omega2.size();
   auto q = of_span(state.left_behind, first, modes, 0);
   auto v = of_span(state.left_behind, first, modes, 1);
@@ -278,11 +286,18 @@ void MovingWindow::step_span(const SpanModes& span, Eigen::Index first, const Ei
     v[m] = velocity + scheme_.velocity_rate() * increment;
     a[m] = scheme_.acceleration_rate() * increment;
   }
-  for (int dof : nodes_[static_cast<std::size_t>(&span - model_.window->spans.data())]) {
-    const auto row = span.shape.row(dof - span.dofs.begin);
-    state.structure.displacement[dof] = row * q;
-    state.structure.velocity[dof] = row * v;
-    state.structure.acceleration[dof] = row * a;
+  const Followed& followed = followed_[index];
+  const Eigen::Map<const Eigen::MatrixX3d> coordinates(&state.left_behind[first], modes, 3);
+  for (std::size_t i = 0; i < followed.dofs.size(); i += together) {
+    const auto rows = followed.shape.middleRows<together>(static_cast<Eigen::Index>(i));
+    const Eigen::Matrix<double, together, 3> motion = rows.lazyProduct(coordinates);
+    for (std::size_t k = 0; k < together && i + k < followed.dofs.size(); ++k) {
+      const int dof = followed.dofs[i + k];
+      const auto row = static_cast<Eigen::Index>(k);
+      state.structure.displacement[dof] = motion(row, 0);
+      state.structure.velocity[dof] = motion(row, 1);
+      state.structure.acceleration[dof] = motion(row, 2);
+    }
   }
 }
 
@@ -290,19 +305,19 @@ void MovingWindow::step_inactive_spans(VsiState& state) const {
   SupportMotion supports;
   if (model_.ground_motion) supports = support_motion(*model_.ground_motion, model_.structure->supports.x, state.time);
   Eigen::Index first = 0;
-  for (const SpanModes& span : model_.window->spans) {
-    const Eigen::Index modes = span.omega2.size();
+  for (std::size_t i = 0; i < model_.window->spans.size(); ++i) {
+    const SpanModes& span = model_.window->spans[i];
     const bool ahead = model_.ground_motion && span.from >= to_;
     if (span.to <= from_ || ahead) {
       if (model_.ground_motion) {
         const Eigen::VectorXd load =
             -(span.support_mass * supports.acceleration + span.support_damping * supports.velocity);
-        step_span(span, first, &load, state);
+        step_span(i, first, &load, state);
       } else {
-        step_span(span, first, nullptr, state);
+        step_span(i, first, nullptr, state);
       }
     }
-    first += 3 * modes;
+    first += 3 * span.omega2.size();
   }
 }
 

@@ -61,11 +61,18 @@ class MovingWindow {
   void note_error(const Eigen::VectorXd& motion, const Eigen::VectorXd& lost, const DofRange& behind, double front);
   void join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
             VsiState& state) const;
-  void step_span(const SpanModes& span, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;
+  /// @param first its place in VsiState::left_behind
+  void step_span(std::size_t index, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;
+
+  /// Dofs of a span's nodes of interest, and the rows of Φ that belong to them, filled up with zeros.
+  struct Followed {
+    std::vector<int> dofs;
+    Eigen::MatrixXd shape;
+  };
 
   const VsiModel& model_;
   HhtScheme scheme_;
-  std::vector<std::vector<int>> nodes_;  // of every span, dofs of nodes of interest
+  std::vector<Followed> followed_;  // of every span
   bool placed_ = false;
   double from_ = 0.0, to_ = 0.0, error_ = 0.0;
 };
