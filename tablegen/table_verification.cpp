@@ -112,7 +112,8 @@ constexpr double finer_spacing = 0.02e-3;
 /// Points per profile of the published search that is timed for comparison.
 constexpr int paper_points = 1000;
 
-struct Mismatches {
+struct Differences {
+  std::vector<PatchError> patches;
   int online = 0;                ///< queries at which the table differs from the online search
   int finer = 0;                 ///< of these, from the search with the finer scan as well
   int outline = 0, in_band = 0;  ///< from the exact overlap of the outlines (RegionComparison)
@@ -120,12 +121,10 @@ struct Mismatches {
 
 /// Answers the queries by table and online search, in parallel.
 void compare_queries(const TableContact& contact, const ContactSearch& finer, const OutlineOverlap& outlines,
-                     double deep, std::vector<Query>& queries, std::vector<PatchError>& errors,
-                     Mismatches& mismatched) {
+                     double deep, std::vector<Query>& queries, Differences& sum) {
 #pragma omp parallel
   {
-    std::vector<PatchError> own;
-    Mismatches own_mismatched;
+    Differences own;
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t n = 0; n < queries.size(); ++n) {
       Query& q = queries[n];
@@ -136,20 +135,20 @@ void compare_queries(const TableContact& contact, const ContactSearch& finer, co
       q.searched = way == TableAnswer::searched;
       if (!q.answered) continue;
       const RegionComparison regions = compare(outlines.regions(q.pose), answer);
-      own_mismatched.outline += static_cast<int>(regions.mismatch);
-      own_mismatched.in_band += static_cast<int>(regions.in_band);
-      if (!compare_patches(answer, contact.search().patches(q.pose), deep, own)) continue;
-      ++own_mismatched.online;
+      own.outline += static_cast<int>(regions.mismatch);
+      own.in_band += static_cast<int>(regions.in_band);
+      if (!compare_patches(answer, contact.search().patches(q.pose), deep, own.patches)) continue;
+      ++own.online;
       std::vector<PatchError> unused;
-      own_mismatched.finer += compare_patches(answer, finer.patches(q.pose), deep, unused);
+      own.finer += compare_patches(answer, finer.patches(q.pose), deep, unused);
     }
 #pragma omp critical(verification_errors)
     {
-      errors.insert(errors.end(), own.begin(), own.end());
-      mismatched.online += own_mismatched.online;
-      mismatched.finer += own_mismatched.finer;
-      mismatched.outline += own_mismatched.outline;
-      mismatched.in_band += own_mismatched.in_band;
+      sum.patches.insert(sum.patches.end(), own.patches.begin(), own.patches.end());
+      sum.online += own.online;
+      sum.finer += own.finer;
+      sum.outline += own.outline;
+      sum.in_band += own.in_band;
     }
   }
 }
@@ -259,8 +258,7 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   std::mt19937_64 generator(options.seed);
   GeometryVerification result;
   result.bytes = contact.table().bytes();
-  std::vector<PatchError> errors;
-  Mismatches mismatched;
+  Differences differences;
   int searched = 0;
   const ContactSearch finer(search.pair(), finer_spacing);
   const OutlineOverlap outlines(search.pair());
@@ -270,7 +268,7 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   while (result.samples < options.samples) {
     std::vector<Query> queries =
         draw_queries(search, options, std::min(portion, options.samples - result.samples), generator);
-    compare_queries(contact, finer, outlines, 10 * options.tolerance, queries, errors, mismatched);
+    compare_queries(contact, finer, outlines, 10 * options.tolerance, queries, differences);
     for (const Query& q : queries) {
       result.samples += q.touches;
       result.never_touching += !q.touches;
@@ -286,12 +284,12 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
   result.searched_share = static_cast<double>(searched) / result.samples;
   result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;
   if (result.answered_by_table > 0) {
-    result.patch_mismatch_share = static_cast<double>(mismatched.online) / result.answered_by_table;
-    result.finer_mismatch_share = static_cast<double>(mismatched.finer) / result.answered_by_table;
-    result.outline_mismatch_share = static_cast<double>(mismatched.outline) / result.answered_by_table;
-    result.outline_in_band_share = static_cast<double>(mismatched.in_band) / result.answered_by_table;
+    result.patch_mismatch_share = static_cast<double>(differences.online) / result.answered_by_table;
+    result.finer_mismatch_share = static_cast<double>(differences.finer) / result.answered_by_table;
+    result.outline_mismatch_share = static_cast<double>(differences.outline) / result.answered_by_table;
+    result.outline_in_band_share = static_cast<double>(differences.in_band) / result.answered_by_table;
   }
-  set_errors(errors, result);
+  set_errors(differences.patches, result);
   if (options.timing) measure_time(contact, timed, result);
   return result;
 }

@@ -69,15 +69,14 @@ void ElementForces::add_load(const Eigen::VectorXd& force, Eigen::VectorXd& load
   }
 }
 
-void ElementForces::begin(const Step& step, const LinearMotion& motion, const Eigen::VectorXd& friction,
-                          const Prediction& prediction, const Eigen::VectorXd& guess) {
+void ElementForces::begin(const Step& step, const Start& start) {
   step_ = step;
-  friction_ = friction(system_.elements);
-  elongate(motion.displacement, x0_);
-  elongate(motion.velocity, v0_);
-  elongate(prediction.displacement, predicted_);
-  elongate(prediction.velocity, predicted_rate_);
-  elongate(guess, x_);
+  friction_ = start.friction(system_.elements);
+  elongate(start.motion.displacement, x0_);
+  elongate(start.motion.velocity, v0_);
+  elongate(start.prediction.displacement, predicted_);
+  elongate(start.prediction.velocity, predicted_rate_);
+  elongate(start.guess, x_);
 }
 
 void ElementForces::begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction) {
@@ -199,12 +198,11 @@ std::span<const ElementForces> TrainElements::of(int vehicle) const {
   return std::span(system_).subspan(index(vehicle) * systems_, systems_);
 }
 
-void TrainElements::begin(int vehicle, const ElementForces::Step& step, const LinearMotion& motion,
-                          const Eigen::VectorXd& friction, const Prediction& prediction, const Eigen::VectorXd& guess,
+void TrainElements::begin(int vehicle, const ElementForces::Step& step, const ElementForces::Start& start,
                           const Eigen::VectorXd& free) {
   for (std::size_t s = 0; s < systems_; ++s) {
     ElementForces& elements = of(vehicle)[s];
-    elements.begin(step, motion, friction, prediction, guess);
+    elements.begin(step, start);
     elements.elongate(free, free_[index(vehicle) * systems_ + s]);
   }
 }

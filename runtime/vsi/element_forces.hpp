@@ -44,21 +44,23 @@ enum class ElementRule {
 /// evaluation of the contacts' residual (docs/theory/coupling.md, section 10).
 class ElementForces {
  public:
-  /// What a step begins with: elongations x and rates v at its begin, the predictor's, and those that the step ends
-  /// with where the elements exert nothing at its end.
   struct Step {
     ElementRule rule = ElementRule::endpoint;
     double time_step = 0.0, velocity_rate = 0.0;  ///< [s], [1/s]
     double mean_weight = 1.0;                     ///< as ContactProblem::mean_weight
   };
+  /// What a step of the whole vehicle begins with.
+  struct Start {
+    const LinearMotion& motion;
+    const Eigen::VectorXd& friction;  ///< force of every element, zero but of those of that kind [N]
+    const Prediction& prediction;
+    const Eigen::VectorXd& guess;  ///< displacement of the dofs that the iteration starts from
+  };
 
   ElementForces(const VehicleModel& vehicle, const SeparateSystem& system);
 
   /// Motions, displacements, loads and friction forces are those of the whole vehicle.
-  /// @param friction force of every element at the step's begin, zero but of those of that kind [N]
-  /// @param prediction of the step  @param guess displacement of the dofs that the iteration starts from
-  void begin(const Step& step, const LinearMotion& motion, const Eigen::VectorXd& friction,
-             const Prediction& prediction, const Eigen::VectorXd& guess);
+  void begin(const Step& step, const Start& start);
   /// At rest: from the displacement reached.
   void begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction);
 
@@ -112,8 +114,8 @@ class TrainElements {
   TrainElements(const VehicleModel& kind, std::size_t vehicles);
 
   /// ElementForces::begin() of a vehicle. @param free displacement without contact and element forces
-  void begin(int vehicle, const ElementForces::Step& step, const LinearMotion& motion, const Eigen::VectorXd& friction,
-             const Prediction& prediction, const Eigen::VectorXd& guess, const Eigen::VectorXd& free);
+  void begin(int vehicle, const ElementForces::Step& step, const ElementForces::Start& start,
+             const Eigen::VectorXd& free);
   void begin_rest(int vehicle, const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction,
                   const Eigen::VectorXd& free);
   /// Solves the elements of every vehicle for contact forces and adds what theirs displace the wheelsets by; NaN where

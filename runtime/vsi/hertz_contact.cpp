@@ -70,7 +70,7 @@ class HertzContacts : public ContactLaw {
       gather_wheelsets(step.model, v, free, problem_.free);
       if (!elements_) continue;
       const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
-      elements_->begin(v, element_step(hht), motion, state.friction[index(v)], p, start, free);
+      elements_->begin(v, element_step(hht), {motion, state.friction[index(v)], p, start}, free);
     }
   }
 

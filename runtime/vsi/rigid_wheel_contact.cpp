@@ -208,8 +208,9 @@ class RigidWheels : public ContactLaw {
       const LinearMotion& motion = state_->vehicle[index(v)];
       const WheelsetHeave heave = heave_of(step, v);
       const Eigen::VectorXd free = response.displacement(prediction_[index(v)], remainder_[index(v)], heave);
-      elements_->begin(v, {ElementRule::endpoint, step.hht.time_step, step.hht.velocity_rate()}, motion,
-                       state_->friction[index(v)], response.prescribed(prediction_[index(v)], heave), free, free);
+      elements_->begin(v, {ElementRule::endpoint, step.hht.time_step, step.hht.velocity_rate()},
+                       {motion, state_->friction[index(v)], response.prescribed(prediction_[index(v)], heave), free},
+                       free);
       if (!elements_->solve(v)) return std::numeric_limits<double>::quiet_NaN();
       const Eigen::VectorXd before = element_load_[index(v)];
       Eigen::VectorXd& load = element_load_[index(v)];

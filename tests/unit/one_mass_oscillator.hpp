@@ -64,10 +64,10 @@ class Oscillator {
     load_.setZero();
     load_[0] = hht_.load_weight() * after - hht_.alpha * before;
     const Eigen::VectorXd increment = response_.free_increment(hht_, load_, motion_, prediction_);
+    const Eigen::VectorXd guess = prediction_.displacement + motion_.acceleration / hht_.acceleration_rate();
     elements_.begin({energy ? ElementRule::energy : ElementRule::endpoint, hht_.time_step, hht_.velocity_rate(),
                      energy ? 1.0 / (hht_.gamma() * hht_.load_weight()) : 1.0},
-                    motion_, friction_, prediction_,
-                    prediction_.displacement + motion_.acceleration / hht_.acceleration_rate());
+                    {motion_, friction_, prediction_, guess});
     const Eigen::MatrixXd& rows = vehicle_.elements.rows;
     const Eigen::VectorXd free = prediction_.displacement + increment;
     ASSERT_TRUE(elements_.solve(compliance_, rows * free));
