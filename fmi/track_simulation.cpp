@@ -54,7 +54,14 @@ void TrackSimulation::reset() {
 }
 
 void TrackSimulation::set(std::size_t input, double value) {
-  if (!std::isfinite(value)) throw input_error(variables_[input].name, fmt::format("{}", value), "a finite number");
+  constexpr double largest_load = 1e8;  // [N], [N m]: no scene accepts more, wheels carry 1e5 N
+  const TrackVariable& variable = variables_[input];
+  if (!std::isfinite(value)) throw input_error(variable.name, fmt::format("{}", value), "a finite number");
+  const bool is_load = input % inputs_per_wheelset != 0;
+  if (is_load && std::abs(value) > largest_load) {
+    throw input_error(variable.name, fmt::format("{:g} {}", value, variable.unit),
+                      fmt::format("-{0:g} to {0:g} {1}", largest_load, variable.unit));
+  }
   state_.input[input] = value;
 }
 

@@ -25,22 +25,31 @@ std::string contact_left_out(const SceneParameters& scene) {
 
 /// Profiles and dimensions, which a table has too.
 std::vector<KeyRow> pair_keys() {
-  return applying(
-      without_contact_table,
-      {
-          {"contact.wheel", "", "wheel profile", ProfileKey{of_contact<&ContactParameters::wheel>, ProfileKind::wheel}},
-          {"contact.rail", "", "rail profile", ProfileKey{of_contact<&ContactParameters::rail>, ProfileKind::rail}},
-          {"contact.rail_inclination", "1", "inclination of a built-in rail",
-           RatioKey{of_contact<&ContactParameters::rail_inclination>, {0.0, 0.1}}},
-          {"contact.dimensions.track_gauge", "m", "distance of the gauge points",
-           NumberKey{of_dimensions<&PairDimensions::track_gauge>, {0.5, 2.0}}},
-          {"contact.dimensions.gauge_height", "m", "depth of the gauge points below the rail-head tops",
-           NumberKey{of_dimensions<&PairDimensions::gauge_height>, {0.0, 0.05}}},
-          {"contact.dimensions.flange_back", "m", "flange-back distance of the wheelset",
-           NumberKey{of_dimensions<&PairDimensions::flange_back>, {0.4, 2.0}}},
-          {"contact.dimensions.nominal_radius", "m", "wheel radius at the tape circle",
-           NumberKey{of_dimensions<&PairDimensions::nominal_radius>, {0.1, 1.0}}},
-      });
+  return applying(without_contact_table,
+                  {
+                      {"contact.wheel",
+                       "",
+                       "wheel profile",
+                       ProfileKey{of_contact<&ContactParameters::wheel>, ProfileKind::wheel},
+                       {},
+                       {&noisy_wheel_profile}},
+                      {"contact.rail",
+                       "",
+                       "rail profile",
+                       ProfileKey{of_contact<&ContactParameters::rail>, ProfileKind::rail},
+                       {},
+                       {&noisy_rail_profile}},
+                      {"contact.rail_inclination", "1", "inclination of a built-in rail",
+                       RatioKey{of_contact<&ContactParameters::rail_inclination>, {0.0, 0.1}}},
+                      {"contact.dimensions.track_gauge", "m", "distance of the gauge points",
+                       NumberKey{of_dimensions<&PairDimensions::track_gauge>, {0.5, 2.0}}},
+                      {"contact.dimensions.gauge_height", "m", "depth of the gauge points below the rail-head tops",
+                       NumberKey{of_dimensions<&PairDimensions::gauge_height>, {0.0, 0.05}}},
+                      {"contact.dimensions.flange_back", "m", "flange-back distance of the wheelset",
+                       NumberKey{of_dimensions<&PairDimensions::flange_back>, {0.4, 2.0}}},
+                      {"contact.dimensions.nominal_radius", "m", "wheel radius at the tape circle",
+                       NumberKey{of_dimensions<&PairDimensions::nominal_radius>, {0.1, 1.0}}},
+                  });
 }
 
 std::vector<KeyRow> force_keys() {

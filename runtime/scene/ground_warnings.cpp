@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
 #include "railtab/runtime/scene/scene_loads.hpp"
 
@@ -50,6 +51,33 @@ std::optional<std::string> of_drift_correction(const GroundRecord& record, const
       place, parts);
 }
 
+/// Where the curve through displacements leaves the range of the points around, by a share of the record's range.
+struct Swing {
+  double time = 0.0, share = 0.0;  ///< [s], [-]
+};
+
+/// The largest of one column, at quarters of the intervals between its points. The range around an interval is that of
+/// its ends and of the points before and after it.
+Swing largest_swing(const GroundRecord& record, const std::vector<double>& t, const std::vector<double>& value,
+                    double unit, Eigen::Index component) {
+  const auto [lowest, highest] = std::minmax_element(value.begin(), value.end());
+  const double range = *highest - *lowest;
+  Swing largest;
+  if (range == 0.0) return largest;
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const auto first = value.begin() + static_cast<std::ptrdiff_t>(i == 0 ? 0 : i - 1);
+    const auto last = value.begin() + static_cast<std::ptrdiff_t>(std::min(i + 3, value.size()));
+    const auto [low, high] = std::minmax_element(first, last);
+    for (const double quarter : {0.25, 0.5, 0.75}) {
+      const double time = t[i] + quarter * (t[i + 1] - t[i]);
+      const double v = value.front() + record.at(time).displacement[component] / unit;  // counted from the first point
+      const double share = std::max(*low - v, v - *high) / range;
+      if (share > largest.share) largest = {time, share};
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 const Warning ground_at_rest{
@@ -90,6 +118,25 @@ const Warning ground_with_gap{"two points lie more than twenty times as far apar
                                                   place_of_motion(at, i), begin, begin + length, usual));
                                 }
                               }};
+
+const Warning ground_with_swing{
+    "the curve through displacements leaves the points around by more than a fifth of their range",
+    [](const SceneCase& at, Warnings& list) {
+      constexpr double noticeable = 0.2;  // evenly spaced points of a smooth motion, five per period: 0.07
+      for (std::size_t i = 0; i < at.records.size(); ++i) {
+        const std::vector<FileColumn> columns = read_columns(at.scene.ground_motion[i].file);
+        for (std::size_t c = 1; c < columns.size(); ++c) {
+          if (columns[c].unit != "m" && columns[c].unit != "mm") continue;  // accelerations have straight lines between
+          const Swing swing = largest_swing(at.records[i], columns[0].values, columns[c].values,
+                                            columns[c].unit == "mm" ? 1e-3 : 1.0, columns[c].name == "y" ? 0 : 1);
+          if (swing.share <= noticeable) continue;
+          list.push_back(fmt::format(
+              "{}: the curve through the displacements {} swings out of the points around t = {:.6g} s by {:.0f} % of "
+              "their range; give points at even intervals, or accelerations",
+              place_of_motion(at, i), columns[c].name, swing.time, 100.0 * swing.share));
+        }
+      }
+    }};
 
 const Warning ground_drift{"the drift correction changes a record by more than a tenth of its peak",
                            [](const SceneCase& at, Warnings& list) {

@@ -28,12 +28,13 @@ struct Warning {
 extern const Warning vehicle_above_top_speed, vehicle_above_critical_speed, vehicle_linearised, vehicle_implausible;
 extern const Warning speed_outside_run, start_on_flanges, judging_outside_run;
 extern const Warning steps_too_long, records_too_few;
+extern const Warning noisy_wheel_profile, noisy_rail_profile;
 extern const Warning energy_rule_with_paper_search, inaccurate_loaded_table;
 extern const Warning structure_unlike_a_bridge, span_unlike_a_bridge, span_far_from_track, span_with_few_sleepers;
-extern const Warning irregularity_zero, irregularity_outside_run, irregularity_with_step;
+extern const Warning irregularity_zero, irregularity_outside_run, irregularity_with_step, irregularity_too_large;
 extern const Warning deviation_zero, deviation_outside_run;
 extern const Warning load_zero, load_outside_run, load_shorter_than_steps;
-extern const Warning ground_too_strong, ground_with_gap;
+extern const Warning ground_too_strong, ground_with_gap, ground_with_swing;
 extern const Warning ground_at_rest, ground_drift, ground_lateral_motion, ground_after_run, ground_moves_nothing;
 
 }  // namespace railtab::scene

@@ -31,7 +31,7 @@ std::vector<KeyRow> track_quality_keys() {
          "measured deviations of both rails along x",
          FileKey{[](SceneDraft& d) -> std::filesystem::path& { return d.irregularity; }},
          {},
-         {&irregularity_zero, &irregularity_outside_run, &irregularity_with_step},
+         {&irregularity_zero, &irregularity_outside_run, &irregularity_with_step, &irregularity_too_large},
          irregularity_left_out},
         {"irregularity.spectrum",
          "",

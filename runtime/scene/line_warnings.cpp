@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/scene/judged_stretch.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
 
@@ -78,6 +79,53 @@ void steps_at_ends(const SceneCase& at, Warnings& list) {
           : "wheels meet a step there, whose force grows without bound as integration.time_step shrinks"));
 }
 
+double in_metres(const FileColumn& column) { return column.unit == "mm" ? 1e-3 : 1.0; }
+
+/// What no track in service has, of one column of an irregularity file; empty where it may be of a track.
+std::string implausible(const FileColumn& x, const FileColumn& column) {
+  constexpr double largest = 0.1, largest_rms = 0.02, steepest = 0.2;  // [m], [m], [-]
+  const double unit = in_metres(column), along = in_metres(x);
+  const std::vector<double>& v = column.values;
+  std::size_t peak = 0, steep = 1;
+  double sum = 0.0;
+  const auto slope = [&](std::size_t i) {
+    return unit * std::abs(v[i] - v[i - 1]) / (along * (x.values[i] - x.values[i - 1]));
+  };
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (std::abs(v[i]) > std::abs(v[peak])) peak = i;
+    if (i > 0 && slope(i) > slope(steep)) steep = i;
+    sum += unit * unit * v[i] * v[i];
+  }
+  const double rms = std::sqrt(sum / static_cast<double>(v.size()));
+  const std::string other = fmt::format("is the column in {}, not in {}", unit < 1.0 ? "um" : "mm", column.unit);
+  if (unit * std::abs(v[peak]) > largest) {
+    return fmt::format("{} is {:.4g} mm at x = {:.6g} m, tracks stay within {:g} mm: {}?", column.name,
+                       1e3 * unit * v[peak], along * x.values[peak], 1e3 * largest, other);
+  }
+  if (rms > largest_rms) {
+    return fmt::format(
+        "{} has an rms of {:.3g} mm, its largest value is {:.4g} mm at x = {:.6g} m, tracks stay below "
+        "an rms of {:g} mm: {}?",
+        column.name, 1e3 * rms, 1e3 * unit * v[peak], along * x.values[peak], 1e3 * largest_rms, other);
+  }
+  if (slope(steep) > steepest) {
+    return fmt::format("{} has a slope of {:.3g} at x = {:.6g} m, no wheel follows more than {:g}: {}, or x not in {}?",
+                       column.name, slope(steep), along * x.values[steep], steepest, other, x.unit);
+  }
+  return {};
+}
+
+void too_large(const SceneCase& at, Warnings& list) {
+  if (!at.scene.irregularity) return;
+  const std::vector<FileColumn> columns = read_columns(*at.scene.irregularity);
+  for (std::size_t c = 1; c < columns.size(); ++c) {
+    const std::string fault = implausible(columns[0], columns[c]);
+    if (fault.empty()) continue;
+    list.push_back(fmt::format("irregularity.file {}: {}", file_name(*at.scene.irregularity), fault));
+    return;  // a wrong unit is most likely that of all columns
+  }
+}
+
 void judged_beyond_run(const SceneCase& at, Warnings& list) {
   const std::vector<double> judged = judged_stretch(at.scene);
   if (judged.empty() || Interval{judged[0], judged[1]}.meets(at.wheels)) return;
@@ -105,5 +153,7 @@ const Warning irregularity_zero{
 const Warning irregularity_outside_run{"no wheel runs over the record", track_beyond_run};
 const Warning irregularity_with_step{"the record begins or ends under the wheels more than 0.1 mm off zero",
                                      steps_at_ends};
+const Warning irregularity_too_large{"a value is above 100 mm, the rms of a column above 20 mm, or a slope above 0.2",
+                                     too_large};
 
 }  // namespace railtab::scene

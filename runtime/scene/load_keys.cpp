@@ -68,7 +68,7 @@ std::vector<KeyRow> ground_keys() {
        "record of acceleration or displacement",
        FileKey{of_ground<&GroundMotionParameters::file>},
        {},
-       {&ground_with_gap, &ground_drift, &ground_lateral_motion}},
+       {&ground_with_gap, &ground_with_swing, &ground_drift, &ground_lateral_motion}},
       {"ground_motion.x",
        "m",
        "position of a station",

@@ -1,11 +1,14 @@
 #include "railtab/runtime/scene/plan_memory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <system_error>
+#include <utility>
 
 #include "railtab/runtime/base/process_memory.hpp"
 #include "railtab/runtime/results/deck_envelope.hpp"
-#include "railtab/runtime/results/result_size.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
@@ -44,11 +47,7 @@ double train_bytes(const VsiModel& model) {
 
 }  // namespace
 
-PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration) {
-  return_freed_memory();
-  const double program = reads_tables(scene.contact) ? program_with_hdf5 : program_without_hdf5;
-  const double built = resident_memory() + program, peak = peak_resident_memory() + program;
-  PlannedMemory plan;
+ResultSize planned_results(const SceneParameters& scene, const VsiModel& model, double duration) {
   const IntegrationParameters& integration = scene.integration;
   const double steps = duration / integration.time_step;
   const OutputSelection selection(scene.output, model_header(model));
@@ -64,6 +63,32 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   ResultSize results =
       result_size(header, std::floor(steps / scene.output.every) + 2.0, state, scene.output.paraview_instants);
   results.memory += number * envelope;
+  return results;
+}
+
+std::string bytes_text(double bytes) {
+  for (const auto& [unit, name] : {std::pair(1e12, "TB"), std::pair(1e9, "GB")}) {
+    if (bytes >= unit) return fmt::format("{:.4g} {}", bytes / unit, name);
+  }
+  return fmt::format("{:.4g} MB", 1e-6 * bytes);
+}
+
+std::string room_warning(const std::filesystem::path& file, double results) {
+  std::error_code unknown;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const std::filesystem::space_info room = std::filesystem::space(folder, unknown);
+  if (unknown || results <= static_cast<double>(room.available)) return {};
+  return fmt::format("the results take {}, and {} are free in {}; output.every writes fewer records",
+                     bytes_text(results), bytes_text(static_cast<double>(room.available)), folder.string());
+}
+
+PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration) {
+  return_freed_memory();
+  const double program = reads_tables(scene.contact) ? program_with_hdf5 : program_without_hdf5;
+  const double built = resident_memory() + program, peak = peak_resident_memory() + program;
+  PlannedMemory plan;
+  const IntegrationParameters& integration = scene.integration;
+  const ResultSize results = planned_results(scene, model, duration);
   plan.results = results.file;
   plan.grid = results.grid;
   const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);

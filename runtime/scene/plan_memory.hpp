@@ -1,5 +1,9 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
+
+#include "railtab/runtime/results/result_size.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -19,5 +23,14 @@ struct PlannedMemory {
 /// is what this process occupies; what start and steps add is counted from the factors' patterns.
 /// @param model  built in this process; `duration` of the run [s]
 [[nodiscard]] PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model, double duration);
+
+/// Of it, the results.
+[[nodiscard]] ResultSize planned_results(const SceneParameters& scene, const VsiModel& model, double duration);
+
+/// Warning of results [bytes] that the disk of their file has no room for; empty where it has.
+[[nodiscard]] std::string room_warning(const std::filesystem::path& file, double results);
+
+/// "12.5 GB"
+[[nodiscard]] std::string bytes_text(double bytes);
 
 }  // namespace railtab

@@ -12,7 +12,10 @@
 #include "railtab/runtime/base/version.hpp"
 #include "railtab/runtime/drawing/drawn_records.hpp"
 #include "railtab/runtime/drawing/moving_grid.hpp"
+#include "railtab/runtime/scene/plan_memory.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/step_count.hpp"
+#include "railtab/runtime/scene/timed_model.hpp"
 #include "railtab/tables/files/array_file.hpp"
 
 namespace railtab {
@@ -76,7 +79,15 @@ RunSummary RecordedRun::run(RunObserver observer, SharedSetUp* shared) {
     writer->checkpoint(state, step);
     if (observer.checkpoint) observer.checkpoint(step, state);
   };
-  RunSummary summary = run_scene(scene_, writing, from, shared);
+  if (observer.setup) observer.setup("building the model");
+  const TimedModel timed(scene_, shared);
+  const VsiModel& model = timed.model();
+  if (!from && observer.warning) {
+    const auto steps = static_cast<double>(step_count(scene_.integration, run_duration(scene_, model)));
+    const double results = planned_results(scene_, model, steps * scene_.integration.time_step).file;
+    if (const std::string full = room_warning(file_, results); !full.empty()) observer.warning(full);
+  }
+  RunSummary summary = timed.counted(run_scene(scene_, model, writing, from));
   if (from && summary.complete) {
     summary.message = fmt::format("resumed at t = {:.6g} s: counts and times are of the part since then",
                                   static_cast<double>(summary.counted_from) * scene_.integration.time_step);

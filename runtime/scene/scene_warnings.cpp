@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "railtab/runtime/assessment/dynamic_need.hpp"
+#include "railtab/runtime/profile/point_noise.hpp"
 #include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
 #include "railtab/runtime/scene/scene_contact.hpp"
@@ -22,6 +23,38 @@ std::string text(const Interval& interval, std::string_view name, std::string_vi
 double first_frequency(const BridgeParameters& span) {
   return 0.5 * std::numbers::pi / (span.length * span.length) * std::sqrt(span.E * span.Iy / span.mass);
 }
+
+namespace {
+
+/// Of a profile that the contact search takes through its points.
+void warn_of_noise(const ProfileKnots& profile, Warnings& list) {
+  constexpr double of_rail_head = 3.0;  // [1/m]: the crown of 60E1, beside which such bumps are contacts of their own
+  const PointNoise noise = point_noise(profile);
+  if (noise.curvature <= of_rail_head) return;
+  list.push_back(fmt::format(
+      "the points of {} scatter by about {:.2g} um, and the curvature of the curve through them by {:.2g} 1/m, more "
+      "than the {:g} 1/m of a rail head: contacts jump from bump to bump; make a table by "
+      "tablegen geometry --smoothing {:.1g} and name it in contact.table",
+      profile.name, 1e6 * noise.deviation, noise.curvature, of_rail_head, noise.deviation));
+}
+
+/// Whether the scene names its profiles itself; those of a table were checked when it was made.
+bool has_own_profiles(const SceneCase& at) { return at.model.geometry && at.scene.contact.table.empty(); }
+
+constexpr std::string_view with_noise = "its points scatter: they bend the curve through them by more than 3 1/m";
+
+}  // namespace
+
+const Warning noisy_wheel_profile{with_noise, [](const SceneCase& at, Warnings& list) {
+                                    if (!has_own_profiles(at)) return;
+                                    for (const auto& geometry : contact_geometries(at.model))
+                                      warn_of_noise(geometry->pair().wheel().knots(), list);
+                                  }};
+
+const Warning noisy_rail_profile{with_noise, [](const SceneCase& at, Warnings& list) {
+                                   if (has_own_profiles(at))
+                                     warn_of_noise(at.model.geometry->pair().rail().knots(), list);
+                                 }};
 
 const Warning energy_rule_with_paper_search{
     "it is \"energy\" with contact.mode = \"paper\"", [](const SceneCase& at, Warnings& list) {
@@ -49,8 +82,8 @@ const Warning inaccurate_loaded_table{
     }};
 
 const Warning structure_unlike_a_bridge{
-    "mass per metre or first natural frequency is implausible for a bridge, or modes lack more than 5 % of the static "
-    "flexibility",
+    "mass per metre or first natural frequency is implausible for a bridge, its deck ends before x = 0 or begins "
+    "beyond 1000 m, or modes lack more than 5 % of the static flexibility",
     [](const SceneCase& at, Warnings& list) {
       list.insert(list.end(), at.model.structure_warnings.begin(), at.model.structure_warnings.end());
     }};

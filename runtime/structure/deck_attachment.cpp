@@ -182,8 +182,9 @@ class DeckSurface {
     const Eigen::VectorXd spectrum = symmetric_spectrum(moments).values;
     if (spectrum[0] < least * spectrum[2]) return std::nullopt;
     if (std::hypot(moments(0, 1), moments(0, 2)) > inside * moments(0, 0)) {
-      throw input_error(place(x, y), "deck nodes on one side only: the track lies beyond their edge",
-                        "a deck under both halves of the sleepers");
+      throw input_error(
+          place(x, y), "deck nodes on one side only: the track lies beyond their edge",
+          "a deck under both halves of the sleepers: see structure.origin, structure.axes and structure.deck");
     }
     const Eigen::Matrix3d solve = moments.inverse();
     const Eigen::Vector3d plane = solve * depth;

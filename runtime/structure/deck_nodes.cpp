@@ -47,6 +47,17 @@ DeckExtent plausible_deck_extent(const FeStructure& structure, const std::vector
   return extent;
 }
 
+std::vector<std::string> deck_place_warnings(const DeckExtent& extent) {
+  constexpr double farthest = 1000.0;  // [m]
+  if (extent.end >= 0.0 && extent.begin <= farthest) return {};
+  return {fmt::format(
+      "the deck of [structure] is at x = {:.6g} to {:.6g} m, {}: structure.origin is the point of the model "
+      "that is to be at x = 0",
+      without_rounding(extent.begin), without_rounding(extent.end),
+      extent.end < 0.0 ? "before x = 0, where the first wheelset starts unless train.start says otherwise"
+                       : fmt::format("more than {:g} m of track before it", farthest))};
+}
+
 int nearest_deck_node(const FeStructure& structure, const std::vector<int>& deck, double x) {
   int best = no_node;
   double least = INFINITY;

@@ -25,6 +25,9 @@ struct DeckExtent {
 /// lies above the track or far below it: wrong units, axes or origins
 [[nodiscard]] DeckExtent plausible_deck_extent(const FeStructure& structure, const std::vector<int>& deck);
 
+/// Warning of a deck far from x = 0, about which trains start: most likely the model has another origin.
+[[nodiscard]] std::vector<std::string> deck_place_warnings(const DeckExtent& extent);
+
 /// A deck's node that is reported, by name.
 struct ReportedDeckNode {
   std::string name;

@@ -101,6 +101,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, Deck
   bridge.dof_x = row_positions(structure);
   const DeckExtent extent = plausible_deck_extent(structure, deck);
   bridge.end = extent.end;
+  for (std::string& sentence : deck_place_warnings(extent)) bridge.warnings.push_back(std::move(sentence));
   const auto [low, high] = std::minmax_element(bridge.dof_x.begin(), bridge.dof_x.end());
   constexpr double rounding = 1e-6;  // [m]: the last nodes belong to the bridge
   bridge.spans.push_back({std::min(extent.begin, *low) - rounding, std::max(bridge.end, *high) + rounding});

@@ -361,6 +361,7 @@ Bridge modal_bridge(const ImportParameters& parameters, DeckRecord record) {
   bridge.warnings = plausibility_warnings(0.0, omega[0] / (2.0 * std::numbers::pi));
   for (std::string& sentence : missing_flexibility(structure, parameters))
     bridge.warnings.push_back(std::move(sentence));
+  for (std::string& sentence : deck_place_warnings(extent)) bridge.warnings.push_back(std::move(sentence));
   return bridge;
 }
 

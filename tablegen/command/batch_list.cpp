@@ -12,6 +12,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/vehicle/toml_kind.hpp"
 
 namespace railtab {
 
@@ -112,6 +113,7 @@ std::string shortest(const std::string& text) {
 
 std::vector<BatchPair> read_batch_list(const std::filesystem::path& file) {
   const toml::table root = parsed(file);
+  check_toml_kind(root, file, TomlKind::pair_list);
   Settings defaults;
   const toml::array* list = nullptr;
   for (const auto& [key, node] : root) {

@@ -162,6 +162,8 @@ def errors(fmu):
         refused(lambda: slave.call("DoStep", 0.0, wrong, 0), "found", "0.001 s" if wrong > 0 else "")
     refused(lambda: slave.call("DoStep", 0.5, step, 0), "currentCommunicationPoint: found 0.5 s, expected 0 s")
     refused(lambda: slave.set(["wheelset[1].left.Q"], [float("inf")]), "wheelset[1].left.Q: found inf")
+    refused(lambda: slave.set(["wheelset[1].left.Q"], [-1e12]), "Q: found -1e+12 N, expected -1e+08 to 1e+08 N")
+    refused(lambda: slave.set(["wheelset[1].right.Mx"], [2e8]), "Mx: found 2e+08 N.m, expected -1e+08 to 1e+08 N.m")
     refused(lambda: slave.set(["wheelset[1].left.rail_z"], [0.0]), "value reference", "expected an input, 0 to 27")
     unknown = (c_uint * 1)(10 ** 6)
     refused(lambda: slave.call("GetReal", unknown, 1, (c_double * 1)()), "found 1000000, expected 0 to")
@@ -252,6 +254,22 @@ def archive(vsi, folder):
     assert not list(folder.glob("full.fmu*"))
 
 
+def example(vsi, folder):
+    """The example of the guide ends with a message where its input is missing or wrong."""
+    scripts = Path(__file__).parents[2] / "docs/examples/fmu"
+    script = scripts / "moving_loads.py"
+    shutil.make_archive(folder / "other", "zip", folder, "scene.toml")
+    for arguments, text in (((), "moving_loads.py TRACK.fmu"),
+                            (("none.fmu",), "none.fmu: found no FMU"),
+                            (("scene.toml",), "scene.toml: found no FMU"),
+                            (("other.zip",), "other.zip: found a ZIP archive without modelDescription.xml"),
+                            (("track.fmu", "fast"), "SPEED: found fast")):
+        done = run(sys.executable, folder, script, *arguments)
+        assert done.returncode == 1 and text in done.stderr and "Traceback" not in done.stderr, done
+    done = run(sys.executable, folder, scripts / "wheels_on_springs.py")
+    assert done.returncode == 1 and "wheels_on_springs.py TRACK.fmu" in done.stderr, done
+
+
 def run(vsi, folder, *arguments):
     return subprocess.run([vsi, *arguments], cwd=folder, text=True, capture_output=True)
 
@@ -268,9 +286,10 @@ def main():
         (folder / "ground.toml").write_text(SCENE + "[[ground_motion]]\nfile = \"ground.csv\"\n")
         done = run(vsi, folder, "fmu", "scene.toml", "-o", "track.fmu")
         assert done.returncode == 0 and "2 wheelsets" not in done.stderr, done
-        for case in names or [*cases, "archive"]:
+        of_files = {case.__name__: case for case in (archive, example)}
+        for case in names or [*cases, *of_files]:
             print(case, flush=True)
-            archive(vsi, folder) if case == "archive" else cases[case](Fmu(folder / "track.fmu"))
+            of_files[case](vsi, folder) if case in of_files else cases[case](Fmu(folder / "track.fmu"))
     return 0
 
 

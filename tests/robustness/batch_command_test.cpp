@@ -101,6 +101,8 @@ TEST_F(BatchCommand, WrongLists) {
   expect_refused(defaults + "[[pair]]\nwheel = \"" + std::string(300, 'w') + "\"\noutput = \"a.h5\"\n",
                  {"neither a built-in name nor a file"});
   expect_refused("[pears]\nrail = 1\n", {"lists/list.toml:1: pears", "[[pair]]"});
+  expect_refused("[contact]\nmode = \"online\"\n",
+                 {"lists/list.toml: found a scene, expected a list of wheel and rail pairs"});
   expect_refused(pair_a, {"lists/list.toml:1", "no rail"});
   expect_refused(defaults + "[[pair]]\nwheel = \"S1002\"\n", {"lists/list.toml:5", "no output"});
   expect_refused(defaults + pair_a + pair_a, {"lists/list.toml:10: output", "a.h5", "lists/list.toml:5"});

@@ -123,7 +123,10 @@ TEST_F(FeFilesTest, CalculixMatrixAndRows) {
   EXPECT_TRUE(refused("1 1 4\n1 4 1\n").starts_with("f:2: found row 1, column 4, expected 1 to 3"));
   EXPECT_TRUE(refused("1 2 4\n3 1 1\n").starts_with("f:2: found entries on both sides"));
   EXPECT_TRUE(refused("1 1 inf\n").starts_with("f:1: found 'inf'"));
-  EXPECT_TRUE(refused("1 1\n").starts_with("f:1: found '1 1'"));
+  EXPECT_TRUE(refused("1 1\n2 2 4\n").starts_with("f:1: found '1 1', expected row, column, value"));
+  const std::string again = ", expected a whole file: run ccx once more";
+  EXPECT_TRUE(refused("1 1 4\n2 2\n").starts_with("f:2: found the end of the file within the line '2 2'" + again));
+  EXPECT_TRUE(refused("1 1 4\n2 2 5\n").starts_with("f:2: found the end of the file after row 2 of 3" + again));
   EXPECT_TRUE(message(read_calculix_rows, "1.1\n1.7\n").starts_with("f:2: found '1.7'"));
   EXPECT_TRUE(message(read_calculix_rows, "").starts_with("f: found no line"));
 }

@@ -24,7 +24,16 @@ TEST_F(VsiCommand, AGeometryTableOfWrongNumbersIsNamed) {
   expect_refused("contact cells.h5 --query q.csv -o out", "cells.h5: node 0: found halves at node 0");
   expect_refused("contact wheelset.h5 --query q.csv -o out", "wheelset.h5: ");
   write("scene.toml", "[contact]\ntable = \"cells.h5\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
-  expect_refused("run scene.toml -o out", "cells.h5: node 0: found halves at node 0");
+  expect_refused("run scene.toml -o out", "scene.toml:2: contact.table: cells.h5: node 0: found halves at node 0");
+  write("no.h5", "no table");
+  const std::string rest = "[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n";
+  for (const char* mode : {"table", "online"}) {
+    write("scene.toml", std::string("[contact]\nmode = \"") + mode + "\"\ntable = \"no.h5\"\n" + rest);
+    expect_refused("run scene.toml -o out", "scene.toml:3: contact.table: no.h5: found no HDF5 signature");
+  }
+  write_geometry_table(folder_ / "good.h5", small_geometry_table());
+  write("scene.toml", "[contact]\ntable = \"good.h5\"\n[[profiles]]\ncoach = 1\ntable = \"no.h5\"\n" + rest);
+  expect_refused("run scene.toml -o out", "scene.toml:3: [[profiles]] 1 of 1: no.h5: found no HDF5 signature");
 }
 
 TEST_F(VsiCommand, ACreepTableOfWrongNumbersIsNamed) {

@@ -112,6 +112,15 @@ TEST_F(PlanMemory, WarnsOfResultsThatTheDiskHasNoRoomFor) {
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [&](const nlohmann::json& text) {
     return text.get<std::string>().find(warning) != std::string::npos;
   })) << as_json.output;
+
+  // a run says so before its first step, here one that cannot begin
+  write("scene.toml",
+        "[train]\ncount = 4\n[contact]\nmode = \"online\"\ncreep_law = \"polach\"\ndimensions.flange_back = 1.5\n"
+        "[track]\nkind = \"rigid\"\n[integration]\ntime_step = 1e-5\nduration = 1e4\n");
+  const Outcome run = vsi("run scene.toml -o r.h5");
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_NE(run.output.find("vsi run: warning: the results take "), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find(warning), std::string::npos) << run.output;
 }
 
 }  // namespace

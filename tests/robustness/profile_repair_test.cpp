@@ -14,6 +14,7 @@
 
 #include "profile_file_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/profile/point_noise.hpp"
 #include "railtab/runtime/profile/profile_curve.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
@@ -295,6 +296,26 @@ TEST(SmoothingSpline, OfExactPointsIsNearlyTheSplineThroughThem) {
   const Noisy p = noisy_s1002(exact, 0.2 * mm, 0.0);
   const SmoothedProfile smoothed = smoothing_spline(ProfileKind::wheel, "smoothed", p.y, p.z, 1e-9);
   EXPECT_LT(tread_error(smoothed.knots, exact).position, 1e-9);
+}
+
+TEST(PointNoise, IsTheScatterOfThePointsAndNoneOfExactOnes) {
+  const ProfileCurve exact(standard_profile(ProfileKind::wheel, "S1002", 0.0));
+  for (const double noise : {0.0, 1e-7, 1e-6, 1e-5}) {
+    for (const double spacing : {0.1 * mm, 0.2 * mm, 0.5 * mm}) {
+      const Noisy p = noisy_s1002(exact, spacing, noise);
+      const PointNoise found = point_noise(spline_through_points(ProfileKind::wheel, "raw", p.y, p.z));
+      const double curvature = std::sqrt(6.0) * noise / (spacing * spacing);
+      EXPECT_NEAR(found.deviation, noise, 0.15 * noise + 2e-9) << noise << ' ' << spacing;
+      EXPECT_NEAR(found.curvature, curvature, 0.15 * curvature + 0.5) << noise << ' ' << spacing;
+    }
+  }
+  EXPECT_EQ(point_noise(spline_through_points(ProfileKind::wheel, "few", {0.0, 0.1, 0.2}, {0.0, 0.1, 0.0})).deviation,
+            0.0);
+  for (const ProfileKind kind : {ProfileKind::wheel, ProfileKind::rail}) {
+    for (const std::string& name : standard_profile_names(kind)) {
+      EXPECT_LT(point_noise(standard_profile(kind, name, 0.025)).curvature, 1.0) << name;
+    }
+  }
 }
 
 TEST(SmoothingSpline, RefusesNoiseOutOfRange) {

@@ -369,6 +369,9 @@ TEST_F(StudyCommand, FindsWhichVariableMatters) {
   const nlohmann::json variables = json("out/study.json")["importance"]["variables"];
   EXPECT_GT(variables["train.speed_kmh"]["total"]["value"], 0.3);
   EXPECT_EQ(variables["assessment.line_speed_kmh"]["total"]["value"], 0.0);
+  EXPECT_GT(variables["train.speed_kmh"]["total"]["value"], 1.0);  // which no share is
+  const Outcome again = vsi("study plan.toml -o out");
+  EXPECT_NE(again.output.find("errors of sampling: 8 samples are too few"), std::string::npos) << again.output;
 }
 
 // Wind speed drives two forces, by its square.

@@ -179,6 +179,68 @@ TEST_F(SceneWarnings, OfIrregularitiesThatEndInAStep) {
   EXPECT_EQ(record("-90,0,-9,0,-10\n90,0,-9,0,-10\n").find(step), std::string::npos);  // reaches beyond the run
 }
 
+TEST_F(SceneWarnings, OfIrregularitiesInOtherUnits) {
+  const auto record = [&](const std::string& unit, const std::string& rows) {
+    std::string text = "x[m]";
+    for (const char* column : {"y_left", "z_left", "y_right", "z_right"}) {
+      text += std::string(",") + column + "[" + unit + "]";
+    }
+    write("track.csv", text + "\n" + rows);
+    return plan("[irregularity]\nfile = \"track.csv\"\n");
+  };
+  const std::string found = "warning: irregularity.file track.csv: ";
+  expect(record("m", "-90,0,0,0,0\n0,0,0.3,0,0.2\n90,0,0,0,0\n"),
+         found + "z_left is 300 mm at x = 0 m, tracks stay within 100 mm: is the column in mm, not in m?");
+  expect(record("mm", "-90,0,0,0,0\n0,0,90,-200,0\n90,0,0,0,0\n"),
+         found +
+             "z_left has an rms of 52 mm, its largest value is 90 mm at x = 0 m, tracks stay below an rms of 20 mm: is "
+             "the column in um, not in mm?");
+  std::string joint;
+  for (int i = -9000; i <= 9000; ++i) {
+    if (i % 1000 == 0 || std::abs(i) < 20) joint += std::to_string(0.01 * i) + (i == 0 ? ",0,0,5,0\n" : ",0,0,0,0\n");
+  }
+  expect(
+      record("mm", joint),
+      found +
+          "y_right has a slope of 0.5 at x = 0 m, no wheel follows more than 0.2: is the column in um, not in mm, or "
+          "x not in m?");
+  EXPECT_EQ(record("mm", "-90,0,0,0,0\n0,15,-15,15,15\n90,0,0,0,0\n").find("warning"), std::string::npos);
+}
+
+TEST_F(SceneWarnings, OfDisplacementsAtUnevenTimes) {
+  const auto quake = [&](const std::string& rows) {
+    write("quake.csv", "t[s],z[mm]\n" + rows);
+    return plan("[[ground_motion]]\nfile = \"quake.csv\"\n");
+  };
+  const std::string uneven = quake("0,0\n1,0\n1.01,5\n1.02,10\n2,10\n3,10\n");
+  expect(
+      uneven,
+      "warning: [[ground_motion]] 1 of 1: the curve through the displacements z swings out of the points around t = ");
+  expect(uneven, " of their range; give points at even intervals, or accelerations");
+  const std::string even = quake("0,0\n0.2,10\n0.4,6\n0.6,-6\n0.8,-10\n1,0\n1.2,10\n1.4,6\n1.6,0\n");
+  EXPECT_EQ(even.find("swings"), std::string::npos) << even;
+}
+
+TEST_F(SceneWarnings, OfMeasuredProfilesThatAreNotSmoothed) {
+  const ProfileCurve s1002(standard_profile(ProfileKind::wheel, "S1002", 0.0));
+  const auto plan_with = [&](double noise) {
+    std::string points;
+    int i = 0;
+    for (double s = s1002.s_begin(); s <= s1002.s_end(); s += 0.5e-3, ++i) {
+      const double error = noise * (i * i % 7 - 2);  // 0, 1, 4, 2, 2, 4, 1 less 2
+      points += std::to_string(1e3 * s1002.at(s).y) + ' ' + std::to_string(1e3 * (s1002.at(s).z + error)) + '\n';
+    }
+    write("wheel.txt", points);
+    return plan("", "mode = \"online\"\nwheel = \"wheel.txt\"");
+  };
+  const std::string noisy = plan_with(1e-6);
+  expect(noisy, "warning: the points of wheel.txt scatter by about ");
+  expect(noisy, "make a table by tablegen geometry --smoothing ");
+  EXPECT_EQ(noisy.find("the points of 60E1"), std::string::npos) << noisy;
+  const std::string exact = plan_with(0.0);
+  EXPECT_EQ(exact.find("warning"), std::string::npos) << exact;
+}
+
 // Wheelset 1 is lifted for some milliseconds: a wheel that follows its rail is held down.
 TEST_F(VsiCommand, ForcesThatASceneCannotGiveAreSaidAtItsEnd) {
   const auto output_of = [&](const std::string& contact, const char* lift) {

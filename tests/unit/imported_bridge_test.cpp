@@ -21,6 +21,7 @@
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/bridge_damping.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/section_forces.hpp"
 #include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/structure_summary.hpp"
@@ -520,6 +521,19 @@ TEST(ImportedBridge, MassesAndFrequenciesOfNoBridgeAreDoubted) {
   EXPECT_EQ(plausibility_warnings(33.9e6, 5e-3).size(), 2U);
   EXPECT_EQ(plausibility_warnings(33.9e3, 5e3).size(), 1U);
   EXPECT_TRUE(plausibility_warnings(33.9e3, 0.0).empty());
+}
+
+TEST(ImportedBridge, ADeckFarFromTheTrainIsDoubted) {
+  ImportParameters parameters = WrittenSpan(FeFormat::matrix_market).parameters;
+  parameters.files.damping.clear();
+  parameters.damping.ratio = 0.01;
+  parameters.report.clear();
+  (*parameters.frame.origin)[0] += 30e3;  // mm: more than the span's length
+  const std::vector<std::string> warnings = build_track_on_import(short_track(), parameters).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("structure.origin is the point of the model that is to be at x = 0"), std::string::npos);
+  EXPECT_TRUE(deck_place_warnings({500.0, 530.0}).empty());
+  EXPECT_EQ(deck_place_warnings({1500.0, 1530.0}).size(), 1U);
 }
 
 TEST(ImportedBridge, DampingByRatioTypeAndCoefficients) {

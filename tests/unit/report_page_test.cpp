@@ -294,6 +294,13 @@ TEST(ReportPage, WarningsAndPlanHaveTheirPlace) {
   const std::string page = report_page(run);
   EXPECT_LT(page.find("the track is rough"), page.find("Running safety"));
   EXPECT_LT(page.find("the table served 5.0 % of the contact queries"), page.find("Running safety"));
+  const auto served = [&](long share) {
+    run.summary.contact_queries = 100;
+    run.summary.table_queries = share;
+    return uncovered_queries(run.summary);
+  };
+  EXPECT_NE(served(75).find("measured profiles smooth enough (--smoothing)?"), std::string::npos) << served(75);
+  EXPECT_EQ(served(85), "");
   EXPECT_GT(page.find("2 x coach"), page.find("What was run"));
   EXPECT_GT(page.find("wind: none acts"), page.find("Left out"));
 }
@@ -339,6 +346,17 @@ TEST(ComparisonPage, LaysRunsOverEachOtherAndStatesTheirDifferences) {
   EXPECT_EQ(chart["series"][4]["shown"], true);
   const Json store = script_data(page, "<script type=\"application/json\" id=\"histories\"");
   EXPECT_EQ(floats(store["runs"][1]["time"]).size(), 1000u);
+}
+
+// Colours of similar brightness are one grey on paper.
+TEST(ComparisonPage, LinesDifferOnPaperByTheirDashes) {
+  const std::vector<RunResults> runs(2, long_run(50, 4));
+  const std::string page = comparison_page(runs, {"a", "b"});
+  const std::size_t print = page.find("@media print{.line");
+  ASSERT_NE(print, std::string::npos);
+  for (const char* line : {".line.c1{stroke-dasharray:", ".line.c2{stroke-dasharray:", ".line.c3{stroke-dasharray:"}) {
+    EXPECT_NE(page.find(line, print), std::string::npos) << line;
+  }
 }
 
 TEST(ReportPage, EscapesTheScene) {

@@ -46,10 +46,11 @@ Headline headline_of(const RunResults& results) {
 }
 
 std::string uncovered_queries(const RunSummary& summary) {
-  if (summary.contact_mode != "table" || 2 * summary.table_queries >= summary.contact_queries) return "";
+  if (summary.contact_mode != "table" || 5 * summary.table_queries >= 4 * summary.contact_queries) return "";
   return fmt::format(
       "the table served {:.1f} % of the contact queries, the online search the rest; does it cover the run's roll, yaw "
-      "and lateral shift (tablegen info; tablegen geometry --roll)?",
+      "and lateral shift (tablegen info; tablegen geometry --roll), and are measured profiles smooth enough "
+      "(--smoothing)?",
       100.0 * static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries));
 }
 

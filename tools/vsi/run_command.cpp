@@ -51,13 +51,6 @@ void warn(const RunOptions& options, std::string_view warning) {
   if (!options.quiet) print_warning(warning);
 }
 
-std::string bytes_text(double bytes) {
-  for (const auto& [unit, name] : {std::pair(1e12, "TB"), std::pair(1e9, "GB")}) {
-    if (bytes >= unit) return fmt::format("{:.4g} {}", bytes / unit, name);
-  }
-  return fmt::format("{:.4g} MB", 1e-6 * bytes);
-}
-
 /// Adds to a plan's warnings what this machine has too little of.
 void warn_of_room(const std::filesystem::path& results, RunPlan& plan) {
   const PlannedMemory& memory = plan.memory;
@@ -65,14 +58,7 @@ void warn_of_room(const std::filesystem::path& results, RunPlan& plan) {
     plan.warnings.push_back(fmt::format("the run may need {} of memory, and this machine has {}",
                                         bytes_text(memory.most), bytes_text(here)));
   }
-  std::error_code unknown;
-  const std::filesystem::path folder = results.has_parent_path() ? results.parent_path() : ".";
-  const std::filesystem::space_info room = std::filesystem::space(folder, unknown);
-  if (!unknown && memory.results > static_cast<double>(room.available)) {
-    plan.warnings.push_back(fmt::format("the results take {}, and {} are free in {}; output.every writes fewer records",
-                                        bytes_text(memory.results), bytes_text(static_cast<double>(room.available)),
-                                        folder.string()));
-  }
+  if (std::string full = room_warning(results, memory.results); !full.empty()) plan.warnings.push_back(std::move(full));
 }
 
 int print_plan(const SceneParameters& scene, const RunOptions& options) {

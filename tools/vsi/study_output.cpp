@@ -320,6 +320,13 @@ std::string importance_text(const StudyPlan& plan, const SobolIndices& indices) 
     text += fmt::format("  {}: first {:.3f} ({:.3f} to {:.3f}), total {:.3f} ({:.3f} to {:.3f})\n",
                         plan.variables[j].name, f.value, f.low, f.high, t.value, t.low, t.high);
   }
+  const auto is_no_share = [](const ConfidenceInterval& index) { return index.value < 0.0 || index.value > 1.0; };
+  if (std::ranges::any_of(indices.first, is_no_share) || std::ranges::any_of(indices.total, is_no_share)) {
+    text += fmt::format(
+        "  shares below 0 or above 1 are errors of sampling: {} samples are too few; four times as many halve the "
+        "intervals in brackets\n",
+        plan.sampling.samples);
+  }
   return text;
 }
 

@@ -76,13 +76,31 @@ def unpacked(fmu):
     """The folder with the content of an FMU, which stays until the program ends."""
     folder = tempfile.TemporaryDirectory()
     atexit.register(folder.cleanup)
-    zipfile.ZipFile(fmu).extractall(folder.name)
+    try:
+        zipfile.ZipFile(fmu).extractall(folder.name)
+    except (OSError, zipfile.BadZipFile) as error:
+        sys.exit(f"{fmu}: found no FMU ({error}), expected one of vsi fmu SCENE.toml -o TRACK.fmu")
+    if not (Path(folder.name) / "modelDescription.xml").exists():
+        sys.exit(f"{fmu}: found a ZIP archive without modelDescription.xml, expected an FMU of vsi fmu")
     return Path(folder.name)
 
 
+def arguments():
+    """FMU and speed in m/s, of the command line."""
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__.strip())
+    try:
+        speed = float(sys.argv[2]) if len(sys.argv) == 3 else 200 / 3.6
+    except ValueError:
+        speed = 0.0
+    if not 0 < speed < 200:
+        sys.exit(f"SPEED: found {sys.argv[2]}, expected a number above 0 and below 200 m/s")
+    return sys.argv[1], speed
+
+
 def main():
-    speed = float(sys.argv[2]) if len(sys.argv) > 2 else 200 / 3.6
-    track = Slave(unpacked(sys.argv[1]))
+    fmu, speed = arguments()
+    track = Slave(unpacked(fmu))
     start = {name: x for name, x in track.start.items() if name.endswith(".x")}
     decks = [name for name in track.decks if name.endswith(".z")]
     rails = [name for name in track.reference if name.endswith(".rail_z")]

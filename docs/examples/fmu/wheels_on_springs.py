@@ -30,6 +30,8 @@ class State:
 
 
 def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__.strip())
     track = Slave(unpacked(sys.argv[1]))
     wheels = [name.removesuffix(".Q") for name in track.start if name.endswith(".Q")]
     loads = [f"{wheel}.Q" for wheel in wheels]
