@@ -59,7 +59,7 @@ TEST_F(CreepCommand, KilledAtAnyTimeItGoesOnToTheSameBits) {
   std::uniform_real_distribution<double> share(0.15, 0.4);
   int kills = 0;
   bool partial_seen = false;
-  while (kills < 8 && killed(TABLEGEN_COMMAND, arguments, 1e-3 + whole * share(random))) {
+  while (kills < 4 && killed(TABLEGEN_COMMAND, arguments, 1e-3 + whole * share(random))) {
     ++kills;
     partial_seen = partial_seen || fs::exists(folder_ / "killed.h5.partial");
     EXPECT_FALSE(fs::exists(folder_ / "killed.h5")) << "an unfinished table has its final name";

@@ -73,7 +73,7 @@ TEST_F(PlanMemory, BoundsATinyRunClosely) {
 }
 
 constexpr const char* long_track =
-    "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 4000.0\nlength_after = 4000.0\n"
+    "[contact]\nnormal = \"rigid\"\n[track]\nlength_before = 2000.0\nlength_after = 2000.0\n"
     "[integration]\ntime_step = 1e-3\nduration = 0.02\n";
 
 TEST_F(PlanMemory, BoundsARunOnALongTrackClosely) { expect_bound(std::string("name = \"long\"\n") + long_track, 0.6); }

@@ -2,8 +2,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "railtab/runtime/contact/contact_search.hpp"
 #include "railtab/runtime/contact/equivalent_conicity.hpp"
@@ -109,14 +112,17 @@ TEST_F(TablegenCommand, APartSaysSoAndIsNoTable) {
 }
 
 TEST_F(TablegenCommand, GeometryInfoVerify) {
-  const Outcome made = tablegen(std::string(small) + "--json");
+  const Outcome made = tablegen(
+      "geometry --wheel LMA-type --rail CHN60 --flange-back 1.353 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 "
+      "--json");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Outcome info = tablegen("info out.h5 --json");
   ASSERT_EQ(info.exit_code, 0) << info.err;
   nlohmann::json table = nlohmann::json::parse(info.out);
   const nlohmann::json wheelset = table["wheelset"];
   EXPECT_EQ(wheelset["radius_difference"]["y"].size(), 21U);
-  EXPECT_NEAR(wheelset["radius_difference"]["value"][20], 0.6315e-3, 1e-7);  // at y = 1 mm
+  // a cone 1:40 on the tread
+  EXPECT_NEAR(wheelset["radius_difference"]["value"][20], 2.0 * 1e-3 / 40.0, 1e-9);  // at y = 1 mm
   table.erase("wheelset");
   EXPECT_EQ(nlohmann::json::parse(made.out), table);
   ASSERT_EQ(tablegen("info out.h5 --html page.html").exit_code, 0);
@@ -127,7 +133,7 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
   EXPECT_EQ(page.find("nan"), std::string::npos);
   expect_refused_with_table("info out.h5 --html out.h5", "out.h5");
   EXPECT_EQ(table["kind"], "geometry");
-  EXPECT_EQ(table["wheel"], "S1002");
+  EXPECT_EQ(table["wheel"], "LMA-type");
   EXPECT_EQ(table["axes"]["roll"]["root_cells"], 1);
   EXPECT_GT(table["branches"], 0);
   EXPECT_EQ(table["statistics"]["certified.patch_mismatch_share"], 0.0);
@@ -231,10 +237,11 @@ TEST_F(TablegenCommand, QuietPrintsNothing) {
 
 // Killed in the middle, the same command goes on from the parts that are done, to the same bits.
 TEST_F(TablegenCommand, KilledItGoesOnToTheSameTable) {
-  const std::vector<std::string> arguments{"geometry",     "--wheel", "S1002",     "--rail", "60E1", "--lateral",
-                                           "-0.002:0.004", "--quiet", "--threads", "1",      "-o",   "killed.h5"};
-  std::string command;
-  for (const std::string& a : arguments) command += a + " ";
+  const std::string command =
+      "geometry --wheel conic-arc-stand-in --rail JIS60-stand-in --wheel-radius 0.4575 --lateral -0.006:0.006 "
+      "--roll=-0.005:0.005 --quiet --threads 1 -o killed.h5";
+  std::istringstream words(command);
+  const std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
   ASSERT_EQ(tablegen(command.substr(0, command.find("-o")) + "-o whole.h5").exit_code, 0);
 
   const std::filesystem::path first = folder_ / "killed.h5.part-0-1", third = folder_ / "killed.h5.part-0-3";
