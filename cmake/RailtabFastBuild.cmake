@@ -33,6 +33,9 @@ endfunction()
 set(railtab_sources_together 16)  # per compilation
 # Tests spend their time in the libraries: their own code is compiled in three quarters of the time of -O2.
 set(railtab_test_options $<$<CONFIG:RelWithDebInfo>:-O1>)
+find_program(RAILTAB_GOLD ld.gold)  # links in half the time; of binutils
+mark_as_advanced(RAILTAB_GOLD)
+set(railtab_test_linker $<$<AND:$<BOOL:${RAILTAB_GOLD}>,$<CONFIG:RelWithDebInfo>>:-fuse-ld=gold>)
 
 # Every target of the project that compiles sources. Those with OpenMP's options cannot share what was compiled without.
 # Sources of tests stay apart: each program has few.
@@ -65,6 +68,7 @@ function(railtab_fast_build)
       continue()  # knows nothing of Eigen
     elseif("${links}" MATCHES "GTest::")
       target_compile_options(${target} PRIVATE ${railtab_test_options})
+      target_link_options(${target} PRIVATE ${railtab_test_linker})
       target_precompile_headers(${target} REUSE_FROM railtab_precompiled_tests)
     elseif("${links}" MATCHES "OpenMP::")
       target_precompile_headers(${target} PRIVATE ${railtab_precompiled_headers})
