@@ -1,5 +1,7 @@
 #include "railtab/runtime/profile/point_noise.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,6 +47,16 @@ PointNoise point_noise(const ProfileKnots& knots) {
   for (std::size_t i = 1; i < n; ++i) spacings.push_back(knots.s[i] - knots.s[i - 1]);
   const double deviation = median(std::move(distances)) / median_of_normal, spacing = median(std::move(spacings));
   return {deviation, std::sqrt(6.0) * deviation / (spacing * spacing)};
+}
+
+std::string noise_warning(const ProfileKnots& knots) {
+  constexpr double of_rail_head = 3.0;  // [1/m]: the crown of 60E1, beside which such bumps are contacts of their own
+  const PointNoise noise = point_noise(knots);
+  if (noise.curvature <= of_rail_head) return {};
+  return fmt::format(
+      "the points of {} scatter by about {:.2g} um, and the curvature of the curve through them by {:.2g} 1/m, more "
+      "than the {:g} 1/m of a rail head: contacts jump from bump to bump",
+      knots.name, 1e6 * noise.deviation, noise.curvature, of_rail_head);
 }
 
 }  // namespace railtab

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "railtab/tables/profile_knots.hpp"
 
 namespace railtab {
@@ -14,5 +16,9 @@ struct PointNoise {
 /// taken: a curvature that changes at a few places, as between the arcs of a drawing, is no noise. The curvature is
 /// that of three neighbours at the usual spacing h, √6·deviation/h². Zero of fewer than 9 knots.
 [[nodiscard]] PointNoise point_noise(const ProfileKnots& knots);
+
+/// What such points do to a contact search, where they bend the curve through them by more than the crown of a rail
+/// head is bent; empty of others.
+[[nodiscard]] std::string noise_warning(const ProfileKnots& knots);
 
 }  // namespace railtab

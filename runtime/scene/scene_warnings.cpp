@@ -28,14 +28,10 @@ namespace {
 
 /// Of a profile that the contact search takes through its points.
 void warn_of_noise(const ProfileKnots& profile, Warnings& list) {
-  constexpr double of_rail_head = 3.0;  // [1/m]: the crown of 60E1, beside which such bumps are contacts of their own
-  const PointNoise noise = point_noise(profile);
-  if (noise.curvature <= of_rail_head) return;
-  list.push_back(fmt::format(
-      "the points of {} scatter by about {:.2g} um, and the curvature of the curve through them by {:.2g} 1/m, more "
-      "than the {:g} 1/m of a rail head: contacts jump from bump to bump; make a table by "
-      "tablegen geometry --smoothing {:.1g} and name it in contact.table",
-      profile.name, 1e6 * noise.deviation, noise.curvature, of_rail_head, noise.deviation));
+  const std::string noise = noise_warning(profile);
+  if (noise.empty()) return;
+  list.push_back(fmt::format("{}; make a table by tablegen geometry --smoothing {:.1g} and name it in contact.table",
+                             noise, point_noise(profile).deviation));
 }
 
 /// Whether the scene names its profiles itself; those of a table were checked when it was made.

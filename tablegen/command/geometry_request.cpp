@@ -10,6 +10,7 @@
 #include "railtab/runtime/base/parameter_range.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/profile/point_noise.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
@@ -116,6 +117,10 @@ void print_notes(const std::string& command, const WheelRailPair& pair) {
   for (const ProfileCurve* profile : {&pair.wheel(), &pair.rail()}) {
     for (const std::string& note : profile->knots().notes)
       print_message(fmt::format("tablegen {}: note: {}\n", command, note));
+    if (const std::string noise = noise_warning(profile->knots()); !noise.empty()) {
+      print_message(fmt::format("tablegen {}: warning: {}; smooth them by --smoothing {:.1g}\n", command, noise,
+                                point_noise(profile->knots()).deviation));
+    }
   }
 }
 

@@ -223,6 +223,22 @@ TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
   expect_refused_with_table("geometry --wheel wheel.txt --smoothing -1" + rest, "--smoothing");
 }
 
+TEST_F(TablegenCommand, PointsThatScatterAreWarnedOfBeforeTheTableIsMade) {
+  const auto made_with = [&](double noise) {
+    std::ofstream wheel(folder_ / "wheel.txt");
+    for (int y = -30; y <= 30; ++y) {
+      const int error = (y + 30) * (y + 30) % 7 - 2;  // 0, 1, 4, 2, 2, 4, 1 less 2
+      wheel << y << ' ' << 1e-4 * y * y - 0.05 * y + noise * error << '\n';
+    }
+    wheel.close();
+    return tablegen("geometry --wheel wheel.txt --rail 60E1 --lateral 0:0.0001 --yaw 0:0 -o out.h5").err;
+  };
+  const std::string noisy = made_with(3e-3);
+  EXPECT_NE(noisy.find("warning: the points of wheel.txt scatter by about "), std::string::npos) << noisy;
+  EXPECT_NE(noisy.find("; smooth them by --smoothing "), std::string::npos) << noisy;
+  EXPECT_EQ(made_with(0.0).find("scatter"), std::string::npos);
+}
+
 TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
   ASSERT_EQ(tablegen(std::string(quick) + "--quiet").exit_code, 0);
   std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
