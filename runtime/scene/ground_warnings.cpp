@@ -127,8 +127,9 @@ const Warning ground_with_swing{
         const std::vector<FileColumn> columns = read_columns(at.scene.ground_motion[i].file);
         for (std::size_t c = 1; c < columns.size(); ++c) {
           if (columns[c].unit != "m" && columns[c].unit != "mm") continue;  // accelerations have straight lines between
-          const Swing swing = largest_swing(at.records[i], columns[0].values, columns[c].values,
-                                            columns[c].unit == "mm" ? 1e-3 : 1.0, columns[c].name == "y" ? 0 : 1);
+          const Swing swing =
+              largest_swing(at.records[i], columns[0].values, columns[c].values,
+                            factor_to_si(columns[c], {{"m", 1.0}, {"mm", 1e-3}}), columns[c].name == "y" ? 0 : 1);
           if (swing.share <= noticeable) continue;
           list.push_back(fmt::format(
               "{}: the curve through the displacements {} swings out of the points around t = {:.6g} s by {:.0f} % of "

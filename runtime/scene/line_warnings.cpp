@@ -79,12 +79,11 @@ void steps_at_ends(const SceneCase& at, Warnings& list) {
           : "wheels meet a step there, whose force grows without bound as integration.time_step shrinks"));
 }
 
-double in_metres(const FileColumn& column) { return column.unit == "mm" ? 1e-3 : 1.0; }
-
 /// What no track in service has, of one column of an irregularity file; empty where it may be of a track.
 std::string implausible(const FileColumn& x, const FileColumn& column) {
   constexpr double largest = 0.1, largest_rms = 0.02, steepest = 0.2;  // [m], [m], [-]
-  const double unit = in_metres(column), along = in_metres(x);
+  const std::vector<UnitFactor> lengths{{"m", 1.0}, {"mm", 1e-3}};
+  const double unit = factor_to_si(column, lengths), along = factor_to_si(x, lengths);
   const std::vector<double>& v = column.values;
   std::size_t peak = 0, steep = 1;
   double sum = 0.0;

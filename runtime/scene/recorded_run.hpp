@@ -9,6 +9,8 @@
 
 namespace railtab {
 
+class SharedSetUp;
+
 /// A run that writes its results to a file as it goes, from its beginning or from the last checkpoint of the file.
 class RecordedRun {
  public:
@@ -29,7 +31,7 @@ class RecordedRun {
   /// As run_scene(). Earlier results are replaced once the set-up has succeeded and `observer` has been told that the
   /// run is ready: they are worth more than a run that could not begin. Records and checkpoints are written before
   /// `observer` has them. Where it throws, the file holds everything up to there.
-  /// @param shared as of run_scene()
+  /// @param shared what earlier runs of this process have made, and later ones may take; or null
   [[nodiscard]] RunSummary run(RunObserver observer, SharedSetUp* shared = nullptr);
 
   /// Whether the file holds results of this run. Not where no step was made and earlier results stay there.

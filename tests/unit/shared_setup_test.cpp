@@ -37,7 +37,7 @@ std::vector<double> numbers_of(const SceneParameters& scene, SharedSetUp* shared
     for (const WheelRecord& wheel : record.wheels) numbers.insert(numbers.end(), {wheel.Q, wheel.Y, wheel.wear_number});
     for (const MotionRecord& node : record.nodes) numbers.push_back(node.acceleration[2]);
   };
-  const RunSummary summary = run_scene(scene, observer, std::nullopt, shared);
+  const RunSummary summary = run_scene(scene, build_model(scene, shared), observer);
   EXPECT_TRUE(summary.complete) << summary.message;
   return numbers;
 }
