@@ -280,7 +280,7 @@ int main(int argc, char** argv) {
   const bool renew = argc > 2 && std::strcmp(argv[2], "--renew") == 0;
   const std::map<std::string, double> baseline = read_baseline(file);
   std::string text =
-      "# Ratios of processor times that tools/test compares its own with; build type dev.\n"
+      "# Ratios of processor times that tools/check compares its own with; build type dev.\n"
       "# Made by tools/regenerate performance_ratios.\nratio,value\n";
   struct Price {
     const char* name;
