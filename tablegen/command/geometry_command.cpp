@@ -16,7 +16,10 @@ void geometry_command(const std::vector<std::string>& arguments) {
   if (line.help_printed()) return;
   require_profile_to_smooth(line);
   const GeometryRequest request = geometry_request(line);
-  if (!line.quiet()) print_notes("geometry", request.search.pair());
+  if (!line.quiet()) {
+    print_notes("geometry", request.search.pair());
+    print_effect_of_smoothing(line, request.search.pair());
+  }
   ProgressBar bar("geometry table", !line.quiet());
   generate_geometry_table_file(request.search, request.options, provenance("geometry", arguments), request.file,
                                [&](double share) { bar.show(share); });

@@ -37,4 +37,7 @@ void require_flanges_between_rails(const WheelRailPair& pair);
 /// To stderr, before anything is computed: what was repaired in profile files should be looked at.
 void print_notes(const std::string& command, const WheelRailPair& pair);
 
+/// To stderr, of points that scatter: the equivalent conicity with and without the smoothing that print_notes() names.
+void print_effect_of_smoothing(const TableCommandLine& line, const WheelRailPair& pair);
+
 }  // namespace railtab

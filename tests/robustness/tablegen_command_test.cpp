@@ -4,6 +4,8 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -34,6 +36,14 @@ class TablegenCommand : public TablegenFixture {
     EXPECT_NE(outcome.err.find(text), std::string::npos) << arguments << "\n" << outcome.err;
   }
 };
+
+/// By the online search, to 6 mm.
+RadiusDifferenceCurve radius_difference_of(const WheelRailPair& pair) {
+  const ContactSearch search(pair);
+  return RadiusDifferenceCurve(
+      wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
+                        pair, {.y_low = -6e-3, .y_high = 6e-3}));
+}
 
 constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";
 // where any table will do, one that takes no time
@@ -188,15 +198,9 @@ TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
 
   // The table's answer is the online search's.
   ASSERT_EQ(tablegen("geometry --wheel S1002 --rail 60E1" + ranges + "s1002.h5").exit_code, 0);
-  const ContactSearch search(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
-                                           ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)),
-                                           PairDimensions{}));
-  WheelsetContactOptions options;
-  options.y_low = -6e-3;
-  options.y_high = 6e-3;
-  const RadiusDifferenceCurve curve(
-      wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-                        search.pair(), options));
+  const RadiusDifferenceCurve curve =
+      radius_difference_of(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                         ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {}));
   EXPECT_NEAR(conicity("s1002.h5")["wave"]["conicity"], conicity_of_wave(curve, 3e-3).tan_gamma, 1e-6);
 
   EXPECT_EQ(tablegen("conicity s1002.h5 --amplitude 8e-3").exit_code, 1);
@@ -237,6 +241,32 @@ TEST_F(TablegenCommand, PointsThatScatterAreWarnedOfBeforeTheTableIsMade) {
   EXPECT_NE(noisy.find("warning: the points of wheel.txt scatter by about "), std::string::npos) << noisy;
   EXPECT_NE(noisy.find("; smooth them by --smoothing "), std::string::npos) << noisy;
   EXPECT_EQ(made_with(0.0).find("scatter"), std::string::npos);
+}
+
+TEST_F(TablegenCommand, TheProposedSmoothingGivesTheConicityOfTheProfileWithoutNoise) {
+  const ProfileCurve exact(standard_profile(ProfileKind::wheel, "S1002", 0.0));
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 3e-3);  // [mm]
+  std::ofstream wheel(folder_ / "wheel.txt");
+  for (double s = exact.s_begin(); s <= exact.s_end(); s += 1e-3) {
+    const CurvePoint p = exact.at(s);
+    const double n = noise(random);
+    wheel << 1e3 * p.y - n * p.dz << ' ' << 1e3 * p.z + n * p.dy << '\n';
+  }
+  wheel.close();
+  const std::string said =
+      tablegen("geometry --wheel wheel.txt --rail 60E1 --lateral 0:0.0001 --yaw 0:0 -o out.h5").err;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(said, found,
+                                std::regex("equivalent conicity at 3 mm: (\\S+) as the profiles are, (\\S+) with "
+                                           "--smoothing 3e-06\n")))
+      << said;
+  const double exactly =
+      conicity_of_wave(radius_difference_of(WheelRailPair(
+                           exact, ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})),
+                       3e-3)
+          .tan_gamma;
+  EXPECT_NEAR(std::stod(found[2]), exactly, 0.15 * exactly) << said;
 }
 
 TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
