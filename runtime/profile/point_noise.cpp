@@ -49,14 +49,13 @@ PointNoise point_noise(const ProfileKnots& knots) {
   return {deviation, std::sqrt(6.0) * deviation / (spacing * spacing)};
 }
 
-std::string noise_warning(const ProfileKnots& knots) {
+std::string noise_warning(const std::string& name, const PointNoise& noise) {
   constexpr double of_rail_head = 3.0;  // [1/m]: the crown of 60E1, beside which such bumps are contacts of their own
-  const PointNoise noise = point_noise(knots);
   if (noise.curvature <= of_rail_head) return {};
   return fmt::format(
       "the points of {} scatter by about {:.2g} um, and the curvature of the curve through them by {:.2g} 1/m, more "
       "than the {:g} 1/m of a rail head: contacts jump from bump to bump",
-      knots.name, 1e6 * noise.deviation, noise.curvature, of_rail_head);
+      name, 1e6 * noise.deviation, noise.curvature, of_rail_head);
 }
 
 }  // namespace railtab

@@ -19,6 +19,6 @@ struct PointNoise {
 
 /// What such points do to a contact search, where they bend the curve through them by more than the crown of a rail
 /// head is bent; empty of others.
-[[nodiscard]] std::string noise_warning(const ProfileKnots& knots);
+[[nodiscard]] std::string noise_warning(const std::string& name, const PointNoise& noise);
 
 }  // namespace railtab

@@ -20,19 +20,18 @@ namespace railtab {
 
 namespace {
 
-constexpr std::string_view table_key = "scene: contact.table";
 constexpr int paper_points = 1000;              // of the published method's discretised profiles
 constexpr double paper_curvature_floor = 1e-6;  // 1/m [MontenegroCalcada2023, section 2.2]
 
 /// What `use` makes of the table. Its messages name the key, whose line the scene's reader adds, and the file.
 template <class Use>
-auto of_table(const ContactParameters& contact, const Use& use) {
-  return in_file(std::string(table_key), [&] { return in_file(contact.table.string(), use); });
+auto of_table(const ContactParameters& contact, const std::string& key, const Use& use) {
+  return in_file(key, [&] { return in_file(contact.table.string(), use); });
 }
 
-WheelRailPair scene_pair(const ContactParameters& contact) {
+WheelRailPair scene_pair(const ContactParameters& contact, const std::string& table_key) {
   if (!contact.table.empty()) {
-    return of_table(contact,
+    return of_table(contact, table_key,
                     [&] { return TableContact(GeometryTable(read_geometry_table(contact.table))).search().pair(); });
   }
   ProfileCurve wheel(load_profile(contact.wheel, ProfileKind::wheel, contact.rail_inclination));
@@ -113,19 +112,6 @@ ContactParameters contact_of_entry(const ContactParameters& contact, const Profi
   return own;
 }
 
-/// The geometry of an entry of [[profiles]]: messages of contact.table are those of the entry's own table.
-/// @param place "scene: [[profiles]] 1 of 2"
-template <class Make>
-auto of_entry(const std::string& place, const Make& make) {
-  try {
-    return make();
-  } catch (const InputError& wrong) {
-    const std::string_view message = wrong.what();
-    if (!message.starts_with(table_key)) throw;
-    throw InputError(fmt::format("{}{}", place, message.substr(table_key.size())));
-  }
-}
-
 void check_radius(const std::string& place, const WheelRailPair& pair, const VsiModel& model, int wheelset, int coach) {
   const double radius = model.wheel_radius(wheelset);
   if (std::abs(pair.nominal_radius() - radius) <= same_length) return;
@@ -155,20 +141,20 @@ void check_rail(const std::string& place, const WheelRailPair& pair, const Wheel
 
 }  // namespace
 
-ContactGeometry scene_geometry(const ContactParameters& contact) {
+ContactGeometry scene_geometry(const ContactParameters& contact, const std::string& table_key) {
   switch (contact.mode) {
     case ContactMode::table: {
-      GeometryTableData table = of_table(contact, [&] { return read_geometry_table(contact.table); });
+      GeometryTableData table = of_table(contact, table_key, [&] { return read_geometry_table(contact.table); });
       double unused_error = 0.0;
       std::shared_ptr<const LoadedTable> loaded = loaded_contact_of(contact, table, unused_error);
-      return of_table(contact, [&] {
+      return of_table(contact, table_key, [&] {
         return ContactGeometry(TableContact(GeometryTable(std::move(table))), std::move(loaded), unused_error);
       });
     }
     case ContactMode::online:
-      return ContactGeometry(ContactSearch(scene_pair(contact)));
+      return ContactGeometry(ContactSearch(scene_pair(contact, table_key)));
     case ContactMode::paper:
-      return ContactGeometry(PaperSearch(scene_pair(contact), paper_points, PaperDistance::outline));
+      return ContactGeometry(PaperSearch(scene_pair(contact, table_key), paper_points, PaperDistance::outline));
   }
   throw InputError("contact.mode: unknown");
 }
@@ -195,9 +181,8 @@ void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* sha
     if (!geometry) {
       const ContactParameters own =
           e < 0 ? contact : contact_of_entry(contact, scene.profiles[static_cast<std::size_t>(e)], key.second);
-      geometry = of_entry(place, [&] {
-        return shared ? shared->geometry(own) : std::make_shared<const ContactGeometry>(scene_geometry(own));
-      });
+      geometry =
+          shared ? shared->geometry(own, place) : std::make_shared<const ContactGeometry>(scene_geometry(own, place));
     }
     check_radius(place, geometry->pair(), model, w, places[static_cast<std::size_t>(w)].coach);
     of_wheelset.push_back(geometry);

@@ -19,7 +19,9 @@ class SharedSetUp;
 void add_contact(const SceneParameters& scene, VsiModel& model, SharedSetUp* shared = nullptr);
 
 /// Geometry of [contact]. @throws InputError
-[[nodiscard]] ContactGeometry scene_geometry(const ContactParameters& contact);
+/// @param table_key the key that names the table, for messages
+[[nodiscard]] ContactGeometry scene_geometry(const ContactParameters& contact,
+                                             const std::string& table_key = "scene: contact.table");
 
 /// Law of creep forces of [contact]. @throws InputError naming contact.creep_table where that is wrong
 [[nodiscard]] CreepLaw scene_creep_law(const ContactParameters& contact);

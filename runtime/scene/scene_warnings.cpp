@@ -28,10 +28,11 @@ namespace {
 
 /// Of a profile that the contact search takes through its points.
 void warn_of_noise(const ProfileKnots& profile, Warnings& list) {
-  const std::string noise = noise_warning(profile);
-  if (noise.empty()) return;
+  const PointNoise noise = point_noise(profile);
+  const std::string warning = noise_warning(profile.name, noise);
+  if (warning.empty()) return;
   list.push_back(fmt::format("{}; make a table by tablegen geometry --smoothing {:.1g} and name it in contact.table",
-                             noise, point_noise(profile).deviation));
+                             warning, noise.deviation));
 }
 
 /// Whether the scene names its profiles itself; those of a table were checked when it was made.

@@ -27,13 +27,15 @@ Value kept(std::map<std::string, Value>& values, const std::string& key, const M
 
 }  // namespace
 
-std::shared_ptr<const ContactGeometry> SharedSetUp::geometry(const ContactParameters& contact) {
+std::shared_ptr<const ContactGeometry> SharedSetUp::geometry(const ContactParameters& contact,
+                                                             const std::string& table_key) {
   const PairDimensions& d = contact.dimensions;
   const std::string key = fmt::format(
       "{} {} {} | {} | {} | {} | {} {} {} {} {} {}", static_cast<int>(contact.mode), static_cast<int>(contact.elastic),
       file_text(contact.table), file_text(contact.wheel), file_text(contact.rail), contact.rail_inclination,
       d.track_gauge, d.gauge_height, d.flange_back, d.nominal_radius, contact.material.E, contact.material.nu);
-  return kept(geometry_, key, [&] { return std::make_shared<const ContactGeometry>(scene_geometry(contact)); });
+  return kept(geometry_, key,
+              [&] { return std::make_shared<const ContactGeometry>(scene_geometry(contact, table_key)); });
 }
 
 CreepLaw SharedSetUp::creep_law(const ContactParameters& contact) {

@@ -15,7 +15,8 @@ namespace railtab {
 class SharedSetUp {
  public:
   /// @throws InputError as reading the files
-  [[nodiscard]] std::shared_ptr<const ContactGeometry> geometry(const ContactParameters& contact);
+  [[nodiscard]] std::shared_ptr<const ContactGeometry> geometry(const ContactParameters& contact,
+                                                                const std::string& table_key);
   [[nodiscard]] CreepLaw creep_law(const ContactParameters& contact);
   [[nodiscard]] const std::shared_ptr<StructureStore>& structures() const noexcept { return structures_; }
 

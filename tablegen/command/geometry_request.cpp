@@ -133,9 +133,10 @@ void print_notes(const std::string& command, const WheelRailPair& pair) {
   for (const ProfileCurve* profile : {&pair.wheel(), &pair.rail()}) {
     for (const std::string& note : profile->knots().notes)
       print_message(fmt::format("tablegen {}: note: {}\n", command, note));
-    if (const std::string noise = noise_warning(profile->knots()); !noise.empty()) {
-      print_message(fmt::format("tablegen {}: warning: {}; smooth them by --smoothing {:.1g}\n", command, noise,
-                                point_noise(profile->knots()).deviation));
+    const PointNoise noise = point_noise(profile->knots());
+    if (const std::string warning = noise_warning(profile->knots().name, noise); !warning.empty()) {
+      print_message(fmt::format("tablegen {}: warning: {}; smooth them by --smoothing {:.1g}\n", command, warning,
+                                noise.deviation));
     }
   }
 }
@@ -143,8 +144,8 @@ void print_notes(const std::string& command, const WheelRailPair& pair) {
 void print_effect_of_smoothing(const TableCommandLine& line, const WheelRailPair& pair) {
   double deviation = 0.0;
   for (const ProfileCurve* profile : {&pair.wheel(), &pair.rail()}) {
-    if (!noise_warning(profile->knots()).empty())
-      deviation = std::max(deviation, point_noise(profile->knots()).deviation);
+    const PointNoise noise = point_noise(profile->knots());
+    if (!noise_warning(profile->knots().name, noise).empty()) deviation = std::max(deviation, noise.deviation);
   }
   if (deviation == 0.0) return;
   const std::string proposed = fmt::format("{:.1g}", deviation);
