@@ -230,7 +230,7 @@
     if (bodies) notes.push('car bodies \u00d7' + shown(body_factor));
     c.fillText(notes.join(', '), 4, 14);
     // scale of x
-    const step = round_factor(Math.max(0.2, 70 / s.width) * (r[1] - r[0]));  // labels have 70 px at least
+    const step = 1 / round_factor(s.width / (70 * (r[1] - r[0])));  // labels have 70 px at least
     c.textAlign = 'center';
     for (let x = Math.ceil(r[0] / step) * step; x <= r[1]; x += step) {
       c.beginPath(); c.moveTo(X(x), 246); c.lineTo(X(x), 251); c.stroke();
