@@ -11,11 +11,6 @@ namespace railtab {
 
 namespace {
 
-WheelOnRail searched_side(const ContactSearch& search) {
-  return {[&search](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-          search.pair().rail_offset()};
-}
-
 WheelRailPair with_errors(const WheelRailPair& exact, ErrorBearer bearer, const ConicityErrorOptions& options,
                           std::mt19937_64& generator) {
   const auto measured = [&](const ProfileCurve& profile, ErrorBearer other) {

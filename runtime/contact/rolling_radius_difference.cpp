@@ -173,6 +173,11 @@ std::optional<FirstContact> first_contact(const PatchQuery& patches, double y, d
   return std::nullopt;
 }
 
+WheelOnRail searched_side(const ContactSearch& search) {
+  return {[&search](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
+          search.pair().rail_offset()};
+}
+
 std::vector<WheelsetContact> wheelset_contacts(const WheelOnRail& right_side, const WheelOnRail& left_side,
                                                const WheelsetContactOptions& options) {
   options.validate();
@@ -190,6 +195,11 @@ std::vector<WheelsetContact> wheelset_contacts(const WheelOnRail& right_side, co
 std::vector<WheelsetContact> wheelset_contacts(const PatchQuery& patches, const WheelRailPair& pair,
                                                const WheelsetContactOptions& options) {
   const WheelOnRail side{patches, pair.rail_offset()};
+  return wheelset_contacts(side, side, options);
+}
+
+std::vector<WheelsetContact> wheelset_contacts(const ContactSearch& search, const WheelsetContactOptions& options) {
+  const WheelOnRail side = searched_side(search);
   return wheelset_contacts(side, side, options);
 }
 

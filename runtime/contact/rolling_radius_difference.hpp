@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "railtab/runtime/contact/contact_pair.hpp"
+#include "railtab/runtime/contact/contact_search.hpp"
 
 namespace railtab {
 
@@ -23,6 +23,9 @@ struct WheelOnRail {
   PatchQuery patches;
   double rail_offset = 0.0;  ///< WheelRailPair::rail_offset() [m]
 };
+
+/// By the online search, which must outlive the result.
+[[nodiscard]] WheelOnRail searched_side(const ContactSearch& search);
 
 /// How the lateral shifts of the samples are chosen.
 enum class ShiftSampling {
@@ -60,6 +63,10 @@ struct WheelsetContactOptions {
 /// The same where both sides are alike.
 /// @param pair gives the offsets of the pair that `patches` is asked about
 [[nodiscard]] std::vector<WheelsetContact> wheelset_contacts(const PatchQuery& patches, const WheelRailPair& pair,
+                                                             const WheelsetContactOptions& options);
+
+/// The same by the online search.
+[[nodiscard]] std::vector<WheelsetContact> wheelset_contacts(const ContactSearch& search,
                                                              const WheelsetContactOptions& options);
 
 /// A wheel of the pair that just touches.

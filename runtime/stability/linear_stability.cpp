@@ -129,12 +129,11 @@ LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSear
 
 std::optional<double> equivalent_conicity(const WheelRailPair& pair, double amplitude) {
   const ContactSearch search(pair);
-  const PatchQuery query = [&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); };
   // as far as a wave about a rest off the centre goes; ΔR within some 1e-3 of its size
   constexpr double off_centre = 3e-3;
   const double reach = amplitude + off_centre;
   const RadiusDifferenceCurve curve(
-      wheelset_contacts(query, pair, {.y_low = -reach, .y_high = reach, .step = 5e-4, .tolerance = 5e-7}));
+      wheelset_contacts(search, {.y_low = -reach, .y_high = reach, .step = 5e-4, .tolerance = 5e-7}));
   const EquivalentConicity conicity = conicity_of_wave(curve, amplitude);
   if (conicity.status != ConicityStatus::found) return {};
   return conicity.tan_gamma;

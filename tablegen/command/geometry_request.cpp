@@ -95,12 +95,11 @@ WheelRailPair pair_smoothed_by(const TableCommandLine& line, double noise) {
   return pair;
 }
 
-/// Of a wave of 3 mm; for the eye: noisy points have more contacts than samples.
+/// At 3 mm. Refined samples would follow every bump of the noise.
 std::string conicity_of(const WheelRailPair& pair) {
   const ContactSearch search(pair);
   const WheelsetContactOptions options{.y_low = -6e-3, .y_high = 6e-3, .sampling = ShiftSampling::even};
-  const auto patches = [&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); };
-  const auto functions = wheelset_functions(wheelset_contacts(patches, pair, options), options);
+  const auto functions = wheelset_functions(wheelset_contacts(search, options), options);
   return functions ? conicity_text(conicity_of_wave(functions->radius_difference, 3e-3)) : "no contact";
 }
 

@@ -39,10 +39,7 @@ class TablegenCommand : public TablegenFixture {
 
 /// By the online search, to 6 mm.
 RadiusDifferenceCurve radius_difference_of(const WheelRailPair& pair) {
-  const ContactSearch search(pair);
-  return RadiusDifferenceCurve(
-      wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-                        pair, {.y_low = -6e-3, .y_high = 6e-3}));
+  return RadiusDifferenceCurve(wheelset_contacts(ContactSearch(pair), {.y_low = -6e-3, .y_high = 6e-3}));
 }
 
 constexpr const char* small = "geometry --wheel S1002 --rail 60E1 --lateral -0.001:0.001 --yaw 0:0.01 -o out.h5 ";

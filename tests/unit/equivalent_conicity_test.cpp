@@ -126,8 +126,7 @@ std::vector<WheelsetContact> contacts(const ContactSearch& search, WheelsetRoll 
   options.y_high = 6.0 * mm;
   options.roll = roll;
   options.diameter_difference = difference;
-  return wheelset_contacts([&](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-                           search.pair(), options);
+  return wheelset_contacts(search, options);
 }
 
 // A concave wheel (arc of 500 mm, slope 1:20 at the tape circle) on a rail of 300 mm radius. The common normal is the
@@ -205,15 +204,9 @@ TEST(RollingRadiusDifference, FreeRollIsThatOfTheRigidPosition) {
   }
 }
 
-/// Both searches must outlive the result.
 std::vector<WheelsetContact> contacts_of_sides(const ContactSearch& right, const ContactSearch& left,
                                                const WheelsetContactOptions& options) {
-  const auto side = [](const ContactSearch& search) {
-    return WheelOnRail{
-        [&search](const WheelsetPose& pose, double near_miss) { return search.patches(pose, near_miss); },
-        search.pair().rail_offset()};
-  };
-  return wheelset_contacts(side(right), side(left), options);
+  return wheelset_contacts(searched_side(right), searched_side(left), options);
 }
 
 ContactSearch cone_search(const char* cone) {
