@@ -15,7 +15,8 @@ namespace railtab {
 [[nodiscard]] std::uint64_t word_checksum(std::span<const std::byte> bytes,
                                           std::uint64_t seed = 14695981039346656037ULL) noexcept;
 
-/// Of the contents and the length of a file, 16 hexadecimal digits: tells whether an input has changed.
+/// Of the contents and the length of a file, 16 hexadecimal digits: tells whether an input has changed. A file that the
+/// file system says is untouched since its sum was last asked for is not read again.
 /// @throws InputError where it cannot be read.
 [[nodiscard]] std::string file_checksum(const std::filesystem::path& file);
 

@@ -32,11 +32,12 @@ class ContactGeometry {
     return std::visit([&](const auto& source) { return source.patches(pose); }, source_);
   }
 
-  [[nodiscard]] bool is_table() const noexcept { return std::holds_alternative<TableContact>(source_); }
+  /// Null where there is none.
+  [[nodiscard]] const TableContact* table() const noexcept { return std::get_if<TableContact>(&source_); }
+  [[nodiscard]] bool is_table() const noexcept { return table() != nullptr; }
   /// The online search in place of a table.
   [[nodiscard]] ContactGeometry without_table() const {
-    const auto* const table = std::get_if<TableContact>(&source_);
-    return table ? ContactGeometry(table->search(), loaded_) : *this;
+    return is_table() ? ContactGeometry(table()->search(), loaded_) : *this;
   }
 
   [[nodiscard]] const WheelRailPair& pair() const noexcept {

@@ -14,6 +14,7 @@ struct FeFrame {
   std::string axes = "x -y -z";  ///< the model's directions forward, right and down; right-handed
   /// The model's point that is at x = 0, in the track's centre, at the height of the rail-head tops [model's length].
   std::optional<std::array<double, 3>> origin{{0.0, 0.0, 0.0}};
+  bool operator==(const FeFrame&) const = default;
 };
 /// "m-N-kg", "mm-N-t", "m-kN-t": units of length, force and mass that belong together with the second.
 [[nodiscard]] std::vector<std::string> fe_unit_systems();

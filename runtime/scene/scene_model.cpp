@@ -110,8 +110,9 @@ Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
 void reduce(const ReductionParameters& reduction, VsiModel& model) {
   if (!model.structure) return;
   if (model.ground_motion && reduction.kind != Reduction::none) {
-    model.structure->supports = gathered(model.structure->supports, *model.ground_motion);
-    model.structure = relative_to_supports(std::move(*model.structure));
+    StructureModel moved = *model.structure;
+    moved.supports = gathered(moved.supports, *model.ground_motion);
+    model.structure = share(relative_to_supports(std::move(moved)));
   }
   switch (reduction.kind) {
     case Reduction::window:
@@ -166,8 +167,7 @@ VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
   if (scene.contact.normal == NormalContact::hertz) add_contact(scene, model, shared);
   if (shared) model.store = shared->structures();
   if (scene.track_kind != TrackKind::rigid) {
-    model.structure =
-        scene.contact.normal == NormalContact::hertz ? build_structure_under_contacts(scene) : build_structure(scene);
+    model.structure = shared ? shared->structure(scene) : share(scene_structure(scene));
     model.structure_warnings = model.structure->warnings;
   }
   if (scene.irregularity) model.irregularity = read_irregularity(*scene.irregularity);

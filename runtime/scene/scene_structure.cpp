@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_loads.hpp"
 #include "railtab/runtime/structure/structure_import.hpp"
@@ -36,18 +37,8 @@ double lowest_frequency_of_bay(const TrackParameters& track) {
   return std::min(bending, std::sqrt(rail.GJ / rail.rotary_inertia) / (2.0 * L));
 }
 
-}  // namespace
-
-StructureModel build_structure_under_contacts(SceneParameters scene) {
-  const bool built = scene.track_kind == TrackKind::flexible;
-  if (!built || scene.track.elements_per_bay != 0) return build_structure(scene);
-  scene.track.elements_per_bay = 1;
-  StructureModel structure = build_structure(scene);
-  structure.left_out.push_back(fmt::format(
-      "rail nodes between sleepers: under a wheel a rail deflects there as at rest; at the frequency f its inertia "
-      "changes the share (f / {:.3g} Hz)² of that",
-      lowest_frequency_of_bay(scene.track)));
-  return structure;
+DeckRecord deck_record(const SceneParameters& scene) noexcept {
+  return scene.output.deck_envelope ? DeckRecord::everywhere : DeckRecord::named_nodes;
 }
 
 StructureModel build_structure(const SceneParameters& scene) {
@@ -57,13 +48,43 @@ StructureModel build_structure(const SceneParameters& scene) {
     if (file->empty() || !std::filesystem::equivalent(*file, files.stiffness, none)) continue;
     throw input_error(std::string("scene: structure.") + key, "the file of structure.stiffness", "a file of its own");
   }
-  const DeckRecord record = scene.output.deck_envelope ? DeckRecord::everywhere : DeckRecord::named_nodes;
+  const DeckRecord record = deck_record(scene);
   if (scene.track_kind == TrackKind::imported) {
     if (!files.nodes.empty()) return import_with_rails(scene.structure, record);
     return import_structure({files.mass, files.damping, files.stiffness, files.dofs});
   }
   if (track_on_import(scene)) return build_track_on_import(scene.track, scene.structure, record);
   return build_track_bridge(scene.track, scene.spans, structure_plane(scene), scene.structure.report, record);
+}
+
+}  // namespace
+
+StructureModel scene_structure(const SceneParameters& scene) {
+  const bool built = scene.track_kind == TrackKind::flexible && scene.contact.normal == NormalContact::hertz;
+  if (!built || scene.track.elements_per_bay != 0) return build_structure(scene);
+  SceneParameters one = scene;
+  one.track.elements_per_bay = 1;
+  StructureModel structure = build_structure(one);
+  structure.left_out.push_back(fmt::format(
+      "rail nodes between sleepers: under a wheel a rail deflects there as at rest; at the frequency f its inertia "
+      "changes the share (f / {:.3g} Hz)² of that",
+      lowest_frequency_of_bay(scene.track)));
+  return structure;
+}
+
+StructureKey::StructureKey(const SceneParameters& scene)
+    : track_kind(scene.track_kind),
+      track(scene.track),
+      spans(scene.spans),
+      import(scene.structure),
+      plane(structure_plane(scene)),
+      deck(deck_record(scene)),
+      normal(scene.contact.normal) {
+  const FeFiles& f = import.files;
+  for (const std::filesystem::path* file :
+       {&f.mass, &f.stiffness, &f.damping, &f.dofs, &f.nodes, &f.modes, &f.shapes, &f.flexibility}) {
+    if (!file->empty()) file_checksums.push_back(file_checksum(*file));
+  }
 }
 
 }  // namespace railtab

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "railtab/runtime/scene/scene_parameters.hpp"
 
 namespace railtab {
@@ -10,10 +13,24 @@ namespace railtab {
 /// Whether a deck's nodes are known, so that it can be followed all over (OutputParameters::deck_envelope).
 [[nodiscard]] bool has_deck_nodes(const SceneParameters& scene) noexcept;
 
-/// The structure of a scene whose track is not rigid. @throws InputError
-[[nodiscard]] StructureModel build_structure(const SceneParameters& scene);
-/// The same for wheels with profiles, under which elements of built rails deflect between their nodes too: one element
-/// per bay where the scene leaves their number open.
-[[nodiscard]] StructureModel build_structure_under_contacts(SceneParameters scene);
+/// The structure of a scene whose track is not rigid. Under wheels with profiles, elements of built rails deflect
+/// between their nodes too: one per bay where the scene leaves their number open. @throws InputError
+[[nodiscard]] StructureModel scene_structure(const SceneParameters& scene);
+
+/// All that scene_structure() depends on.
+struct StructureKey {
+  TrackKind track_kind;
+  TrackParameters track;
+  std::vector<BridgeParameters> spans;
+  ImportParameters import;
+  std::vector<std::string> file_checksums;  ///< of the files that `import` names
+  MotionPlane plane;
+  DeckRecord deck;
+  NormalContact normal;
+
+  /// @throws InputError where a file cannot be read
+  explicit StructureKey(const SceneParameters& scene);
+  bool operator==(const StructureKey&) const = default;
+};
 
 }  // namespace railtab

@@ -44,4 +44,15 @@ CreepLaw SharedSetUp::creep_law(const ContactParameters& contact) {
   return kept(creep_law_, key, [&] { return scene_creep_law(contact); });
 }
 
+SharedStructure SharedSetUp::structure(const SceneParameters& scene) {
+  StructureKey key(scene);
+  if (structure_key_ != key) {
+    structure_.reset();  // not two at a time
+    structure_key_.reset();
+    structure_ = share(scene_structure(scene));
+    structure_key_ = std::move(key);
+  }
+  return structure_;
+}
+
 }  // namespace railtab

@@ -127,13 +127,17 @@ LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSear
   return result;
 }
 
-std::optional<double> equivalent_conicity(const WheelRailPair& pair, double amplitude) {
-  const ContactSearch search(pair);
+std::optional<double> equivalent_conicity(const ContactGeometry& geometry, double amplitude) {
   // as far as a wave about a rest off the centre goes; ΔR within some 1e-3 of its size
   constexpr double off_centre = 3e-3;
   const double reach = amplitude + off_centre;
-  const RadiusDifferenceCurve curve(
-      wheelset_contacts(search, {.y_low = -reach, .y_high = reach, .step = 5e-4, .tolerance = 5e-7}));
+  const WheelsetContactOptions options{.y_low = -reach, .y_high = reach, .step = 5e-4, .tolerance = 5e-7};
+  const TableContact* const table = geometry.table();
+  const auto tabulated = [table](const WheelsetPose& pose, double near_miss) {
+    return table->patches(pose, near_miss);
+  };
+  const RadiusDifferenceCurve curve(table ? wheelset_contacts(tabulated, geometry.pair(), options)
+                                          : wheelset_contacts(ContactSearch(geometry.pair()), options));
   const EquivalentConicity conicity = conicity_of_wave(curve, amplitude);
   if (conicity.status != ConicityStatus::found) return {};
   return conicity.tan_gamma;

@@ -57,7 +57,7 @@ struct RestOperators {
     }
     if (!model.structure) return;
     structure =
-        model.store ? model.store->at_rest(*model.structure) : std::make_shared<StructureResponse>(*model.structure);
+        model.store ? model.store->at_rest(model.structure) : std::make_shared<StructureResponse>(*model.structure);
   }
 };
 

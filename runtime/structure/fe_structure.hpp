@@ -30,6 +30,7 @@ struct FeFiles {
   std::filesystem::path flexibility{};      ///< of the whole structure at nodes; empty: not known
   [[nodiscard]] bool given() const noexcept { return !stiffness.empty() || by_modes(); }
   [[nodiscard]] bool by_modes() const noexcept { return format == FeFormat::modes; }
+  bool operator==(const FeFiles&) const = default;
 };
 
 /// Some of a mesh's nodes: a named set, or those in a box.
@@ -38,6 +39,7 @@ struct NodeSelection {
   std::optional<std::array<double, 3>> from, to;  ///< corners of the box in the model's own axes and unit of length
   double tolerance = 1e-3;                        ///< by which the box is widened on all sides [model's length]
   [[nodiscard]] bool given() const noexcept { return !set.empty() || from || to; }
+  bool operator==(const NodeSelection&) const = default;
 };
 
 /// Nodes that stand on the ground and move with it alike, and whose rows the matrices have.
@@ -45,6 +47,7 @@ struct FeSupport {
   NodeSelection nodes;
   std::vector<std::string> holds{"x", "y", "z"};  ///< motions in railtab's axes; the ground moves y and z
   std::optional<double> x;  ///< place along the track whose ground it stands on [m]; empty: the mean of its nodes
+  bool operator==(const FeSupport&) const = default;
 };
 
 /// A node in railtab's axes [m], and its rows: none for a motion that is held (or that the model does not have), one,

@@ -20,6 +20,7 @@ struct FeDamping {
   double span = 0.0;                       ///< [m], with `type`
   /// At which the ratio holds [Hz]; 0: the first and the third natural frequency of the structure.
   std::array<double, 2> frequencies{0.0, 0.0};
+  bool operator==(const FeDamping&) const = default;
 };
 
 /// A structure from a finite-element program and how track and train meet it.
@@ -36,6 +37,7 @@ struct ImportParameters {
 
   /// @throws InputError naming the keys: damping in no or more than one way, a file missing
   void validate() const;
+  bool operator==(const ImportParameters&) const = default;
 };
 
 /// Railtab's track laid over the deck of an imported bridge, between whose first and last deck nodes the sleepers rest

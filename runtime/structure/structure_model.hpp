@@ -4,7 +4,9 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "railtab/runtime/base/dof_indices.hpp"
@@ -103,5 +105,11 @@ struct StructureModel {
   std::vector<std::string> left_out{};  ///< for the plan: what modes lack of the structure that they come from
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
+
+/// A structure as models, their runs and kept factors have it in common; null: none.
+using SharedStructure = std::shared_ptr<const StructureModel>;
+[[nodiscard]] inline SharedStructure share(StructureModel structure) {
+  return std::make_shared<const StructureModel>(std::move(structure));
+}
 
 }  // namespace railtab

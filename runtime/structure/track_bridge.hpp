@@ -11,6 +11,7 @@ namespace railtab {
 struct SupportParameters {
   double kx, ky, kz;  ///< [N/m], > 0
   double cx, cy, cz;  ///< [N s/m], >= 0
+  bool operator==(const SupportParameters&) const = default;
 };
 
 /// One rail as an Euler–Bernoulli beam; the defaults are 60E1 (EN 13674-1).
@@ -26,6 +27,7 @@ struct RailBeamParameters {
   double head_height = 0.0911;      ///< rail-head top above the centroid [m], < height
   double mass_damping = 0.0;        ///< Rayleigh, times M [1/s]
   double stiffness_damping = 2e-6;  ///< Rayleigh, times K [s]: 0.6 % of critical at 1 kHz
+  bool operator==(const RailBeamParameters&) const = default;
 };
 
 /// Rigid sleeper with six dofs. Inertia defaults: a homogeneous bar 2.5 m × 0.26 m × 0.20 m.
@@ -35,6 +37,7 @@ struct SleeperParameters {
   double Jy = 2.25;      ///< [kg m²]
   double Jz = 132.0;     ///< [kg m²]
   double height = 0.20;  ///< [m]; its centre of gravity at half of it
+  bool operator==(const SleeperParameters&) const = default;
 };
 
 /// Whether rails move along x, and sleepers along x, in pitch and in yaw. No force of a run acts along x on the track:
@@ -70,6 +73,7 @@ struct TrackParameters {
   SupportParameters ballast_deck{50e6, 50e6, 137.75e6, 40e3, 40e3, 58.8e3};
 
   void validate() const;  ///< @throws InputError
+  bool operator==(const TrackParameters&) const = default;
 };
 
 /// One simply supported span: x, y, z and roll held at its first end, y, z and roll at its second, on the beam axis.
@@ -90,6 +94,7 @@ struct BridgeParameters {
   double track_offset = 0.0;      ///< track centre right (y > 0) of the beam axis [m]
 
   void validate() const;  ///< @throws InputError
+  bool operator==(const BridgeParameters&) const = default;
 };
 
 /// Two continuous rails on discrete pads and sleepers, on ballast springs to the ground and, between x = 0 and the end

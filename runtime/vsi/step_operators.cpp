@@ -25,7 +25,7 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   respond_to_elements(model);
   if (!model.structure) return;
   const DofRange active{0, model.window ? 0 : model.structure->dofs()};  // a window is placed by update_for_time()
-  structure = model.store ? model.store->of_steps(*model.structure, hht, active)
+  structure = model.store ? model.store->of_steps(model.structure, hht, active)
                           : std::make_shared<StructureResponse>(*model.structure, hht, active);
 }
 

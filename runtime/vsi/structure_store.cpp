@@ -21,6 +21,7 @@ bool equal(const RailLine& a, const RailLine& b) {
   return a.x == b.x && a.dof == b.dof && a.head_height == b.head_height && a.stiffness == b.stiffness;
 }
 
+// What responses are made of: matrices, rails, places of the unknowns.
 bool equal(const StructureModel& a, const StructureModel& b) {
   return equal(a.mass, b.mass) && equal(a.damping, b.damping) && equal(a.stiffness, b.stiffness) &&
          equal(a.rail[0], b.rail[0]) && equal(a.rail[1], b.rail[1]) && a.dof_x == b.dof_x && a.dof_line == b.dof_line;
@@ -28,26 +29,20 @@ bool equal(const StructureModel& a, const StructureModel& b) {
 
 }  // namespace
 
-void StructureStore::take_up(const StructureModel& structure) {
-  if (equal(structure_, structure)) return;
+void StructureStore::take_up(const SharedStructure& structure) {
+  if (structure_ == structure || (structure_ && equal(*structure_, *structure))) return;
   at_rest_.reset();
   of_steps_.clear();
-  structure_ = {};
-  structure_.mass = structure.mass;
-  structure_.damping = structure.damping;
-  structure_.stiffness = structure.stiffness;
-  structure_.rail = structure.rail;
-  structure_.dof_x = structure.dof_x;
-  structure_.dof_line = structure.dof_line;
+  structure_ = structure;
 }
 
-std::shared_ptr<StructureResponse> StructureStore::at_rest(const StructureModel& structure) {
+std::shared_ptr<StructureResponse> StructureStore::at_rest(const SharedStructure& structure) {
   take_up(structure);
-  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(structure);
+  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(*structure);
   return at_rest_;
 }
 
-std::shared_ptr<StructureResponse> StructureStore::of_steps(const StructureModel& structure, const HhtScheme& scheme,
+std::shared_ptr<StructureResponse> StructureStore::of_steps(const SharedStructure& structure, const HhtScheme& scheme,
                                                             const DofRange& active) {
   constexpr std::size_t most_kept = 3;
   take_up(structure);
@@ -57,7 +52,7 @@ std::shared_ptr<StructureResponse> StructureStore::of_steps(const StructureModel
   if (found == of_steps_.end()) {
     if (of_steps_.size() == most_kept) of_steps_.erase(of_steps_.begin());
     of_steps_.push_back(
-        {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(structure, scheme, active)});
+        {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(*structure, scheme, active)});
     of_steps_.back().response->keep_compliances();
   } else {
     std::rotate(found, found + 1, of_steps_.end());

@@ -13,16 +13,16 @@ namespace railtab {
 class StructureStore {
  public:
   /// StructureResponse(structure), of the last call where that was for the same matrices and rails.
-  [[nodiscard]] std::shared_ptr<StructureResponse> at_rest(const StructureModel& structure);
+  [[nodiscard]] std::shared_ptr<StructureResponse> at_rest(const SharedStructure& structure);
   /// Likewise StructureResponse(structure, scheme, active), for as many step sizes as a run has at once.
-  [[nodiscard]] std::shared_ptr<StructureResponse> of_steps(const StructureModel& structure, const HhtScheme& scheme,
+  [[nodiscard]] std::shared_ptr<StructureResponse> of_steps(const SharedStructure& structure, const HhtScheme& scheme,
                                                             const DofRange& active);
 
  private:
   /// Forgets everything where the structure is another.
-  void take_up(const StructureModel& structure);
+  void take_up(const SharedStructure& structure);
 
-  StructureModel structure_;  ///< what responses are made of: matrices, rails, places of the unknowns
+  SharedStructure structure_;
   std::shared_ptr<StructureResponse> at_rest_;
   struct OfSteps {
     double alpha, time_step;

@@ -46,7 +46,7 @@ struct DeviationHistory {
 struct VsiModel {
   VehicleModel vehicle;
   std::vector<double> vehicle_x;  ///< of the vehicles' centres at t = 0, front first [m]
-  std::optional<StructureModel> structure;
+  SharedStructure structure;
   std::vector<std::string> structure_warnings{};  ///< StructureModel::warnings of what was imported
   std::optional<WindowModel> window;              ///< for Reduction::window
   std::shared_ptr<StructureStore> store;          ///< of factors, for later runs of this structure; null: none

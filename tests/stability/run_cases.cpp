@@ -216,13 +216,15 @@ void add_structure_cases(Cases& cases) {
                      SceneParameters scene = coach_on_bridge();
                      scene.integration.duration = 0.2;
                      VsiModel model = build_model(scene);
-                     Eigen::VectorXd kept = Eigen::VectorXd::Ones(model.structure->dofs());
-                     for (std::size_t n = 0; n < model.structure->nodes.size(); n += 2) {
-                       for (const int dof : model.structure->nodes[n].dof) {
+                     StructureModel structure = *model.structure;
+                     Eigen::VectorXd kept = Eigen::VectorXd::Ones(structure.dofs());
+                     for (std::size_t n = 0; n < structure.nodes.size(); n += 2) {
+                       for (const int dof : structure.nodes[n].dof) {
                          if (dof != held) kept[dof] = 0.0;
                        }
                      }
-                     model.structure->mass = kept.asDiagonal() * model.structure->mass * kept.asDiagonal();
+                     structure.mass = kept.asDiagonal() * structure.mass * kept.asDiagonal();
+                     model.structure = share(std::move(structure));
                      return judged(watched_run(model, scene.integration, scene.integration.duration));
                    }});
   for (const double length : {0.2, 0.06}) {

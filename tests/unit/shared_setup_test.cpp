@@ -10,6 +10,7 @@
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
+#include "railtab/runtime/scene/scene_structure.hpp"
 
 namespace railtab {
 namespace {
@@ -73,15 +74,38 @@ TEST_F(SharedSetUpOf, RunsMakesFactorsAndProfilesOnce) {
                  cones = build_model(scene({.wheel = "cone-1:40"}), &shared);
   EXPECT_EQ(first.geometry, second.geometry);
   EXPECT_NE(first.geometry, cones.geometry);
+  EXPECT_EQ(first.structure, second.structure);
+  EXPECT_NE(first.structure, stiffer.structure);
   StructureStore& store = *shared.structures();
   const HhtScheme scheme{.alpha = -0.05, .time_step = 1e-3}, halved{.alpha = -0.05, .time_step = 5e-4};
   const DofRange all{0, first.structure->dofs()};
-  const auto rest = store.at_rest(*first.structure), steps = store.of_steps(*first.structure, scheme, all);
-  EXPECT_EQ(store.at_rest(*second.structure), rest);
-  EXPECT_EQ(store.of_steps(*second.structure, scheme, all), steps);
-  EXPECT_NE(store.of_steps(*second.structure, halved, all), steps) << "divided steps have their own";
-  EXPECT_EQ(store.of_steps(*second.structure, scheme, all), steps) << "and leave those of whole steps";
-  EXPECT_NE(store.at_rest(*stiffer.structure), rest) << "another mass is another structure";
+  const auto rest = store.at_rest(first.structure), steps = store.of_steps(first.structure, scheme, all);
+  EXPECT_EQ(store.at_rest(second.structure), rest);
+  EXPECT_EQ(store.of_steps(second.structure, scheme, all), steps);
+  EXPECT_NE(store.of_steps(second.structure, halved, all), steps) << "divided steps have their own";
+  EXPECT_EQ(store.of_steps(second.structure, scheme, all), steps) << "and leave those of whole steps";
+  EXPECT_NE(store.at_rest(stiffer.structure), rest) << "another mass is another structure";
+}
+
+TEST_F(SharedSetUpOf, RunsTellsStructuresApart) {
+  const SceneParameters built = scene({});
+  EXPECT_EQ(StructureKey(built), StructureKey(scene({.speed = "50.0", .seed = "4"})));
+  SceneParameters other = built;
+  other.spans[0].E *= 1.01;
+  EXPECT_NE(StructureKey(built), StructureKey(other));
+  other = built;
+  other.contact.normal = NormalContact::rigid;  // two elements per bay
+  EXPECT_NE(StructureKey(built), StructureKey(other));
+  other = built;
+  other.structure.report = {3.0};
+  EXPECT_NE(StructureKey(built), StructureKey(other));
+  SceneParameters imported;
+  imported.track_kind = TrackKind::imported;
+  imported.structure.files.stiffness = write("bridge.mtx", "1 1 2.0\n");
+  const StructureKey before(imported);
+  EXPECT_EQ(before, StructureKey(imported));
+  static_cast<void>(write("bridge.mtx", "1 1 3.0\n"));
+  EXPECT_NE(before, StructureKey(imported)) << "contents have changed";
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ VsiModel train_on_beam() {
   model.vehicle_x = {-model.vehicle.bodies[static_cast<std::size_t>(model.vehicle.wheelsets[0])].position.x()};
   model.normal_contact = NormalContact::rigid;
   model.contact.speed = resonance_speed();
-  model.structure = build_simple_beam({.length = span, .E = EI, .I = 1.0, .mass = mass, .elements = 16});
+  model.structure = share(build_simple_beam({.length = span, .E = EI, .I = 1.0, .mass = mass, .elements = 16}));
   return model;
 }
 

@@ -77,7 +77,7 @@ class CoachOnShellDeck : public ShellDeck {
                                     ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));
     model.contact.geometry = model.geometry.get();
     model.contact.speed = speed;
-    model.structure = std::move(structure);
+    model.structure = share(std::move(structure));
     return model;
   }
 

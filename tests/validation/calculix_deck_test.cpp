@@ -63,7 +63,7 @@ TEST_F(ShellDeck, RecordedNodesRoll) {
   VsiModel model;
   model.vehicle = build_coach(coach_parameters("manchester-coach"));
   model.vehicle_x = {0.0};
-  model.structure = imported(rails_that_bear_nothing());
+  model.structure = share(imported(rails_that_bear_nothing()));
   VsiState state(model);
   state.structure.displacement = under_train(*model.structure, bay, span - bay, bay, load);
   StepRecord record;

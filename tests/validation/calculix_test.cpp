@@ -287,7 +287,7 @@ Response crossing(const StructureModel& structure, double length) {
   model.vehicle_x = {-20.0};
   model.normal_contact = NormalContact::rigid;
   model.contact.speed = 55.0;
-  model.structure = structure;
+  model.structure = share(structure);
   VsiState state(model);
   IntegrationParameters integration;
   integration.time_step = 1e-3;
@@ -317,7 +317,7 @@ std::vector<double> shaken(const StructureModel& structure) {
   }
   VsiModel model;
   model.ground_motion.emplace(GroundRecord::from_acceleration(time, acceleration));
-  model.structure = structure;
+  model.structure = share(structure);
   const HhtScheme hht{.alpha = -0.05, .time_step = 1e-3};
   const StructureResponse response(structure, hht);
   LinearMotion motion(structure.dofs());

@@ -120,8 +120,7 @@ TEST(GroundMotion, SprungMassOnRigidTrackIsTheClosedFormOscillator) {
 double supported_mass_error(double time_step) {
   constexpr double m = 2e4, at_support = 5e3, omega = 2.0 * pi * 2.1, zeta = 0.03;
   VsiModel model;
-  model.structure.emplace();
-  StructureModel& s = *model.structure;
+  StructureModel s;
   const auto one = [](double value, int columns, int column) {
     Eigen::SparseMatrix<double> matrix(1, columns);
     matrix.insert(0, column) = value;
@@ -132,6 +131,7 @@ double supported_mass_error(double time_step) {
   s.stiffness = one(k, 1, 0);
   s.damping = one(c, 1, 0);
   s.supports = {{3.0}, one(at_support, 2, 1), one(-c, 2, 1), one(-k, 2, 1)};
+  model.structure = share(s);
   model.ground_motion.emplace(shaking());
 
   const HhtScheme hht{.alpha = -0.05, .time_step = time_step};
@@ -172,7 +172,7 @@ double two_routes(double time_step) {
   span.length = 20.0;
   span.elements = 8;
   VsiModel model;
-  model.structure = build_track_bridge(track, {span});
+  model.structure = share(build_track_bridge(track, {span}));
   model.ground_motion.emplace(shaking());
   const StructureModel& s = *model.structure;
   const HhtScheme hht{.alpha = -0.05, .time_step = time_step};

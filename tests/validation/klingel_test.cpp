@@ -46,7 +46,7 @@ VsiModel wheelset_on_cones(Roll roll) {
   const DofIndices held_dofs{held, 0, 0, roll == Roll::held ? held : 0, 0, 0};
   model.vehicle = assemble_vehicle({"wheelset", bodies, {}, {0}, {held_dofs}, 0.46, 10.0});
   model.vehicle_x = {0.0};
-  if (roll == Roll::held) model.structure = soft_rails();
+  if (roll == Roll::held) model.structure = share(soft_rails());
   model.geometry = std::make_shared<const ContactGeometry>(
       ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "cone-1:40", 0.0)),
                                   ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));

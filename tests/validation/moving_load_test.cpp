@@ -37,7 +37,7 @@ VsiModel load_on_beam(const Load& load, double speed) {
   model.vehicle = assemble_vehicle({"load", bodies, suspension, {0}, dofs, 0.46, 10.0});
   model.vehicle_x = {0.0};
   model.structure =
-      build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = beam_mass, .elements = 40});
+      share(build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = beam_mass, .elements = 40}));
   model.contact.speed = speed;
   model.normal_contact = NormalContact::rigid;
   return model;

@@ -40,8 +40,8 @@ VsiModel sprung_mass_on_beam(const Idealisation& ideal) {
   const DofIndices all_but_z{held, held, 0, held, held, held};
   model.vehicle = assemble_vehicle({"sprung mass", bodies, suspension, {1}, {all_but_z, all_but_z}, 0.46, 10.0});
   model.vehicle_x = {0.0};
-  model.structure =
-      build_simple_beam({.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements});
+  model.structure = share(build_simple_beam(
+      {.length = crossed_length, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = ideal.elements}));
   model.geometry = std::make_shared<const ContactGeometry>(
       ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "cone-1:40", 0.0)),
                                   ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));

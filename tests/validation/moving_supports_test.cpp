@@ -82,7 +82,7 @@ std::vector<double> relative_history(StructureModel structure, double time_step,
   }
   VsiModel model;
   model.ground_motion.emplace(GroundRecord::from_displacement(time, displacement));
-  model.structure = std::move(structure);
+  model.structure = share(std::move(structure));
   const StructureModel& s = *model.structure;
   const HhtScheme hht{.alpha = -0.05, .time_step = time_step};
   StructureResponse response(s, hht);

@@ -132,7 +132,7 @@ TEST(Newmark, KeepsTheEnergyOfAClosedLinearSystem) {
   VsiModel model = sprung_mass();
   model.vehicle_x = {10.3};
   model.contact.speed = 0.0;
-  model.structure = build_simple_beam({.elements = 10});
+  model.structure = share(build_simple_beam({.elements = 10}));
   VsiState state(model);
   ASSERT_TRUE(static_equilibrium(model, state).converged);
   const double at_rest = energy(model, state);
@@ -161,7 +161,7 @@ TEST(SharedOperators, LeaveARunAsItIs) {
   model.contact.speed = 20.0;
   TrackParameters track;
   track.length_before = track.length_after = 90.0;
-  model.structure = build_track_bridge(track, {BridgeParameters{}, BridgeParameters{}}, MotionPlane::vertical);
+  model.structure = share(build_track_bridge(track, {BridgeParameters{}, BridgeParameters{}}, MotionPlane::vertical));
   model.window = make_window(*model.structure, {.kind = Reduction::window});
   IntegrationParameters integration;
   integration.time_step = 5e-3;

@@ -143,7 +143,7 @@ TEST(SpeedProfile, BrakingMassOnABeamFollowsItsEquations) {
       {"mass", {{"wheelset", BrakingMass::m, {1, 1, 1}, {0, 0, -0.46}}}, {}, {0}, {all_but_z}, 0.46, 10.0});
   model.vehicle_x = {0.0};
   model.structure =
-      build_simple_beam({.length = BrakingMass::L, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = 40});
+      share(build_simple_beam({.length = BrakingMass::L, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = 40}));
   model.contact.speed = BrakingMass::V0;
   model.speed_profile.emplace(std::vector<double>{0.0, end},
                               std::vector<double>{BrakingMass::V0, BrakingMass::V0 + BrakingMass::rate * end});

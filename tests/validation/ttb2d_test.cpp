@@ -155,7 +155,7 @@ class Ttb2d : public ::testing::TestWithParam<Case> {
       const std::vector<double> a = list(car);
       m.vehicle_x.push_back(x0 - 0.5 * (a.front() + a.back()));
     }
-    m.structure = imported(folder);
+    m.structure = share(imported(folder));
     m.contact.speed = description.get<double>("run.v_mps");
     m.contact.friction = 0.0;
     m.normal_contact = contact;

@@ -19,7 +19,9 @@ fmi::DrivenTrack driven_track(const SceneParameters& scene) {
   track.scheme = {scene.integration.alpha, scene.integration.time_step, ContactForceRule::endpoint};
   const VsiModel train = train_model(scene);
   for (int w = 0; w < train.wheelsets(); ++w) track.wheelset_x.push_back(train.wheelset_x(w, 0.0));
-  track.structure = build_structure_under_contacts(scene);
+  SceneParameters loaded = scene;
+  loaded.contact.normal = NormalContact::hertz;  // forces act between nodes
+  track.structure = scene_structure(loaded);
   return track;
 }
 

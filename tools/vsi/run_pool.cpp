@@ -279,7 +279,8 @@ int RunPool::make(Board& board, std::size_t number, SharedSetUp& shared) const {
 }
 
 /// The run, where it is not finished, and its row.
-int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& scene, SharedSetUp& shared) const {
+int RunPool::make_row(Board& board, std::size_t number, SceneParameters scene, SharedSetUp& shared) const {
+  if (!options_.keep_results) scene.output.paraview_instants = 0;
   const PooledRun& run = (*runs_)[number];
   const fs::path results = file(run.name, ".h5");
   const auto tidy = [&] {

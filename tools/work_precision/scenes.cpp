@@ -70,7 +70,7 @@ RunSummary cross_beam(const IntegrationParameters& integration, int record_every
        0.46,
        10.0});
   model.vehicle_x = {0.0};
-  model.structure = build_simple_beam({.length = 25.0, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = 40});
+  model.structure = share(build_simple_beam({.length = 25.0, .E = 2.87e9, .I = 2.90, .mass = 2303.0, .elements = 40}));
   model.contact.speed = 25.0 / beam_crossing;
   model.normal_contact = NormalContact::rigid;
   VsiState state(model);
