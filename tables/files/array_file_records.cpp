@@ -147,9 +147,10 @@ void ArrayFileWriter::create_growing(std::string_view path, const Shape& row_sha
   const Section section;
   Shape shape{0};
   shape.insert(shape.end(), row_shape.begin(), row_shape.end());
-  static_cast<void>(impl_->create_dataset(path, type_of<double>(), shape, history_chunk, {unit, description}));
-  impl_->write_text(path, hdf5::rows_attribute, hdf5::records_dataset);
-  impl_->write_attribute(path, hdf5::column_attribute, static_cast<std::int64_t>(++impl_->histories));
+  const hdf5::Object dataset =
+      impl_->create_dataset(path, type_of<double>(), shape, history_chunk, {unit, description});
+  impl_->write_text({dataset.get(), path}, hdf5::rows_attribute, hdf5::records_dataset);
+  impl_->write_attribute({dataset.get(), path}, hdf5::column_attribute, static_cast<std::int64_t>(++impl_->histories));
 }
 
 void ArrayFileWriter::append(std::string_view path, std::span<const double> values) {
@@ -213,13 +214,13 @@ void ArrayFileWriter::create_late(std::string_view path, const Numbers& none, co
   const Section section;
   Shape shape{0};
   shape.insert(shape.end(), row_shape.begin(), row_shape.end());
-  std::visit(
+  const std::size_t chunk = product(row_shape) == 1 ? page : history_chunk;
+  const hdf5::Object dataset = std::visit(
       [&]<typename Number>(std::span<const Number>) {
-        const std::size_t chunk = product(row_shape) == 1 ? page : history_chunk;
-        static_cast<void>(impl_->create_dataset(path, type_of<Number>(), shape, chunk, {unit, description}));
+        return impl_->create_dataset(path, type_of<Number>(), shape, chunk, {unit, description});
       },
       none);
-  impl_->write_attribute(path, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum({})));
+  impl_->write_attribute({dataset.get(), path}, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum({})));
 }
 
 void ArrayFileWriter::write_late(std::string_view path, const Numbers& numbers) {
@@ -232,7 +233,7 @@ void ArrayFileWriter::write_late(std::string_view path, const Numbers& numbers) 
       [&]<typename Number>(std::span<const Number> values) {
         const std::size_t rows = values.size() / entry.row_size;
         impl_->append_rows(name, entry, type_of<Number>(), values.data(), rows);
-        impl_->write_attribute(path, hdf5::checksum_attribute,
+        impl_->write_attribute({entry.dataset.get(), path}, hdf5::checksum_attribute,
                                static_cast<std::int64_t>(word_checksum(std::as_bytes(values))));
       },
       numbers);

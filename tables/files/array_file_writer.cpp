@@ -68,8 +68,8 @@ hdf5::Object ArrayFileWriter::Impl::create_dataset(std::string_view path, hid_t 
   hdf5::Object dataset(
       H5Dcreate2(file.get(), std::string(path).c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
   require_written(done && dataset.valid(), file.place(path));
-  write_text(path, "unit", statement.unit);
-  write_text(path, "description", statement.description);
+  write_text({dataset.get(), path}, "unit", statement.unit);
+  write_text({dataset.get(), path}, "description", statement.description);
   return dataset;
 }
 
@@ -79,38 +79,41 @@ void ArrayFileWriter::Impl::write_dataset(std::string_view path, hid_t type, std
   require_written(values.empty() || H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
                   file.place(path));
   if (mode != Mode::growing || path == hdf5::records_dataset) return;
-  write_attribute(path, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum(values)));
+  write_attribute({dataset.get(), path}, hdf5::checksum_attribute, static_cast<std::int64_t>(word_checksum(values)));
 }
 
-hdf5::Attribute ArrayFileWriter::Impl::open_attribute(std::string_view path, std::string_view name, hid_t type,
-                                                      std::size_t values) {
+hdf5::Object ArrayFileWriter::Impl::owner_of_attributes(std::string_view path) {
   if (!path.empty()) create_groups_of(std::string(path) + "/");
-  const hdf5::Object object = file.object(path);
+  return file.object(path);
+}
+
+hdf5::Attribute ArrayFileWriter::Impl::open_attribute(Owner owner, std::string_view name, hid_t type,
+                                                      std::size_t values) {
   const std::string key(name);
   hdf5::Attribute attribute;
-  if (H5Aexists(object.get(), key.c_str()) > 0) {
-    attribute = hdf5::Attribute(H5Aopen(object.get(), key.c_str(), H5P_DEFAULT));
+  if (H5Aexists(owner.object, key.c_str()) > 0) {
+    attribute = hdf5::Attribute(H5Aopen(owner.object, key.c_str(), H5P_DEFAULT));
   } else {
     assert(!temporary.name.empty() && "nothing can be created once records have begun");
     const hsize_t extent = values;
     const hdf5::Space space(values == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &extent, nullptr));
-    attribute = hdf5::Attribute(H5Acreate2(object.get(), key.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT));
+    attribute = hdf5::Attribute(H5Acreate2(owner.object, key.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT));
   }
-  require_written(attribute.valid(), file.place(path, name));
+  require_written(attribute.valid(), file.place(owner.path, name));
   return attribute;
 }
 
-void ArrayFileWriter::Impl::write_text(std::string_view path, std::string_view name, std::string_view value,
-                                       std::size_t capacity, H5T_cset_t letters) {
+void ArrayFileWriter::Impl::write_text(Owner owner, std::string_view name, std::string_view value, std::size_t capacity,
+                                       H5T_cset_t letters) {
   const std::size_t wanted = std::max({value.size(), capacity, std::size_t{1}});
-  const hdf5::Attribute attribute = open_attribute(path, name, hdf5::text_type(wanted, letters).get());
+  const hdf5::Attribute attribute = open_attribute(owner, name, hdf5::text_type(wanted, letters).get());
   const hdf5::Type type(H5Aget_type(attribute.get()));
   const std::size_t room = H5Tget_size(type.get());
   std::string bytes(value);
   constexpr std::string_view cut = "...";
   if (bytes.size() > room) bytes.replace(room - std::min(room, cut.size()), std::string::npos, cut);
   bytes.resize(room, '\0');
-  require_written(H5Awrite(attribute.get(), type.get(), bytes.data()) >= 0, file.place(path, name));
+  require_written(H5Awrite(attribute.get(), type.get(), bytes.data()) >= 0, file.place(owner.path, name));
 }
 
 ArrayFileWriter::ArrayFileWriter(const std::filesystem::path& file, std::string_view filetype, int format_version,
@@ -123,8 +126,9 @@ ArrayFileWriter::ArrayFileWriter(const std::filesystem::path& file, std::string_
   const Section section;
   impl_->file =
       hdf5::OpenFile(name, impl_->temporary.name, grows ? hdf5::Access::create_growing : hdf5::Access::create_whole);
-  impl_->write_text("", "filetype", filetype);
-  impl_->write_attribute("", "format_version", std::int64_t{format_version});
+  const hdf5::Object root = impl_->file.object("");
+  impl_->write_text({root.get(), ""}, "filetype", filetype);
+  impl_->write_attribute({root.get(), ""}, "format_version", std::int64_t{format_version});
   if (!grows) return;
   const std::array<std::int64_t, 2> none{0, -1};
   impl_->write_dataset(hdf5::records_dataset, type_of<std::int64_t>(), std::as_bytes(std::span(none)), {none.size()},
@@ -163,11 +167,12 @@ void ArrayFileWriter::attribute(std::string_view path, std::string_view name,
                                 const std::variant<double, std::int64_t, std::string_view>& value,
                                 std::size_t capacity) {
   const Section section;
+  const hdf5::Object owner = impl_->owner_of_attributes(path);
   const auto write = [&]<typename Value>(Value content) {
     if constexpr (std::is_same_v<Value, std::string_view>) {
-      impl_->write_text(path, name, content, capacity);
+      impl_->write_text({owner.get(), path}, name, content, capacity);
     } else {
-      impl_->write_attribute(path, name, content);
+      impl_->write_attribute({owner.get(), path}, name, content);
     }
   };
   std::visit(write, value);
@@ -175,12 +180,15 @@ void ArrayFileWriter::attribute(std::string_view path, std::string_view name,
 
 void ArrayFileWriter::ascii_attribute(std::string_view path, std::string_view name, std::string_view value) {
   const Section section;
-  impl_->write_text(path, name, value, 0, H5T_CSET_ASCII);
+  const hdf5::Object owner = impl_->owner_of_attributes(path);
+  impl_->write_text({owner.get(), path}, name, value, 0, H5T_CSET_ASCII);
 }
 
 void ArrayFileWriter::attribute(std::string_view path, std::string_view name, std::span<const std::int64_t> values) {
   const Section section;
-  const hdf5::Attribute attribute = impl_->open_attribute(path, name, type_of<std::int64_t>(), values.size());
+  const hdf5::Object owner = impl_->owner_of_attributes(path);
+  const hdf5::Attribute attribute =
+      impl_->open_attribute({owner.get(), path}, name, type_of<std::int64_t>(), values.size());
   impl_->require_written(H5Awrite(attribute.get(), type_of<std::int64_t>(), values.data()) >= 0,
                          impl_->file.place(path, name));
 }

@@ -75,14 +75,21 @@ struct ArrayFileWriter::Impl {
                               Statement statement);
   void write_dataset(std::string_view path, hid_t type, std::span<const std::byte> values, const Shape& shape,
                      Statement statement);
+  /// An open group or dataset, and its path for errors.
+  struct Owner {
+    hid_t object;
+    std::string_view path;
+  };
+  /// Groups are created where there are none yet.
+  hdf5::Object owner_of_attributes(std::string_view path);
   /// Opens an attribute, created where there is none yet: a row of `values`, one alone a scalar.
-  hdf5::Attribute open_attribute(std::string_view path, std::string_view key, hid_t type, std::size_t values = 1);
+  hdf5::Attribute open_attribute(Owner owner, std::string_view name, hid_t type, std::size_t values = 1);
   template <typename Number>
-  void write_attribute(std::string_view path, std::string_view key, Number value) {
-    const hdf5::Attribute attribute = open_attribute(path, key, type_of<Number>());
-    require_written(H5Awrite(attribute.get(), type_of<Number>(), &value) >= 0, file.place(path, key));
+  void write_attribute(Owner owner, std::string_view name, Number value) {
+    const hdf5::Attribute attribute = open_attribute(owner, name, type_of<Number>());
+    require_written(H5Awrite(attribute.get(), type_of<Number>(), &value) >= 0, file.place(owner.path, name));
   }
-  void write_text(std::string_view path, std::string_view name, std::string_view value, std::size_t capacity = 0,
+  void write_text(Owner owner, std::string_view name, std::string_view value, std::size_t capacity = 0,
                   H5T_cset_t letters = H5T_CSET_UTF8);
 
   /// Gives a growing file its name and opens it for single-writer-multiple-reader writing.
