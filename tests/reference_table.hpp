@@ -11,7 +11,7 @@
 namespace railtab::testing {
 
 /// Columns of a committed reference CSV by name; lines that begin with '#' tell the origin and are skipped.
-/// Fields that are not numbers are refused: a reference file has numbers only.
+/// Fields that are not numbers are rejected: a reference file has numbers only.
 inline std::map<std::string, std::vector<double>> read_reference(const std::string& name) {
   const std::filesystem::path file = std::filesystem::path(RAILTAB_REFERENCE_DIR) / name;
   std::ifstream in(file);

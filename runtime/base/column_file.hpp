@@ -47,11 +47,11 @@ struct UnitFactor {
 /// @throws InputError naming the header cell and the units known
 [[nodiscard]] double factor_to_si(const FileColumn& column, const std::vector<UnitFactor>& units);
 
-/// Refuses values that are off by orders of magnitude, most likely of another unit than the header says.
+/// Rejects values that are off by orders of magnitude, most likely of another unit than the header says.
 /// @param limit on the amount of the column's values times `factor`, in SI units @throws InputError naming the line
 void require_magnitude(const FileColumn& column, double factor, double limit);
 
-/// Refuses times and places, in SI units already, beyond ±10⁹ and neighbours nearer than 10⁻⁹: differences between them
+/// Rejects times and places, in SI units already, beyond ±10⁹ and neighbours nearer than 10⁻⁹: differences between them
 /// must be numbers to divide by. @throws InputError naming the line
 void require_argument(const FileColumn& column);
 

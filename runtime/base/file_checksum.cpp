@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -47,7 +48,8 @@ std::string checksum_of_contents(const std::filesystem::path& file) {
   return fmt::format("{:016x}", word_checksum(std::as_bytes(std::span(&length, 1)), sum));
 }
 
-/// What a file's entry in the file system says of its contents: another one after every change.
+/// What a file's entry in the file system says of its contents: another one after every change that is not made by a
+/// mapping into memory or behind a network's cache.
 struct FileState {
   dev_t device;
   ino_t number;
@@ -75,8 +77,9 @@ struct KnownSum {
 std::string file_checksum(const std::filesystem::path& file) {
   static std::mutex mutex;
   static std::map<std::filesystem::path, KnownSum> known;
-  const std::filesystem::path name = std::filesystem::absolute(file);
-  const std::optional<FileState> before = settled_state(name);
+  std::error_code failed;
+  const std::filesystem::path name = std::filesystem::absolute(file, failed);
+  const std::optional<FileState> before = failed ? std::nullopt : settled_state(name);
   if (before) {
     const std::lock_guard lock(mutex);
     if (const auto found = known.find(name); found != known.end() && found->second.state == *before) {

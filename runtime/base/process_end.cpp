@@ -42,9 +42,9 @@ int caught(std::string_view program, const std::function<int()>& command) {
   } catch (const InputError& wrong) {
     say(wrong.what());
     return wrong_input;
-  } catch (const std::filesystem::filesystem_error& refused) {
-    say(refused.path1().c_str(), refused.code().message().c_str());
-    return is_wrong_name(refused.code()) ? wrong_input : failed;
+  } catch (const std::filesystem::filesystem_error& rejected) {
+    say(rejected.path1().c_str(), rejected.code().message().c_str());
+    return is_wrong_name(rejected.code()) ? wrong_input : failed;
   } catch (const std::bad_alloc&) {
     say("not enough memory");
     return failed;

@@ -20,7 +20,7 @@ void print_message(std::string_view text) noexcept;
 void print_text(std::string_view text) noexcept;
 
 /// Runs all of a command, `program` in its messages on standard error, and says how the process ends: what `command`
-/// returns; 2 for InputError and names that the system refuses; 1 for any other exception and where standard output
+/// returns; 2 for InputError and names that the system rejects; 1 for any other exception and where standard output
 /// could not be written. A process that fails ends here, without the clean-up of libraries: HDF5 keeps open what it
 /// could not write or read, crashes over it on a full disk and complains of damaged files; every file has been closed
 /// as far as it can be. @return 0

@@ -43,7 +43,7 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& file, int error) {
+[[noreturn]] void reject(const std::filesystem::path& file, int error) {
   if (error == ENOSPC || error == EDQUOT || error == EIO || error == EMFILE || error == ENFILE) {
     throw ComputationError(fmt::format("{}: could not be written: {}", file.string(), std::strerror(error)));
   }
@@ -61,7 +61,7 @@ TemporaryFile::~TemporaryFile() {
 void TemporaryFile::publish(const std::filesystem::path& file) {
   // To the disk itself, so that the new name never stands for a file that a power failure emptied. Some file systems
   // find only here that they are full; others cannot do it.
-  if (::fsync(lock.descriptor()) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT)) refuse(file, errno);
+  if (::fsync(lock.descriptor()) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT)) reject(file, errno);
   std::error_code failed;
   std::filesystem::rename(name, file, failed);
   if (failed) throw input_error(file.string(), failed.message(), "a file that can be replaced");
@@ -81,7 +81,7 @@ TemporaryFile create_temporary(const std::filesystem::path& file) {
     constexpr int everybody = 0666;  // cut by the umask, as for every new file
     const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, everybody);
     if (descriptor < 0 && errno == EEXIST) continue;
-    if (descriptor < 0) refuse(file, errno);
+    if (descriptor < 0) reject(file, errno);
     WriterLock lock = WriterLock::of_descriptor(descriptor);
     struct stat state {};
     if (lock.held() && ::fstat(descriptor, &state) == 0 && state.st_nlink > 0) return {name, std::move(lock)};

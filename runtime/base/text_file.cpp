@@ -18,13 +18,13 @@
 namespace railtab {
 
 bool is_file(const std::filesystem::path& file) noexcept {
-  std::error_code refused;
-  return std::filesystem::is_regular_file(file, refused);
+  std::error_code rejected;
+  return std::filesystem::is_regular_file(file, rejected);
 }
 
 std::string_view what_is_at(const std::filesystem::path& file) noexcept {
-  std::error_code refused;
-  switch (std::filesystem::status(file, refused).type()) {
+  std::error_code rejected;
+  switch (std::filesystem::status(file, rejected).type()) {
     case std::filesystem::file_type::none:
     case std::filesystem::file_type::not_found:
       return "no such file";
@@ -42,10 +42,10 @@ std::string_view what_is_at(const std::filesystem::path& file) noexcept {
   }
 }
 
-bool is_wrong_name(const std::error_code& refused) noexcept {
-  return refused == std::errc::filename_too_long || refused == std::errc::too_many_symbolic_link_levels ||
-         refused == std::errc::permission_denied || refused == std::errc::not_a_directory ||
-         refused == std::errc::no_such_file_or_directory;
+bool is_wrong_name(const std::error_code& rejected) noexcept {
+  return rejected == std::errc::filename_too_long || rejected == std::errc::too_many_symbolic_link_levels ||
+         rejected == std::errc::permission_denied || rejected == std::errc::not_a_directory ||
+         rejected == std::errc::no_such_file_or_directory;
 }
 
 std::filesystem::path output_file(const std::filesystem::path& file) {

@@ -7,7 +7,7 @@
 
 namespace railtab {
 
-/// Whether there is a regular file of that name. False too where the system takes no such name or refuses the way to
+/// Whether there is a regular file of that name. False too where the system takes no such name or rejects the way to
 /// it.
 [[nodiscard]] bool is_file(const std::filesystem::path& file) noexcept;
 
@@ -15,9 +15,9 @@ namespace railtab {
 /// "a socket", "no regular file".
 [[nodiscard]] std::string_view what_is_at(const std::filesystem::path& file) noexcept;
 
-/// Whether the system refused a name, not an operation: too long, links in a circle, no right to the folder, none
+/// Whether the system rejected a name, not an operation: too long, links in a circle, no right to the folder, none
 /// there.
-[[nodiscard]] bool is_wrong_name(const std::error_code& refused) noexcept;
+[[nodiscard]] bool is_wrong_name(const std::error_code& rejected) noexcept;
 
 /// The file that an output named `file` becomes: where `file` is a symbolic link, what it points to, there or not.
 /// @throws InputError where there is something other than a regular file: a folder, a device, a pipe, links in a circle

@@ -70,7 +70,7 @@ class LineReader {
   long count_ = 0;
 };
 
-/// Sizes that no file of so many bytes can hold, or no memory, are refused before anything is allocated.
+/// Sizes that no file of so many bytes can hold, or no memory, are rejected before anything is allocated.
 /// @param bytes_per_entry at least, in the file
 void require_possible_size(const LineReader& reader, long rows, long columns, long entries, int bytes_per_entry);
 

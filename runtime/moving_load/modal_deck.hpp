@@ -23,7 +23,7 @@ struct ModalDeck {
   std::vector<Cubics> shape;  ///< of each element, modes × 4: c_n0 … c_n3
   Eigen::ArrayXd omega;       ///< circular natural frequencies, rising [rad/s]
   Eigen::ArrayXd damping;     ///< ratios of critical, 0 <= ζ < 1
-  int dynamic_modes = 0;      ///< the first of them, that vibrate; the others answer without inertia
+  int dynamic_modes = 0;      ///< the first of them, that vibrate; the others deflect as at rest
   /// Where the largest motions are sought: along the line first, evenly spaced, then places of an imported deck.
   std::vector<double> point_x;   ///< [m]
   Eigen::MatrixXd point_shape;   ///< points × modes [kg^-1/2]

@@ -3,7 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/base/dof_indices.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/structure/deck_channels.hpp"
+#include "railtab/runtime/structure/structure_model.hpp"
 
 namespace railtab {
 

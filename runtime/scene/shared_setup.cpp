@@ -47,8 +47,7 @@ CreepLaw SharedSetUp::creep_law(const ContactParameters& contact) {
 SharedStructure SharedSetUp::structure(const SceneParameters& scene) {
   StructureKey key(scene);
   if (structure_key_ != key) {
-    structure_.reset();  // not two at a time
-    structure_key_.reset();
+    structure_key_.reset();  // also where the next line throws
     structure_ = share(scene_structure(scene));
     structure_key_ = std::move(key);
   }

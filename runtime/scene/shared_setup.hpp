@@ -13,8 +13,8 @@
 namespace railtab {
 
 /// What the runs of one process, one after the other, have in common and is made once: tables and profiles that were
-/// read, the structure and its factors. Files are read again where their contents have changed, which of a mesh that
-/// includes other files means its own.
+/// read, the structure and its factors. Files that the scene names are read again where their contents have changed,
+/// those that a mesh includes are not looked at.
 class SharedSetUp {
  public:
   /// @throws InputError as reading the files

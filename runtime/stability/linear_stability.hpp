@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {

@@ -30,9 +30,11 @@ bool equal(const StructureModel& a, const StructureModel& b) {
 }  // namespace
 
 void StructureStore::take_up(const SharedStructure& structure) {
-  if (structure_ == structure || (structure_ && equal(*structure_, *structure))) return;
-  at_rest_.reset();
-  of_steps_.clear();
+  if (structure_ == structure) return;
+  if (!structure_ || !equal(*structure_, *structure)) {
+    at_rest_.reset();
+    of_steps_.clear();
+  }
   structure_ = structure;
 }
 

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::array error_sizes = {"random-error", "grid", "spacing"};
 
-void refuse(const TableCommandLine& line, std::initializer_list<const char*> options, const char* expected) {
+void reject(const TableCommandLine& line, std::initializer_list<const char*> options, const char* expected) {
   for (const char* option : options) {
     if (line.chosen(option)) throw input_error(fmt::format("--{}", option), line.text(option), expected);
   }
@@ -114,7 +114,7 @@ void set_amplitudes(const TableCommandLine& line, ConicityRequest& request) {
     throw input_error("--amplitude", line.text("amplitude"), "a number in 1e-6..0.1 m");
   }
   if (line.given("reference")) {
-    refuse(line, {"amplitudes"}, "no amplitudes beside --reference, whose file has its own");
+    reject(line, {"amplitudes"}, "no amplitudes beside --reference, whose file has its own");
     request.reference = read_conicity_bands(line.text("reference"));
     for (const ConicityBand& band : request.reference) request.amplitudes.push_back(band.amplitude);
   } else if (line.given("amplitudes")) {
@@ -151,7 +151,7 @@ ConicityErrorOptions error_options(const TableCommandLine& line, const ConicityR
 }
 
 void set_table(const TableCommandLine& line, ConicityRequest& request) {
-  refuse(line,
+  reject(line,
          {"wheel", "rail", "left-wheel", "left-rail", "smoothing", "rail-inclination", "gauge", "gauge-height",
           "flange-back", "wheel-radius", "half-spacing", "lateral", "random-error", "grid", "spacing"},
          "only with --wheel and --rail in place of a table");
@@ -162,7 +162,7 @@ void set_table(const TableCommandLine& line, ConicityRequest& request) {
 
 void set_pair(const TableCommandLine& line, ConicityRequest& request) {
   if (line.chosen("half-spacing")) {
-    refuse(line, {"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
+    reject(line, {"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
   }
   const double noise = requested_noise(line);
   request.pair = requested_wheelset(line, noise);
@@ -211,7 +211,7 @@ ConicityRequest conicity_request(const TableCommandLine& line) {
   set_amplitudes(line, request);
   request.contact = contact_options(line);
   if (!errors_chosen(line)) {
-    refuse(line, {"runs", "seed", "error-direction"}, "only with --random-error, --grid or --spacing");
+    reject(line, {"runs", "seed", "error-direction"}, "only with --random-error, --grid or --spacing");
   }
   if (line.given("output")) {
     request.output = line.text("output");

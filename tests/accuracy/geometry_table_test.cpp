@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <random>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/contact/contact_geometry.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/stability/linear_stability.hpp"
 #include "railtab/tablegen/table_verification.hpp"
 
 namespace {
@@ -136,7 +139,7 @@ TEST(GeometryTableAccuracy, FarLoweredTheOnlineSearchAnswers) {
   }
 }
 
-// The parts of a sweep, merged in any order, are the sweep; what does not belong together is refused.
+// The parts of a sweep, merged in any order, are the sweep; what does not belong together is rejected.
 TEST(GeometryTableAccuracy, PartsMakeTheWhole) {
   GeometrySweepOptions options = coarse();
   options.lateral = {4e-3, 6e-3};
@@ -210,6 +213,16 @@ TEST(GeometryTableAccuracy, NearMissesAreThoseOfTheOnlineSearch) {
     }
   }
   EXPECT_GT(gaps, 300);
+}
+
+TEST(GeometryTableAccuracy, EquivalentConicityIsThatOfTheOnlineSearch) {
+  const ContactGeometry table{TableContact{GeometryTable(sweep_geometry(s1002_on_60e1(), coarse()))}};
+  for (const double amplitude : {1e-3, 3e-3, 5e-3}) {
+    const std::optional<double> looked_up = equivalent_conicity(table, amplitude),
+                                searched = equivalent_conicity(table.without_table(), amplitude);
+    ASSERT_TRUE(looked_up && searched) << amplitude;
+    EXPECT_NEAR(*looked_up, *searched, 1e-9) << amplitude;
+  }
 }
 
 TEST(GeometryTableAccuracy, ALookUpDoesNotAllocate) {

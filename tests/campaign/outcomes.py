@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 time_budget = 60.0  # s
-address_space = 4 * 2**30  # bytes; what a scene asks for beyond is refused by a message
+address_space = 4 * 2**30  # bytes; what a scene asks for beyond is rejected by a message
 longest_text = 1 << 20
 
 # An answer is one of the first three; all others are findings.

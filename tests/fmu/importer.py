@@ -109,7 +109,7 @@ class Fmu:
         return (c_uint * len(names))(*(self.reference[name] for name in names))
 
 
-class Refused(Exception):
+class Rejected(Exception):
     """A call that did not return fmi2OK: its status, and the messages of the logger."""
 
     def __init__(self, status, messages):
@@ -134,13 +134,13 @@ class Slave:
         self.component = fmu.library.fmi2Instantiate(name.encode(), type, guid.encode(), resources.encode(),
                                                      byref(self._callbacks), 0, 0)
         if not self.component:
-            raise Refused(None, self.messages)
+            raise Rejected(None, self.messages)
 
     def call(self, function, *arguments):
         status = getattr(self.fmu.library, f"fmi2{function}")(self.component, *arguments)
         if status != OK:
             messages, self.messages = self.messages, []
-            raise Refused(status, messages)
+            raise Rejected(status, messages)
 
     def set(self, names, values):
         self.call("SetReal", self.fmu.references(names), len(names), (c_double * len(names))(*values))

@@ -12,7 +12,7 @@ import zipfile
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 from pathlib import Path
 
-from importer import ERROR, FUNCTIONS, Callbacks, Fmu, Refused, Slave
+from importer import ERROR, FUNCTIONS, Callbacks, Fmu, Rejected, Slave
 
 SCENE = """name = "A <short> bridge & 100 % track"
 [train]
@@ -57,16 +57,16 @@ def started(fmu, **arguments):
     return slave
 
 
-def refused(action, *texts, status=ERROR):
+def rejected(action, *texts, status=ERROR):
     """The call fails and the logger says why, with all of the texts."""
     try:
         action()
-    except Refused as refusal:
-        assert refusal.status == status, refusal
-        assert len(refusal.messages) == 1 and refusal.messages[0][0] == ERROR, refusal
-        assert all(text in refusal.messages[0][1] for text in texts), refusal
+    except Rejected as rejection:
+        assert rejection.status == status, rejection
+        assert len(rejection.messages) == 1 and rejection.messages[0][0] == ERROR, rejection
+        assert all(text in rejection.messages[0][1] for text in texts), rejection
         return
-    raise AssertionError(f"no refusal with {texts}")
+    raise AssertionError(f"no rejection with {texts}")
 
 
 def instances(fmu):
@@ -105,7 +105,7 @@ def states(fmu):
     other.call("SetFMUstate", read)
     other.time = 10 * fmu.step_size
     assert passage(other, steps=10, begin=10) == expected
-    refused(lambda: other.call("DeSerializeFMUstate", content, size.value - 8, byref(read)), "numbers", "expected")
+    rejected(lambda: other.call("DeSerializeFMUstate", content, size.value - 8, byref(read)), "numbers", "expected")
     slave.call("FreeFMUstate", byref(kept))
     other.call("FreeFMUstate", byref(read))
     assert not kept.value and not read.value
@@ -156,34 +156,34 @@ def errors(fmu):
     """Every error has its message, and the instance goes on."""
     slave = Slave(fmu)
     step = fmu.step_size
-    refused(lambda: slave.call("DoStep", 0.0, step, 0), "fmi2DoStep", "found instantiated, expected step complete")
+    rejected(lambda: slave.call("DoStep", 0.0, step, 0), "fmi2DoStep", "found instantiated, expected step complete")
     slave.initialize()
     for wrong in (0.5 * step, 1.5 * step, 0.0, -step, float("nan")):
-        refused(lambda: slave.call("DoStep", 0.0, wrong, 0), "found", "0.001 s" if wrong > 0 else "")
-    refused(lambda: slave.call("DoStep", 0.5, step, 0), "currentCommunicationPoint: found 0.5 s, expected 0 s")
-    refused(lambda: slave.set(["wheelset[1].left.Q"], [float("inf")]), "wheelset[1].left.Q: found inf")
-    refused(lambda: slave.set(["wheelset[1].left.Q"], [-1e12]), "Q: found -1e+12 N, expected -1e+08 to 1e+08 N")
-    refused(lambda: slave.set(["wheelset[1].right.Mx"], [2e8]), "Mx: found 2e+08 N.m, expected -1e+08 to 1e+08 N.m")
-    refused(lambda: slave.set(["wheelset[1].left.rail_z"], [0.0]), "value reference", "expected an input, 0 to 27")
+        rejected(lambda: slave.call("DoStep", 0.0, wrong, 0), "found", "0.001 s" if wrong > 0 else "")
+    rejected(lambda: slave.call("DoStep", 0.5, step, 0), "currentCommunicationPoint: found 0.5 s, expected 0 s")
+    rejected(lambda: slave.set(["wheelset[1].left.Q"], [float("inf")]), "wheelset[1].left.Q: found inf")
+    rejected(lambda: slave.set(["wheelset[1].left.Q"], [-1e12]), "Q: found -1e+12 N, expected -1e+08 to 1e+08 N")
+    rejected(lambda: slave.set(["wheelset[1].right.Mx"], [2e8]), "Mx: found 2e+08 N.m, expected -1e+08 to 1e+08 N.m")
+    rejected(lambda: slave.set(["wheelset[1].left.rail_z"], [0.0]), "value reference", "expected an input, 0 to 27")
     unknown = (c_uint * 1)(10 ** 6)
-    refused(lambda: slave.call("GetReal", unknown, 1, (c_double * 1)()), "found 1000000, expected 0 to")
-    refused(lambda: slave.call("GetInteger", unknown, 1, (c_int * 1)()), "real")
+    rejected(lambda: slave.call("GetReal", unknown, 1, (c_double * 1)()), "found 1000000, expected 0 to")
+    rejected(lambda: slave.call("GetInteger", unknown, 1, (c_int * 1)()), "real")
     slave.call("GetInteger", unknown, 0, (c_int * 1)())
     for name, flag in (("CancelStep", "canRunAsynchronuously"), ("SetRealInputDerivatives", "canInterpolateInputs"),
                        ("GetRealOutputDerivatives", "maxOutputDerivativeOrder"),
                        ("GetDirectionalDerivative", "providesDirectionalDerivative")):
         assert fmu.slave.get(flag) in ("false", "0")
         nothing = [None if issubclass(t, ctypes._Pointer) else 0 for t in FUNCTIONS[name]]
-        refused(lambda: slave.call(name, *nothing), "not supported", flag)
-    refused(lambda: slave.call("SetDebugLogging", 1, 1, (c_char_p * 1)(b"100 % #")), "found 100 % #, expected log")
+        rejected(lambda: slave.call(name, *nothing), "not supported", flag)
+    rejected(lambda: slave.call("SetDebugLogging", 1, 1, (c_char_p * 1)(b"100 % #")), "found 100 % #, expected log")
     slave.call("SetDebugLogging", 1, 1, (c_char_p * 1)(b"logStatusError"))
-    refused(lambda: slave.call("GetBooleanStatus", 0, (c_int * 1)()), "expected fmi2Terminated")
+    rejected(lambda: slave.call("GetBooleanStatus", 0, (c_int * 1)()), "expected fmi2Terminated")
     slave.step()
     last = (c_double * 1)()
     slave.call("GetRealStatus", 2, last)
     assert last[0] == step
     slave.call("Terminate")
-    refused(lambda: slave.step(), "found terminated")
+    rejected(lambda: slave.step(), "found terminated")
     slave.free()
 
     stopped = Slave(fmu)
@@ -192,18 +192,18 @@ def errors(fmu):
     stopped.call("ExitInitializationMode")
     stopped.time = 2.0
     stopped.step()
-    refused(stopped.step, "none beyond the stop time")
+    rejected(stopped.step, "none beyond the stop time")
     assert fmu.library.fmi2DoStep(None, 0.0, step, 0) == ERROR
 
 
 def instantiation(fmu):
     """Wrong arguments and changed files give no instance."""
     guid = fmu.root.get("guid")
-    refused(lambda: Slave(fmu, guid="other"), "fmuGUID: found other, expected " + guid, status=None)
-    refused(lambda: Slave(fmu, type=0), "found fmi2ModelExchange", status=None)
-    refused(lambda: Slave(fmu, resources="http://host/a"), "fmuResourceLocation: found http://host/a", status=None)
-    refused(lambda: Slave(fmu, resources="file:///a%zz"), "found file:///a%zz", status=None)
-    refused(lambda: Slave(fmu, resources="file:///absent"), "/absent/track: found no file", status=None)
+    rejected(lambda: Slave(fmu, guid="other"), "fmuGUID: found other, expected " + guid, status=None)
+    rejected(lambda: Slave(fmu, type=0), "found fmi2ModelExchange", status=None)
+    rejected(lambda: Slave(fmu, resources="http://host/a"), "fmuResourceLocation: found http://host/a", status=None)
+    rejected(lambda: Slave(fmu, resources="file:///a%zz"), "found file:///a%zz", status=None)
+    rejected(lambda: Slave(fmu, resources="file:///absent"), "/absent/track: found no file", status=None)
     uri = (fmu.folder / "resources").as_uri()
     Slave(fmu, resources=uri.replace("file://", "file:")).free()
     Slave(fmu, resources=uri.replace("file://", "file://localhost")).free()
@@ -211,7 +211,7 @@ def instantiation(fmu):
     track = fmu.folder / "resources/track"
     whole = track.read_bytes()
     track.write_bytes(whole[:-3] + b"xyz")
-    refused(lambda: Slave(fmu), "fmuGUID: found " + guid, status=None)
+    rejected(lambda: Slave(fmu), "fmuGUID: found " + guid, status=None)
     track.write_bytes(whole)
 
 

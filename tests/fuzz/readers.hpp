@@ -23,7 +23,8 @@ struct Reader {
 [[nodiscard]] const Reader& reader(const std::string& name);
 
 /// Writes the bytes to a file of this process, in a folder with the files that a scene may name
-/// (tests/fuzz/companions), and reads it. False where it was refused; anything but an InputError goes on to the caller.
+/// (tests/fuzz/companions), and reads it. False where it was rejected; anything but an InputError goes on to the
+/// caller.
 bool accepts(const Reader& reader, const std::string& bytes);
 
 }  // namespace railtab::fuzz

@@ -46,7 +46,7 @@ int runs() {
 class FuzzedReader : public ::testing::TestWithParam<Reader> {};
 
 // Whatever the bytes are, a reader returns or throws InputError: no other exception, and under the sanitizers no fault.
-TEST_P(FuzzedReader, AcceptsOrRefuses) {
+TEST_P(FuzzedReader, AcceptsOrRejects) {
   const Reader& reader = GetParam();
   const std::vector<std::string> seeds = seeds_of(reader);
   ASSERT_FALSE(seeds.empty());
@@ -54,20 +54,20 @@ TEST_P(FuzzedReader, AcceptsOrRefuses) {
   for (const std::string& seed : seeds) good += accepts(reader, seed) ? 1 : 0;
   EXPECT_GT(good, 0) << "one seed at least is a good file";
   std::mt19937_64 random(20240131);
-  int refused = 0;
+  int rejected = 0;
   for (int i = 0; i < runs(); ++i) {
     const auto any = [&] { return seeds[std::uniform_int_distribution<std::size_t>(0, seeds.size() - 1)(random)]; };
     const std::string other = reader.vocabulary && i % 2 == 0 ? reader.vocabulary() : any();
     const std::string bytes = mutated(any(), other, random);
     try {
-      refused += accepts(reader, bytes) ? 0 : 1;
+      rejected += accepts(reader, bytes) ? 0 : 1;
     } catch (const std::exception& error) {
       const std::filesystem::path kept = std::filesystem::temp_directory_path() / ("railtab_fuzz_" + reader.name);
       std::ofstream(kept, std::ios::binary) << bytes;
       FAIL() << error.what() << "; the input is kept in " << kept;
     }
   }
-  EXPECT_GT(refused, runs() / 10);
+  EXPECT_GT(rejected, runs() / 10);
 }
 
 /// docs/validation/fuzzing.csv has a row of every reader: tests/fuzz/run SECONDS READER adds one.

@@ -280,8 +280,8 @@ TEST_F(AssessCommand, RulesAndWhatIsJudged) {
   EXPECT_LE(percentile, largest);
   EXPECT_GT(percentile, 0.99 * largest);
   write("wrong.toml", vertical + stiff_span + "[assessment]\nbegin = 20\nend = 10\n");
-  expect_refused("assess wrong.toml -o no",
-                 "assessment.end: found 10 m, and judging begins at 20 m, expected more than");
+  expect_rejected("assess wrong.toml -o no",
+                  "assessment.end: found 10 m, and judging begins at 20 m, expected more than");
 }
 
 // Named trains, of axle loads or of vehicles; of the latter those that govern as moving loads run with contact.
@@ -325,16 +325,16 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
   const auto first = [&](std::size_t train) { return mixed[train]["passages"][0]["acceleration"].get<double>(); };
   EXPECT_NEAR(first(2), first(0), 1e-9 * first(0)) << "the same axles by another way";
   EXPECT_GT(std::abs(first(3) - first(0)), 0.01 * first(0));
-  expect_refused("assess scene.toml --train nobody -o out",
-                 "--train, assessment.trains: found 'nobody', expected a vehicle (vsi vehicle lists them) or "
-                 "VEHICLE.toml, several as VEHICLE*N+VEHICLE; axle loads AXLES.csv; hslm-a for all ten;");
-  expect_refused("assess scene.toml --train 'hslm-a*3' -o out", "found 'hslm-a*3', expected a vehicle");
-  expect_refused("assess scene.toml --train lm71 -o out",
-                 "found 'lm71', a load model at rest, expected trains that move");
+  expect_rejected("assess scene.toml --train nobody -o out",
+                  "--train, assessment.trains: found 'nobody', expected a vehicle (vsi vehicle lists them) or "
+                  "VEHICLE.toml, several as VEHICLE*N+VEHICLE; axle loads AXLES.csv; hslm-a for all ten;");
+  expect_rejected("assess scene.toml --train 'hslm-a*3' -o out", "found 'hslm-a*3', expected a vehicle");
+  expect_rejected("assess scene.toml --train lm71 -o out",
+                  "found 'lm71', a load model at rest, expected trains that move");
   write("spatial.toml", "[contact]\nmode = \"online\"\n" + stiff_span);
-  expect_refused("assess spatial.toml --train velaro-e-coach -o out",
-                 "--train, assessment.trains: 'velaro-e-coach': train.vehicle: found velaro-e-coach, whose data are "
-                 "vertical only");
+  expect_rejected("assess spatial.toml --train velaro-e-coach -o out",
+                  "--train, assessment.trains: 'velaro-e-coach': train.vehicle: found velaro-e-coach, whose data are "
+                  "vertical only");
 }
 
 // Shards make the runs, and the command without one the verdict of all, the same as in one go.
@@ -358,7 +358,7 @@ TEST_F(AssessCommand, ShardsShareTheRuns) {
   EXPECT_EQ(std::filesystem::last_write_time(run), written);
   EXPECT_EQ(joined["measures"], whole["measures"]);
   EXPECT_EQ(joined["verdicts"], whole["verdicts"]);
-  expect_refused("assess scene.toml --stage check --shard 1/2 -o out", "--shard: found stages without runs");
+  expect_rejected("assess scene.toml --stage check --shard 1/2 -o out", "--shard: found stages without runs");
 }
 
 // What vsi run would warn of stands on the terminal, on the page and in the file, also where the runs are there
@@ -383,21 +383,21 @@ TEST_F(AssessCommand, WarningsOfItsRuns) {
 TEST_F(AssessCommand, WrongInput) {
   write("scene.toml", vertical + light_span);
   write("no_bridge.toml", vertical);
-  expect_refused("assess", "found no SCENE.toml\nusage: vsi assess SCENE.toml");
-  expect_refused("assess no_bridge.toml -o out", "no bridge");
-  expect_refused("assess scene.toml --stage all -o out", "--stage: found all, expected check, moving-load or contact");
-  expect_refused("assess scene.toml --fail-on all -o out", "--fail-on: found all, expected any or verified");
-  expect_refused("assess scene.toml --clauses no.toml -o out", "no.toml");
-  expect_refused("assess scene.toml -o no/out", "no folder");
+  expect_rejected("assess", "found no SCENE.toml\nusage: vsi assess SCENE.toml");
+  expect_rejected("assess no_bridge.toml -o out", "no bridge");
+  expect_rejected("assess scene.toml --stage all -o out", "--stage: found all, expected check, moving-load or contact");
+  expect_rejected("assess scene.toml --fail-on all -o out", "--fail-on: found all, expected any or verified");
+  expect_rejected("assess scene.toml --clauses no.toml -o out", "no.toml");
+  expect_rejected("assess scene.toml -o no/out", "no folder");
   write("typed.toml", vertical + light_span + "[assessment]\nline_speed = 200\n");
-  expect_refused("assess typed.toml -o out", "unknown key 'assessment.line_speed'; did you mean");
+  expect_rejected("assess typed.toml -o out", "unknown key 'assessment.line_speed'; did you mean");
   write("rules.toml", vertical + light_span + "[assessment]\nrules = [\"europe\"]\n");
-  expect_refused("assess rules.toml -o out",
-                 "assessment.rules: found \"europe\", expected names of China, Europe, Japan");
-  expect_refused("assess scene.toml --speed-kmh 100:2000:500 --stage contact -o out",
-                 "--speed-kmh: found 1100, expected 0.0036 to 720 km/h");
-  expect_refused("assess scene.toml -o ''", "-o: found an empty name, expected the name of a folder");
-  expect_refused("assess scene.toml --seeds 3 --stage contact -o out2", "irregularity.spectrum");
+  expect_rejected("assess rules.toml -o out",
+                  "assessment.rules: found \"europe\", expected names of China, Europe, Japan");
+  expect_rejected("assess scene.toml --speed-kmh 100:2000:500 --stage contact -o out",
+                  "--speed-kmh: found 1100, expected 0.0036 to 720 km/h");
+  expect_rejected("assess scene.toml -o ''", "-o: found an empty name, expected the name of a folder");
+  expect_rejected("assess scene.toml --seeds 3 --stage contact -o out2", "irregularity.spectrum");
 }
 
 }  // namespace

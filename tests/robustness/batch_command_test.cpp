@@ -25,7 +25,7 @@ class BatchCommand : public TablegenFixture {
     std::ofstream(folder_ / "lists/list.toml") << list;
     return tablegen("batch lists/list.toml " + arguments);
   }
-  void expect_refused(const std::string& list, const std::vector<std::string>& texts) const {
+  void expect_rejected(const std::string& list, const std::vector<std::string>& texts) const {
     const Outcome outcome = batch(list);
     EXPECT_EQ(outcome.exit_code, 2) << list << outcome.err;
     for (const std::string& text : texts) {
@@ -61,7 +61,7 @@ TEST_F(BatchCommand, MakesWhatIsMissingAndSkipsWhatIsDone) {
   EXPECT_EQ(states(batch(defaults + pair_a + pair_b, "--json")), (States{"a.h5 done before", "b.h5 made"}));
   EXPECT_EQ(contents(folder_ / "lists/a.h5"), bytes) << "a finished table was touched";
 
-  // the same numbers said in another way are the same options; others are refused, unless --overwrite
+  // the same numbers said in another way are the same options; others are rejected, unless --overwrite
   const std::string same = defaults + "tolerance = \"0.00000001\"\n" + pair_a;
   EXPECT_EQ(states(batch(same, "--json")), States{"a.h5 done before"});
   const Outcome other = batch(defaults + "tolerance = 3e-8\n" + pair_a);
@@ -94,25 +94,26 @@ TEST_F(BatchCommand, OnlyTakesEveryNthPair) {
 }
 
 TEST_F(BatchCommand, WrongLists) {
-  expect_refused("", {"list.toml", "[[pair]]"});
-  expect_refused("[[pair]\n", {"lists/list.toml:1"});
-  expect_refused(defaults + pair_a + "yow = 1\n", {"lists/list.toml:8: yow", "unknown key", "yaw"});
-  expect_refused("[defaults]\noutput = \"a.h5\"\n" + pair_a, {"lists/list.toml:2: output", "unknown key"});
-  expect_refused(defaults + "[[pair]]\nwheel = \"" + std::string(300, 'w') + "\"\noutput = \"a.h5\"\n",
-                 {"neither a built-in name nor a file"});
-  expect_refused("[pears]\nrail = 1\n", {"lists/list.toml:1: pears", "[[pair]]"});
-  expect_refused("[contact]\nmode = \"online\"\n",
-                 {"lists/list.toml: found a scene, expected a list of wheel and rail pairs"});
-  expect_refused(pair_a, {"lists/list.toml:1", "no rail"});
-  expect_refused(defaults + "[[pair]]\nwheel = \"S1002\"\n", {"lists/list.toml:5", "no output"});
-  expect_refused(defaults + pair_a + pair_a, {"lists/list.toml:10: output", "a.h5", "lists/list.toml:5"});
-  expect_refused(defaults + pair_a + "gauge = true\n", {"lists/list.toml:8: gauge", "boolean"});
-  expect_refused(defaults + pair_a + "roll = [0.1, 0.2, 0.3]\n", {"lists/list.toml:8: roll", "[low, high]"});
-  expect_refused(defaults + pair_a + "tolerance = 0\n", {"lists/list.toml:5", "tolerance"});
-  expect_refused(defaults + pair_a + pair_b + "tolerance = \"small\"\n", {"lists/list.toml:8", "--tolerance", "small"});
-  expect_refused(defaults + "[[pair]]\nwheel = \"none.prw\"\noutput = \"a.h5\"\n", {"lists/list.toml:5", "none.prw"});
+  expect_rejected("", {"list.toml", "[[pair]]"});
+  expect_rejected("[[pair]\n", {"lists/list.toml:1"});
+  expect_rejected(defaults + pair_a + "yow = 1\n", {"lists/list.toml:8: yow", "unknown key", "yaw"});
+  expect_rejected("[defaults]\noutput = \"a.h5\"\n" + pair_a, {"lists/list.toml:2: output", "unknown key"});
+  expect_rejected(defaults + "[[pair]]\nwheel = \"" + std::string(300, 'w') + "\"\noutput = \"a.h5\"\n",
+                  {"neither a built-in name nor a file"});
+  expect_rejected("[pears]\nrail = 1\n", {"lists/list.toml:1: pears", "[[pair]]"});
+  expect_rejected("[contact]\nmode = \"online\"\n",
+                  {"lists/list.toml: found a scene, expected a list of wheel and rail pairs"});
+  expect_rejected(pair_a, {"lists/list.toml:1", "no rail"});
+  expect_rejected(defaults + "[[pair]]\nwheel = \"S1002\"\n", {"lists/list.toml:5", "no output"});
+  expect_rejected(defaults + pair_a + pair_a, {"lists/list.toml:10: output", "a.h5", "lists/list.toml:5"});
+  expect_rejected(defaults + pair_a + "gauge = true\n", {"lists/list.toml:8: gauge", "boolean"});
+  expect_rejected(defaults + pair_a + "roll = [0.1, 0.2, 0.3]\n", {"lists/list.toml:8: roll", "[low, high]"});
+  expect_rejected(defaults + pair_a + "tolerance = 0\n", {"lists/list.toml:5", "tolerance"});
+  expect_rejected(defaults + pair_a + pair_b + "tolerance = \"small\"\n",
+                  {"lists/list.toml:8", "--tolerance", "small"});
+  expect_rejected(defaults + "[[pair]]\nwheel = \"none.prw\"\noutput = \"a.h5\"\n", {"lists/list.toml:5", "none.prw"});
   std::ofstream(folder_ / "lists/b.h5") << "not a table";
-  expect_refused(defaults + pair_a + pair_b, {"lists/list.toml:8", "b.h5"});
+  expect_rejected(defaults + pair_a + pair_b, {"lists/list.toml:8", "b.h5"});
 }
 
 }  // namespace

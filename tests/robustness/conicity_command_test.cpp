@@ -24,7 +24,7 @@ class ConicityCommand : public TablegenFixture {
     return nlohmann::json::parse(outcome.out);
   }
   /// Exit code 2, nothing on stdout, one message on stderr with both texts in it.
-  void expect_refused(const std::string& arguments, const std::string& place, const std::string& expected = "") const {
+  void expect_rejected(const std::string& arguments, const std::string& place, const std::string& expected = "") const {
     const Outcome outcome = tablegen(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
     EXPECT_EQ(outcome.out, "") << arguments;
@@ -35,43 +35,44 @@ class ConicityCommand : public TablegenFixture {
 };
 
 TEST_F(ConicityCommand, WrongArguments) {
-  expect_refused("conicity", "--wheel");
-  expect_refused("conicity --wheel S1002", "--rail");
-  expect_refused("conicity --wheel none.txt --rail 60E1", "none.txt");
-  expect_refused("conicity --wheel S1002 --rail 60E1 --left-wheel none.txt", "none.txt");
-  expect_refused("conicity table.h5 --wheel S1002", "--wheel", "in place of a table");
-  expect_refused("conicity table.h5 --lateral -1e-3:1e-3", "--lateral", "in place of a table");
-  expect_refused("conicity table.h5 --gauge 1.435", "--gauge", "in place of a table");
+  expect_rejected("conicity", "--wheel");
+  expect_rejected("conicity --wheel S1002", "--rail");
+  expect_rejected("conicity --wheel none.txt --rail 60E1", "none.txt");
+  expect_rejected("conicity --wheel S1002 --rail 60E1 --left-wheel none.txt", "none.txt");
+  expect_rejected("conicity table.h5 --wheel S1002", "--wheel", "in place of a table");
+  expect_rejected("conicity table.h5 --lateral -1e-3:1e-3", "--lateral", "in place of a table");
+  expect_rejected("conicity table.h5 --gauge 1.435", "--gauge", "in place of a table");
   const std::string pair = cones;
-  expect_refused(pair + "--half-spacing 0.75 --gauge 1.435", "--gauge", "--half-spacing");
-  expect_refused(pair + "--half-spacing 0", "--half-spacing");
-  expect_refused(pair + "--half-spacing x", "--half-spacing", "a number");
-  expect_refused(pair + "--half-spacing 0.75", "--half-spacing: found 0.75 with the built-in rail 60E1", "a rail file");
-  expect_refused(pair + "--amplitudes 1e-3:2e-3", "--amplitudes", "LO:HI:STEP");
-  expect_refused(pair + "--amplitudes 2e-3:1e-3:1e-4", "--amplitudes", "LO:HI:STEP");
-  expect_refused(pair + "--amplitudes 1e-3:2e-3:0", "--amplitudes", "LO:HI:STEP");
-  expect_refused(pair + "--sampling coarse", "--sampling", "refined or even");
-  expect_refused(pair + "--step 1", "step");
-  expect_refused(pair + "--smoothing -1", "--smoothing");
-  expect_refused(pair + "--runs 30", "--runs", "--random-error");
-  expect_refused(pair + "--random-error 1e-5 --runs 1", "--runs", "2..100000");
-  expect_refused(pair + "--random-error 1", "random error");
-  expect_refused(pair + "--grid 1e-5 --error-direction x", "--error-direction", "y or z or both");
-  expect_refused(pair + "-o none/curve.csv", "--output");
+  expect_rejected(pair + "--half-spacing 0.75 --gauge 1.435", "--gauge", "--half-spacing");
+  expect_rejected(pair + "--half-spacing 0", "--half-spacing");
+  expect_rejected(pair + "--half-spacing x", "--half-spacing", "a number");
+  expect_rejected(pair + "--half-spacing 0.75", "--half-spacing: found 0.75 with the built-in rail 60E1",
+                  "a rail file");
+  expect_rejected(pair + "--amplitudes 1e-3:2e-3", "--amplitudes", "LO:HI:STEP");
+  expect_rejected(pair + "--amplitudes 2e-3:1e-3:1e-4", "--amplitudes", "LO:HI:STEP");
+  expect_rejected(pair + "--amplitudes 1e-3:2e-3:0", "--amplitudes", "LO:HI:STEP");
+  expect_rejected(pair + "--sampling coarse", "--sampling", "refined or even");
+  expect_rejected(pair + "--step 1", "step");
+  expect_rejected(pair + "--smoothing -1", "--smoothing");
+  expect_rejected(pair + "--runs 30", "--runs", "--random-error");
+  expect_rejected(pair + "--random-error 1e-5 --runs 1", "--runs", "2..100000");
+  expect_rejected(pair + "--random-error 1", "random error");
+  expect_rejected(pair + "--grid 1e-5 --error-direction x", "--error-direction", "y or z or both");
+  expect_rejected(pair + "-o none/curve.csv", "--output");
 }
 
 TEST_F(ConicityCommand, WrongReferences) {
   const std::string with = std::string(cones) + "--reference bands.txt ";
-  expect_refused(with, "bands.txt");
+  expect_rejected(with, "bands.txt");
   write("bands.txt", "1.0 0.025 0.03 0.02 0.04 0.01\n2.0 0.025 0.03 0.02 0.04\n");
-  expect_refused(with, "bands.txt:2", "six numbers");
+  expect_rejected(with, "bands.txt:2", "six numbers");
   write("bands.txt", "1.0 0.025 0.03 0.02 0.04 0.01\n");
-  expect_refused(with + "--amplitudes 1e-3:2e-3:1e-4", "--amplitudes", "--reference");
+  expect_rejected(with + "--amplitudes 1e-3:2e-3:1e-4", "--amplitudes", "--reference");
 }
 
 TEST_F(ConicityCommand, OutputsOfOthersStay) {
   write("notes.csv", "mine\n");
-  expect_refused(std::string(cones) + "-o notes.csv", "notes.csv");
+  expect_rejected(std::string(cones) + "-o notes.csv", "notes.csv");
   EXPECT_EQ(contents(folder_ / "notes.csv"), "mine\n");
 }
 

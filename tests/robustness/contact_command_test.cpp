@@ -31,7 +31,7 @@ Outcome contact(const std::string& arguments) {
   return outcome;
 }
 
-void expect_refused(const std::string& arguments, const std::string& part) {
+void expect_rejected(const std::string& arguments, const std::string& part) {
   const Outcome outcome = contact(arguments);
   EXPECT_EQ(outcome.exit_code, 2) << arguments;
   EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
@@ -63,17 +63,17 @@ TEST(ContactCommand, ExtremesAreFinite) {
   }
 }
 
-TEST(ContactCommand, RefusesBadInput) {
-  expect_refused("--creepage 0,0,0", "found no --ratio ");
-  expect_refused("--ratio 1", "found no --creepage ");
-  expect_refused("--ratio -2 --creepage 0,0,0", "expected 1e-4..1e4");
-  expect_refused("--ratio nan --creepage 0,0,0", "a number");
-  expect_refused("--ratio 1 --creepage 0,0", "X,Y,PHI");
-  expect_refused("--ratio 1 --creepage 0,0,0,", "X,Y,PHI");
-  expect_refused("--ratio 1 --creepage 0,0,inf", "X,Y,PHI");
-  expect_refused("--ratio 1 --creepage 1e155,0,0", "creepages to");
-  expect_refused("--ratio 1 --creepage 0,0,0 --elements 41", "an even number");
-  expect_refused("--ratio 1 --creepage 0,0,0 --poisson 0.6", "0..0.5");
+TEST(ContactCommand, RejectsBadInput) {
+  expect_rejected("--creepage 0,0,0", "found no --ratio ");
+  expect_rejected("--ratio 1", "found no --creepage ");
+  expect_rejected("--ratio -2 --creepage 0,0,0", "expected 1e-4..1e4");
+  expect_rejected("--ratio nan --creepage 0,0,0", "a number");
+  expect_rejected("--ratio 1 --creepage 0,0", "X,Y,PHI");
+  expect_rejected("--ratio 1 --creepage 0,0,0,", "X,Y,PHI");
+  expect_rejected("--ratio 1 --creepage 0,0,inf", "X,Y,PHI");
+  expect_rejected("--ratio 1 --creepage 1e155,0,0", "creepages to");
+  expect_rejected("--ratio 1 --creepage 0,0,0 --elements 41", "an even number");
+  expect_rejected("--ratio 1 --creepage 0,0,0 --poisson 0.6", "0..0.5");
 }
 
 constexpr const char* pair = "--wheel S1002 --rail 60E1 ";
@@ -148,30 +148,30 @@ TEST(ContactCommand, RepairsOfProfileFilesAreSaid) {
   std::filesystem::remove(wheel);
 }
 
-TEST(ContactCommand, RefusesALoadedContactThatIsWrong) {
+TEST(ContactCommand, RejectsALoadedContactThatIsWrong) {
   const std::string at = std::string(pair) + "--pose 0,0,0 ";
-  expect_refused(std::string(pair) + "--pose 0,0 --load 1e4", "Y,YAW,ROLL");
-  expect_refused(std::string(pair) + "--pose 0,0,nan --load 1e4", "Y,YAW,ROLL");
-  expect_refused(std::string(pair) + "--pose 0.5,0,0 --load 1e4", "0.1");
-  expect_refused(at, "neither --load nor --dz");
-  expect_refused(at + "--load 1e4 --dz 1e-4", "both --load and --dz");
-  expect_refused(at + "--load 0", "--load: found 0, expected above 0");
-  expect_refused(at + "--load 75000e3", "--load: found 75000e3, expected above 0, at most 1e+07 N");
-  expect_refused(at + "--load 1e6 --modulus 1e10 --elements 8", "a load that lowers it by at most 2 mm; is it in N?");
-  expect_refused(at + "--load 1e4 --smoothing 3e-6", "--smoothing: found 3e-6 with the built-in profiles");
-  expect_refused(at + "--load 1e4 --gauge 2 --flange-back 1.4", "--pose: found 0,0,0, expected one at which wheel");
-  expect_refused(at + "--dz 1", "0..2e-3");
-  expect_refused(at + "--load 1e4 --ratio 2", "--ratio");
-  expect_refused(at + "--load 1e4 --pitch-rate -60", "--friction");
-  expect_refused(at + "--load 1e4 --friction 0.3 --motion 1,2", "VY,VZ,ROLL,YAW");
-  expect_refused(at + "--load 1e4 --friction 3", "friction");
-  expect_refused(at + "--load 1e4 --friction 5e-324", "expected 1e-6 to 2");
-  expect_refused(at + "--load 1e4 --friction 0.3 --velocity 5e-324", "expected 1e-6 to 1000 m/s");
-  expect_refused(at + "--load 1e4 --friction 0.3 --velocity 0", "speed");
-  expect_refused(at + "--load 1e4 --elements 2", "elements");
-  expect_refused(at + "--load 1e4 --table x.h5", "--wheel");
-  expect_refused("--pose 0,0,0 --load 1e4 --wheel S1002", "found no --rail ");
-  expect_refused("--ratio 2 --creepage 0,0,0 --load 1e4", "--pose");
+  expect_rejected(std::string(pair) + "--pose 0,0 --load 1e4", "Y,YAW,ROLL");
+  expect_rejected(std::string(pair) + "--pose 0,0,nan --load 1e4", "Y,YAW,ROLL");
+  expect_rejected(std::string(pair) + "--pose 0.5,0,0 --load 1e4", "0.1");
+  expect_rejected(at, "neither --load nor --dz");
+  expect_rejected(at + "--load 1e4 --dz 1e-4", "both --load and --dz");
+  expect_rejected(at + "--load 0", "--load: found 0, expected above 0");
+  expect_rejected(at + "--load 75000e3", "--load: found 75000e3, expected above 0, at most 1e+07 N");
+  expect_rejected(at + "--load 1e6 --modulus 1e10 --elements 8", "a load that lowers it by at most 2 mm; is it in N?");
+  expect_rejected(at + "--load 1e4 --smoothing 3e-6", "--smoothing: found 3e-6 with the built-in profiles");
+  expect_rejected(at + "--load 1e4 --gauge 2 --flange-back 1.4", "--pose: found 0,0,0, expected one at which wheel");
+  expect_rejected(at + "--dz 1", "0..2e-3");
+  expect_rejected(at + "--load 1e4 --ratio 2", "--ratio");
+  expect_rejected(at + "--load 1e4 --pitch-rate -60", "--friction");
+  expect_rejected(at + "--load 1e4 --friction 0.3 --motion 1,2", "VY,VZ,ROLL,YAW");
+  expect_rejected(at + "--load 1e4 --friction 3", "friction");
+  expect_rejected(at + "--load 1e4 --friction 5e-324", "expected 1e-6 to 2");
+  expect_rejected(at + "--load 1e4 --friction 0.3 --velocity 5e-324", "expected 1e-6 to 1000 m/s");
+  expect_rejected(at + "--load 1e4 --friction 0.3 --velocity 0", "speed");
+  expect_rejected(at + "--load 1e4 --elements 2", "elements");
+  expect_rejected(at + "--load 1e4 --table x.h5", "--wheel");
+  expect_rejected("--pose 0,0,0 --load 1e4 --wheel S1002", "found no --rail ");
+  expect_rejected("--ratio 2 --creepage 0,0,0 --load 1e4", "--pose");
   const Outcome many = contact(at + "--dz 1e-4 --most-elements 100");
   EXPECT_EQ(many.exit_code, 1);
   EXPECT_NE(many.text.find("--most-elements"), std::string::npos) << many.text;

@@ -210,16 +210,16 @@ TEST_F(ExportCommand, ItReplacesItsOwnFilesOnly) {
   ASSERT_EQ(vsi("export r.h5 -o run.pvd --times 0 -q").exit_code, 0) << "an export replaces an export";
   EXPECT_EQ(entries("run").size(), 12u) << "six parts, each a file and a collection: none of the earlier ones";
   write("run/notes.txt", "mine");
-  expect_refused("export r.h5 -o run.pvd", "run: found notes.txt in it, which no export wrote");
+  expect_rejected("export r.h5 -o run.pvd", "run: found notes.txt in it, which no export wrote");
   EXPECT_EQ(text_of("run/notes.txt"), "mine");
   EXPECT_EQ(entries("run").size(), 13u);
   write("other.pvd", "<VTKFile type=\"Collection\">\n");
-  expect_refused("export r.h5 -o other.pvd", "other.pvd: found a file that begins with");
+  expect_rejected("export r.h5 -o other.pvd", "other.pvd: found a file that begins with");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
   write("plain", "mine");
-  expect_refused("export r.h5 -o plain", "plain: found a file");
-  expect_refused("export r.h5 -o r.h5", "found the ending .h5, expected .pvd");
-  expect_refused("export r.h5 -o absent/run.pvd", "found no folder absent");
+  expect_rejected("export r.h5 -o plain", "plain: found a file");
+  expect_rejected("export r.h5 -o r.h5", "found the ending .h5, expected .pvd");
+  expect_rejected("export r.h5 -o absent/run.pvd", "found no folder absent");
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << entry.path();
   }
@@ -254,14 +254,14 @@ TEST_F(ExportCommand, WhatAKilledExportLeftBehindGoes) {
 }
 
 TEST_F(ExportCommand, WrongInstantsAreNamed) {
-  expect_refused("export r.h5 -o out --times 0.01,7",
-                 "--times: found '7', expected times within the records, 0 to 0.02");
-  expect_refused("export r.h5 -o out --times 0.01,", "--times: found ''");
-  expect_refused("export r.h5 -o out --every 0", "--every: found 0 s, expected a time above 0 s");
-  expect_refused("export r.h5 -o out --every 1e-3 --times 0", "--every: found --times too");
-  expect_refused("export r.h5 -o out --scale -1", "--scale: found -1");
-  expect_refused("export absent.h5 -o out", "absent.h5");
-  expect_refused("export s.toml -o out", "s.toml");
+  expect_rejected("export r.h5 -o out --times 0.01,7",
+                  "--times: found '7', expected times within the records, 0 to 0.02");
+  expect_rejected("export r.h5 -o out --times 0.01,", "--times: found ''");
+  expect_rejected("export r.h5 -o out --every 0", "--every: found 0 s, expected a time above 0 s");
+  expect_rejected("export r.h5 -o out --every 1e-3 --times 0", "--every: found --times too");
+  expect_rejected("export r.h5 -o out --scale -1", "--scale: found -1");
+  expect_rejected("export absent.h5 -o out", "absent.h5");
+  expect_rejected("export s.toml -o out", "s.toml");
 }
 
 TEST_F(ExportCommand, WhatIsNotRecordedIsNamedWithItsKey) {
@@ -281,7 +281,7 @@ TEST_F(ExportCommand, PositionsBesideTheBridgeAreRejected) {
   std::string scene = short_scene;
   scene.replace(scene.find("24.0"), 4, "33.0");
   write("s.toml", scene);
-  expect_refused("run s.toml -o out", "structure.report: found 33 m, expected 0 to 32 m, the bridge");
+  expect_rejected("run s.toml -o out", "structure.report: found 33 m, expected 0 to 32 m, the bridge");
 }
 
 }  // namespace

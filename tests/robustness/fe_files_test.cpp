@@ -1,4 +1,4 @@
-// Files of finite-element programs: what they say is read, what is wrong is refused with file and line.
+// Files of finite-element programs: what they say is read, what is wrong is rejected with file and line.
 
 #include "railtab/runtime/fe/fe_files.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 
 class FeFilesTest : public testing::InFolder {
  protected:
-  // The message with which a file is refused.
+  // The message with which a file is rejected.
   template <class Read>
   std::string message(const Read& read, const std::string& text) const {
     const auto file = write("f", text);
@@ -68,34 +68,34 @@ TEST_F(FeFilesTest, HarwellBoeingUnsymmetricOneEntryPerLineAndRightHandSides) {
   EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
 }
 
-TEST_F(FeFilesTest, HarwellBoeingRefusals) {
-  const auto refused = [&](const std::string& text) { return message(read_harwell_boeing, text); };
+TEST_F(FeFilesTest, HarwellBoeingRejections) {
+  const auto rejected = [&](const std::string& text) { return message(read_harwell_boeing, text); };
   const std::string body = "    1    2    3\n    1    2\n  4.000000000000D+00 -1.500000000000E+00\n";
-  EXPECT_EQ(refused(header("RSA", 2, 2, formats_of_five) + body), "accepted");
-  EXPECT_TRUE(refused(header("CSA", 2, 2, formats_of_five) + body).starts_with("f:3: found matrix type 'CSA'"));
-  EXPECT_TRUE(refused(header("RSE", 2, 2, formats_of_five) + body).starts_with("f:3: found matrix type 'RSE'"));
-  EXPECT_TRUE(refused(header("RSA", 2, 2, "(8X5)           (8I5)           (3E20.12)") + body)
+  EXPECT_EQ(rejected(header("RSA", 2, 2, formats_of_five) + body), "accepted");
+  EXPECT_TRUE(rejected(header("CSA", 2, 2, formats_of_five) + body).starts_with("f:3: found matrix type 'CSA'"));
+  EXPECT_TRUE(rejected(header("RSE", 2, 2, formats_of_five) + body).starts_with("f:3: found matrix type 'RSE'"));
+  EXPECT_TRUE(rejected(header("RSA", 2, 2, "(8X5)           (8I5)           (3E20.12)") + body)
                   .starts_with("f:4: found format '(8X5)'"));
-  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    3    2\n")
+  EXPECT_TRUE(rejected(header("RSA", 2, 2, formats_of_five) + "    1    3    2\n")
                   .starts_with("f:5: found column 3 at place 2, expected 3 to 3"));
-  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    9\n")
+  EXPECT_TRUE(rejected(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    9\n")
                   .starts_with("f:6: found row 9, expected 1 to 2"));
   const std::string least = "(1I20)          (1I20)          (1E20.12)";
-  EXPECT_TRUE(refused(header("RSA", 1, 1, least) + "1\n2\n-9223372036854775808\n")
+  EXPECT_TRUE(rejected(header("RSA", 1, 1, least) + "1\n2\n-9223372036854775808\n")
                   .starts_with("f:7: found row -9223372036854775808, expected 1 to 1"));
-  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    2    1\n")
+  EXPECT_TRUE(rejected(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    2    1\n")
                   .starts_with("f:6: found entries on both sides"));
   EXPECT_TRUE(
-      refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    2\n   4.00D+00            nan\n")
+      rejected(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    2\n   4.00D+00            nan\n")
           .starts_with("f:7: found 'nan'"));
-  EXPECT_TRUE(refused(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    2\n")
+  EXPECT_TRUE(rejected(header("RSA", 2, 2, formats_of_five) + "    1    2    3\n    1    2\n")
                   .starts_with("f: found the end of the file"));
-  EXPECT_TRUE(refused(header("RSA", 2000000000, 2, formats_of_five)).starts_with("f:3: found 2000000000 rows"));
-  EXPECT_TRUE(refused(header("RSA", 2, 2000000000, formats_of_five)).starts_with("f:3: found 2000000000 entries"));
+  EXPECT_TRUE(rejected(header("RSA", 2000000000, 2, formats_of_five)).starts_with("f:3: found 2000000000 rows"));
+  EXPECT_TRUE(rejected(header("RSA", 2, 2000000000, formats_of_five)).starts_with("f:3: found 2000000000 entries"));
 }
 
-// A size line that promises what the file cannot hold is refused before anything is allocated for it.
-TEST_F(FeFilesTest, MatrixMarketOfAbsurdSizeIsRefusedAtItsSizeLine) {
+// A size line that promises what the file cannot hold is rejected before anything is allocated for it.
+TEST_F(FeFilesTest, MatrixMarketOfAbsurdSizeIsRejectedAtItsSizeLine) {
   const std::string banner = "%%MatrixMarket matrix coordinate real general\n";
   EXPECT_TRUE(message(read_matrix_market, banner + "2000000000 2000000000 1\n1 1 1\n")
                   .starts_with("f:2: found 2000000000 rows and 2000000000 columns, expected 1 to 20000000"));
@@ -117,16 +117,16 @@ TEST_F(FeFilesTest, CalculixMatrixAndRows) {
   EXPECT_EQ(rows[1].node, 12);
   EXPECT_EQ(rows[1].motion, 2);
   EXPECT_EQ(rows[2].node, 7);
-  const auto refused = [&](const std::string& text) {
+  const auto rejected = [&](const std::string& text) {
     return message([](const auto& f) { return read_calculix_matrix(f, 3); }, text);
   };
-  EXPECT_TRUE(refused("1 1 4\n1 4 1\n").starts_with("f:2: found row 1, column 4, expected 1 to 3"));
-  EXPECT_TRUE(refused("1 2 4\n3 1 1\n").starts_with("f:2: found entries on both sides"));
-  EXPECT_TRUE(refused("1 1 inf\n").starts_with("f:1: found 'inf'"));
-  EXPECT_TRUE(refused("1 1\n2 2 4\n").starts_with("f:1: found '1 1', expected row, column, value"));
+  EXPECT_TRUE(rejected("1 1 4\n1 4 1\n").starts_with("f:2: found row 1, column 4, expected 1 to 3"));
+  EXPECT_TRUE(rejected("1 2 4\n3 1 1\n").starts_with("f:2: found entries on both sides"));
+  EXPECT_TRUE(rejected("1 1 inf\n").starts_with("f:1: found 'inf'"));
+  EXPECT_TRUE(rejected("1 1\n2 2 4\n").starts_with("f:1: found '1 1', expected row, column, value"));
   const std::string again = ", expected a whole file: run ccx once more";
-  EXPECT_TRUE(refused("1 1 4\n2 2\n").starts_with("f:2: found the end of the file within the line '2 2'" + again));
-  EXPECT_TRUE(refused("1 1 4\n2 2 5\n").starts_with("f:2: found the end of the file after row 2 of 3" + again));
+  EXPECT_TRUE(rejected("1 1 4\n2 2\n").starts_with("f:2: found the end of the file within the line '2 2'" + again));
+  EXPECT_TRUE(rejected("1 1 4\n2 2 5\n").starts_with("f:2: found the end of the file after row 2 of 3" + again));
   EXPECT_TRUE(message(read_calculix_rows, "1.1\n1.7\n").starts_with("f:2: found '1.7'"));
   EXPECT_TRUE(message(read_calculix_rows, "").starts_with("f: found no line"));
 }
@@ -150,19 +150,19 @@ TEST_F(FeFilesTest, AbaqusMatrixInput) {
   EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
   const Eigen::MatrixXd mass(read_abaqus_matrix(write("m.mtx", "5,2,5,2,9.\n7,1, 7,1, 2.\n"), rows));
   EXPECT_TRUE(mass.isApprox(Eigen::Vector3d(0, 2, 0).asDiagonal().toDenseMatrix(), 0.0)) << mass;
-  const auto refused = [&](const std::string& text) {
+  const auto rejected = [&](const std::string& text) {
     return message([&](const auto& f) { return read_abaqus_matrix(f, rows); }, text);
   };
-  EXPECT_EQ(refused("5,1, 7,1, 1.\n7,1, 5,1, 1.\n7,1, 7,1, 2.\n"), "accepted") << "both triangles";
-  EXPECT_TRUE(refused("5,1, 7,1, 1.\n7,1, 5,1, 3.\n7,1, 7,1, 2.\n").find("a symmetric matrix") != std::string::npos);
-  EXPECT_TRUE(
-      refused("7,2, 7,2, 1.\n").starts_with("f:1: found node 7, degree of freedom 2, expected a row of the stiffness"));
-  EXPECT_TRUE(refused("-2,3, 7,1, 1.\n").starts_with("f:1: found node -2, degree of freedom 3"));
-  EXPECT_TRUE(refused("7,1, 7,1, nan\n").starts_with("f:1: found 'nan'"));
-  EXPECT_TRUE(refused("7,1, 7,1\n").starts_with("f:1: found '7,1, 7,1', expected node, degree of freedom, node"));
-  EXPECT_TRUE(refused("7,1, 7,1, 1., 2.\n").starts_with("f:1: found '7,1, 7,1, 1., 2.'"));
-  EXPECT_TRUE(refused("1 1 4.0\n").find("for COORDINATE structure.dofs") != std::string::npos);
-  EXPECT_TRUE(refused("** nothing\n").starts_with("f: found no entry"));
+  EXPECT_EQ(rejected("5,1, 7,1, 1.\n7,1, 5,1, 1.\n7,1, 7,1, 2.\n"), "accepted") << "both triangles";
+  EXPECT_TRUE(rejected("5,1, 7,1, 1.\n7,1, 5,1, 3.\n7,1, 7,1, 2.\n").find("a symmetric matrix") != std::string::npos);
+  EXPECT_TRUE(rejected("7,2, 7,2, 1.\n")
+                  .starts_with("f:1: found node 7, degree of freedom 2, expected a row of the stiffness"));
+  EXPECT_TRUE(rejected("-2,3, 7,1, 1.\n").starts_with("f:1: found node -2, degree of freedom 3"));
+  EXPECT_TRUE(rejected("7,1, 7,1, nan\n").starts_with("f:1: found 'nan'"));
+  EXPECT_TRUE(rejected("7,1, 7,1\n").starts_with("f:1: found '7,1, 7,1', expected node, degree of freedom, node"));
+  EXPECT_TRUE(rejected("7,1, 7,1, 1., 2.\n").starts_with("f:1: found '7,1, 7,1, 1., 2.'"));
+  EXPECT_TRUE(rejected("1 1 4.0\n").find("for COORDINATE structure.dofs") != std::string::npos);
+  EXPECT_TRUE(rejected("** nothing\n").starts_with("f: found no entry"));
   const auto no_rows = [&](const std::string& text) {
     return message([](const auto& f) { return read_abaqus_rows(f, {}); }, text);
   };
@@ -182,21 +182,21 @@ TEST_F(FeFilesTest, AbaqusCoordinateFormatNeedsATableOfRows) {
   EXPECT_EQ(rows.rows[1].node, 7);
   const Eigen::MatrixXd read(read_abaqus_matrix(file, rows));
   EXPECT_TRUE(read.isApprox(expected, 0.0)) << read;
-  const auto refused = [&](const std::string& text) {
+  const auto rejected = [&](const std::string& text) {
     return message([&](const auto& f) { return read_abaqus_matrix(f, rows); }, text);
   };
-  EXPECT_TRUE(refused("5 1 4.0\n").starts_with("f:1: found row 5, expected a row of structure.dofs"));
-  EXPECT_TRUE(refused("5,1, 5,1, 4.0\n").find("for MATRIX INPUT no structure.dofs") != std::string::npos);
-  EXPECT_TRUE(refused("1 1.5 4.0\n").starts_with("f:1: found '1.5', expected a column number"));
+  EXPECT_TRUE(rejected("5 1 4.0\n").starts_with("f:1: found row 5, expected a row of structure.dofs"));
+  EXPECT_TRUE(rejected("5,1, 5,1, 4.0\n").find("for MATRIX INPUT no structure.dofs") != std::string::npos);
+  EXPECT_TRUE(rejected("1 1.5 4.0\n").starts_with("f:1: found '1.5', expected a column number"));
 }
 
 // What the mesh says of axes of nodes and of places of parts is not silently left out.
-TEST_F(FeFilesTest, AbaqusModelsWithOtherAxesAreRefused) {
+TEST_F(FeFilesTest, AbaqusModelsWithOtherAxesAreRejected) {
   FeFiles files;
   files.format = FeFormat::abaqus;
   files.stiffness = write("k.mtx", "1,1, 1,1, 4.0\n");
   files.mass = write("m.mtx", "1,1, 1,1, 1.0\n");
-  const auto refused = [&](const std::string& nodes) {
+  const auto rejected = [&](const std::string& nodes) {
     return message(
         [&](const auto& f) {
           files.nodes = f;
@@ -204,14 +204,14 @@ TEST_F(FeFilesTest, AbaqusModelsWithOtherAxesAreRefused) {
         },
         nodes);
   };
-  EXPECT_EQ(refused("*NODE\n1, 0., 0., 0.\n*INSTANCE, NAME=A, PART=B\n0., 0., 0.\n*END INSTANCE\n"), "accepted");
+  EXPECT_EQ(rejected("*NODE\n1, 0., 0., 0.\n*INSTANCE, NAME=A, PART=B\n0., 0., 0.\n*END INSTANCE\n"), "accepted");
   EXPECT_TRUE(
-      refused("*NODE\n1, 0., 0., 0.\n*TRANSFORM, NSET=S\n1, 1, 0, -1, 1, 0\n").starts_with("f:3: found *TRANSFORM"));
-  EXPECT_TRUE(refused("*NODE\n1, 0.\n*INSTANCE, NAME=A, PART=B\n5., 0., 0.\n")
+      rejected("*NODE\n1, 0., 0., 0.\n*TRANSFORM, NSET=S\n1, 1, 0, -1, 1, 0\n").starts_with("f:3: found *TRANSFORM"));
+  EXPECT_TRUE(rejected("*NODE\n1, 0.\n*INSTANCE, NAME=A, PART=B\n5., 0., 0.\n")
                   .starts_with("f:4: found an *INSTANCE that is moved"));
-  EXPECT_TRUE(refused("*NODE, SYSTEM=C\n1, 0.\n").starts_with("f:1: found *NODE with a coordinate system"));
-  EXPECT_TRUE(refused("*SYSTEM\n1, 0.\n*NODE\n1, 0.\n").starts_with("f:1: found *SYSTEM with a coordinate system"));
-  EXPECT_TRUE(refused("*NODE\n2, 0.\n").find("k.mtx:1: found node 1 in row 1, expected a node of ") !=
+  EXPECT_TRUE(rejected("*NODE, SYSTEM=C\n1, 0.\n").starts_with("f:1: found *NODE with a coordinate system"));
+  EXPECT_TRUE(rejected("*SYSTEM\n1, 0.\n*NODE\n1, 0.\n").starts_with("f:1: found *SYSTEM with a coordinate system"));
+  EXPECT_TRUE(rejected("*NODE\n2, 0.\n").find("k.mtx:1: found node 1 in row 1, expected a node of ") !=
               std::string::npos);
 }
 

@@ -57,7 +57,7 @@ class ForeignHdf5 : public testing::InFolder {
   }
 
   /// The message of the InputError at "values", or nothing where they are read.
-  [[nodiscard]] std::string refusal_of(const char* path = "values") {
+  [[nodiscard]] std::string rejection_of(const char* path = "values") {
     H5Fclose(file_);
     try {
       const ArrayFileReader in(folder_ / "foreign.h5", "test-file", 1);
@@ -78,18 +78,18 @@ class ForeignHdf5 : public testing::InFolder {
 
 TEST_F(ForeignHdf5, ExternalLinksAreNotFollowed) {
   H5Lcreate_external("other.h5", "secret", file_, "values", H5P_DEFAULT, H5P_DEFAULT);
-  expect_words(refusal_of(), {"foreign.h5: values", "a link to another file", "without links"});
+  expect_words(rejection_of(), {"foreign.h5: values", "a link to another file", "without links"});
 }
 
 TEST_F(ForeignHdf5, AnExternalLinkOnTheWayIsNotFollowed) {
   H5Lcreate_external("other.h5", "/", file_, "group", H5P_DEFAULT, H5P_DEFAULT);
-  expect_words(refusal_of("group/secret"), {"foreign.h5: group", "a link to another file"});
+  expect_words(rejection_of("group/secret"), {"foreign.h5: group", "a link to another file"});
 }
 
 TEST_F(ForeignHdf5, SoftLinksAreNotFollowed) {
   H5Lcreate_external("other.h5", "/", file_, "group", H5P_DEFAULT, H5P_DEFAULT);
   H5Lcreate_soft("/group/secret", file_, "values", H5P_DEFAULT, H5P_DEFAULT);
-  expect_words(refusal_of(), {"foreign.h5: values", "a link to another place"});
+  expect_words(rejection_of(), {"foreign.h5: values", "a link to another place"});
 }
 
 TEST_F(ForeignHdf5, VirtualDatasetsAreRejected) {
@@ -99,7 +99,7 @@ TEST_F(ForeignHdf5, VirtualDatasetsAreRejected) {
   write(file_, "values", properties, extent + 1);
   H5Pclose(properties);
   H5Sclose(space);
-  expect_words(refusal_of(), {"foreign.h5: values", "a virtual dataset"});
+  expect_words(rejection_of(), {"foreign.h5: values", "a virtual dataset"});
 }
 
 TEST_F(ForeignHdf5, ValuesInAPipeAreNotWaitedFor) {
@@ -108,7 +108,7 @@ TEST_F(ForeignHdf5, ValuesInAPipeAreNotWaitedFor) {
   H5Pset_external(properties, (folder_ / "pipe").c_str(), 0, 8 * sizeof(double));
   write(file_, "values", properties, 8);
   H5Pclose(properties);
-  expect_words(refusal_of(), {"foreign.h5: values", "values in other files"});
+  expect_words(rejection_of(), {"foreign.h5: values", "values in other files"});
 }
 
 TEST_F(ForeignHdf5, FiltersAreRejected) {
@@ -119,7 +119,7 @@ TEST_F(ForeignHdf5, FiltersAreRejected) {
   H5Pset_filter(properties, of_a_plugin, H5Z_FLAG_OPTIONAL, 0, nullptr);
   write(file_, "values", properties);
   H5Pclose(properties);
-  expect_words(refusal_of(), {"foreign.h5: values", "the filter 32001", "without filters"});
+  expect_words(rejection_of(), {"foreign.h5: values", "the filter 32001", "without filters"});
 }
 
 TEST_F(ForeignHdf5, CompressedZerosDoNotInflate) {
@@ -129,7 +129,7 @@ TEST_F(ForeignHdf5, CompressedZerosDoNotInflate) {
   H5Pset_deflate(properties, 9);
   write(file_, "values", properties, 400 * chunk);
   H5Pclose(properties);
-  expect_words(refusal_of(), {"foreign.h5: values", "the filter 1 (deflate)"});
+  expect_words(rejection_of(), {"foreign.h5: values", "the filter 1 (deflate)"});
 }
 
 TEST_F(ForeignHdf5, AShapeBeyondTheFileIsRejected) {
@@ -138,7 +138,7 @@ TEST_F(ForeignHdf5, AShapeBeyondTheFileIsRejected) {
   H5Pset_chunk(properties, 1, &chunk);
   write(file_, "values", properties, 400'000'000);
   H5Pclose(properties);
-  expect_words(refusal_of(), {"foreign.h5: values", "the shape (400000000)", "bytes of the file"});
+  expect_words(rejection_of(), {"foreign.h5: values", "the shape (400000000)", "bytes of the file"});
 }
 
 TEST_F(ForeignHdf5, TheSameBytesUnderManyNamesAreNotReadForEver) {

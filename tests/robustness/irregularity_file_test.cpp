@@ -67,7 +67,7 @@ TEST_F(IrregularityFile, ReadsPositionsInMillimetres) {
 }
 
 // A step of 5 mm within 1 mm, its neighbours 10 m away: the natural spline swings by metres beside it.
-TEST_F(IrregularityFile, RefusesASplineThatSwings) {
+TEST_F(IrregularityFile, RejectsASplineThatSwings) {
   const std::string step = header + "0,0,0,0,0\n10,0,0,0,0\n10.001,0,0,0,5\n20,0,0,0,5\n40,0,0,0,0\n";
   const std::string message = message_of(step);
   EXPECT_TRUE(message.starts_with("track.csv:2: column z_right: found a spline through the points that swings to"))
@@ -96,7 +96,7 @@ TEST_F(IrregularityFile, ReadsAFileWithAByteOrderMark) {
   EXPECT_DOUBLE_EQ(irregularity.at(RailSide::left, 1.0).y, 1e-3);
 }
 
-TEST_F(IrregularityFile, RefusesAHeaderWithoutUnits) {
+TEST_F(IrregularityFile, RejectsAHeaderWithoutUnits) {
   EXPECT_EQ(message_of("x[m],y_left,z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n"),
             "track.csv:1: found header 'y_left', expected name[unit]");
   EXPECT_EQ(message_of("# comment\nx[km],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n0,0,0,0,0\n1,0,0,0,0\n"),
@@ -128,7 +128,7 @@ TEST_F(IrregularityFile, AMessageShowsPrintableText) {
             std::string::npos);
 }
 
-TEST_F(IrregularityFile, RefusesAWrongNumberOfColumns) {
+TEST_F(IrregularityFile, RejectsAWrongNumberOfColumns) {
   const std::string expected = "expected 5, as in the header";
   EXPECT_EQ(message_of("x[m],z[mm]\n0,0\n1,0\n"),
             "track.csv:1: column x: found 2 columns, expected 5 columns: x, y_left, z_left, y_right, z_right");
@@ -137,28 +137,28 @@ TEST_F(IrregularityFile, RefusesAWrongNumberOfColumns) {
   EXPECT_EQ(message_of(header + "0;0;0;0;0\n"), "track.csv:2: found 1 columns, " + expected);
 }
 
-TEST_F(IrregularityFile, RefusesWhatIsNoFiniteNumber) {
+TEST_F(IrregularityFile, RejectsWhatIsNoFiniteNumber) {
   for (const std::string cell : {"nan", "inf", "-inf", "1.0.0", "", "1e", "one", "1e999"}) {
     EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0," + cell + ",0,0\n"),
               "track.csv:3: column z_left: found '" + cell + "', expected a finite number");
   }
 }
 
-TEST_F(IrregularityFile, RefusesPositionsThatDoNotIncrease) {
+TEST_F(IrregularityFile, RejectsPositionsThatDoNotIncrease) {
   EXPECT_EQ(message_of(header + "0,0,0,0,0\n1,0,0,0,0\n1,0,0,0,0\n"),
             "track.csv:4: column x: found 1, expected more than 1 of the row before");
   EXPECT_EQ(message_of(header + "0,0,0,0,0\n2,0,0,0,0\n1.5,0,0,0,0\n"),
             "track.csv:4: column x: found 1.5, expected more than 2 of the row before");
 }
 
-TEST_F(IrregularityFile, RefusesAFileWithoutPoints) {
+TEST_F(IrregularityFile, RejectsAFileWithoutPoints) {
   const std::string expected = "expected a header row and at least 2 rows";
   EXPECT_EQ(message_of(""), "track.csv: found 0 rows, " + expected);
   EXPECT_EQ(message_of(header), "track.csv: found 0 rows, " + expected);
   EXPECT_EQ(message_of(header + "0,0,0,0,0\n"), "track.csv: found 1 rows, " + expected);
 }
 
-TEST_F(IrregularityFile, RefusesBinaryAndMissingFiles) {
+TEST_F(IrregularityFile, RejectsBinaryAndMissingFiles) {
   EXPECT_NE(message_of(std::string("\x89HDF\r\n\x1a\n\0\0\0", 11)).find("track.csv:1: found"), std::string::npos);
   for (const std::filesystem::path& place : {folder_ / "absent.csv", folder_}) {
     try {

@@ -189,7 +189,7 @@ TEST_F(KilledProcess, ALiveRunCanBeReadAtAnyTime) {
   EXPECT_GE(whole.steps.size(), records);
 }
 
-TEST_F(KilledProcess, ASecondRunOfOneNameIsRefused) {
+TEST_F(KilledProcess, ASecondRunOfOneNameIsRejected) {
   const Outcome both =
       shell("'" VSI_COMMAND
             "' run scene.toml -o r.h5 -q & first=$!; while [ ! -e r.h5 ] && kill -0 $first; do "

@@ -99,26 +99,26 @@ TEST_F(LoadedCommand, LoadsTotalsAndColumnsOfBothKindsOfTable) {
 TEST_F(LoadedCommand, WrongInputIsSaid) {
   write("q.csv", "y,yaw,roll,load\n0,0,0,-5\n");
   make_table();
-  expect_refused("contact t.h5 --query q.csv -o out", "load = -5, expected above 0");
+  expect_rejected("contact t.h5 --query q.csv -o out", "load = -5, expected above 0");
   const std::string expected = "expected the columns y,yaw,roll and one of dz and load, separated by commas";
   write("q.csv", "y,yaw,roll,dz,load\n0,0,0,1e-5,1\n");
-  expect_refused("contact t.h5 --query q.csv -o out", "q.csv:1: found columns dz and load, " + expected);
+  expect_rejected("contact t.h5 --query q.csv -o out", "q.csv:1: found columns dz and load, " + expected);
   write("q.csv", "y,yaw,roll\n0,0,0\n");
-  expect_refused("contact t.h5 --query q.csv -o out", "q.csv:1: found no column dz or load, " + expected);
-  const auto refused = [&](const std::string& arguments, const std::string& message) {
+  expect_rejected("contact t.h5 --query q.csv -o out", "q.csv:1: found no column dz or load, " + expected);
+  const auto rejected = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = tablegen("loaded " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
     EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
   };
-  refused("absent.h5", "absent.h5");
-  refused("t.h5 --lateral 0.001:-0.001", "lateral");
-  refused("t.h5 --levels 2", "levels");
-  refused("t.h5 --yaw -1", "yaw");
-  refused("t.h5 --roll 0:0", "roll");
+  rejected("absent.h5", "absent.h5");
+  rejected("t.h5 --lateral 0.001:-0.001", "lateral");
+  rejected("t.h5 --levels 2", "levels");
+  rejected("t.h5 --yaw -1", "yaw");
+  rejected("t.h5 --roll 0:0", "roll");
   write("scene.toml",
         "[contact]\ntable = \"t.h5\"\nelastic = \"half-space\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = "
         "0.1\n");
-  expect_refused("run scene.toml -o out", "a table with a loaded part (tablegen loaded adds it)");
+  expect_rejected("run scene.toml -o out", "a table with a loaded part (tablegen loaded adds it)");
 }
 
 }  // namespace

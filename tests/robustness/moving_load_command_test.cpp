@@ -74,13 +74,13 @@ TEST_F(MovingLoadCommand, AnOwnListOfAxles) {
   write("tram.csv", "x[m],P[kN]\n0,80\n1.8,80\n8,80\n9.8,80\n");
   EXPECT_EQ(vsi(span + "--train tram.csv --speed 20 --sleeper-spacing 0.6").exit_code, 0);
   write("tram.csv", "x[m],P[kN]\n0,80\n-1.8,80\n");
-  expect_refused(span + "--train tram.csv --speed 20", "tram.csv:3: x[m]: found -1.8 after 0");
+  expect_rejected(span + "--train tram.csv --speed 20", "tram.csv:3: x[m]: found -1.8 after 0");
 }
 
 // Tonnes and kN in place of kg and N.
 TEST_F(MovingLoadCommand, ASpanOfWrongUnitsIsSaid) {
-  expect_refused("moving-load --length 25 --mass 15 --bending-stiffness 30e6 --damping 0.01 --speed 40:90",
-                 "--mass: found 15, expected 100 to 1");
+  expect_rejected("moving-load --length 25 --mass 15 --bending-stiffness 30e6 --damping 0.01 --speed 40:90",
+                  "--mass: found 15, expected 100 to 1");
   const std::string stiffness = "moving-load --length 25 --mass 15e3 --bending-stiffness 30e6 --damping 0.01 ";
   const char* const warning =
       "vsi moving-load: warning: a span of 25 m has its first natural frequency at 0.112 Hz, as a simply supported "
@@ -114,30 +114,30 @@ TEST_F(MovingLoadCommand, LargestValuesAtAnEndOfTheSpeedsAreMarked) {
 }
 
 TEST_F(MovingLoadCommand, WrongInput) {
-  expect_refused(span, "found no speeds");
-  expect_refused(span + "--speed 90:40", "--speed");
-  expect_refused(span + "--speed 40:900", "1 to 200 m/s");
-  expect_refused(span + "--speed 40:40", "LO below HI");
-  expect_refused(span + "--speed 40:90 --speed-kmh 100:200", "one of them");
-  expect_refused(span + "--speed 40:90 --train tgv", "hslm-a10");
-  expect_refused(span + "--speed 40:90 --sleeper-spacing 60", "--sleeper-spacing: found 60");
-  expect_refused(span + "--speed 40:90 -o none/r.csv", "-o");
-  expect_refused("moving-load --length 25 --speed 40:90", "found no --mass");
-  expect_refused("moving-load --train hslm-a1 --speed 40:90", "a scene, or --length");
-  expect_refused("moving-load --length 25 --mass 15e3 --bending-stiffness 30e9 --damping 1 --speed 40:90",
-                 "--damping: found 1");
-  expect_refused("moving-load --length 25 --mass 15e3 --bending-stiffness 1e-300 --damping 0.01 --speed 40:90",
-                 "--bending-stiffness");
-  expect_refused("moving-load --length 25 --mass 1e300 --bending-stiffness 30e9 --damping 0.01 --speed 40:90",
-                 "--mass");
-  expect_refused("moving-load --length 25 --mass 100 --bending-stiffness 100 --damping 0.01 --speed 40:90",
-                 "a first natural frequency of 0.002513 Hz");
-  expect_refused(span + "--speed 1:2 --modes 100", "fewer --modes");
+  expect_rejected(span, "found no speeds");
+  expect_rejected(span + "--speed 90:40", "--speed");
+  expect_rejected(span + "--speed 40:900", "1 to 200 m/s");
+  expect_rejected(span + "--speed 40:40", "LO below HI");
+  expect_rejected(span + "--speed 40:90 --speed-kmh 100:200", "one of them");
+  expect_rejected(span + "--speed 40:90 --train tgv", "hslm-a10");
+  expect_rejected(span + "--speed 40:90 --sleeper-spacing 60", "--sleeper-spacing: found 60");
+  expect_rejected(span + "--speed 40:90 -o none/r.csv", "-o");
+  expect_rejected("moving-load --length 25 --speed 40:90", "found no --mass");
+  expect_rejected("moving-load --train hslm-a1 --speed 40:90", "a scene, or --length");
+  expect_rejected("moving-load --length 25 --mass 15e3 --bending-stiffness 30e9 --damping 1 --speed 40:90",
+                  "--damping: found 1");
+  expect_rejected("moving-load --length 25 --mass 15e3 --bending-stiffness 1e-300 --damping 0.01 --speed 40:90",
+                  "--bending-stiffness");
+  expect_rejected("moving-load --length 25 --mass 1e300 --bending-stiffness 30e9 --damping 0.01 --speed 40:90",
+                  "--mass");
+  expect_rejected("moving-load --length 25 --mass 100 --bending-stiffness 100 --damping 0.01 --speed 40:90",
+                  "a first natural frequency of 0.002513 Hz");
+  expect_rejected(span + "--speed 1:2 --modes 100", "fewer --modes");
   write("scene.toml", rigid_scene);
-  expect_refused("moving-load scene.toml --speed 40:90", "no bridge");
-  expect_refused("moving-load scene.toml --length 20 --speed 40:90", "--length: found a scene too");
+  expect_rejected("moving-load scene.toml --speed 40:90", "no bridge");
+  expect_rejected("moving-load scene.toml --length 20 --speed 40:90", "--length: found a scene too");
   write("own.csv", "mine\n");
-  expect_refused(span + "--speed 40 -o own.csv", "own.csv");
+  expect_rejected(span + "--speed 40 -o own.csv", "own.csv");
 }
 
 }  // namespace

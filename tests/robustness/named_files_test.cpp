@@ -20,20 +20,20 @@ TEST_F(VsiCommand, AGeometryTableOfWrongNumbersIsNamed) {
   table.rail.y[3] = 9e15;
   write_geometry_table(folder_ / "knots.h5", table);
   write("q.csv", "y,yaw,roll,dz\n0,0,0,1e-4\n");
-  expect_refused("contact knots.h5 --query q.csv -o out", "knots.h5: profile made-up rail, knot 3: found (9e+15, ");
-  expect_refused("contact cells.h5 --query q.csv -o out", "cells.h5: node 0: found halves at node 0");
-  expect_refused("contact wheelset.h5 --query q.csv -o out", "wheelset.h5: ");
+  expect_rejected("contact knots.h5 --query q.csv -o out", "knots.h5: profile made-up rail, knot 3: found (9e+15, ");
+  expect_rejected("contact cells.h5 --query q.csv -o out", "cells.h5: node 0: found halves at node 0");
+  expect_rejected("contact wheelset.h5 --query q.csv -o out", "wheelset.h5: ");
   write("scene.toml", "[contact]\ntable = \"cells.h5\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
-  expect_refused("run scene.toml -o out", "scene.toml:2: contact.table: cells.h5: node 0: found halves at node 0");
+  expect_rejected("run scene.toml -o out", "scene.toml:2: contact.table: cells.h5: node 0: found halves at node 0");
   write("no.h5", "no table");
   const std::string rest = "[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n";
   for (const char* mode : {"table", "online"}) {
     write("scene.toml", std::string("[contact]\nmode = \"") + mode + "\"\ntable = \"no.h5\"\n" + rest);
-    expect_refused("run scene.toml -o out", "scene.toml:3: contact.table: no.h5: found no HDF5 signature");
+    expect_rejected("run scene.toml -o out", "scene.toml:3: contact.table: no.h5: found no HDF5 signature");
   }
   write_geometry_table(folder_ / "good.h5", small_geometry_table());
   write("scene.toml", "[contact]\ntable = \"good.h5\"\n[[profiles]]\ncoach = 1\ntable = \"no.h5\"\n" + rest);
-  expect_refused("run scene.toml -o out", "scene.toml:3: [[profiles]] 1 of 1: no.h5: found no HDF5 signature");
+  expect_rejected("run scene.toml -o out", "scene.toml:3: [[profiles]] 1 of 1: no.h5: found no HDF5 signature");
 }
 
 TEST_F(VsiCommand, ACreepTableOfWrongNumbersIsNamed) {
@@ -58,18 +58,18 @@ TEST_F(VsiCommand, AVehicleThatCannotStandIsNamedWithItsFile) {
       "joins = [[\"wheelset-1\", \"car-body\"], [\"wheelset-2\", \"car-body\"]]\ny = 1.0\nboth_sides = true\n"
       "height = 0.46\nkx = 5e6\nky = 3e6\n";
   write("hanging.toml", wagon + "cz = 2e4\n");
-  expect_refused("vehicle hanging.toml",
-                 "hanging.toml: wagon: found a weight of 1.96e+05 N of car-body that no spring carries");
+  expect_rejected("vehicle hanging.toml",
+                  "hanging.toml: wagon: found a weight of 1.96e+05 N of car-body that no spring carries");
   write("falling.toml", wagon + "kz = 1e4\n");
-  expect_refused("vehicle falling.toml",
-                 "falling.toml: wagon: found a vehicle that falls over under its weight, car-body first, ω² = ");
+  expect_rejected("vehicle falling.toml",
+                  "falling.toml: wagon: found a vehicle that falls over under its weight, car-body first, ω² = ");
 }
 
 TEST_F(VsiCommand, AGaugeHeightThatTheRailDoesNotReachNamesTheScene) {
   write("scene.toml",
         "[contact]\nmode = \"online\"\ndimensions.gauge_height = 0.05\n[track]\nkind = \"rigid\"\n"
         "[integration]\nduration = 0.1\n");
-  expect_refused("run scene.toml -o out", "scene.toml");
+  expect_rejected("run scene.toml -o out", "scene.toml");
 }
 
 }  // namespace

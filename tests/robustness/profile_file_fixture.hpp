@@ -30,8 +30,8 @@ class ProfileFile : public ::testing::Test {
     return folder_ / name;
   }
 
-  /// The message with which a file is refused; empty where it is read.
-  [[nodiscard]] std::string refusal(const std::string& name, const std::string& content, ProfileKind kind) const {
+  /// The message with which a file is rejected; empty where it is read.
+  [[nodiscard]] std::string rejection(const std::string& name, const std::string& content, ProfileKind kind) const {
     try {
       static_cast<void>(read_profile_file(write(name, content), kind));
     } catch (const InputError& e) {
@@ -40,9 +40,9 @@ class ProfileFile : public ::testing::Test {
     return {};
   }
 
-  void expect_refused(const std::string& name, const std::string& content, ProfileKind kind,
-                      const std::vector<std::string>& words) const {
-    const std::string message = refusal(name, content, kind);
+  void expect_rejected(const std::string& name, const std::string& content, ProfileKind kind,
+                       const std::vector<std::string>& words) const {
+    const std::string message = rejection(name, content, kind);
     for (const std::string& word : words) {
       EXPECT_NE(message.find(word), std::string::npos) << "\"" << word << "\" in \"" << message << "\"";
     }

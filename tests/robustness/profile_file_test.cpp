@@ -1,4 +1,4 @@
-// Profile files: what is read, and what is refused with its file and line.
+// Profile files: what is read, and what is rejected with its file and line.
 
 #include "railtab/runtime/profile/profile_file.hpp"
 
@@ -28,7 +28,7 @@ TEST_F(ProfileFile, ReadsCommentsSeparatorsAndForeignLineEnds) {
   std::string text = rail_points("# a head\r\n#units:mm\r\n\r\n");
   text = replaced(text, "-28.000000000 ", "-28.000000000,\t");
   text = replaced(text, "-27.000000000 ", "+-27.000000000 ");
-  EXPECT_NE(refusal("sign.txt", text, ProfileKind::rail), "");
+  EXPECT_NE(rejection("sign.txt", text, ProfileKind::rail), "");
   text = replaced(text, "+-27.000000000 ", "  -27.0E+0 ; ");
   text = replaced(text, "\n3.000000000 ", " ! the top is near\n+3.000000000 ");
   expect_round_head(read_profile_file(write("head.txt", text), ProfileKind::rail));
@@ -49,16 +49,17 @@ TEST_F(ProfileFile, TakesPointsInEitherDirection) {
   EXPECT_EQ(forward.y[8], 0.0) << "a wheel keeps its origin";
 }
 
-TEST_F(ProfileFile, RefusesWrongUnits) {
-  expect_refused("head.txt", rail_points("", 0.02), ProfileKind::rail, {"head.txt", "width of 1.2", "5 to 500 (mm)"});
-  expect_refused("head.txt", rail_points("") + "# units: mm\n", ProfileKind::rail, {"head.txt:62:", "before all"});
-  expect_refused("head.txt", rail_points("# units: inch\n"), ProfileKind::rail, {"head.txt:1:", "inch", "mm"});
-  expect_refused("head.txt", rail_points("# units: m\n"), ProfileKind::rail, {"60 m wide", "check the units"});
-  expect_refused("head.txt", rail_points("# units: mm\n", 1e-3), ProfileKind::rail, {"60 mm wide if the file is in m"});
+TEST_F(ProfileFile, RejectsWrongUnits) {
+  expect_rejected("head.txt", rail_points("", 0.02), ProfileKind::rail, {"head.txt", "width of 1.2", "5 to 500 (mm)"});
+  expect_rejected("head.txt", rail_points("") + "# units: mm\n", ProfileKind::rail, {"head.txt:62:", "before all"});
+  expect_rejected("head.txt", rail_points("# units: inch\n"), ProfileKind::rail, {"head.txt:1:", "inch", "mm"});
+  expect_rejected("head.txt", rail_points("# units: m\n"), ProfileKind::rail, {"60 m wide", "check the units"});
+  expect_rejected("head.txt", rail_points("# units: mm\n", 1e-3), ProfileKind::rail,
+                  {"60 mm wide if the file is in m"});
 }
 
 // 100 mm wide in cm and in inches; the same with y and z exchanged.
-TEST_F(ProfileFile, RefusesProfilesTooNarrowForTheirKind) {
+TEST_F(ProfileFile, RejectsProfilesTooNarrowForTheirKind) {
   const ProfileKnots k = read_profile_file(write("wheel.txt", wheel_points), ProfileKind::wheel);
   const auto listed = [&](double per_metre, bool exchanged) {
     std::string text;
@@ -68,52 +69,52 @@ TEST_F(ProfileFile, RefusesProfilesTooNarrowForTheirKind) {
     }
     return text;
   };
-  expect_refused(
+  expect_rejected(
       "cm.txt", listed(100.0, false), ProfileKind::wheel,
       {"cm.txt: found a profile 0.01 m wide", "a wheel at least 0.06 m wide", "100 mm wide if the file is in cm"});
-  expect_refused("wide.txt", listed(1e3 / 16.0, false), ProfileKind::wheel, {"159 mm wide if the file is in inches"});
-  expect_refused("swapped.txt", listed(1e3, true), ProfileKind::wheel, {"0.1 m high", "are y and z exchanged?"});
-  expect_refused("cm.txt", rail_points("", 0.1), ProfileKind::rail,
-                 {"a rail head at least 0.02 m wide", "60 mm wide if the file is in cm"});
+  expect_rejected("wide.txt", listed(1e3 / 16.0, false), ProfileKind::wheel, {"159 mm wide if the file is in inches"});
+  expect_rejected("swapped.txt", listed(1e3, true), ProfileKind::wheel, {"0.1 m high", "are y and z exchanged?"});
+  expect_rejected("cm.txt", rail_points("", 0.1), ProfileKind::rail,
+                  {"a rail head at least 0.02 m wide", "60 mm wide if the file is in cm"});
 }
 
-TEST_F(ProfileFile, RefusesFieldsThatAreNoNumbers) {
+TEST_F(ProfileFile, RejectsFieldsThatAreNoNumbers) {
   for (const char* bad : {"x", "1,5", "nan", "inf", "1e999", "0x10", "1.0.0", "--1", "1D+00"}) {
     const std::string text = replaced(rail_points(), "-18.000000000 ", std::string(bad) + " ");
-    expect_refused("head.txt", text, ProfileKind::rail, {"head.txt:12:", "expected"});
+    expect_rejected("head.txt", text, ProfileKind::rail, {"head.txt:12:", "expected"});
   }
-  expect_refused("head.txt", replaced(rail_points(), "-18.000000000 ", "-18.0 1 2 3 "), ProfileKind::rail,
-                 {"head.txt:12:", "two numbers"});
-  expect_refused("head.txt", replaced(rail_points(), "-18.000000000 ", ""), ProfileKind::rail, {"head.txt:12:"});
+  expect_rejected("head.txt", replaced(rail_points(), "-18.000000000 ", "-18.0 1 2 3 "), ProfileKind::rail,
+                  {"head.txt:12:", "two numbers"});
+  expect_rejected("head.txt", replaced(rail_points(), "-18.000000000 ", ""), ProfileKind::rail, {"head.txt:12:"});
 }
 
-TEST_F(ProfileFile, RefusesTooFewPoints) {
-  expect_refused("few.txt", "# units: mm\n-10 1\n0 0\n10 1\n", ProfileKind::rail,
-                 {"few.txt", "3 points", "at least 4"});
-  expect_refused("empty.txt", "", ProfileKind::rail, {"0 points"});
-  expect_refused("comment.txt", "# units: mm\n", ProfileKind::rail, {"0 points"});
+TEST_F(ProfileFile, RejectsTooFewPoints) {
+  expect_rejected("few.txt", "# units: mm\n-10 1\n0 0\n10 1\n", ProfileKind::rail,
+                  {"few.txt", "3 points", "at least 4"});
+  expect_rejected("empty.txt", "", ProfileKind::rail, {"0 points"});
+  expect_rejected("comment.txt", "# units: mm\n", ProfileKind::rail, {"0 points"});
 }
 
 // ----------------------------------------------------------------------------------------------- outlines of no body
 
-TEST_F(ProfileFile, RefusesPointsInWrongOrder) {
-  expect_refused("wheel.txt", replaced(wheel_points, "-20 1.2\n-10 0.5\n", "-10 0.5\n-20 1.2\n"), ProfileKind::wheel,
-                 {"wheel.txt:8:", "turns back"});
+TEST_F(ProfileFile, RejectsPointsInWrongOrder) {
+  expect_rejected("wheel.txt", replaced(wheel_points, "-20 1.2\n-10 0.5\n", "-10 0.5\n-20 1.2\n"), ProfileKind::wheel,
+                  {"wheel.txt:8:", "turns back"});
   // Two overlapping scans stitched together: a zig-zag on the tread.
-  expect_refused("wheel.txt", replaced(wheel_points, "10 -0.5\n", "10 -0.5\n4 -0.19\n12 -0.6\n"), ProfileKind::wheel,
-                 {"wheel.txt:11:", "turns back"});
+  expect_rejected("wheel.txt", replaced(wheel_points, "10 -0.5\n", "10 -0.5\n4 -0.19\n12 -0.6\n"), ProfileKind::wheel,
+                  {"wheel.txt:11:", "turns back"});
 }
 
-TEST_F(ProfileFile, RefusesAnOutlineThatCrossesItself) {
+TEST_F(ProfileFile, RejectsAnOutlineThatCrossesItself) {
   // A loop of four right-angled turns, none of which turns back.
-  expect_refused("wheel.txt", replaced(wheel_points, "0 0\n10 -0.5\n", "0 0\n4 4\n8 0\n4 -4\n0 2\n10 5\n"),
-                 ProfileKind::wheel, {"wheel.txt:14:", "crosses", "lines 10 to 11"});
+  expect_rejected("wheel.txt", replaced(wheel_points, "0 0\n10 -0.5\n", "0 0\n4 4\n8 0\n4 -4\n0 2\n10 5\n"),
+                  ProfileKind::wheel, {"wheel.txt:14:", "crosses", "lines 10 to 11"});
 }
 
-TEST_F(ProfileFile, RefusesAnOutlineThatTouchesItself) {
+TEST_F(ProfileFile, RejectsAnOutlineThatTouchesItself) {
   // Back exactly onto the segment from (0, 0) to (10, 10), at (5, 5), and away on the same side.
-  expect_refused("wheel.txt", replaced(wheel_points, "0 0\n10 -0.5\n", "0 0\n10 10\n14 10\n14 2\n5 5\n5 -1\n16 -3\n"),
-                 ProfileKind::wheel, {"crosses", "lines 10 to 11"});
+  expect_rejected("wheel.txt", replaced(wheel_points, "0 0\n10 -0.5\n", "0 0\n10 10\n14 10\n14 2\n5 5\n5 -1\n16 -3\n"),
+                  ProfileKind::wheel, {"crosses", "lines 10 to 11"});
 }
 
 // A hook that comes back to within `gap` of the segment from (0, 0) to (10, 10), or passes it by as little.
@@ -135,26 +136,26 @@ TEST_F(ProfileFile, DecidesCrossingTheSameWhereverTheOutlineLies) {
                                  {40.0, -4.0}}) {
         text += fmt::format("{:.12f} {:.12f}\n", y + shift, z + shift);
       }
-      const std::string message = refusal("hook.txt", text, ProfileKind::wheel);
+      const std::string message = rejection("hook.txt", text, ProfileKind::wheel);
       EXPECT_EQ(message.empty(), gap > 0) << "shift " << shift << ", gap " << gap << ": " << message;
       EXPECT_EQ(message.find("crosses") != std::string::npos, gap < 0) << message;
     }
   }
 }
 
-TEST_F(ProfileFile, RefusesWhatIsNeitherWheelNorRail) {
+TEST_F(ProfileFile, RejectsWhatIsNeitherWheelNorRail) {
   std::string shifted = "# units: mm\n";
   const ProfileKnots k = read_profile_file(write("wheel.txt", wheel_points), ProfileKind::wheel);
   for (std::size_t i = 0; i < k.y.size(); ++i) shifted += fmt::format("{} {}\n", k.y[i] * 1e3 + 70, k.z[i] * 1e3);
-  expect_refused("wheel.txt", shifted, ProfileKind::wheel, {"tape circle"});
+  expect_rejected("wheel.txt", shifted, ProfileKind::wheel, {"tape circle"});
   // A piece of a crown could be either way up; a slope is no head either way.
   std::string crown = "# units: mm\n";
   for (int y = -15; y <= 15; y += 5) crown += fmt::format("{} {}\n", y, -0.005 * y * y);
-  expect_refused("rail.txt", crown, ProfileKind::rail, {"highest point", "z positive downwards"});
-  expect_refused("rail.txt", "# units: mm\n-30 4\n-10 3\n10 1\n30 0\n", ProfileKind::rail, {"highest point"});
+  expect_rejected("rail.txt", crown, ProfileKind::rail, {"highest point", "z positive downwards"});
+  expect_rejected("rail.txt", "# units: mm\n-30 4\n-10 3\n10 1\n30 0\n", ProfileKind::rail, {"highest point"});
 }
 
-TEST_F(ProfileFile, RefusesWhatIsNoFile) {
+TEST_F(ProfileFile, RejectsWhatIsNoFile) {
   EXPECT_THROW(static_cast<void>(read_profile_file(folder_ / "absent.prw", ProfileKind::wheel)), InputError);
   EXPECT_THROW(static_cast<void>(read_profile_file(folder_, ProfileKind::wheel)), InputError);
 }
@@ -220,26 +221,26 @@ TEST_F(ProfileFile, KeepsSimpackPointsWithinHeightBounds) {
   EXPECT_NEAR(k.y[1], -0.040, 1e-16);
 }
 
-TEST_F(ProfileFile, RefusesSimpackFilesOfTheOtherKind) {
-  expect_refused("head.prr", simpack(in_mm, 1), ProfileKind::rail, {"head.prr:3:", "type = 1", "0 (rail profile)"});
-  expect_refused("wheel.prw", simpack(in_mm, 0), ProfileKind::wheel, {"wheel.prw:3:", "type = 0"});
-  expect_refused("head.prr", simpack(in_mm), ProfileKind::wheel, {"extension .prr", ".prw"});
-  expect_refused("head.ban", "", ProfileKind::wheel, {"extension .ban", ".whl"});
-  expect_refused("head.prr", replaced(simpack(in_mm), " type = 0\n", ""), ProfileKind::rail, {"no type"});
+TEST_F(ProfileFile, RejectsSimpackFilesOfTheOtherKind) {
+  expect_rejected("head.prr", simpack(in_mm, 1), ProfileKind::rail, {"head.prr:3:", "type = 1", "0 (rail profile)"});
+  expect_rejected("wheel.prw", simpack(in_mm, 0), ProfileKind::wheel, {"wheel.prw:3:", "type = 0"});
+  expect_rejected("head.prr", simpack(in_mm), ProfileKind::wheel, {"extension .prr", ".prw"});
+  expect_rejected("head.ban", "", ProfileKind::wheel, {"extension .ban", ".whl"});
+  expect_rejected("head.prr", replaced(simpack(in_mm), " type = 0\n", ""), ProfileKind::rail, {"no type"});
 }
 
-TEST_F(ProfileFile, RefusesBrokenSimpackFiles) {
-  expect_refused("head.prr", simpack(""), ProfileKind::rail, {"units.len.f"});
-  expect_refused("head.prr", simpack("units.len.f = 0\n"), ProfileKind::rail, {"head.prr:6:", "above 0"});
-  expect_refused("head.prr", simpack("units.len.f = mm\n"), ProfileKind::rail, {"head.prr:6:", "\"mm\""});
-  expect_refused("head.prr", simpack("mirror.y = 2\n" + in_mm), ProfileKind::rail, {"head.prr:6:", "0 or 1"});
-  expect_refused("head.prr", simpack("shift.y\n" + in_mm), ProfileKind::rail, {"head.prr:6:", "key = value"});
-  expect_refused("head.prr", replaced(simpack(in_mm), "point.end\n", ""), ProfileKind::rail,
-                 {"head.prr:69:", "spline.end"});
-  expect_refused("head.prr", replaced(simpack(in_mm), "point.end\nspline.end\n", ""), ProfileKind::rail,
-                 {"end of the file"});
-  expect_refused("head.prr", replaced(simpack(in_mm), "-18.000000000 ", "abc "), ProfileKind::rail, {"head.prr:18:"});
-  expect_refused("head.prr", rail_points(), ProfileKind::rail, {"head.prr:1:", "header.begin"});
+TEST_F(ProfileFile, RejectsBrokenSimpackFiles) {
+  expect_rejected("head.prr", simpack(""), ProfileKind::rail, {"units.len.f"});
+  expect_rejected("head.prr", simpack("units.len.f = 0\n"), ProfileKind::rail, {"head.prr:6:", "above 0"});
+  expect_rejected("head.prr", simpack("units.len.f = mm\n"), ProfileKind::rail, {"head.prr:6:", "\"mm\""});
+  expect_rejected("head.prr", simpack("mirror.y = 2\n" + in_mm), ProfileKind::rail, {"head.prr:6:", "0 or 1"});
+  expect_rejected("head.prr", simpack("shift.y\n" + in_mm), ProfileKind::rail, {"head.prr:6:", "key = value"});
+  expect_rejected("head.prr", replaced(simpack(in_mm), "point.end\n", ""), ProfileKind::rail,
+                  {"head.prr:69:", "spline.end"});
+  expect_rejected("head.prr", replaced(simpack(in_mm), "point.end\nspline.end\n", ""), ProfileKind::rail,
+                  {"end of the file"});
+  expect_rejected("head.prr", replaced(simpack(in_mm), "-18.000000000 ", "abc "), ProfileKind::rail, {"head.prr:18:"});
+  expect_rejected("head.prr", rail_points(), ProfileKind::rail, {"head.prr:1:", "header.begin"});
 }
 
 // ------------------------------------------------------------------------------------------------------ load_profile

@@ -1,4 +1,4 @@
-// Faults of measured profiles: what is repaired and said, what is refused; MiniProf files; smoothing.
+// Faults of measured profiles: what is repaired and said, what is rejected; MiniProf files; smoothing.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -86,14 +86,14 @@ TEST_F(ProfileRepair, SmallStepsBackOfStitchedScansAreLeftOut) {
   expect_same_points(k, wheel(dense_wheel("")));
   expect_notes(k, {"w.txt:49: 3 points that step back"});
   // Further back, or off the outline: which of the scans is right cannot be told.
-  expect_refused("w.txt", dense_wheel("-2.2 0.11\n"), ProfileKind::wheel, {"w.txt:48:", "turns back"});
-  expect_refused("w.txt", dense_wheel("-0.7 0.15\n"), ProfileKind::wheel, {"w.txt:48:", "turns back"});
+  expect_rejected("w.txt", dense_wheel("-2.2 0.11\n"), ProfileKind::wheel, {"w.txt:48:", "turns back"});
+  expect_rejected("w.txt", dense_wheel("-0.7 0.15\n"), ProfileKind::wheel, {"w.txt:48:", "turns back"});
 }
 
-TEST_F(ProfileRepair, ManyStepsBackAreRefused) {
+TEST_F(ProfileRepair, ManyStepsBackAreRejected) {
   std::string text = "# units: mm\n-60 20\n-55 28\n-50 26\n-45 18\n-40 8\n-30 3\n";
   for (int i = -20; i <= 20; ++i) text += fmt::format("{} {}\n{} {}\n", i, -0.05 * i, i - 0.3, -0.05 * (i - 0.3));
-  expect_refused("w.txt", text, ProfileKind::wheel, {"points that step back", "w.txt:9:"});
+  expect_rejected("w.txt", text, ProfileKind::wheel, {"points that step back", "w.txt:9:"});
 }
 
 TEST_F(ProfileRepair, WheelAxesFollowFromTheFlange) {
@@ -150,7 +150,7 @@ TEST_F(ProfileRepair, ARailHeadWithExchangedColumnsIsSaid) {
   for (const char* p : {"30 -36", "16 -35.5", "8 -33", "3 -25", "0 0", "3 25", "8 33", "16 35.5", "30.1 36"}) {
     exchanged += std::string(p) + "\n";
   }
-  expect_refused("r.txt", exchanged, ProfileKind::rail, {"highest point", "are y and z exchanged?"});
+  expect_rejected("r.txt", exchanged, ProfileKind::rail, {"highest point", "are y and z exchanged?"});
 }
 
 TEST_F(ProfileRepair, AGaugeFaceNotMeasuredDeepEnoughIsContinued) {
@@ -202,17 +202,17 @@ TEST_F(ProfileRepair, ReadsMiniprofRailsWithTheirGaugeSideAtPositiveX) {
   EXPECT_NEAR(k.y.front(), -0.030, 1e-9);
 }
 
-TEST_F(ProfileRepair, RefusesBrokenMiniprofFilesWithTheLine) {
-  const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
-    expect_refused("w.whl", text, ProfileKind::wheel, words);
+TEST_F(ProfileRepair, RejectsBrokenMiniprofFilesWithTheLine) {
+  const auto rejected = [&](const std::string& text, const std::vector<std::string>& words) {
+    expect_rejected("w.whl", text, ProfileKind::wheel, words);
   };
-  refused(miniprof("ColumnDef=X,A\n", mini_points), {"w.whl:4:", "X and Y"});
-  refused(miniprof("ColumnDef=X,Y\n", mini_points), {"w.whl:6:", "2 numbers"});
-  refused(miniprof("XOffset=a\n", mini_points), {"w.whl:4:", "XOffset"});
-  refused(miniprof("", mini_points + "Tilt=3\n"), {"w.whl:18:", "after the first point"});
-  refused(miniprof("", mini_points + "50\n"), {"w.whl:18:", "at least two"});
-  refused(miniprof("", replaced(mini_points, "45 ", "x ")), {"w.whl:8:", "\"x\""});
-  refused(miniprof("", ""), {"0 points"});
+  rejected(miniprof("ColumnDef=X,A\n", mini_points), {"w.whl:4:", "X and Y"});
+  rejected(miniprof("ColumnDef=X,Y\n", mini_points), {"w.whl:6:", "2 numbers"});
+  rejected(miniprof("XOffset=a\n", mini_points), {"w.whl:4:", "XOffset"});
+  rejected(miniprof("", mini_points + "Tilt=3\n"), {"w.whl:18:", "after the first point"});
+  rejected(miniprof("", mini_points + "50\n"), {"w.whl:18:", "at least two"});
+  rejected(miniprof("", replaced(mini_points, "45 ", "x ")), {"w.whl:8:", "\"x\""});
+  rejected(miniprof("", ""), {"0 points"});
 }
 
 TEST_F(ProfileRepair, ReadsThePublishedMiniprofRail) {
@@ -318,7 +318,7 @@ TEST(PointNoise, IsTheScatterOfThePointsAndNoneOfExactOnes) {
   }
 }
 
-TEST(SmoothingSpline, RefusesNoiseOutOfRange) {
+TEST(SmoothingSpline, RejectsNoiseOutOfRange) {
   const std::vector<double> y{0.0, 0.01, 0.02, 0.03, 0.04};
   const std::vector<double> z{0.0, 1e-6, 0.0, 1e-6, 0.0};
   for (const double noise : {0.0, -1e-6, 2e-3, std::nan("")}) {
@@ -330,10 +330,10 @@ TEST(SmoothingSpline, RefusesNoiseOutOfRange) {
 TEST_F(ProfileRepair, WheelAndRailExchangedAreRejected) {
   const std::string wheel_file = listed(standard_profile(ProfileKind::wheel, "S1002", 0.0), 1e3, 1e3);
   const std::string rail_file = listed(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0), 1e3, 1e3);
-  EXPECT_EQ(refusal("w.txt", wheel_file, ProfileKind::wheel), "");
-  EXPECT_EQ(refusal("r.txt", rail_file, ProfileKind::rail), "");
-  expect_refused("r.txt", rail_file, ProfileKind::wheel, {"r.txt: ", "are wheel and rail exchanged?"});
-  expect_refused("w.txt", wheel_file, ProfileKind::rail, {"w.txt: ", "are wheel and rail exchanged?"});
+  EXPECT_EQ(rejection("w.txt", wheel_file, ProfileKind::wheel), "");
+  EXPECT_EQ(rejection("r.txt", rail_file, ProfileKind::rail), "");
+  expect_rejected("r.txt", rail_file, ProfileKind::wheel, {"r.txt: ", "are wheel and rail exchanged?"});
+  expect_rejected("w.txt", wheel_file, ProfileKind::rail, {"w.txt: ", "are wheel and rail exchanged?"});
 }
 
 TEST_F(ProfileRepair, AByteOrderMarkIsNoPartOfTheFirstLine) {

@@ -47,9 +47,9 @@ class StructureImport : public ::testing::Test {
     return folder / name;
   }
 
-  // A file that is refused, and the words that the message must have.
+  // A file that is rejected, and the words that the message must have.
   template <class Read>
-  static void expect_refused(const Read& read, std::initializer_list<std::string> words) {
+  static void expect_rejected(const Read& read, std::initializer_list<std::string> words) {
     try {
       read();
       FAIL() << "accepted";
@@ -83,7 +83,7 @@ TEST_F(StructureImport, GivesTheStructureThatWasWritten) {
       StructureFiles{write("m.mtx", turned(beam.mass), true), write("c.mtx", turned(beam.damping), false),
                      write("k.mtx", turned(beam.stiffness), false), write("dofs.csv", table)};
   // Supported ends have no z: a rail needs it everywhere.
-  expect_refused([&] { static_cast<void>(import_structure(files)); }, {"dofs.csv:3", "motion z"});
+  expect_rejected([&] { static_cast<void>(import_structure(files)); }, {"dofs.csv:3", "motion z"});
 
   std::string inner;
   for (std::size_t begin = 0, line = 0; begin < table.size(); ++line) {
@@ -110,30 +110,30 @@ TEST_F(StructureImport, AMotionThatNothingHoldsIsNamed) {
   const auto k = write("k", Eigen::MatrixXd(K), true), m = write("m", Eigen::MatrixXd::Identity(4, 4), true);
   const auto dofs =
       write("dofs", "row,node,x[m],motion,rail\n1,a,0,z,both\n2,a,0,pitch,both\n3,b,1,z,both\n4,b,1,pitch,both\n");
-  expect_refused(
+  expect_rejected(
       [&] {
         static_cast<void>(import_structure({m, m, k, dofs}));
       },
       {"k: found a motion that nothing holds, the most of it at node ", "supports hold every motion"});
 }
 
-TEST_F(StructureImport, RefusesWrongMatricesWithFileAndLine) {
+TEST_F(StructureImport, RejectsWrongMatricesWithFileAndLine) {
   const std::string banner = "%%MatrixMarket matrix coordinate real general\n";
-  const auto refused = [&](const std::string& text, std::initializer_list<std::string> words) {
+  const auto rejected = [&](const std::string& text, std::initializer_list<std::string> words) {
     const auto file = write("a.mtx", text);
-    expect_refused([&] { static_cast<void>(read_matrix_market(file)); }, words);
+    expect_rejected([&] { static_cast<void>(read_matrix_market(file)); }, words);
   };
-  refused("%%MatrixMarket matrix array real general\n2 2\n", {"a.mtx:1", "coordinate"});
-  refused(banner + "% note\n2 2 1\n1 1 nan\n", {"a.mtx:4", "'nan'", "finite"});
-  refused(banner + "2 2 1\n1 1 1e999\n", {"a.mtx:3", "finite"});
-  refused(banner + "2 2 1\n3 1 1\n", {"a.mtx:3", "row 3", "1 to 2"});
-  refused(banner + "2 2 2\n1 1 1\n", {"1 entries", "2"});
-  refused(banner + "2 2 1\n1 1 1\n2 2 1\n", {"a.mtx:4", "1 entries"});
-  refused(banner + "2 2 1\n1 1\n", {"a.mtx:3", "row, column, value"});
-  expect_refused([&] { static_cast<void>(read_matrix_market(folder / "none.mtx")); }, {"none.mtx"});
+  rejected("%%MatrixMarket matrix array real general\n2 2\n", {"a.mtx:1", "coordinate"});
+  rejected(banner + "% note\n2 2 1\n1 1 nan\n", {"a.mtx:4", "'nan'", "finite"});
+  rejected(banner + "2 2 1\n1 1 1e999\n", {"a.mtx:3", "finite"});
+  rejected(banner + "2 2 1\n3 1 1\n", {"a.mtx:3", "row 3", "1 to 2"});
+  rejected(banner + "2 2 2\n1 1 1\n", {"1 entries", "2"});
+  rejected(banner + "2 2 1\n1 1 1\n2 2 1\n", {"a.mtx:4", "1 entries"});
+  rejected(banner + "2 2 1\n1 1\n", {"a.mtx:3", "row, column, value"});
+  expect_rejected([&] { static_cast<void>(read_matrix_market(folder / "none.mtx")); }, {"none.mtx"});
 }
 
-TEST_F(StructureImport, RefusesMatricesThatDoNotBelongTogether) {
+TEST_F(StructureImport, RejectsMatricesThatDoNotBelongTogether) {
   const auto good = write("good.mtx", Eigen::MatrixXd(Eigen::Matrix2d::Identity()), false);
   const auto small = write("small.mtx", Eigen::MatrixXd::Identity(1, 1), false);
   Eigen::MatrixXd skew = Eigen::Matrix2d::Identity();
@@ -142,32 +142,32 @@ TEST_F(StructureImport, RefusesMatricesThatDoNotBelongTogether) {
   const std::string header = "row,node,x[m],motion,rail\n";
   const auto dofs = write("d.csv", header + "1,a,0,z,both\n2,b,1,z,both\n");
   EXPECT_EQ(import_structure({good, good, good, dofs}).dofs(), 2);
-  expect_refused(
+  expect_rejected(
       [&] {
         static_cast<void>(import_structure({small, good, good, dofs}));
       },
       {"small.mtx", "1 x 1", "2 x 2"});
-  expect_refused(
+  expect_rejected(
       [&] {
         static_cast<void>(import_structure({good, good, unsymmetric, dofs}));
       },
       {"skew.mtx", "row 2, column 1", "symmetric"});
-  const auto refused = [&](const std::string& rows, std::initializer_list<std::string> words) {
+  const auto rejected = [&](const std::string& rows, std::initializer_list<std::string> words) {
     const auto file = write("e.csv", header + rows);
-    expect_refused([&] { static_cast<void>(import_structure({good, good, good, file})); }, words);
+    expect_rejected([&] { static_cast<void>(import_structure({good, good, good, file})); }, words);
   };
-  refused("3,a,0,z,both\n", {"e.csv:2", "row '3'", "1 to 2"});
-  refused("1,a,0,z,both\n1,b,1,z,both\n", {"e.csv:3", "row 1 again"});
-  refused("1,a,0,up,both\n", {"e.csv:2", "motion 'up'"});
-  refused("1,a,nan,z,both\n", {"e.csv:2", "x 'nan'"});
-  refused("1,a,0,z,both\n2,a,1,pitch,both\n", {"e.csv:3", "another place"});
-  refused("1,a,0,z,both\n2,b,0,z,both\n", {"e.csv:3", "second node"});
-  refused("1,a,0,z,left\n2,b,1,z,both\n", {"1 nodes of the right rail"});
-  refused("1,a,0,z\n", {"e.csv:2", "4 columns"});
+  rejected("3,a,0,z,both\n", {"e.csv:2", "row '3'", "1 to 2"});
+  rejected("1,a,0,z,both\n1,b,1,z,both\n", {"e.csv:3", "row 1 again"});
+  rejected("1,a,0,up,both\n", {"e.csv:2", "motion 'up'"});
+  rejected("1,a,nan,z,both\n", {"e.csv:2", "x 'nan'"});
+  rejected("1,a,0,z,both\n2,a,1,pitch,both\n", {"e.csv:3", "another place"});
+  rejected("1,a,0,z,both\n2,b,0,z,both\n", {"e.csv:3", "second node"});
+  rejected("1,a,0,z,left\n2,b,1,z,both\n", {"1 nodes of the right rail"});
+  rejected("1,a,0,z\n", {"e.csv:2", "4 columns"});
 }
 
 // Numbers that are finite and absurd: used, they give modes that were not found, or a factor without a right digit.
-TEST_F(StructureImport, RefusesAbsurdScales) {
+TEST_F(StructureImport, RejectsAbsurdScales) {
   const std::string header = "row,node,x[m],motion,rail\n";
   const auto dofs = write("d.csv", header + "1,a,0,z,both\n2,b,1,z,both\n");
   const auto none = write("c.mtx", Eigen::MatrixXd(Eigen::Matrix2d::Zero()), false);
@@ -176,22 +176,22 @@ TEST_F(StructureImport, RefusesAbsurdScales) {
     m << first, between, between, second;
     return write(name, Eigen::MatrixXd(m), false);
   };
-  const auto refused = [&](const std::filesystem::path& mass, const std::filesystem::path& stiffness,
-                           std::initializer_list<std::string> words) {
-    expect_refused([&] { static_cast<void>(import_structure({mass, none, stiffness, dofs})); }, words);
+  const auto rejected = [&](const std::filesystem::path& mass, const std::filesystem::path& stiffness,
+                            std::initializer_list<std::string> words) {
+    expect_rejected([&] { static_cast<void>(import_structure({mass, none, stiffness, dofs})); }, words);
   };
   const auto mass = matrix("m.mtx", 1e3, 2e3, 0.0), stiffness = matrix("k.mtx", 1e8, 2e8, -1e7);
   EXPECT_EQ(import_structure({mass, none, stiffness, dofs}).dofs(), 2);
   EXPECT_EQ(import_structure({matrix("m0.mtx", 1e3, 0.0, 0.0), none, stiffness, dofs}).dofs(), 2);
-  refused(matrix("m1.mtx", 1e3, 1e150, 0.0), stiffness,
-          {"m1.mtx: row 2 (node b, z), column 2: found mass 1e+150, expected -1e+15 to 1e+15 in SI units"});
-  refused(mass, matrix("k1.mtx", 1e300, 2e8, 0.0), {"k1.mtx: row 1 (node a, z), column 1", "stiffness 1e+300"});
-  refused(mass, matrix("k2.mtx", 1e24, 1.0, 0.0),
-          {"k2.mtx: row 1", "stiffness 1e+24 beside 1 in row 2", "1e+20 times"});
-  refused(matrix("m2.mtx", 1e3, 1e14, 0.0), stiffness, {"m2.mtx: row 2", "0.000225 Hz", "0.001 to 1e+12 Hz"});
-  refused(matrix("m3.mtx", 1e-12, 1e-3, 0.0), matrix("k3.mtx", 1e24, 1e24, 0.0), {"m3.mtx: row 1", "Hz"});
-  refused(matrix("m4.mtx", 1e3, 2e3, 1e6), stiffness, {"m4.mtx: row 2", "column 1", "mass 1e+06 with 2000 and 1000"});
-  refused(mass, matrix("k4.mtx", 1e8, 2e8, 1e12), {"k4.mtx: row 2", "positive semidefinite"});
+  rejected(matrix("m1.mtx", 1e3, 1e150, 0.0), stiffness,
+           {"m1.mtx: row 2 (node b, z), column 2: found mass 1e+150, expected -1e+15 to 1e+15 in SI units"});
+  rejected(mass, matrix("k1.mtx", 1e300, 2e8, 0.0), {"k1.mtx: row 1 (node a, z), column 1", "stiffness 1e+300"});
+  rejected(mass, matrix("k2.mtx", 1e24, 1.0, 0.0),
+           {"k2.mtx: row 1", "stiffness 1e+24 beside 1 in row 2", "1e+20 times"});
+  rejected(matrix("m2.mtx", 1e3, 1e14, 0.0), stiffness, {"m2.mtx: row 2", "0.000225 Hz", "0.001 to 1e+12 Hz"});
+  rejected(matrix("m3.mtx", 1e-12, 1e-3, 0.0), matrix("k3.mtx", 1e24, 1e24, 0.0), {"m3.mtx: row 1", "Hz"});
+  rejected(matrix("m4.mtx", 1e3, 2e3, 1e6), stiffness, {"m4.mtx: row 2", "column 1", "mass 1e+06 with 2000 and 1000"});
+  rejected(mass, matrix("k4.mtx", 1e8, 2e8, 1e12), {"k4.mtx: row 2", "positive semidefinite"});
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ TEST_F(StudyCommand, RunsWithoutABridge) {
   write("plan.toml", std::string(speeds) + seeds + "[sampling]\nsamples = 2\n" + limit);
   write("scene.toml", scene);
   for (const char* command : {"study plan.toml -o no", "study plan.toml --count"}) {
-    expect_refused(
+    expect_rejected(
         command,
         "plan.toml:12: probability.measure: found \"deck_acceleration\", expected a measure of wheels or car "
         "bodies, or a scene with a bridge: scene.toml has none");
@@ -416,58 +416,58 @@ TEST_F(StudyCommand, KeysFollowATableOfTheVariable) {
   }
   EXPECT_NE(rows[1].back() + column("tables/runs.csv", "wheel_unloading_unfiltered[-]")[0],
             rows[5].back() + column("tables/runs.csv", "wheel_unloading_unfiltered[-]")[4]);
-  const auto refused = [&](const std::string& values, const std::string& sets, const std::string& message) {
+  const auto rejected = [&](const std::string& values, const std::string& sets, const std::string& message) {
     write("plan.toml", begin + values + sets);
-    expect_refused("study plan.toml -o no", message);
+    expect_rejected("study plan.toml -o no", message);
   };
-  refused("values = [-30, 0]\n", pads,
-          "found a table of track.pad.kz from -20 to 30 for values from -30 to 0, expected a table as "
-          "far as the values");
-  refused("distribution = \"normal\"\nmean = 10\nstd = 5\n", pads, "expected a table as far as the distribution");
-  refused("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\ntable = [[0, 1e8], [0, 2e8]]\n",
-          "expected two points [[x, value], [x, value]] at least, x rising");
-  refused("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\nfactor = 2\ntable = [[0, 1e8], [1, 2e8]]\n",
-          "set[1].factor: found a table too, expected a table, or factor, power and offset");
+  rejected("values = [-30, 0]\n", pads,
+           "found a table of track.pad.kz from -20 to 30 for values from -30 to 0, expected a table as "
+           "far as the values");
+  rejected("distribution = \"normal\"\nmean = 10\nstd = 5\n", pads, "expected a table as far as the distribution");
+  rejected("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\ntable = [[0, 1e8], [0, 2e8]]\n",
+           "expected two points [[x, value], [x, value]] at least, x rising");
+  rejected("values = [0]\n", "[[vary.set]]\nkey = \"track.pad.kz\"\nfactor = 2\ntable = [[0, 1e8], [1, 2e8]]\n",
+           "set[1].factor: found a table too, expected a table, or factor, power and offset");
 }
 
 TEST_F(StudyCommand, RejectsWrongPlans) {
-  const auto refused = [&](const std::string& plan, const std::string& message) {
+  const auto rejected = [&](const std::string& plan, const std::string& message) {
     write("plan.toml", plan);
-    expect_refused("study plan.toml -o out", message);
+    expect_rejected("study plan.toml -o out", message);
   };
   const std::string begin = "scene = \"scene.toml\"\n[[vary]]\n";
-  refused(begin + "key = \"train.sped\"\nvalues = [1]\n",
-          "plan.toml:2: vary[1].train.sped: unknown key 'train.sped'; did you mean 'train.speed'?");
-  refused(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
-          "plan.toml:2: vary[1].train.speed_kmh: found 9000, expected");
-  refused(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
-          "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
-  refused(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",
-          "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
+  rejected(begin + "key = \"train.sped\"\nvalues = [1]\n",
+           "plan.toml:2: vary[1].train.sped: unknown key 'train.sped'; did you mean 'train.speed'?");
+  rejected(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
+           "plan.toml:2: vary[1].train.speed_kmh: found 9000, expected");
+  rejected(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
+           "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
+  rejected(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",
+           "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
   write("plan.toml", "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.sped\"\nvalues = [1]\n");
-  expect_refused("study plan.toml --count -o out", "unknown key 'train.sped'");
-  refused(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
-          "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
-  refused(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n", "plan.toml:4: vary[1].values: found 1 twice");
-  refused(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
-  refused(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",
-          "plan.toml:1: sampling: found nothing");
-  refused(
+  expect_rejected("study plan.toml --count -o out", "unknown key 'train.sped'");
+  rejected(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
+           "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
+  rejected(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n", "plan.toml:4: vary[1].values: found 1 twice");
+  rejected(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
+  rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",
+           "plan.toml:1: sampling: found nothing");
+  rejected(
       begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n[sampling]\nsamples = 9\n",
       "contact.friction: found");
-  refused(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\n", "found neither std nor cov");
-  refused("scene = \"none.toml\"\n[[vary]]\nkey = \"contact.friction\"\nvalues = [0.1]\n",
-          "plan.toml:1: scene: found no file none.toml");
-  refused(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
-          "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
-  refused(
+  rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\n", "found neither std nor cov");
+  rejected("scene = \"none.toml\"\n[[vary]]\nkey = \"contact.friction\"\nvalues = [0.1]\n",
+           "plan.toml:1: scene: found no file none.toml");
+  rejected(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
+           "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
+  rejected(
       begin +
           "key = \"train.speed_kmh\"\nvalues = [200, 100]\n[threshold]\nmeasure = \"derailment\"\nlimit = 0.8\n"
           "variable = \"train.speed_kmh\"\n",
       "plan.toml:8: threshold.variable: found values of train.speed_kmh that do not rise, expected values that rise");
-  refused(std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
-          "found a variable with values, expected a distribution for each variable");
-  refused(std::string(speeds) + speeds, "plan.toml:5");
+  rejected(std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
+           "found a variable with values, expected a distribution for each variable");
+  rejected(std::string(speeds) + speeds, "plan.toml:5");
 }
 
 TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {

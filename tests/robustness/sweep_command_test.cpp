@@ -312,7 +312,7 @@ TEST_F(SweepCommand, WarningsOfItsRuns) {
   EXPECT_EQ(lines_of(text("out/summary.csv")).size(), 2U);
 }
 
-TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
+TEST_F(SweepCommand, RejectsWhatMakesNoSweep) {
   write("scene.toml", scene);
   write("smooth.toml", "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
   write("v.csv", "t[s],V[m/s]\n0,30\n12,40\n");
@@ -326,17 +326,17 @@ TEST_F(SweepCommand, RefusesWhatMakesNoSweep) {
   named({"sweep", "scene.toml", "--speed-kmh", "100:2000:500", "-o", "out"}, "--speed-kmh: found 1100, expected");
   named({"sweep", "faster.toml", "--speed-kmh", "100", "-o", "out"},
         "--speed-kmh: found a scene with train.speed_file, expected");
-  const auto refused = [&](const std::vector<std::string>& arguments) { EXPECT_EQ(vsi(arguments), 2) << text("log"); };
-  refused({"sweep", "scene.toml", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "10:20", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "20:10:1", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "10:20:0", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "300", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "30", "--speed-kmh", "100", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "30", "--shard", "3/2", "-o", "out"});
-  refused({"sweep", "smooth.toml", "--speed", "30", "--seeds", "2", "-o", "out"});
-  refused({"sweep", "scene.toml", "--speed", "30", "--seeds", "2147483647", "-o", "out"});
-  refused({"sweep", "smooth.toml", "--speed", "30", "-o", "none/out"});
+  const auto rejected = [&](const std::vector<std::string>& arguments) { EXPECT_EQ(vsi(arguments), 2) << text("log"); };
+  rejected({"sweep", "scene.toml", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "10:20", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "20:10:1", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "10:20:0", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "300", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "30", "--speed-kmh", "100", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "30", "--shard", "3/2", "-o", "out"});
+  rejected({"sweep", "smooth.toml", "--speed", "30", "--seeds", "2", "-o", "out"});
+  rejected({"sweep", "scene.toml", "--speed", "30", "--seeds", "2147483647", "-o", "out"});
+  rejected({"sweep", "smooth.toml", "--speed", "30", "-o", "none/out"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_FALSE(fs::exists(folder_ / "none"));
   ASSERT_EQ(vsi({"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"}), 0) << text("log");

@@ -1,4 +1,4 @@
-// Damaged geometry tables: every one is refused with a message that names the file, or read as it was written.
+// Damaged geometry tables: every one is rejected with a message that names the file, or read as it was written.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -57,7 +57,7 @@ class TableFile : public ::testing::Test {
   std::string bytes_;
 };
 
-TEST_F(TableFile, CutAnywhereIsRefused) {
+TEST_F(TableFile, CutAnywhereIsRejected) {
   for (std::size_t length = 0; length < bytes_.size(); length += length < 1200 ? 1 : 97) {
     write_bytes(std::string_view(bytes_).substr(0, length));
     EXPECT_NE(outcome(), "") << "cut to " << length << " of " << bytes_.size() << " bytes";
@@ -78,7 +78,7 @@ TEST_F(TableFile, CutAnywhereIsRefused) {
   EXPECT_EQ(outcome(), "") << "the whole file is still a good one";
 }
 
-TEST_F(TableFile, EveryFlippedByteIsRefused) {
+TEST_F(TableFile, EveryFlippedByteIsRejected) {
   std::mt19937 random(20240131);
   std::uniform_int_distribution<int> mask(1, 255);
   for (std::size_t i = 0; i < bytes_.size(); i += i < 1200 ? 1 : 7) {
@@ -89,7 +89,7 @@ TEST_F(TableFile, EveryFlippedByteIsRefused) {
   }
 }
 
-TEST_F(TableFile, ManyFlippedBytesAreRefused) {
+TEST_F(TableFile, ManyFlippedBytesAreRejected) {
   std::mt19937 random(20240131);
   std::uniform_int_distribution<std::size_t> position(0, bytes_.size() - 1);
   std::uniform_int_distribution<int> byte(0, 255), count(2, 40);

@@ -22,13 +22,13 @@ namespace {
 class TablegenCommand : public TablegenFixture {
  protected:
   /// Exit code 2, nothing on stdout, one message on stderr with this text in it, and no file out.h5.
-  void expect_refused(const std::string& arguments, const std::string& text) const {
-    expect_refused_with_table(arguments, text);
+  void expect_rejected(const std::string& arguments, const std::string& text) const {
+    expect_rejected_with_table(arguments, text);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5"));
   }
 
-  /// As expect_refused(), where a table has been made before.
-  void expect_refused_with_table(const std::string& arguments, const std::string& text) const {
+  /// As expect_rejected(), where a table has been made before.
+  void expect_rejected_with_table(const std::string& arguments, const std::string& text) const {
     const Outcome outcome = tablegen(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
     EXPECT_EQ(outcome.out, "") << arguments;
@@ -58,60 +58,60 @@ TEST_F(TablegenCommand, HelpAndVersionOfEveryCommand) {
 }
 
 TEST_F(TablegenCommand, WrongCommandLines) {
-  expect_refused("", "no command");
-  expect_refused("geomtry", "unknown command 'geomtry'; did you mean 'geometry'?\ntablegen --help lists the commands");
-  expect_refused("geometry --wheel S1002 --rail 60E1", "found no -o FILE.h5\nusage: tablegen geometry");
-  expect_refused("geometry --rail 60E1 -o out.h5", "found no --wheel ");
-  expect_refused(std::string(small) + "--tollerance 1e-8", "--tollerance");
-  expect_refused(std::string(small) + "--tol 1e-8", "--tol");
-  expect_refused(std::string(small) + "--roll 0.01", "LO:HI");
-  expect_refused(std::string(small) + "--roll 0.01:-0.01", "LO:HI");
-  expect_refused(std::string(small) + "--tolerance 0", "tolerance");
-  expect_refused(std::string(small) + "--tolerance nan", "--tolerance");
-  expect_refused(std::string(small) + "--gauge 1435", "--gauge: found 1435");
-  expect_refused(std::string(small) + "--wheel-radius 460", "--wheel-radius: found 460");
-  expect_refused(std::string(small) + "--rail-inclination 40", "--rail-inclination: found 40");
-  expect_refused(std::string(small) + "--roll=-5:5", "--roll [rad]: found -5");
-  expect_refused("loaded out.h5 --largest-load 1", "--largest-load: found 1");
-  expect_refused(std::string(small) + "--rail-inclination 1:zero", "--rail-inclination");
-  expect_refused(std::string(small) + "--threads 1.5", "--threads");
-  expect_refused("geometry --wheel S1003 --rail 60E1 -o out.h5", "S1003");
-  expect_refused("geometry --wheel missing.prw --rail 60E1 -o out.h5", "missing.prw");
-  expect_refused("geometry --wheel S1002 --rail 60E1 --lateral 0.002:0.002 -o out.h5", "lateral");
-  expect_refused("geometry --wheel S1002 --rail 60E1 -o none/out.h5", "none");
-  expect_refused("info", "found no FILE.h5\nusage: tablegen info FILE.h5");
-  expect_refused("info none.h5", "none.h5");
-  expect_refused("verify none.h5", "none.h5");
-  expect_refused("conicity none.h5", "none.h5");
-  expect_refused("conicity none.h5 --amplitude 0", "--amplitude");
-  expect_refused("conicity none.h5 --roll free", "--roll");
+  expect_rejected("", "no command");
+  expect_rejected("geomtry", "unknown command 'geomtry'; did you mean 'geometry'?\ntablegen --help lists the commands");
+  expect_rejected("geometry --wheel S1002 --rail 60E1", "found no -o FILE.h5\nusage: tablegen geometry");
+  expect_rejected("geometry --rail 60E1 -o out.h5", "found no --wheel ");
+  expect_rejected(std::string(small) + "--tollerance 1e-8", "--tollerance");
+  expect_rejected(std::string(small) + "--tol 1e-8", "--tol");
+  expect_rejected(std::string(small) + "--roll 0.01", "LO:HI");
+  expect_rejected(std::string(small) + "--roll 0.01:-0.01", "LO:HI");
+  expect_rejected(std::string(small) + "--tolerance 0", "tolerance");
+  expect_rejected(std::string(small) + "--tolerance nan", "--tolerance");
+  expect_rejected(std::string(small) + "--gauge 1435", "--gauge: found 1435");
+  expect_rejected(std::string(small) + "--wheel-radius 460", "--wheel-radius: found 460");
+  expect_rejected(std::string(small) + "--rail-inclination 40", "--rail-inclination: found 40");
+  expect_rejected(std::string(small) + "--roll=-5:5", "--roll [rad]: found -5");
+  expect_rejected("loaded out.h5 --largest-load 1", "--largest-load: found 1");
+  expect_rejected(std::string(small) + "--rail-inclination 1:zero", "--rail-inclination");
+  expect_rejected(std::string(small) + "--threads 1.5", "--threads");
+  expect_rejected("geometry --wheel S1003 --rail 60E1 -o out.h5", "S1003");
+  expect_rejected("geometry --wheel missing.prw --rail 60E1 -o out.h5", "missing.prw");
+  expect_rejected("geometry --wheel S1002 --rail 60E1 --lateral 0.002:0.002 -o out.h5", "lateral");
+  expect_rejected("geometry --wheel S1002 --rail 60E1 -o none/out.h5", "none");
+  expect_rejected("info", "found no FILE.h5\nusage: tablegen info FILE.h5");
+  expect_rejected("info none.h5", "none.h5");
+  expect_rejected("verify none.h5", "none.h5");
+  expect_rejected("conicity none.h5", "none.h5");
+  expect_rejected("conicity none.h5 --amplitude 0", "--amplitude");
+  expect_rejected("conicity none.h5 --roll free", "--roll");
 }
 
-TEST_F(TablegenCommand, OptionsThatCannotActOrFitAreRefused) {
-  expect_refused(std::string(small) + "--smoothing 3e-6",
-                 "--smoothing: found 3e-6 with the built-in profiles S1002 and 60E1");
-  expect_refused(std::string(small) + "--smoothing 3", "--smoothing: found 3, expected 0 to 0.001 m");
-  expect_refused(std::string(small) + "--flange-back 1.5",
-                 "--flange-back: found 1.5 m, with which the flanges are 1.5");
-  expect_refused(std::string(small) + "--gauge 1.0", "narrower than the track gauge of 1 m (--gauge)");
-  expect_refused(std::string(quick) + "--gauge 2.0", "the wheel does not meet the rail anywhere in the range");
+TEST_F(TablegenCommand, OptionsThatCannotActOrFitAreRejected) {
+  expect_rejected(std::string(small) + "--smoothing 3e-6",
+                  "--smoothing: found 3e-6 with the built-in profiles S1002 and 60E1");
+  expect_rejected(std::string(small) + "--smoothing 3", "--smoothing: found 3, expected 0 to 0.001 m");
+  expect_rejected(std::string(small) + "--flange-back 1.5",
+                  "--flange-back: found 1.5 m, with which the flanges are 1.5");
+  expect_rejected(std::string(small) + "--gauge 1.0", "narrower than the track gauge of 1 m (--gauge)");
+  expect_rejected(std::string(quick) + "--gauge 2.0", "the wheel does not meet the rail anywhere in the range");
 }
 
-TEST_F(TablegenCommand, AFileThatIsNoTableIsRefused) {
+TEST_F(TablegenCommand, AFileThatIsNoTableIsRejected) {
   std::ofstream(folder_ / "text.h5") << "not a table";
-  expect_refused("info text.h5", "text.h5");
-  expect_refused("verify text.h5 --json", "text.h5");
+  expect_rejected("info text.h5", "text.h5");
+  expect_rejected("verify text.h5 --json", "text.h5");
 }
 
 TEST_F(TablegenCommand, APartSaysSoAndIsNoTable) {
   for (const char* shard : {"2", "0/2", "3/2", "1/x", "1/2/3", "/2"}) {
-    expect_refused(std::string(quick) + "--shard '" + shard + "'", "shard");
+    expect_rejected(std::string(quick) + "--shard '" + shard + "'", "shard");
   }
   const Outcome made = tablegen(std::string(quick) + "--shard 2/8 --json");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["index"], 2);
   EXPECT_EQ(nlohmann::json::parse(made.out)["shard"]["count"], 8);
-  expect_refused_with_table("verify out.h5", "part 2 of 8");
+  expect_rejected_with_table("verify out.h5", "part 2 of 8");
   EXPECT_EQ(tablegen("info out.h5").exit_code, 0);
   const Outcome merged = tablegen("merge out.h5 -o whole.h5");
   EXPECT_EQ(merged.exit_code, 2);
@@ -138,7 +138,7 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
   EXPECT_EQ(page.find("nan"), std::string::npos);
-  expect_refused_with_table("info out.h5 --html out.h5", "out.h5");
+  expect_rejected_with_table("info out.h5 --html out.h5", "out.h5");
   EXPECT_EQ(table["kind"], "geometry");
   EXPECT_EQ(table["wheel"], "LMA-type");
   EXPECT_EQ(table["axes"]["roll"]["root_cells"], 1);
@@ -170,9 +170,9 @@ TEST_F(TablegenCommand, GeometryInfoVerify) {
   EXPECT_EQ(penetration("3"), penetration("3"));
   EXPECT_NE(penetration("3"), penetration("4"));
 
-  expect_refused_with_table("verify out.h5 --samples 0", "--samples");
-  expect_refused_with_table("verify out.h5 --samples 1.5", "--samples");
-  expect_refused_with_table("verify out.h5 --dz -1e-4:1e-4", "dz");
+  expect_rejected_with_table("verify out.h5 --samples 0", "--samples");
+  expect_rejected_with_table("verify out.h5 --samples 1.5", "--samples");
+  expect_rejected_with_table("verify out.h5 --dz -1e-4:1e-4", "dz");
 }
 
 TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
@@ -201,7 +201,7 @@ TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
   EXPECT_NEAR(conicity("s1002.h5")["wave"]["conicity"], conicity_of_wave(curve, 3e-3).tan_gamma, 1e-6);
 
   EXPECT_EQ(tablegen("conicity s1002.h5 --amplitude 8e-3").exit_code, 1);
-  expect_refused_with_table("conicity s1002.h5 --diameter-difference 1", "diameter difference");
+  expect_rejected_with_table("conicity s1002.h5 --diameter-difference 1", "diameter difference");
 }
 
 TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
@@ -221,7 +221,7 @@ TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
     EXPECT_NE(made.err.find(note), std::string::npos) << made.err;
     EXPECT_NE(made.out.find(note), std::string::npos) << made.out;
   }
-  expect_refused_with_table("geometry --wheel wheel.txt --smoothing -1" + rest, "--smoothing");
+  expect_rejected_with_table("geometry --wheel wheel.txt --smoothing -1" + rest, "--smoothing");
 }
 
 TEST_F(TablegenCommand, PointsThatScatterAreWarnedOfBeforeTheTableIsMade) {
@@ -266,10 +266,10 @@ TEST_F(TablegenCommand, TheProposedSmoothingGivesTheConicityOfTheProfileWithoutN
   EXPECT_NEAR(std::stod(found[2]), exactly, 0.15 * exactly) << said;
 }
 
-TEST_F(TablegenCommand, ATruncatedTableIsRefused) {
+TEST_F(TablegenCommand, ATruncatedTableIsRejected) {
   ASSERT_EQ(tablegen(std::string(quick) + "--quiet").exit_code, 0);
   std::filesystem::resize_file(folder_ / "out.h5", std::filesystem::file_size(folder_ / "out.h5") / 2);
-  expect_refused_with_table("info out.h5", "out.h5");
+  expect_rejected_with_table("info out.h5", "out.h5");
 }
 
 TEST_F(TablegenCommand, QuietPrintsNothing) {
@@ -325,9 +325,9 @@ TEST_F(TablegenCommand, PartsOfAnotherTableAreMadeAnew) {
 
 TEST_F(TablegenCommand, TheOutputIsLookedAtBeforeTheSweep) {
   std::filesystem::create_directory(folder_ / "folder.h5");
-  expect_refused("geometry --wheel S1002 --rail 60E1 -o folder.h5", "a folder");
-  expect_refused("geometry --wheel S1002 --rail 60E1 -o missing/out.h5", "no folder");
-  expect_refused(std::string(quick) + "--refinement 1.5", "--refinement");
+  expect_rejected("geometry --wheel S1002 --rail 60E1 -o folder.h5", "a folder");
+  expect_rejected("geometry --wheel S1002 --rail 60E1 -o missing/out.h5", "no folder");
+  expect_rejected(std::string(quick) + "--refinement 1.5", "--refinement");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class TextOutput : public testing::InFolder {
     std::ifstream in(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  [[nodiscard]] std::string refusal(const std::string& name, const std::string& content) const {
+  [[nodiscard]] std::string rejection(const std::string& name, const std::string& content) const {
     try {
       write_text_file(folder_ / name, content);
     } catch (const InputError& wrong) {
@@ -52,22 +52,22 @@ TEST_F(TextOutput, ReplacesAnEmptyFileAndItsOwnKindOnly) {
   write("r.csv", "");
   for (const char* rows : {"1,2\n", "3,4\n", ""}) {
     const std::string content = std::string("a,b\n") + rows;
-    EXPECT_EQ(refusal("r.csv", content), "");
+    EXPECT_EQ(rejection("r.csv", content), "");
     EXPECT_EQ(text("r.csv"), content);
   }
   write("r.csv", "a,b\r\n1,2\r\n");
-  EXPECT_EQ(refusal("r.csv", "a,b\n5,6\n"), "") << "saved once more by a spreadsheet";
+  EXPECT_EQ(rejection("r.csv", "a,b\n5,6\n"), "") << "saved once more by a spreadsheet";
 
   for (const char* foreign : {"Dear diary\n", "a", "a,b,c\n1,2,3\n", "\na,b\n"}) {
     write("notes.txt", foreign);
-    const std::string message = refusal("notes.txt", "a,b\n1,2\n");
+    const std::string message = rejection("notes.txt", "a,b\n1,2\n");
     EXPECT_NE(message.find("notes.txt: found a file that begins with '"), std::string::npos) << message;
     EXPECT_NE(message.find("expected a new name, or"), std::string::npos) << message;
     EXPECT_NE(message.find("begins with 'a,b'"), std::string::npos) << message;
     EXPECT_EQ(text("notes.txt"), foreign);
   }
   write("escape.txt", "\x1b[2Jgone");
-  EXPECT_EQ(refusal("escape.txt", "a,b\n").find('\x1b'), std::string::npos);
+  EXPECT_EQ(rejection("escape.txt", "a,b\n").find('\x1b'), std::string::npos);
 }
 
 TEST_F(TextOutput, AMarkTellsKindsWhoseFirstLineVaries) {

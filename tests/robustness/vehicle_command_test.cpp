@@ -1,4 +1,4 @@
-// The critical speed that `vsi vehicle NAME --table` prints, and what it refuses.
+// The critical speed that `vsi vehicle NAME --table` prints, and what it rejects.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ class VehicleOnTable : public TablegenFixture {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
-  void expect_refused(const std::string& arguments, const std::string& part) const {
+  void expect_rejected(const std::string& arguments, const std::string& part) const {
     const Outcome outcome = vsi("vehicle " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
@@ -50,13 +50,13 @@ TEST_F(VehicleOnTable, CriticalSpeedIsThatOfASceneOnItsProfiles) {
   EXPECT_TRUE(json("vehicle manchester-coach")["hunting"].is_null());
 }
 
-TEST_F(VehicleOnTable, RefusesTablesAndVehiclesThatDoNotFit) {
-  expect_refused("crh380a --table t.h5",
-                 "--table: found t.h5, of wheels of 0.46 m radius, expected a table for 0.43 m");
-  expect_refused("velaro-e-coach --table t.h5", "--table: found velaro-e-coach, whose data are vertical only");
-  expect_refused("manchester-coach --table none.h5", "none.h5");
-  expect_refused("manchester-coach --amplitude 3e-3", "--amplitude: found no --table");
-  expect_refused("manchester-coach --table t.h5 --amplitude 1", "--amplitude: found 1 m, expected above 0");
+TEST_F(VehicleOnTable, RejectsTablesAndVehiclesThatDoNotFit) {
+  expect_rejected("crh380a --table t.h5",
+                  "--table: found t.h5, of wheels of 0.46 m radius, expected a table for 0.43 m");
+  expect_rejected("velaro-e-coach --table t.h5", "--table: found velaro-e-coach, whose data are vertical only");
+  expect_rejected("manchester-coach --table none.h5", "none.h5");
+  expect_rejected("manchester-coach --amplitude 3e-3", "--amplitude: found no --table");
+  expect_rejected("manchester-coach --table t.h5 --amplitude 1", "--amplitude: found 1 m, expected above 0");
 }
 
 }  // namespace

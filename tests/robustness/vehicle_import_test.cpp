@@ -38,18 +38,18 @@ class VehicleImportFiles : public testing::ImportedVehicle {
     return "no error";
   }
 
-  void expect_refused(const VehicleImport& import, std::initializer_list<std::string_view> words) const {
+  void expect_rejected(const VehicleImport& import, std::initializer_list<std::string_view> words) const {
     const std::string what = message([&] { static_cast<void>(import_vehicle(import)); });
     for (const std::string_view word : words) EXPECT_NE(what.find(word), std::string::npos) << word << " in: " << what;
   }
-  void expect_refused(const FreeCoach& coach, std::initializer_list<std::string_view> words) const {
+  void expect_rejected(const FreeCoach& coach, std::initializer_list<std::string_view> words) const {
     write(coach);
-    expect_refused(files(), words);
+    expect_rejected(files(), words);
   }
 
   /// dofs.csv of the coach with every `from` in it replaced.
-  void expect_table_refused(std::string_view from, std::string_view to,
-                            std::initializer_list<std::string_view> words) const {
+  void expect_table_rejected(std::string_view from, std::string_view to,
+                             std::initializer_list<std::string_view> words) const {
     write(free_coach());
     std::ifstream stream(folder_ / "dofs.csv");
     std::string table((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
@@ -59,7 +59,7 @@ class VehicleImportFiles : public testing::ImportedVehicle {
     }
     EXPECT_GT(found, 0U) << from;
     write("dofs.csv", table);
-    expect_refused(files(), words);
+    expect_rejected(files(), words);
   }
 };
 
@@ -126,15 +126,15 @@ TEST_F(VehicleImportFiles, AreSummedUpInThePlan) {
 TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
   FreeCoach tied = free_coach();
   tied.stiffness(tied.row("WS2", y), tied.row("WS2", y)) += 1e5;
-  expect_refused(tied, {"k.mtx: row", "(y of WS2)", "resists y of the whole vehicle", "ties to the ground"});
+  expect_rejected(tied, {"k.mtx: row", "(y of WS2)", "resists y of the whole vehicle", "ties to the ground"});
   tied = free_coach();
   tied.damping(tied.row("CAR", z), tied.row("CAR", z)) += 1e4;
-  expect_refused(tied, {"c.mtx: row", "(z of CAR)", "resists z", "ties to the ground"});
+  expect_rejected(tied, {"c.mtx: row", "(z of CAR)", "resists z", "ties to the ground"});
   // gravity that turns with the car body, said or unsaid
   tied = free_coach();
   const int roll_row = tied.row("CAR", roll);
   tied.stiffness(roll_row, roll_row) -= 3e5;
-  expect_refused(tied, {"k.mtx: row", "(roll of CAR)", "resists roll", "train.geometric_stiffness = \"in-matrices\""});
+  expect_rejected(tied, {"k.mtx: row", "(roll of CAR)", "resists roll", "train.geometric_stiffness = \"in-matrices\""});
   const VehicleWeight in_matrices{standard_gravity, GeometricStiffness::in_matrices};
   EXPECT_EQ(message([&] { static_cast<void>(import_vehicle(files(), MotionPlane::spatial, in_matrices)); }),
             "no error");
@@ -147,14 +147,14 @@ TEST_F(VehicleImportFiles, MustBeAFreeVehicle) {
 
   CoachParameters loose = coach_parameters("manchester-coach");
   loose.secondary.kx = loose.secondary.ky = 0.0;
-  expect_refused(free_coach(loose), {"k.mtx: row", "a motion that no spring resists", "six rigid motions"});
+  expect_rejected(free_coach(loose), {"k.mtx: row", "a motion that no spring resists", "six rigid motions"});
 
   FreeCoach pushing = free_coach();
   add_spring(pushing, "bogie-1", "CAR", {0.0, -1e7, 0.0}, {0.0, 0.0, 0.0}, pushing.stiffness);
-  expect_refused(pushing, {"k.mtx: row", "springs that push", "semidefinite"});
+  expect_rejected(pushing, {"k.mtx: row", "springs that push", "semidefinite"});
   pushing = free_coach();
   add_spring(pushing, "bogie-1", "CAR", {0.0, -1e6, 0.0}, {0.0, 0.0, 0.0}, pushing.damping);
-  expect_refused(pushing, {"c.mtx: row", "drives a motion", "semidefinite"});
+  expect_rejected(pushing, {"c.mtx: row", "drives a motion", "semidefinite"});
 }
 
 // Two coaches and a ball between their ends: relative yaw, pitch and roll of the free train are hinges, which rails
@@ -215,16 +215,16 @@ TEST_F(VehicleImportFiles, MustHaveMass) {
   FreeCoach coach = free_coach();
   const int row = coach.row("bogie-2", y), other = coach.row("bogie-2", yaw);
   coach.mass(row, row) = 0.0;
-  expect_refused(coach, {"m.mtx: row", "(y of bogie-2)", "mass 0", "> 0"});
+  expect_rejected(coach, {"m.mtx: row", "(y of bogie-2)", "mass 0", "> 0"});
   coach = free_coach();
   coach.mass(row, other) = coach.mass(other, row) = 1.1 * std::sqrt(coach.mass(row, row) * coach.mass(other, other));
-  expect_refused(coach, {"m.mtx: row", "of bogie-2", "positive definite"});
+  expect_rejected(coach, {"m.mtx: row", "of bogie-2", "positive definite"});
   coach = free_coach();
   coach.mass(row, row) *= 1.001;
-  expect_refused(coach, {"m.mtx", "44482 kg along x, 44484.6 kg along y", "the same mass"});
+  expect_rejected(coach, {"m.mtx", "44482 kg along x, 44484.6 kg along y", "the same mass"});
   coach = free_coach();
   coach.mass(row, other) = 10.0;
-  expect_refused(coach, {"m.mtx: row", "symmetric"});
+  expect_rejected(coach, {"m.mtx: row", "symmetric"});
 }
 
 // Finite and absurd numbers are named before anything is computed with them.
@@ -232,51 +232,51 @@ TEST_F(VehicleImportFiles, HaveScalesOfAVehicle) {
   FreeCoach coach = free_coach();
   const int row = coach.row("CAR", z);
   coach.mass(row, row) = 1e150;
-  expect_refused(coach, {"m.mtx: row", "(z of CAR)", "found mass 1e+150, expected -1e+09 to 1e+09 in SI units"});
+  expect_rejected(coach, {"m.mtx: row", "(z of CAR)", "found mass 1e+150, expected -1e+09 to 1e+09 in SI units"});
   coach = free_coach();
   coach.stiffness(row, row) = 1e300;
-  expect_refused(coach, {"k.mtx: row", "(z of CAR)", "stiffness 1e+300", "-1e+18 to 1e+18"});
+  expect_rejected(coach, {"k.mtx: row", "(z of CAR)", "stiffness 1e+300", "-1e+18 to 1e+18"});
   coach = free_coach();
   coach.damping(row, row) = -1e200;
-  expect_refused(coach, {"c.mtx: row", "(z of CAR)", "damping -1e+200"});
+  expect_rejected(coach, {"c.mtx: row", "(z of CAR)", "damping -1e+200"});
   coach = free_coach();
   coach.mass(row, row) = 1e-15;
-  expect_refused(coach, {"m.mtx: row", "(z of CAR)", "Hz", "0 to 1e+09 Hz"});
+  expect_rejected(coach, {"m.mtx: row", "(z of CAR)", "Hz", "0 to 1e+09 Hz"});
 }
 
 TEST_F(VehicleImportFiles, HaveWheelsetsThatRollFreely) {
   FreeCoach braked = free_coach();
   add_spring(braked, "WS1", "bogie-1", {0.0, 0.0, 0.0}, {0.0, 1e4, 0.0}, braked.stiffness);
-  expect_refused(braked, {"k.mtx: row", "(pitch of WS1)", "stiffness of 1e+04 N m/rad", "turns freely"});
+  expect_rejected(braked, {"k.mtx: row", "(pitch of WS1)", "stiffness of 1e+04 N m/rad", "turns freely"});
   braked = free_coach();
   add_spring(braked, "WS1", "bogie-1", {0.0, 0.0, 0.0}, {0.0, 50.0, 0.0}, braked.damping);
-  expect_refused(braked, {"c.mtx: row", "(pitch of WS1)", "damping of 50 N m s/rad", "turns freely"});
+  expect_rejected(braked, {"c.mtx: row", "(pitch of WS1)", "damping of 50 N m s/rad", "turns freely"});
   FreeCoach geared = free_coach();
   const int wheelset = geared.row("WS3", pitch), bogie = geared.row("bogie-2", pitch);
   geared.mass(wheelset, bogie) = geared.mass(bogie, wheelset) = 20.0;
-  expect_refused(geared, {"m.mtx: row", "(pitch of WS3)", "shared with", "pitch of bogie-2"});
+  expect_rejected(geared, {"m.mtx: row", "(pitch of WS3)", "shared with", "pitch of bogie-2"});
 }
 
 TEST_F(VehicleImportFiles, HaveInnerUnknownsOnSprings) {
   FreeCoach coach = free_coach();
   coach.hang_mass(100.0, 0.0);
-  expect_refused(coach, {"k.mtx: row 43 (of no body)", "inner degree of freedom", "springs hold"});
+  expect_rejected(coach, {"k.mtx: row 43 (of no body)", "inner degree of freedom", "springs hold"});
 }
 
 TEST_F(VehicleImportFiles, HaveATableThatFits) {
-  expect_table_refused(",WS1,rotz,", ",lost,rotz,", {"dofs.csv:", "wheelset WS1 without yaw", "a row for each"});
-  expect_table_refused("1,CAR,x,", "# ", {"dofs.csv:", "car body CAR without x"});
-  expect_table_refused("42,WS4", "43,WS4", {"dofs.csv:43", "row 43", "1 to 42"});
-  expect_table_refused("42,WS4", "41,WS4", {"dofs.csv:43", "row 41 again"});
-  expect_table_refused("WS2,roty", "WS2,rotx", {"dofs.csv:", "rotx of body WS2 again"});
-  expect_table_refused("WS2,roty", "WS2,pitch", {"dofs.csv:", "motion 'pitch'", "rotz"});
-  expect_table_refused("42,WS4,rotz,", "42,WS4,rotz,nan,", {"dofs.csv:43", "row,body,motion,x,y,z"});
-  expect_table_refused("1,CAR,x,0,", "1,CAR,x,nan,", {"dofs.csv:2", "'nan'", "finite"});
-  expect_table_refused("1,CAR,x,0,", "1,CAR,x,0.1,", {"dofs.csv:3", "CAR at another place", "dofs.csv:2"});
-  expect_table_refused("bogie-1", "coach/bogie", {"dofs.csv:", "coach/bogie", "without /"});
-  expect_table_refused("bogie-1", "wheelset-2", {"dofs.csv:", "a body named wheelset-2", "another name"});
-  expect_table_refused("row,body", "row,node", {"dofs.csv:1", "row,body,motion,x,y,z"});
-  expect_table_refused("bogie-2", "bogie-1", {"dofs.csv:", "bogie-1 at another place"});
+  expect_table_rejected(",WS1,rotz,", ",lost,rotz,", {"dofs.csv:", "wheelset WS1 without yaw", "a row for each"});
+  expect_table_rejected("1,CAR,x,", "# ", {"dofs.csv:", "car body CAR without x"});
+  expect_table_rejected("42,WS4", "43,WS4", {"dofs.csv:43", "row 43", "1 to 42"});
+  expect_table_rejected("42,WS4", "41,WS4", {"dofs.csv:43", "row 41 again"});
+  expect_table_rejected("WS2,roty", "WS2,rotx", {"dofs.csv:", "rotx of body WS2 again"});
+  expect_table_rejected("WS2,roty", "WS2,pitch", {"dofs.csv:", "motion 'pitch'", "rotz"});
+  expect_table_rejected("42,WS4,rotz,", "42,WS4,rotz,nan,", {"dofs.csv:43", "row,body,motion,x,y,z"});
+  expect_table_rejected("1,CAR,x,0,", "1,CAR,x,nan,", {"dofs.csv:2", "'nan'", "finite"});
+  expect_table_rejected("1,CAR,x,0,", "1,CAR,x,0.1,", {"dofs.csv:3", "CAR at another place", "dofs.csv:2"});
+  expect_table_rejected("bogie-1", "coach/bogie", {"dofs.csv:", "coach/bogie", "without /"});
+  expect_table_rejected("bogie-1", "wheelset-2", {"dofs.csv:", "a body named wheelset-2", "another name"});
+  expect_table_rejected("row,body", "row,node", {"dofs.csv:1", "row,body,motion,x,y,z"});
+  expect_table_rejected("bogie-2", "bogie-1", {"dofs.csv:", "bogie-1 at another place"});
 }
 
 TEST_F(VehicleImportFiles, StandWhereTheSceneSays) {
@@ -284,38 +284,38 @@ TEST_F(VehicleImportFiles, StandWhereTheSceneSays) {
   EXPECT_EQ(message([&] { static_cast<void>(import_vehicle(files())); }), "no error");
   VehicleImport wrong = files();
   std::swap(wrong.wheelsets[0], wrong.wheelsets[3]);
-  expect_refused(wrong, {"vehicle.wheelsets", "WS2 at x = 8.22 m after WS4 at -10.78 m", "from the front"});
+  expect_rejected(wrong, {"vehicle.wheelsets", "WS2 at x = 8.22 m after WS4 at -10.78 m", "from the front"});
   wrong = files();
   wrong.wheelsets[1] = "WS9";
-  expect_refused(wrong, {"vehicle.wheelsets", "WS9", "one of CAR, bogie-1"});
+  expect_rejected(wrong, {"vehicle.wheelsets", "WS9", "one of CAR, bogie-1"});
   wrong = files();
   wrong.car_body = "BODY";
-  expect_refused(wrong, {"vehicle.car_body", "BODY", "one of CAR"});
+  expect_rejected(wrong, {"vehicle.car_body", "BODY", "one of CAR"});
   wrong = files();
   wrong.frame.origin = std::array{0.0, 0.1, 0.0};
-  expect_refused(wrong, {"dofs.csv:", "WS1 at y = -0.1 m", "track's centre"});
+  expect_rejected(wrong, {"dofs.csv:", "WS1 at y = -0.1 m", "track's centre"});
   wrong = files();
   wrong.frame.axes = "x -y -z";
-  expect_refused(wrong, {"dofs.csv:", "the axle of WS1 -0.46 m above the rails", "vehicle.axes"});
+  expect_rejected(wrong, {"dofs.csv:", "the axle of WS1 -0.46 m above the rails", "vehicle.axes"});
   wrong.frame.axes = "x y -z";
-  expect_refused(wrong, {"vehicle.axes", "left-handed"});
+  expect_rejected(wrong, {"vehicle.axes", "left-handed"});
   wrong = files();
   wrong.frame.units = "ft-lb";
-  expect_refused(wrong, {"vehicle.units", "ft-lb", "mm-N-t"});
+  expect_rejected(wrong, {"vehicle.units", "ft-lb", "mm-N-t"});
   wrong = files();
   wrong.length = 20.0;
-  expect_refused(wrong, {"vehicle.length", "20 m", "outer wheelsets, 21.56 m"});
+  expect_rejected(wrong, {"vehicle.length", "20 m", "outer wheelsets, 21.56 m"});
 }
 
 TEST_F(VehicleImportFiles, HaveMatricesOfOneSize) {
   write(free_coach());
   write("c.mtx", Eigen::MatrixXd::Identity(41, 41));
-  expect_refused(files(), {"c.mtx", "41 x 41", "42 x 42"});
+  expect_rejected(files(), {"c.mtx", "41 x 41", "42 x 42"});
   const Eigen::Index n = most_vehicle_rows + 1;
   write("k.mtx", fmt::format("%%MatrixMarket matrix coordinate real general\n{0} {0} 1\n1 1 1.0\n", n));
-  expect_refused(files(), {"k.mtx", "1001 rows", "at most 1000"});
+  expect_rejected(files(), {"k.mtx", "1001 rows", "at most 1000"});
   write("k.mtx", "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 inf\n");
-  expect_refused(files(), {"k.mtx:3", "'inf'", "finite"});
+  expect_rejected(files(), {"k.mtx:3", "'inf'", "finite"});
 }
 
 TEST_F(VehicleImportFiles, AreNamedByTheScene) {
@@ -323,7 +323,7 @@ TEST_F(VehicleImportFiles, AreNamedByTheScene) {
   const std::string online = "[contact]\nmode = \"online\"\n";
   EXPECT_EQ(scene(online + vehicle_section()).train.vehicle, "imported");
   EXPECT_EQ(scene(vehicle_section() + online + "[train]\nvehicle = \"imported\"\ncount = 3\n").train.count, 3);
-  const auto refused = [&](const std::string& text, std::string_view words) {
+  const auto rejected = [&](const std::string& text, std::string_view words) {
     const std::string what = message([&] {
       const SceneParameters read = scene(text);
       try {
@@ -340,17 +340,17 @@ TEST_F(VehicleImportFiles, AreNamedByTheScene) {
     return online + text;
   };
   const std::string rigid = "[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n";
-  refused("train.vehicle = \"imported\"\n" + online, "scene.toml:1: train.vehicle: found \"imported\" without all");
-  refused("train.vehicle = \"manchester-coach\"\n" + online + vehicle_section(),
-          "scene.toml:5: vehicle.mass: found train.vehicle = \"manchester-coach\"");
-  refused(without("damping"), "vehicle.damping");
-  refused(without("wheelsets"), "vehicle.wheelsets: found none");
-  refused(without("car_body"), "vehicle.car_body: found none");
-  refused(without("length") + "[train]\ncount = 2\n", "vehicle.length: found none, and 2 vehicles");
-  refused(without("car_body") + "car_body = \"WS2\"\n", "vehicle.wheelsets: found WS2 twice");
-  refused(without("wheelsets") + "wheelsets = [\"WS1\", \"WS7\"]\n" + rigid,
-          "scene.toml:11: vehicle.wheelsets: found WS7, expected one of");
-  refused(
+  rejected("train.vehicle = \"imported\"\n" + online, "scene.toml:1: train.vehicle: found \"imported\" without all");
+  rejected("train.vehicle = \"manchester-coach\"\n" + online + vehicle_section(),
+           "scene.toml:5: vehicle.mass: found train.vehicle = \"manchester-coach\"");
+  rejected(without("damping"), "vehicle.damping");
+  rejected(without("wheelsets"), "vehicle.wheelsets: found none");
+  rejected(without("car_body"), "vehicle.car_body: found none");
+  rejected(without("length") + "[train]\ncount = 2\n", "vehicle.length: found none, and 2 vehicles");
+  rejected(without("car_body") + "car_body = \"WS2\"\n", "vehicle.wheelsets: found WS2 twice");
+  rejected(without("wheelsets") + "wheelsets = [\"WS1\", \"WS7\"]\n" + rigid,
+           "scene.toml:11: vehicle.wheelsets: found WS7, expected one of");
+  rejected(
       online + "dimensions.nominal_radius = 0.4575\n" + vehicle_section() + rigid,
       "scene.toml:3: contact.dimensions.nominal_radius: found 0.4575 m, expected 0.46 m, the wheels of the vehicle of");
 }

@@ -30,17 +30,17 @@ TEST_F(VsiCommand, StandardOutputThatCannotBeWrittenIsAFailure) {
 }
 
 TEST_F(VsiCommand, WrongCommandLines) {
-  expect_refused("", "no command");
-  expect_refused("rnu", "unknown command 'rnu'; did you mean 'run'?\nvsi --help lists the commands\n");
-  expect_refused("help rnu", "unknown command 'rnu'; did you mean 'run'?");
+  expect_rejected("", "no command");
+  expect_rejected("rnu", "unknown command 'rnu'; did you mean 'run'?\nvsi --help lists the commands\n");
+  expect_rejected("help rnu", "unknown command 'rnu'; did you mean 'run'?");
   EXPECT_EQ(vsi("rnu").output.find("Usage"), std::string::npos) << "not all commands";
-  expect_refused("run", "found no SCENE.toml\nusage: vsi run SCENE.toml");
-  expect_refused("run scene.toml --contcat table", "--contcat");
-  expect_refused("run scene.toml --threads -1", "threads");
-  expect_refused("run scene.toml --threads many", "threads");
-  expect_refused("report results.h5", "found no -o REPORT.html\nusage: ");
-  expect_refused("contact pair.h5 -o out", "query");
-  expect_refused("contact pair.h5 --query q.csv -o none/out", "no folder none");
+  expect_rejected("run", "found no SCENE.toml\nusage: vsi run SCENE.toml");
+  expect_rejected("run scene.toml --contcat table", "--contcat");
+  expect_rejected("run scene.toml --threads -1", "threads");
+  expect_rejected("run scene.toml --threads many", "threads");
+  expect_rejected("report results.h5", "found no -o REPORT.html\nusage: ");
+  expect_rejected("contact pair.h5 -o out", "query");
+  expect_rejected("contact pair.h5 --query q.csv -o none/out", "no folder none");
 }
 
 TEST_F(VsiCommand, HelpOfACommandByItsName) {
@@ -51,41 +51,42 @@ TEST_F(VsiCommand, HelpOfACommandByItsName) {
 
 TEST_F(VsiCommand, OutputsWithoutAName) {
   write("scene.toml", rigid_scene + "duration = 0.02\n");
-  expect_refused("run scene.toml -o ''", "-o: found an empty name, expected the name of a file");
-  expect_refused("new ''", "vsi new: found an empty name, expected the name of a file");
+  expect_rejected("run scene.toml -o ''", "-o: found an empty name, expected the name of a file");
+  expect_rejected("new ''", "vsi new: found an empty name, expected the name of a file");
 }
 
 TEST_F(VsiCommand, MissingFiles) {
-  expect_refused("run absent.toml -o out", "absent.toml: found no such file");
-  expect_refused("report absent.h5 -o out", "absent.h5");
-  expect_refused("contact absent.h5 --query q.csv -o out", "absent.h5");
-  expect_refused("creep --law polach --query absent.csv -o out", "absent.csv: found no such file");
+  expect_rejected("run absent.toml -o out", "absent.toml: found no such file");
+  expect_rejected("report absent.h5 -o out", "absent.h5");
+  expect_rejected("contact absent.h5 --query q.csv -o out", "absent.h5");
+  expect_rejected("creep --law polach --query absent.csv -o out", "absent.csv: found no such file");
 }
 
 TEST_F(VsiCommand, WhatIsNoRegularFileIsNamed) {
-  expect_refused("run /dev/zero -o out", "/dev/zero: found a device, expected a TOML scene");
-  expect_refused("run . -o out", ".: found a folder");
-  expect_refused("report /dev/zero -o out", "/dev/zero: found a device");
-  expect_refused("creep --law polach --query /dev/zero -o out", "/dev/zero: found a device");
+  expect_rejected("run /dev/zero -o out", "/dev/zero: found a device, expected a TOML scene");
+  expect_rejected("run . -o out", ".: found a folder");
+  expect_rejected("report /dev/zero -o out", "/dev/zero: found a device");
+  expect_rejected("creep --law polach --query /dev/zero -o out", "/dev/zero: found a device");
   write("device.toml", rigid_scene + "duration = 0.1\n[irregularity]\nfile = \"/dev/zero\"\n");
-  expect_refused("run device.toml -o out", "device.toml:8: irregularity.file: found a device /dev/zero");
+  expect_rejected("run device.toml -o out", "device.toml:8: irregularity.file: found a device /dev/zero");
 }
 
-// TOML's own reader refuses these numbers.
+// TOML's own reader rejects these numbers.
 TEST_F(VsiCommand, NumbersThatAreNoneNameTheirKey) {
   write("large.toml", rigid_scene + "duration = 1e999\n");
-  expect_refused("run large.toml -o out", "large.toml:6: integration.duration: ");
+  expect_rejected("run large.toml -o out", "large.toml:6: integration.duration: ");
   write("digits.toml", "[contact]\nmode = \"online\"\n[ track . pad ] # of the rail\nkz = 99999999999999999999\n");
-  expect_refused("run digits.toml -o out", "digits.toml:4: track . pad.kz: ");
+  expect_rejected("run digits.toml -o out", "digits.toml:4: track . pad.kz: ");
   write("top.toml", "name = 1e999\n");
-  expect_refused("run top.toml -o out", "top.toml:1: name: ");
+  expect_rejected("run top.toml -o out", "top.toml:1: name: ");
   write("nokey.toml", "[contact]\nmode \"online\"\n");
-  expect_refused("run nokey.toml -o out", "nokey.toml:2: Error");
+  expect_rejected("run nokey.toml -o out", "nokey.toml:2: Error");
 }
 
 TEST_F(VsiCommand, AMillimetreIsNoSpan) {
   write("short.toml", "[contact]\nmode = \"online\"\n[[bridge]]\nlength = 0.001\n");
-  expect_refused("run short.toml -o out", "short.toml:4: bridge.length: found 0.001, expected a number, 0.5 to 1000 m");
+  expect_rejected("run short.toml -o out",
+                  "short.toml:4: bridge.length: found 0.001, expected a number, 0.5 to 1000 m");
 }
 
 // Messages that cannot be written do not change what a command says by its exit code.
@@ -113,26 +114,26 @@ TEST_F(VsiCommand, FilesThatAreNotWhatTheyShouldBe) {
   write("empty.h5", "");
   write("q.csv", "y,yaw,roll,dz\n0,0,0,1e-5\n");
   for (const char* file : {"text.h5", "empty.h5", "q.csv"}) {
-    expect_refused(std::string("report ") + file + " -o out", file);
-    expect_refused(std::string("contact ") + file + " --query q.csv -o out", file);
+    expect_rejected(std::string("report ") + file + " -o out", file);
+    expect_rejected(std::string("contact ") + file + " --query q.csv -o out", file);
   }
 }
 
 TEST_F(VsiCommand, WrongScenes) {
   write("key.toml", "[contact]\nmode = \"online\"\n\n[tran]\nsped = 3\n");
-  expect_refused("run key.toml -o out", "key.toml:5: unknown key 'tran.sped'; did you mean 'train.speed'?");
+  expect_rejected("run key.toml -o out", "key.toml:5: unknown key 'tran.sped'; did you mean 'train.speed'?");
   write("toml.toml", "[contact\nmode = \"online\"\n");
-  expect_refused("run toml.toml -o out", "toml.toml:1: ");
+  expect_rejected("run toml.toml -o out", "toml.toml:1: ");
   write("table.toml", "[train]\n");
-  expect_refused("run table.toml -o out", "without contact.table");
+  expect_rejected("run table.toml -o out", "without contact.table");
   write("online.toml", "[contact]\nmode = \"online\"\n");
-  expect_refused("run online.toml --contact table -o out", "without contact.table");
-  expect_refused("run online.toml --contact tabel -o out", "--contact: found tabel, expected table, online or paper");
-  expect_refused("run online.toml -o none/out", "no folder none");
+  expect_rejected("run online.toml --contact table -o out", "without contact.table");
+  expect_rejected("run online.toml --contact tabel -o out", "--contact: found tabel, expected table, online or paper");
+  expect_rejected("run online.toml -o none/out", "no folder none");
   write("junk.h5", "junk");
   write("junk.toml", "[contact]\ntable = \"junk.h5\"\n[[bridge]]\n");
-  expect_refused("run junk.toml -o out", "junk.h5");
-  expect_refused("run junk.toml -o junk.h5", "-o junk.h5: found a file that this command reads");
+  expect_rejected("run junk.toml -o out", "junk.h5");
+  expect_rejected("run junk.toml -o junk.h5", "-o junk.h5: found a file that this command reads");
 }
 
 TEST_F(VsiCommand, NoOutputDestroysAnInput) {
@@ -141,27 +142,27 @@ TEST_F(VsiCommand, NoOutputDestroysAnInput) {
   write("scene.toml",
         "[contact]\nmode = \"online\"\nwheel = \"wheel.txt\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = "
         "1.0\n");
-  const std::string refusal = "found a file that this command reads";
-  const auto refuse = [&](const std::string& arguments) {
+  const std::string rejection = "found a file that this command reads";
+  const auto reject = [&](const std::string& arguments) {
     const Outcome outcome = vsi(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.output.find(refusal), std::string::npos) << arguments << '\n' << outcome.output;
+    EXPECT_NE(outcome.output.find(rejection), std::string::npos) << arguments << '\n' << outcome.output;
   };
-  refuse("creep --law polach --query q.csv -o q.csv");
-  refuse("run scene.toml -o scene.toml");
-  refuse("run scene.toml -o ./wheel.txt");
-  refuse("report scene.toml -o scene.toml");
-  refuse("contact table.h5 --query q.csv -o q.csv");
+  reject("creep --law polach --query q.csv -o q.csv");
+  reject("run scene.toml -o scene.toml");
+  reject("run scene.toml -o ./wheel.txt");
+  reject("report scene.toml -o scene.toml");
+  reject("contact table.h5 --query q.csv -o q.csv");
 }
 
 // Rails end where the modelled track does: a run must not go on beyond.
-TEST_F(VsiCommand, ARunThatLeavesTheTrackIsRefused) {
+TEST_F(VsiCommand, ARunThatLeavesTheTrackIsRejected) {
   write("long.toml", "[contact]\nmode = \"online\"\n[track]\nlength_after = 12.0\n[[bridge]]\nlength = 20.0\n");
-  expect_refused("run long.toml -o out", "track.length_after");
-  expect_refused("run long.toml --plan -o out", "track.length_after");
+  expect_rejected("run long.toml -o out", "track.length_after");
+  expect_rejected("run long.toml --plan -o out", "track.length_after");
   write("steps.toml",
         "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1e5\ntime_step = 1e-5\n");
-  expect_refused("run steps.toml --plan -o out", "integration.time_step");
+  expect_rejected("run steps.toml --plan -o out", "integration.time_step");
 }
 
 TEST_F(VsiCommand, CreepAnswersFromTheShippedTableAndSaysWhereItDoesNot) {
@@ -180,16 +181,16 @@ TEST_F(VsiCommand, CreepAnswersFromTheShippedTableAndSaysWhereItDoesNot) {
   EXPECT_EQ(lines[1][0], '-') << "positive creepage pushes the wheel back";
 }
 
-TEST_F(VsiCommand, WrongCreepLawsAndTablesAreRefused) {
+TEST_F(VsiCommand, WrongCreepLawsAndTablesAreRejected) {
   write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
   write("junk.h5", "junk");
-  expect_refused("creep absent.h5 --query q.csv -o out", "absent.h5");
-  expect_refused("creep junk.h5 --query q.csv -o out --law table", "junk.h5");
-  expect_refused("creep --query q.csv -o out --poisson 0.3", "Poisson's ratio");
-  expect_refused("creep --query q.csv -o out --law kalker", "kalker");
-  expect_refused("creep table.h5 --query q.csv -o out --law polach",
-                 "--law polach: found with the creep table table.h5");
-  expect_refused("creep --query q.csv -o out --law polach --poisson 0.7", "--poisson");
+  expect_rejected("creep absent.h5 --query q.csv -o out", "absent.h5");
+  expect_rejected("creep junk.h5 --query q.csv -o out --law table", "junk.h5");
+  expect_rejected("creep --query q.csv -o out --poisson 0.3", "Poisson's ratio");
+  expect_rejected("creep --query q.csv -o out --law kalker", "kalker");
+  expect_rejected("creep table.h5 --query q.csv -o out --law polach",
+                  "--law polach: found with the creep table table.h5");
+  expect_rejected("creep --query q.csv -o out --law polach --poisson 0.7", "--poisson");
 }
 
 TEST_F(VsiCommand, AByteOrderMarkBeforeTheHeaderIsNoneOfItsColumns) {
@@ -199,20 +200,20 @@ TEST_F(VsiCommand, AByteOrderMarkBeforeTheHeaderIsNoneOfItsColumns) {
 }
 
 TEST_F(VsiCommand, WrongQueriesNameTheirLine) {
-  const auto refuse = [&](const std::string& text, const std::string& message) {
+  const auto reject = [&](const std::string& text, const std::string& message) {
     write("q.csv", text);
-    expect_refused("creep --law polach --query q.csv -o out", message);
+    expect_rejected("creep --law polach --query q.csv -o out", message);
   };
-  refuse("", "q.csv: found no row of numbers");
-  refuse("ratio,ux,uy,phi\n", "q.csv: found no row of numbers");
-  refuse("ratio,ux,uy\n1,2,3\n", "q.csv:1: found 3 columns");
-  refuse("ratio,ux,uy,spin\n1,2,3,4\n", "q.csv:1: found column 'spin'");
-  refuse("ratio,ux,uy,ux\n1,2,3,4\n", "q.csv:1: found column 'ux' twice");
-  refuse("ratio,ux,uy,phi\n1,0,0,0\n1,0,0\n", "q.csv:3: found 3 columns");
-  refuse("ratio,ux,uy,phi\n1,0,zero,0\n", "q.csv:2: column uy: found 'zero'");
-  refuse("ratio,ux,uy,phi\n1,0,nan,0\n", "q.csv:2: column uy: found 'nan'");
-  refuse("ratio,ux,uy,phi\n1,,0,0\n", "q.csv:2: column ux: found ''");
-  refuse("# a comment\nratio,ux,uy,phi\n\n0,0,0,0\n", "q.csv:4: found ratio = 0, expected a/b > 0");
+  reject("", "q.csv: found no row of numbers");
+  reject("ratio,ux,uy,phi\n", "q.csv: found no row of numbers");
+  reject("ratio,ux,uy\n1,2,3\n", "q.csv:1: found 3 columns");
+  reject("ratio,ux,uy,spin\n1,2,3,4\n", "q.csv:1: found column 'spin'");
+  reject("ratio,ux,uy,ux\n1,2,3,4\n", "q.csv:1: found column 'ux' twice");
+  reject("ratio,ux,uy,phi\n1,0,0,0\n1,0,0\n", "q.csv:3: found 3 columns");
+  reject("ratio,ux,uy,phi\n1,0,zero,0\n", "q.csv:2: column uy: found 'zero'");
+  reject("ratio,ux,uy,phi\n1,0,nan,0\n", "q.csv:2: column uy: found 'nan'");
+  reject("ratio,ux,uy,phi\n1,,0,0\n", "q.csv:2: column ux: found ''");
+  reject("# a comment\nratio,ux,uy,phi\n\n0,0,0,0\n", "q.csv:4: found ratio = 0, expected a/b > 0");
 }
 
 TEST_F(VsiCommand, CreepForcesOfEveryLawInTheColumnsOfTheContract) {
@@ -236,9 +237,9 @@ TEST_F(VsiCommand, CreepForcesOfEveryLawInTheColumnsOfTheContract) {
 TEST_F(VsiCommand, ATableAndProfilesAreTwoPairs) {
   write("two.toml", "[contact]\ntable = \"t.h5\"\nrail_inclination = \"1:20\"\n");
   write("t.h5", "");
-  expect_refused("run two.toml -o out", "two.toml:3: contact.rail_inclination: found contact.table too");
+  expect_rejected("run two.toml -o out", "two.toml:3: contact.rail_inclination: found contact.table too");
   write("gauge.toml", "[contact]\nmode = \"online\"\ntable = \"t.h5\"\ndimensions.track_gauge = 1.432\n");
-  expect_refused("run gauge.toml -o out", "gauge.toml:4: contact.dimensions.track_gauge: found contact.table too");
+  expect_rejected("run gauge.toml -o out", "gauge.toml:4: contact.dimensions.track_gauge: found contact.table too");
 }
 
 TEST_F(VsiCommand, RunSaysWhereItsTimeWent) {
@@ -323,7 +324,7 @@ TEST_F(VsiCommand, ACreepTableOfAnotherTypeNamesTheKeyThatAsksForIt) {
   write("wrong.toml",
         "[contact]\nmode = \"online\"\ncreep_law = \"table\"\ncreep_table = \"other.h5\"\n[track]\nkind = \"rigid\"\n"
         "[integration]\nduration = 0.01\n");
-  expect_refused("run wrong.toml -o out", "wrong.toml:4: contact.creep_table: other.h5: found a file of type");
+  expect_rejected("run wrong.toml -o out", "wrong.toml:4: contact.creep_table: other.h5: found a file of type");
 }
 
 // What stands in the way of results must be results; a link is followed, to where there is nothing yet, too.
@@ -331,20 +332,20 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
   write("scene.toml", rigid_scene + "duration = 0.01\n");
   std::filesystem::copy_file(RAILTAB_SOURCE_DIR "/tables/data/creep_table_nu028.h5", folder_ / "table.h5");
   const std::uintmax_t bytes = std::filesystem::file_size(folder_ / "table.h5");
-  const auto refused = [&](const std::string& arguments, const std::string& words) {
+  const auto rejected = [&](const std::string& arguments, const std::string& words) {
     const Outcome outcome = vsi(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_NE(outcome.output.find(words), std::string::npos) << outcome.output;
   };
   for (const char* plan : {"", " --plan"}) {
-    refused("run scene.toml -o table.h5" + std::string(plan),
-            "-o table.h5: found a file of type railtab-creep-table, expected a new name");
+    rejected("run scene.toml -o table.h5" + std::string(plan),
+             "-o table.h5: found a file of type railtab-creep-table, expected a new name");
   }
   write("notes.txt", "mine");
-  refused("run scene.toml -o notes.txt", "a file of another kind");
+  rejected("run scene.toml -o notes.txt", "a file of another kind");
   write("q.csv", "ratio,ux,uy,phi\n1,0.1,0,0\n");
-  refused("creep --law polach --query q.csv -o table.h5", "a table or results of railtab");
-  refused("creep --law polach --query q.csv -o notes.txt", "notes.txt: found a file that begins with 'mine'");
+  rejected("creep --law polach --query q.csv -o table.h5", "a table or results of railtab");
+  rejected("creep --law polach --query q.csv -o notes.txt", "notes.txt: found a file that begins with 'mine'");
   EXPECT_EQ(std::filesystem::file_size(folder_ / "table.h5"), bytes);
 
   write("empty.h5", "");
@@ -356,11 +357,11 @@ TEST_F(VsiCommand, ResultsReplaceNothingButResults) {
   EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.h5"));
   EXPECT_EQ(vsi("report elsewhere/r.h5 -o link.html -q").exit_code, 0);
   EXPECT_EQ(vsi("report elsewhere/r.h5 -o link.html -q").exit_code, 0) << "a report replaces a report";
-  refused("report elsewhere/r.h5 -o notes.txt", "notes.txt: found a file that begins with 'mine'");
-  refused("report elsewhere/r.h5 -o q.csv", "q.csv: found a file that begins with 'ratio,ux,uy,phi'");
+  rejected("report elsewhere/r.h5 -o notes.txt", "notes.txt: found a file that begins with 'mine'");
+  rejected("report elsewhere/r.h5 -o q.csv", "q.csv: found a file that begins with 'ratio,ux,uy,phi'");
   EXPECT_EQ(std::filesystem::file_size(folder_ / "notes.txt"), 4U);
   std::filesystem::create_symlink("circle.h5", folder_ / "circle.h5");
-  refused("run scene.toml -o circle.h5", "links in a circle");
+  rejected("run scene.toml -o circle.h5", "links in a circle");
 }
 
 // 5 m/s² turn a coach over, whose centre of gravity is 1.8 m above rails 1.5 m apart: that is named, not the profiles.
@@ -427,33 +428,33 @@ TEST_F(VsiCommand, ARunIsNotResumedWithOtherInputFiles) {
       << outcome.output;
 }
 
-TEST_F(VsiCommand, WhatTheModelRefusesNamesTheScene) {
+TEST_F(VsiCommand, WhatTheModelRejectsNamesTheScene) {
   write("wheels.toml", "[train]\nvehicle = \"chinese-high-speed-car\"\n" + rigid_scene + "duration = 1.0\n");
-  expect_refused("run wheels.toml -o out", "wheels.toml: contact.dimensions.nominal_radius: found 0.46 m");
+  expect_rejected("run wheels.toml -o out", "wheels.toml: contact.dimensions.nominal_radius: found 0.46 m");
 }
 
 TEST_F(VsiCommand, MessagesNameWhatWasFound) {
   write("q.csv", "ratio;ux;uy;phi\n1;0.1;0;0\n");
-  expect_refused("creep --query q.csv -o out",
-                 "q.csv:1: found columns separated by semicolons, expected the columns ratio");
-  expect_refused("creep --query q.csv -o out --law kalker", "--law: found kalker, expected table, polach");
-  expect_refused("run . -o out", ".: found a folder, expected a TOML scene");
-  const auto refused = [&](const std::string& more, const std::string& text) {
+  expect_rejected("creep --query q.csv -o out",
+                  "q.csv:1: found columns separated by semicolons, expected the columns ratio");
+  expect_rejected("creep --query q.csv -o out --law kalker", "--law: found kalker, expected table, polach");
+  expect_rejected("run . -o out", ".: found a folder, expected a TOML scene");
+  const auto rejected = [&](const std::string& more, const std::string& text) {
     write("scene.toml", rigid_scene + "duration = 0.01\n" + more);
-    expect_refused("run scene.toml -o out", text);
+    expect_rejected("run scene.toml -o out", text);
   };
-  refused("[output]\nbodies = [1]\n", "scene.toml:8: output.bodies: found 1 in the list, expected a list of texts");
+  rejected("[output]\nbodies = [1]\n", "scene.toml:8: output.bodies: found 1 in the list, expected a list of texts");
   write("rough.csv", "x[m];y_left[mm];z_left[mm];y_right[mm];z_right[mm]\n0;0;0;0;0\n1;0;0;0;0\n");
-  refused("[irregularity]\nfile = \"rough.csv\"\n", "rough.csv:1: found columns separated by semicolons");
+  rejected("[irregularity]\nfile = \"rough.csv\"\n", "rough.csv:1: found columns separated by semicolons");
   write("rough.csv", "x[m],y_left[m],z_left[m],y_right[m],z_right[m]\n0,0,0,0,0\n1,0,2,0,0\n");
-  refused("[irregularity]\nfile = \"rough.csv\"\n", "rough.csv:3: column z_left: found 2 m, expected -0.5 to 0.5 m");
+  rejected("[irregularity]\nfile = \"rough.csv\"\n", "rough.csv:3: column z_left: found 2 m, expected -0.5 to 0.5 m");
   write("wind.csv", "t[s],Fy[kN]\n0,0\n1,2e6\n");
-  refused("[[load]]\nfile = \"wind.csv\"\n", "wind.csv:3: column Fy: found 2000000 kN, expected -100000 to 100000 kN");
+  rejected("[[load]]\nfile = \"wind.csv\"\n", "wind.csv:3: column Fy: found 2000000 kN, expected -100000 to 100000 kN");
   write("quake.csv", "t[s],z[m]\n0,0\n1,0.1\n2,35\n");
-  refused("[[ground_motion]]\nfile = \"quake.csv\"\n", "quake.csv:4: column z: found 35 m, expected -20 to 20 m");
+  rejected("[[ground_motion]]\nfile = \"quake.csv\"\n", "quake.csv:4: column z: found 35 m, expected -20 to 20 m");
   write("nu.toml",
         "[contact]\nmode = \"online\"\nmaterial.nu = 0.3\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.1\n");
-  expect_refused("run nu.toml -o out", "tablegen creep --poisson 0.3 makes it (contact.creep_table)");
+  expect_rejected("run nu.toml -o out", "tablegen creep --poisson 0.3 makes it (contact.creep_table)");
 }
 
 TEST_F(VsiCommand, ResultsThatARunReplacesAreNamed) {
@@ -525,7 +526,7 @@ TEST_F(VsiCommand, VehicleThatMissesItsChecksIsWrongInput) {
               std::string::npos)
         << outcome.output;
   }
-  expect_refused("vehicle manchester-coach --toml --json", "--json: found --toml too, expected one of them");
+  expect_rejected("vehicle manchester-coach --toml --json", "--json: found --toml too, expected one of them");
 }
 
 TEST_F(VsiCommand, VehicleWritesAFileThatScenesAndItselfTake) {
@@ -535,10 +536,10 @@ TEST_F(VsiCommand, VehicleWritesAFileThatScenesAndItselfTake) {
         "[train]\nvehicle = \"mine.toml\"\n[contact]\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n"
         "[integration]\nduration = 0.05\n");
   EXPECT_EQ(vsi("run scene.toml -o r.h5 --quiet").exit_code, 0);
-  expect_refused("vehicle nowhere.toml", "nowhere.toml");
-  expect_refused("vehicle nothing", "vehicle: found 'nothing', expected a file that ends with .toml, or one of ");
+  expect_rejected("vehicle nowhere.toml", "nowhere.toml");
+  expect_rejected("vehicle nothing", "vehicle: found 'nothing', expected a file that ends with .toml, or one of ");
   write("torn.toml", "name = \"torn\"\n");
-  expect_refused("vehicle torn.toml", "torn.toml:1: description: found nothing, expected a text");
+  expect_rejected("vehicle torn.toml", "torn.toml:1: description: found nothing, expected a text");
 }
 
 }  // namespace

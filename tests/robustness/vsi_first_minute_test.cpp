@@ -56,16 +56,16 @@ TEST_F(FirstMinute, EveryKindOfFileIsNamedWithItsCommands) {
 
 TEST_F(FirstMinute, WhatIsNoFileOfRailtabIsSaid) {
   write("notes", "milk, bread\n");
-  expect_refused("notes", "notes: found a file that begins with 'milk, bread', expected a scene");
+  expect_rejected("notes", "notes: found a file that begins with 'milk, bread', expected a scene");
   write("empty", "");
-  expect_refused("empty", "found an empty file");
+  expect_rejected("empty", "found an empty file");
   write("broken.toml", "[train\n");
-  expect_refused("broken.toml", "broken.toml:1: ");
-  expect_refused("absent.toml", "absent.toml: found no such file, expected a file, or a command");
-  expect_refused("./", "./: found a folder");
-  expect_refused("absent", "unknown command 'absent'");
+  expect_rejected("broken.toml", "broken.toml:1: ");
+  expect_rejected("absent.toml", "absent.toml: found no such file, expected a file, or a command");
+  expect_rejected("./", "./: found a folder");
+  expect_rejected("absent", "unknown command 'absent'");
   std::filesystem::create_directory(folder_ / "ex");
-  expect_refused("ex", "ex: found a folder, expected a file, as of those in this folder, or a command (vsi --help)");
+  expect_rejected("ex", "ex: found a folder, expected a file, as of those in this folder, or a command (vsi --help)");
 }
 
 TEST_F(FirstMinute, ATrainBehindTheEndOfItsRunIsSaid) {
@@ -73,7 +73,7 @@ TEST_F(FirstMinute, ATrainBehindTheEndOfItsRunIsSaid) {
     write("late.toml", std::string("[train]\nstart = ") + start +
                            "\n[contact]\nmode = \"online\"\n[[bridge]]\nlength = 32\n"
                            "[irregularity]\nspectrum = \"german-low\"\n");
-    expect_refused("check late.toml", "late.toml:2: train.start: found the last wheelset at x = ");
+    expect_rejected("check late.toml", "late.toml:2: train.start: found the last wheelset at x = ");
   }
 }
 
@@ -90,7 +90,7 @@ TEST_F(FirstMinute, AMisspeltKeyOfAVehicleIsNamed) {
   std::string vehicle = vsi("vehicle manchester-coach --toml").output;
   vehicle.replace(vehicle.find("half_wheelbase"), 14, "half_wheel_base");
   write("coach.toml", vehicle);
-  expect_refused("vehicle coach.toml", "layout.half_wheelbase: found nothing, but 'layout.half_wheel_base'");
+  expect_rejected("vehicle coach.toml", "layout.half_wheelbase: found nothing, but 'layout.half_wheel_base'");
 }
 
 TEST_F(FirstMinute, ANewSceneIsValidAndRuns) {
@@ -106,7 +106,7 @@ TEST_F(FirstMinute, ANewSceneIsValidAndRuns) {
   EXPECT_LT(json["track"][0], json["wheelsets"][7]) << "the whole train stands on the track";
   const double rear_at_end = json["wheelsets"][7].get<double>() + json["travel"].get<double>();
   EXPECT_GE(rear_at_end, 64.0) << "and leaves the bridge";
-  expect_refused("new s.toml", "s.toml: found a file, expected a new name");
+  expect_rejected("new s.toml", "s.toml: found a file, expected a new name");
 }
 
 TEST_F(FirstMinute, ANewSceneWithoutABridgeIsValid) {
@@ -134,28 +134,28 @@ TEST_F(FirstMinute, ModesThatAreWrittenAreRead) {
   EXPECT_TRUE(read["mass_z"].is_null());
   EXPECT_NE(read["left_out"][0].get<std::string>().find("static flexibility beyond the modes"), std::string::npos);
   EXPECT_EQ(vsi("structure s.toml --modes 12 -o span -q").exit_code, 0) << "modes replace modes";
-  expect_refused("structure m.toml -o again", "-o: found a scene whose structure is given by modes");
+  expect_rejected("structure m.toml -o again", "-o: found a scene whose structure is given by modes");
   write("span.modes.csv", "mine\n");
-  expect_refused("structure s.toml -o span", "span.modes.csv: found a file that begins with 'mine'");
-  expect_refused("structure s.toml --modes 0 -o again", "--modes: found 0 with -o");
+  expect_rejected("structure s.toml -o span", "span.modes.csv: found a file that begins with 'mine'");
+  expect_rejected("structure s.toml --modes 0 -o again", "--modes: found 0 with -o");
 }
 
 TEST_F(FirstMinute, WrongFlagsOfANewScene) {
-  expect_refused("new s.toml --train mancester-coach", "mancester-coach");
-  expect_refused("new s.toml --span -3", "--span: found -3, expected 0.5 to 1000 m");
-  expect_refused("new s.toml --spans 3", "--span METRES too");
-  expect_refused("new s.html", "found the ending .html, expected .toml");
+  expect_rejected("new s.toml --train mancester-coach", "mancester-coach");
+  expect_rejected("new s.toml --span -3", "--span: found -3, expected 0.5 to 1000 m");
+  expect_rejected("new s.toml --spans 3", "--span METRES too");
+  expect_rejected("new s.html", "found the ending .html, expected .toml");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.toml"));
 }
 
 TEST_F(FirstMinute, CheckNamesWhatIsMissingAndWhatIsUnused) {
   write("s.toml", rigid_scene + "duration = 0.1\n[irregularity]\nfile = \"absent.csv\"\n");
-  expect_refused("check s.toml", "s.toml:8: irregularity.file: found no file absent.csv");
+  expect_rejected("check s.toml", "s.toml:8: irregularity.file: found no file absent.csv");
   write("s.toml", rigid_scene + "duration = 0.1\n[[bridge]]\nlength = 20\n");
-  expect_refused("check s.toml", "track.kind: found \"rigid\" and a [[bridge]]");
+  expect_rejected("check s.toml", "track.kind: found \"rigid\" and a [[bridge]]");
   write("s.toml",
         "[output]\nnodes = [\"dekc-*\"]\n[[bridge]]\n[contact]\nmode = \"online\"\n[track]\nlength_before = 90\n");
-  expect_refused("check s.toml", "a pattern that fits one of deck-midspan-1");
+  expect_rejected("check s.toml", "a pattern that fits one of deck-midspan-1");
 }
 
 TEST_F(FirstMinute, CheckDrawsTheLayout) {
@@ -181,11 +181,11 @@ TEST_F(FirstMinute, CheckDrawsTheLayout) {
 
 TEST_F(FirstMinute, NamesThatContradictTheirContentAreRejected) {
   write("s.toml", rigid_scene + "duration = 0.02\n");
-  expect_refused("run s.toml -o r.pdf",
-                 "-o r.pdf: found the ending .pdf, expected .h5, for the output is an HDF5 file");
+  expect_rejected("run s.toml -o r.pdf",
+                  "-o r.pdf: found the ending .pdf, expected .h5, for the output is an HDF5 file");
   ASSERT_EQ(vsi("run s.toml -o r.h5 -q").exit_code, 0);
-  expect_refused("report r.h5 -o x.pdf", "-o x.pdf: found the ending .pdf, expected .html");
-  expect_refused("report r.h5 -o x.PNG", "found the ending .png");
+  expect_rejected("report r.h5 -o x.pdf", "-o x.pdf: found the ending .pdf, expected .html");
+  expect_rejected("report r.h5 -o x.PNG", "found the ending .png");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.pdf"));
   EXPECT_EQ(vsi("report r.h5 -o page -q").exit_code, 0) << "a name without an ending contradicts nothing";
   EXPECT_EQ(vsi("report r.h5 -o run.v2 -q").exit_code, 0) << "nor does one that no other program has";
@@ -201,7 +201,7 @@ TEST_F(FirstMinute, RunsAreComparedOnOnePage) {
   EXPECT_NE(page.find("Comparison of 2 runs"), std::string::npos);
   EXPECT_NE(page.find("against a</th>"), std::string::npos);
   EXPECT_NE(page.find("speed_kmh = 100"), std::string::npos) << "where the scenes differ";
-  expect_refused("report a.h5 a.h5 -o out", "a.h5 twice");
+  expect_rejected("report a.h5 a.h5 -o out", "a.h5 twice");
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ class VsiCommand : public testing::InFolder {
   }
 
   /// Exit code 2, one message that begins with "vsi: " and has this text in it, and no output file.
-  void expect_refused(const std::string& arguments, const std::string& text) const {
+  void expect_rejected(const std::string& arguments, const std::string& text) const {
     const Outcome outcome = vsi(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
     EXPECT_TRUE(outcome.output.starts_with("vsi: ")) << outcome.output;

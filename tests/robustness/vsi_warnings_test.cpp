@@ -264,12 +264,12 @@ TEST_F(VsiCommand, ForcesThatASceneCannotGiveAreSaidAtItsEnd) {
 // A structure command names the scene's file, a resumed run how its results are damaged.
 TEST_F(VsiCommand, MessagesNameTheFileAndItsDamage) {
   write("plain.toml", "name = \"Anything\"\n" + rigid_scene + "duration = 0.02\n");
-  expect_refused("structure plain.toml", "plain.toml: found no bridge, expected a [[bridge]]");
+  expect_rejected("structure plain.toml", "plain.toml: found no bridge, expected a [[bridge]]");
   EXPECT_EQ(vsi("run plain.toml -o r.h5 -q").exit_code, 0);
   const auto bytes = std::filesystem::file_size(folder_ / "r.h5");
   std::filesystem::resize_file(folder_ / "r.h5", bytes / 2);
-  expect_refused("run plain.toml -o r.h5 --resume", "r.h5: found " + std::to_string(bytes / 2) + " bytes, expected " +
-                                                        std::to_string(bytes) + " bytes: the file is cut short");
+  expect_rejected("run plain.toml -o r.h5 --resume", "r.h5: found " + std::to_string(bytes / 2) + " bytes, expected " +
+                                                         std::to_string(bytes) + " bytes: the file is cut short");
 }
 
 TEST_F(VsiCommand, ATrainPlacedOnItsFlangesBeginsWithAnImpact) {
@@ -353,11 +353,11 @@ TEST_F(VsiCommand, APlanCountsWholeSteps) {
 TEST_F(VsiCommand, APlanRejectsWhatTheRunRejects) {
   write("scene.toml", rigid_scene + "duration = 0.01\n[output]\nbodies = [\"nothing\"]\n");
   for (const char* command : {"run scene.toml --plan", "run scene.toml -o out"}) {
-    expect_refused(command,
-                   "scene.toml:8: output.bodies: found \"nothing\", expected a pattern that fits one of coach-1");
+    expect_rejected(command,
+                    "scene.toml:8: output.bodies: found \"nothing\", expected a pattern that fits one of coach-1");
   }
   write("rigid.toml", "[contact]\nnormal = \"rigid\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 0.01\n");
-  expect_refused("run rigid.toml --contact online -o out", "--contact: found a scene with contact.normal = \"rigid\"");
+  expect_rejected("run rigid.toml --contact online -o out", "--contact: found a scene with contact.normal = \"rigid\"");
 }
 
 TEST_F(VsiCommand, AReductionIsCheckedAlone) {
@@ -366,9 +366,9 @@ TEST_F(VsiCommand, AReductionIsCheckedAlone) {
         "[track]\nlength_before = 40\nlength_after = 60\n[[bridge]]\nlength = 12\nelements = 8\n"
         "[structure]\nreduction = \"window\"\n");
   for (const char* other : {"--plan", "--resume", "-o out"}) {
-    expect_refused(std::string("run scene.toml --check-reduction 0.01 ") + other, "--check-reduction: found --");
+    expect_rejected(std::string("run scene.toml --check-reduction 0.01 ") + other, "--check-reduction: found --");
   }
-  expect_refused("run scene.toml --check-reduction 99", "found 99 s, expected at most 0.78408 s");
+  expect_rejected("run scene.toml --check-reduction 99", "found 99 s, expected at most 0.78408 s");
   const Outcome outcome = vsi("run scene.toml --check-reduction 0.02");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("nothing to compare: compare until the train is on the bridge"), std::string::npos)

@@ -209,7 +209,9 @@ void add_structure_cases(Cases& cases) {
                      SceneParameters scene = coach_on_bridge();
                      scene.integration.duration = 0.2;
                      VsiModel model = build_model(scene);
-                     model.structure->mass *= 0.0;
+                     StructureModel structure = *model.structure;
+                     structure.mass *= 0.0;
+                     model.structure = share(std::move(structure));
                      return judged(watched_run(model, scene.integration, scene.integration.duration));
                    }});
   cases.push_back({"structure", "no mass in every other node", impulse, 1e-3, Outcome::converged, true, [](double) {

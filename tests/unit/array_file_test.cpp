@@ -134,7 +134,7 @@ TEST_F(ArrayFile, MessagesNameFilePlaceFoundAndExpected) {
                {"a.h5", "existing folder"});
 }
 
-TEST_F(ArrayFile, RefusesWhatIsNotHdf5) {
+TEST_F(ArrayFile, RejectsWhatIsNotHdf5) {
   std::ofstream(file("empty.h5")).close();
   expect_words(message_of([&] { static_cast<void>(array_file_type(file("empty.h5"))); }),
                {"empty.h5", "an empty file"});

@@ -166,7 +166,7 @@ TEST(SimpleBeam, BothRailsAreTheBeam) {
   EXPECT_EQ(beam.nodes[0].name, "deck-midspan-1");
 }
 
-TEST(SimpleBeam, RefusesWrongParameters) {
+TEST(SimpleBeam, RejectsWrongParameters) {
   SimpleBeamParameters p;
   p.elements = 3;
   EXPECT_THROW((void)build_simple_beam(p), InputError);

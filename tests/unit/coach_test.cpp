@@ -133,7 +133,7 @@ std::string message_of(const CoachParameters& p) {
   return "no InputError";
 }
 
-TEST(Coach, RefusesWrongParameters) {
+TEST(Coach, RejectsWrongParameters) {
   try {
     (void)coach_parameters("manchester");
     FAIL() << "an unknown vehicle was accepted";

@@ -85,7 +85,7 @@ TEST(ProfileErrors, PointsAtASpacingKeepTheEndsAndLieOnTheProfile) {
   }
 }
 
-TEST(ProfileErrors, RefusesErrorsOutOfRange) {
+TEST(ProfileErrors, RejectsErrorsOutOfRange) {
   ProfileErrors errors;
   errors.deviation = -1e-6;
   EXPECT_THROW(errors.validate(), InputError);

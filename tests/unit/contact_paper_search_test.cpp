@@ -129,7 +129,7 @@ TEST(PaperSearch, FindsNothingWithoutContact) {
   EXPECT_EQ(paper.patches({0.2, 0.01, 0.0, 0.0}).count, 0);
 }
 
-TEST(PaperSearch, RefusesPointNumbersOutOfRange) {
+TEST(PaperSearch, RejectsPointNumbersOutOfRange) {
   EXPECT_THROW(PaperSearch(s1002_on_60e1(), 9), InputError);
   EXPECT_THROW(PaperSearch(s1002_on_60e1(), PaperSearch::most_points + 1), InputError);
 }

@@ -326,7 +326,7 @@ TEST(ContactSearch, QueriesDoNotAllocate) {
   EXPECT_GT(sum, 0.0);
 }
 
-TEST(ContactSearch, RefusesASpacingThatCannotBe) {
+TEST(ContactSearch, RejectsASpacingThatCannotBe) {
   EXPECT_THROW(ContactSearch(s1002_on_60e1(), 0.0), InputError);
   EXPECT_THROW(ContactSearch(s1002_on_60e1(), 0.02), InputError);
 }

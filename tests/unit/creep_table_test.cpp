@@ -326,18 +326,18 @@ TEST(CreepTable, PaperLayoutHasItsNodesAndIsLinearBetweenThem) {
   EXPECT_FALSE(at(1.0, 1.1e3, 0, 0).inside);
 }
 
-TEST(CreepTable, RefusesWhatIsNotATable) {
-  const auto refused = [](const auto& spoil) {
+TEST(CreepTable, RejectsWhatIsNotATable) {
+  const auto rejected = [](const auto& spoil) {
     CreepTableData data = small_table();
     spoil(data);
     EXPECT_THROW(CreepTable{data}, InputError);
   };
-  refused([](CreepTableData& d) { d.values.pop_back(); });
-  refused([](CreepTableData& d) { d.values[7] = std::nan(""); });
-  refused([](CreepTableData& d) { std::swap(d.nodes[1][2], d.nodes[1][3]); });
-  refused([](CreepTableData& d) { d.nodes[2][3] += 1e-3; });
-  refused([](CreepTableData& d) { d.radius_unit = 0.0; });
-  refused([](CreepTableData& d) {
+  rejected([](CreepTableData& d) { d.values.pop_back(); });
+  rejected([](CreepTableData& d) { d.values[7] = std::nan(""); });
+  rejected([](CreepTableData& d) { std::swap(d.nodes[1][2], d.nodes[1][3]); });
+  rejected([](CreepTableData& d) { d.nodes[2][3] += 1e-3; });
+  rejected([](CreepTableData& d) { d.radius_unit = 0.0; });
+  rejected([](CreepTableData& d) {
     for (double& ratio : d.nodes[0]) ratio = ratio_at(1.1 * squeezed_ratio(ratio, d.ratio_stretch), d.ratio_stretch);
   });
   CreepTableData single = small_table(CreepTableLayout::paper);
@@ -374,7 +374,7 @@ TEST_F(CreepTableFile, ReturnsTheTableWithValuesOf32Bits) {
   }
 }
 
-TEST_F(CreepTableFile, RefusesDamageAndOtherFiles) {
+TEST_F(CreepTableFile, RejectsDamageAndOtherFiles) {
   EXPECT_THROW(static_cast<void>(read_creep_table("absent.h5")), InputError);
   write_creep_table(file_, small_table());
   const auto size = std::filesystem::file_size(file_);

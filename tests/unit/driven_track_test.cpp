@@ -1,4 +1,4 @@
-// What an FMU has of a scene: stored to the last bit, damaged content refused; and its steps.
+// What an FMU has of a scene: stored to the last bit, damaged content rejected; and its steps.
 #include "railtab/fmi/driven_track.hpp"
 
 #include <gtest/gtest.h>
@@ -38,15 +38,15 @@ TEST(DrivenTrack, IsStoredToTheLastBit) {
   EXPECT_EQ(track_guid(bytes).size(), 32u);
 }
 
-TEST(DrivenTrack, OtherContentIsRefusedAndHasAnotherGuid) {
+TEST(DrivenTrack, OtherContentIsRejectedAndHasAnotherGuid) {
   const std::string bytes = track_bytes(short_bridge());
-  const auto expect_refused = [](std::string_view content) {
+  const auto expect_rejected = [](std::string_view content) {
     EXPECT_THROW(static_cast<void>(track_of_bytes(content, "track")), InputError) << content.size();
   };
-  expect_refused("");
-  expect_refused("railtab track of another version\n");
-  for (std::size_t length = 0; length < bytes.size(); length += 97) expect_refused(bytes.substr(0, length));
-  expect_refused(bytes + "x");
+  expect_rejected("");
+  expect_rejected("railtab track of another version\n");
+  for (std::size_t length = 0; length < bytes.size(); length += 97) expect_rejected(bytes.substr(0, length));
+  expect_rejected(bytes + "x");
   for (std::size_t place = 0; place < bytes.size(); place += 101) {
     std::string changed = bytes;
     changed[place] = static_cast<char>(changed[place] ^ 0x10);

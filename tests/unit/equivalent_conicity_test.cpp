@@ -95,7 +95,7 @@ TEST(EquivalentConicity, NegativeConicityHasNoWaveAndANegativeRegression) {
   EXPECT_GT(aside.y_low * aside.y_high, 0.0);
 }
 
-TEST(EquivalentConicity, RefusesCurvesThatAreNone) {
+TEST(EquivalentConicity, RejectsCurvesThatAreNone) {
   EXPECT_THROW(RadiusDifferenceCurve({0.0, 0.0}, {0.0, 1.0}), InputError);
   EXPECT_THROW(RadiusDifferenceCurve({0.0, 1.0}, {0.0, std::nan("")}), InputError);
   EXPECT_THROW(RadiusDifferenceCurve({0.0}, {0.0}), InputError);
@@ -256,7 +256,7 @@ TEST(RollingRadiusDifference, EvenSamplesAreMultiplesOfTheStep) {
   }
 }
 
-TEST(RollingRadiusDifference, RefusesOptionsOutOfRange) {
+TEST(RollingRadiusDifference, RejectsOptionsOutOfRange) {
   WheelsetContactOptions options;
   options.y_low = 1e-3;
   EXPECT_THROW(options.validate(), InputError);

@@ -129,8 +129,8 @@ TEST(GeometryTable, AFixedAxisHoldsItsValueOnly) {
   EXPECT_EQ(status(0.01, 0.002 - 1.1e-12), GeometryTable::Status::outside);
 }
 
-TEST(GeometryTable, RefusesWhatIsNoTable) {
-  const auto refused = [](const auto& change) {
+TEST(GeometryTable, RejectsWhatIsNoTable) {
+  const auto rejected = [](const auto& change) {
     GeometryTableData data = small_geometry_table();
     change(data);
     try {
@@ -140,27 +140,27 @@ TEST(GeometryTable, RefusesWhatIsNoTable) {
     }
     return false;
   };
-  EXPECT_FALSE(refused([](GeometryTableData&) {}));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.low = 1; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.high = d.lateral.low; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.cells = 0; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.lateral.cells = 7; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) {
+  EXPECT_FALSE(rejected([](GeometryTableData&) {}));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.lateral.low = 1; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.lateral.high = d.lateral.low; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.lateral.cells = 0; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.lateral.cells = 7; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) {
     d.lateral.cells = d.yaw_squared.cells = d.roll.cells = 2'000'000'000;
   })) << "more than can be counted";
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.yaw_squared.low = -1e-5; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.shard = {1, 2}; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.node[0] = CellNode::halved(0, 0); })) << "a loop";
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.node[3] = CellNode::halved(2, 2); })) << "two parents";
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.node[0] = CellNode::halved(0, 5); })) << "beyond the end";
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.node.push_back(CellNode::leaf(0)); }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.node[5] = CellNode::leaf(9); }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.leaf_branch[0] = 9; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.leaf_branch[0] = 1; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.trusted_lowering[1] = -1e-3F; }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.trusted_lowering.pop_back(); }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.coefficient[5] = std::numeric_limits<float>::infinity(); }));
-  EXPECT_TRUE(refused([](GeometryTableData& d) { d.coefficient.pop_back(); }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.yaw_squared.low = -1e-5; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.shard = {1, 2}; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.node[0] = CellNode::halved(0, 0); })) << "a loop";
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.node[3] = CellNode::halved(2, 2); })) << "two parents";
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.node[0] = CellNode::halved(0, 5); })) << "beyond the end";
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.node.push_back(CellNode::leaf(0)); }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.node[5] = CellNode::leaf(9); }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.leaf_branch[0] = 9; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.leaf_branch[0] = 1; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.trusted_lowering[1] = -1e-3F; }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.trusted_lowering.pop_back(); }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.coefficient[5] = std::numeric_limits<float>::infinity(); }));
+  EXPECT_TRUE(rejected([](GeometryTableData& d) { d.coefficient.pop_back(); }));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(GridAxis, SingleNodeHoldsItsValueOnly) {
   EXPECT_FALSE(axis.locate(nan).inside);
 }
 
-TEST(GridAxis, RefusesDisorder) {
+TEST(GridAxis, RejectsDisorder) {
   EXPECT_THROW(GridAxis("yaw", {}), InputError);
   EXPECT_THROW(GridAxis("yaw", {0, 1, 1}), InputError);
   EXPECT_THROW(GridAxis("yaw", {0, nan}), InputError);

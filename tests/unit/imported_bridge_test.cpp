@@ -314,7 +314,7 @@ TEST(ImportedBridge, SectionForcesOfAPullAndOfSinkingSupports) {
   EXPECT_NEAR(drawn[1], 0.0, 1e-3);
 }
 
-TEST(ImportedBridge, RefusesSectionsThatAreNotExact) {
+TEST(ImportedBridge, RejectsSectionsThatAreNotExact) {
   ImportParameters parameters = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
   const auto message = [&](double x) -> std::string {
     parameters.sections = {x};
@@ -364,7 +364,7 @@ TEST(ImportedBridge, RefusesSectionsThatAreNotExact) {
 
 // What supports leave free is named, with the axis it turns about, before anything is factorised.
 TEST(ImportedBridge, FreeMotionsAreNamed) {
-  const auto refusal = [](const ImportParameters& parameters) -> std::string {
+  const auto rejection = [](const ImportParameters& parameters) -> std::string {
     try {
       static_cast<void>(build_track_on_import(TrackParameters{}, parameters));
     } catch (const InputError& wrong) {
@@ -375,26 +375,26 @@ TEST(ImportedBridge, FreeMotionsAreNamed) {
   ImportParameters parameters = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
   parameters.damping.ratio = 0.01;
   parameters.files.damping.clear();
-  EXPECT_EQ(refusal(parameters), "no error");
+  EXPECT_EQ(rejection(parameters), "no error");
   parameters.supports[1].holds = {"z"};
-  EXPECT_NE(refusal(parameters)
+  EXPECT_NE(rejection(parameters)
                 .find("k: found a structure that turns about z (yaw) through x = 0 m, y = -0.3 m "
                       "without resistance, expected supports against that (y of a support at another x)"),
             std::string::npos)
-      << refusal(parameters);
+      << rejection(parameters);
   parameters.supports[0].holds = {"z"};
-  EXPECT_NE(refusal(parameters).find("a structure that moves along y; turns about z (yaw) through x = 12 m"),
+  EXPECT_NE(rejection(parameters).find("a structure that moves along y; turns about z (yaw) through x = 12 m"),
             std::string::npos)
-      << refusal(parameters);
+      << rejection(parameters);
   const StructureSummary summary = summarise(read_on_supports(parameters), parameters.damping, 3);
   EXPECT_EQ(summary.free.size(), 2U);
   EXPECT_TRUE(summary.frequencies.empty());
   parameters.supports.pop_back();
-  EXPECT_NE(refusal(parameters).find("turns about y (pitch) through x = 0 m, z = 2 m"), std::string::npos)
-      << refusal(parameters);
+  EXPECT_NE(rejection(parameters).find("turns about y (pitch) through x = 0 m, z = 2 m"), std::string::npos)
+      << rejection(parameters);
 }
 
-TEST(ImportedBridge, RefusesSupportsThatDoNotFit) {
+TEST(ImportedBridge, RejectsSupportsThatDoNotFit) {
   const ImportParameters good = WrittenSpan(FeFormat::matrix_market, SupportRows::kept).parameters;
   const auto message = [&](auto&& change) -> std::string {
     ImportParameters parameters = good;
@@ -472,7 +472,7 @@ TEST_P(ImportedSpan, HasTheSectionForcesOfTheBuiltInOneUnderACoach) {
 INSTANTIATE_TEST_SUITE_P(Formats, ImportedSpan, ::testing::Values(FeFormat::matrix_market, FeFormat::ansys),
                          [](const auto& format) { return format.param == FeFormat::ansys ? "Ansys" : "MatrixMarket"; });
 
-TEST(ImportedBridge, RefusesWhatDoesNotFit) {
+TEST(ImportedBridge, RejectsWhatDoesNotFit) {
   const ImportParameters good = WrittenSpan(FeFormat::matrix_market).parameters;
   const auto message = [](ImportParameters parameters) -> std::string {
     try {

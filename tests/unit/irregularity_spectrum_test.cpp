@@ -91,7 +91,7 @@ TEST(RandomTrack, RisesFromZeroWhereItFadesIn) {
   EXPECT_GT(largest, 1e-3);
 }
 
-TEST(RandomTrack, RefusesWhatItDoesNotKnow) {
+TEST(RandomTrack, RejectsWhatItDoesNotKnow) {
   EXPECT_THROW(random_irregularity({.name = "polish"}, 0.0, 1.0), InputError);
   EXPECT_THROW(random_irregularity({.shortest = 80.0}, 0.0, 1.0), InputError);
   EXPECT_THROW(random_irregularity({.seed = -1}, 0.0, 1.0), InputError);

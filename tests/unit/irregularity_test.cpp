@@ -109,7 +109,7 @@ std::string message_of(std::vector<double> x, std::vector<double> z_left_values)
   return "no InputError";
 }
 
-TEST(Irregularity, RefusesWrongColumns) {
+TEST(Irregularity, RejectsWrongColumns) {
   EXPECT_EQ(message_of({0, 1, 2}, {0, 0, 0}), "no InputError");
   EXPECT_NE(message_of({0}, {0}).find("found 1 points"), std::string::npos);
   EXPECT_NE(message_of({0, 1, 1}, {0, 0, 0}).find("x, point 3"), std::string::npos);

@@ -248,7 +248,7 @@ TEST(LoadedContact, NothingTouchesAboveFirstTouch) {
   EXPECT_EQ(c.on_rail.force.norm(), 0.0);
 }
 
-TEST(LoadedContact, RefusesWhatItCannotDo) {
+TEST(LoadedContact, RejectsWhatItCannotDo) {
   LoadedContactOptions options;
   options.elements.most = 100;
   EXPECT_THROW(static_cast<void>(loaded_contact(s1002_on_60e1(), lowered(0.0, 0.0, 0.0, 5e-5), options)),

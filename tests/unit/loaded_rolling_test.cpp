@@ -102,7 +102,7 @@ TEST(LoadedRolling, FrictionTakesItsShareOfTheLoad) {
   EXPECT_GT(std::abs(share(found.contact)), 1e3);  // on the flange, friction counts
 }
 
-TEST(LoadedRolling, RefusesWhatItCannotDo) {
+TEST(LoadedRolling, RejectsWhatItCannotDo) {
   LoadedRollingOptions options;
   options.friction = 0.0;
   EXPECT_THROW(options.validate(), InputError);

@@ -68,7 +68,7 @@ TEST(OutputSelection, NothingChosenIsNothingRecorded) {
   EXPECT_TRUE(r.bodies.empty());
 }
 
-TEST(OutputSelection, RefusesAPatternThatFitsNothing) {
+TEST(OutputSelection, RejectsAPatternThatFitsNothing) {
   OutputParameters output;
   output.nodes = {"deck-*", "pier-*"};
   EXPECT_THROW(OutputSelection(output, header()), InputError);

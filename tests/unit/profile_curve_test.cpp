@@ -155,7 +155,7 @@ TEST(ProfileCurve, FindsHighestPointBetweenKnots) {
   EXPECT_EQ(ProfileCurve(k).s_at_highest_point(), 0.010);  // highest at an end: 5.7 mm from the summit, not 4.3 mm
 }
 
-TEST(ProfileCurve, RefusesBrokenKnots) {
+TEST(ProfileCurve, RejectsBrokenKnots) {
   const ProfileKnots good = cubic_knots({0.0, 0.011, 0.02});
   EXPECT_NO_THROW(ProfileCurve{good});
   ProfileKnots k = good;

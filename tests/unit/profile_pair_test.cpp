@@ -50,7 +50,7 @@ TEST(WheelRailPair, DoesNotDependOnTheOriginOfTheHeight) {
   EXPECT_NEAR(pair.rail_offset(), WheelRailPair(s1002(), rail("60E1", 0.025), {}).rail_offset(), 1e-12);
 }
 
-TEST(WheelRailPair, RefusesWhatCannotBePlaced) {
+TEST(WheelRailPair, RejectsWhatCannotBePlaced) {
   EXPECT_THROW(WheelRailPair(rail("60E1", 0.0), rail("60E1", 0.0), {}), InputError);
   EXPECT_THROW(WheelRailPair(s1002(), s1002(), {}), InputError);
   EXPECT_THROW(WheelRailPair(s1002(), rail("60E1", 0.0), {.gauge_height = 0.045}), InputError);  // below the flank

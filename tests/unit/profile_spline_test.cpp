@@ -83,7 +83,7 @@ TEST(SplineThroughPoints, RunsInArcLength) {
   }
 }
 
-TEST(SplineThroughPoints, RefusesCoincidentPointsByNumber) {
+TEST(SplineThroughPoints, RejectsCoincidentPointsByNumber) {
   try {
     static_cast<void>(spline_through_points(ProfileKind::rail, "doubled", {0, 1e-3, 1e-3, 2e-3}, {0, 0, 0, 0}));
     FAIL() << "point 2 repeats point 1";

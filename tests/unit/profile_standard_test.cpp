@@ -248,7 +248,7 @@ TEST(StandardProfiles, NamesIgnoreCaseAndHaveOneSpellingInTables) {
             standard_profile(ProfileKind::rail, "60E1", 0.025).y);
 }
 
-TEST(StandardProfiles, RefuseUnknownNamesAndInclinations) {
+TEST(StandardProfiles, RejectUnknownNamesAndInclinations) {
   try {
     static_cast<void>(standard_profile(ProfileKind::wheel, "60E1", 0.0));
     FAIL() << "a rail is no wheel";

@@ -34,7 +34,7 @@ class DamagedResults : public ResultFile {
     }
     std::mt19937 random(7);
     std::uniform_int_distribution<int> mask(1, 255);
-    long refused = 0, tried = 0;
+    long rejected = 0, tried = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       // what lies between the objects is zero and means nothing
       if (bytes[i] == 0 ? i % 49999 != 0 : i % every != 0) continue;
@@ -46,18 +46,18 @@ class DamagedResults : public ResultFile {
       try {
         EXPECT_TRUE(all_read(file_) == whole) << "byte " << i << " was changed and believed";
       } catch (const InputError& error) {
-        ++refused;
+        ++rejected;
         EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
       }
       stream.open(file_, std::ios::binary | std::ios::in | std::ios::out);
       stream.seekp(static_cast<std::streamoff>(i)).put(was);
     }
-    EXPECT_GT(refused, tried / 10) << "the others: room for rows that are not written";
+    EXPECT_GT(rejected, tried / 10) << "the others: room for rows that are not written";
     EXPECT_TRUE(all_read(file_) == whole);
   }
 };
 
-TEST_F(DamagedResults, OfAFinishedRunAreRefused) {
+TEST_F(DamagedResults, OfAFinishedRunAreRejected) {
   {
     ResultWriter out(file_, header_, 3);
     for (long i = 0; i < 8; ++i) out.append(made_up_record(i, header_));
@@ -66,7 +66,7 @@ TEST_F(DamagedResults, OfAFinishedRunAreRefused) {
   expect_changes_found(97);
 }
 
-TEST_F(DamagedResults, OfAnEndedRunWithCheckpointsAreRefused) {
+TEST_F(DamagedResults, OfAnEndedRunWithCheckpointsAreRejected) {
   {
     ResultWriter out(file_, header_, 3);
     for (long i = 0; i < 8; ++i) out.append(made_up_record(i, header_));

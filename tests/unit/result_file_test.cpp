@@ -107,7 +107,7 @@ TEST_F(ResultFile, ReturnsHeaderRecordsAndSummary) {
   EXPECT_EQ(numbers(s.wheel_extremes.unloading), (std::array{0.6, 0.4, 3.0}));
 }
 
-TEST_F(ResultFile, RefusesTheExtremeOfAWheelThatTheRunDoesNotHave) {
+TEST_F(ResultFile, RejectsTheExtremeOfAWheelThatTheRunDoesNotHave) {
   RunSummary summary = complete_summary();
   summary.wheel_extremes.largest_Q = {1e5, 0.1, static_cast<int>(header_.static_wheel_load.size())};
   {
@@ -302,7 +302,7 @@ TEST_F(KilledRun, LeavesEveryFlushedRecordAndCanBeResumed) {
 TEST_F(KilledRun, ACutFileOfAKilledRunIsNeverReadAsZeros) {
   kill_after(20000);
   const std::size_t records = read_results(file_).steps.size();
-  int refused = 0;
+  int rejected = 0;
   for (std::uintmax_t length = std::filesystem::file_size(file_); length > 4999; length -= 4999) {
     std::filesystem::resize_file(file_, length);
     try {
@@ -310,13 +310,13 @@ TEST_F(KilledRun, ACutFileOfAKilledRunIsNeverReadAsZeros) {
       EXPECT_EQ(read.steps.size(), records);
       expect_made_up_records(read, header_);
     } catch (const InputError&) {
-      ++refused;
+      ++rejected;
     }
   }
-  EXPECT_GT(refused, 5);
+  EXPECT_GT(rejected, 5);
 }
 
-TEST_F(KilledRun, ASecondWriterIsRefused) {
+TEST_F(KilledRun, ASecondWriterIsRejected) {
   ResultWriter out(file_, header_, 1);
   out.append(made_up_record(0, header_));
   EXPECT_THROW(ResultWriter(file_, header_), InputError);

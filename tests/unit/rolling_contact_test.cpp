@@ -275,7 +275,7 @@ TEST(RollingContact, ExtremesAreSolved) {
   }
 }
 
-TEST(RollingContact, RefusesWhatItCannotDo) {
+TEST(RollingContact, RejectsWhatItCannotDo) {
   EXPECT_THROW(RollingContact(0.0, kNu), InputError);
   EXPECT_THROW(RollingContact(std::nan(""), kNu), InputError);
   EXPECT_THROW(RollingContact(1.0, 0.6), InputError);

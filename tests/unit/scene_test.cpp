@@ -256,7 +256,7 @@ length = 30
   EXPECT_EQ(scene.text.substr(0, text.size()), text);
   EXPECT_NE(scene.text.find("# changed: without train.speed_kmh, train.speed = 40, "), std::string::npos);
 
-  const auto refused = [&](const KeyChange& change, const std::string& part) {
+  const auto rejected = [&](const KeyChange& change, const std::string& part) {
     try {
       static_cast<void>(changed({change}));
       ADD_FAILURE() << change.key;
@@ -264,16 +264,16 @@ length = 30
       EXPECT_NE(std::string(wrong.what()).find(part), std::string::npos) << wrong.what();
     }
   };
-  refused({"train.speed_kmh", "fast"}, "scene.toml: train.speed_kmh: found the value fast");
-  refused({"train.speed_kmh", "1\ny = 2"}, "found the value");
-  refused({"train.speed_kmh", "-1"}, "train.speed_kmh: found -1, expected");
-  refused({"train.speed_kmh", "-1"}, "(changed: train.speed_kmh = -1)");
-  refused({"train.speeed", "1"}, "did you mean 'train.speed'");
-  refused({"bridge.length", "1"}, "found 2 [[bridge]] in the scene");
-  refused({"bridge.3.length", "1"}, "found 2 [[bridge]] in the scene");
-  refused({"load.1.start", "1"}, "found 0 [[load]] in the scene");
-  refused({"train.speed_kmh.x", "1"}, "found speed_kmh, which is no section");
-  refused({"", "1"}, "unknown key ''");
+  rejected({"train.speed_kmh", "fast"}, "scene.toml: train.speed_kmh: found the value fast");
+  rejected({"train.speed_kmh", "1\ny = 2"}, "found the value");
+  rejected({"train.speed_kmh", "-1"}, "train.speed_kmh: found -1, expected");
+  rejected({"train.speed_kmh", "-1"}, "(changed: train.speed_kmh = -1)");
+  rejected({"train.speeed", "1"}, "did you mean 'train.speed'");
+  rejected({"bridge.length", "1"}, "found 2 [[bridge]] in the scene");
+  rejected({"bridge.3.length", "1"}, "found 2 [[bridge]] in the scene");
+  rejected({"load.1.start", "1"}, "found 0 [[load]] in the scene");
+  rejected({"train.speed_kmh.x", "1"}, "found speed_kmh, which is no section");
+  rejected({"", "1"}, "unknown key ''");
 }
 
 TEST(SceneExamples, TheDemoSceneNamesOnlyTheTableThatTheDemoMakes) {

@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <chrono>
+#include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "../folder_fixture.hpp"
+#include "railtab/runtime/base/file_checksum.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
@@ -106,6 +110,22 @@ TEST_F(SharedSetUpOf, RunsTellsStructuresApart) {
   EXPECT_EQ(before, StructureKey(imported));
   static_cast<void>(write("bridge.mtx", "1 1 3.0\n"));
   EXPECT_NE(before, StructureKey(imported)) << "contents have changed";
+}
+
+// The second sum is remembered, once the file's last change is old enough to be told from the next one.
+TEST_F(SharedSetUpOf, FilesFollowsTheirChecksums) {
+  const std::filesystem::path file = write("a.csv", "1,2\n");
+  const std::string first = file_checksum(file);
+  std::this_thread::sleep_for(std::chrono::milliseconds(3100));
+  EXPECT_EQ(file_checksum(file), first);
+  EXPECT_EQ(file_checksum(file), first);
+  static_cast<void>(write("a.csv", "1,3\n"));
+  const std::string second = file_checksum(file);
+  EXPECT_NE(second, first);
+  static_cast<void>(write("a.csv", "1,4\n"));
+  EXPECT_NE(file_checksum(file), second) << "within a tick of the clock";
+  EXPECT_THROW(static_cast<void>(file_checksum(folder_ / "none")), InputError);
+  EXPECT_THROW(static_cast<void>(file_checksum("")), InputError);
 }
 
 }  // namespace

@@ -173,19 +173,19 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
   }
 }
 
-TEST(StructureResponse, RefusesANumberThatIsNotFinite) {
+TEST(StructureResponse, RejectsANumberThatIsNotFinite) {
   StructureModel structure = short_bridge();
   structure.stiffness.coeffRef(7, 7) = std::numeric_limits<double>::quiet_NaN();
   try {
     const StructureResponse response(structure);
-    FAIL() << "not refused";
+    FAIL() << "not rejected";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "stiffness matrix of the structure, row 8, column 8: found nan, expected a finite number");
   }
 }
 
-TEST(StructureResponse, RefusesAMechanism) {
+TEST(StructureResponse, RejectsAMechanism) {
   StructureModel structure = short_bridge();
   structure.stiffness *= -1.0;
   EXPECT_THROW(StructureResponse{structure}, ComputationError);

@@ -65,7 +65,7 @@ TEST(TomlBoundsTest, TextsAndComments) {
 class TomlFiles : public testing::InFolder {};
 
 TEST_F(TomlFiles, ScenesAreBounded) {
-  const auto refused = [&](const std::string& text) {
+  const auto rejected = [&](const std::string& text) {
     try {
       static_cast<void>(read_scene(write("s.toml", text)));
     } catch (const InputError& wrong) {
@@ -73,14 +73,14 @@ TEST_F(TomlFiles, ScenesAreBounded) {
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(refused("[" + repeated("a.", 39999) + "a]\n"),
+  EXPECT_EQ(rejected("[" + repeated("a.", 39999) + "a]\n"),
             "s.toml:1: found 40000 parts of a key, separated by dots, expected at most 16");
-  EXPECT_EQ(refused("name = \"" + std::string(TomlBounds::bytes, 'x') + "\"\n"),
+  EXPECT_EQ(rejected("name = \"" + std::string(TomlBounds::bytes, 'x') + "\"\n"),
             "s.toml: found more than 4 MB, expected a TOML scene of at most that size");
 }
 
 TEST_F(TomlFiles, OfAnotherKindAreNamed) {
-  const auto refused = [&](const char* name, const std::string& text) {
+  const auto rejected = [&](const char* name, const std::string& text) {
     try {
       static_cast<void>(read_scene(write(name, text)));
     } catch (const InputError& wrong) {
@@ -88,15 +88,15 @@ TEST_F(TomlFiles, OfAnotherKindAreNamed) {
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(refused("s.toml", ""), "s.toml: found a file without keys, expected a scene (vsi new writes one)");
-  EXPECT_EQ(refused("p.toml", "scene = \"s.toml\"\n[[vary]]\nkey = \"train.speed\"\n"),
+  EXPECT_EQ(rejected("s.toml", ""), "s.toml: found a file without keys, expected a scene (vsi new writes one)");
+  EXPECT_EQ(rejected("p.toml", "scene = \"s.toml\"\n[[vary]]\nkey = \"train.speed\"\n"),
             "p.toml: found a plan of a study, expected a scene");
-  EXPECT_EQ(refused("v.toml", "name = \"v\"\n[car_body]\nmass = 1\n"), "v.toml: found a vehicle, expected a scene");
-  EXPECT_EQ(refused("c.csv", "x,y\n0,0\n"), "c.csv: found a file of columns (.csv), expected a TOML scene");
-  EXPECT_EQ(refused("r.h5", "railtab\n1 bytes follow"),
+  EXPECT_EQ(rejected("v.toml", "name = \"v\"\n[car_body]\nmass = 1\n"), "v.toml: found a vehicle, expected a scene");
+  EXPECT_EQ(rejected("c.csv", "x,y\n0,0\n"), "c.csv: found a file of columns (.csv), expected a TOML scene");
+  EXPECT_EQ(rejected("r.h5", "railtab\n1 bytes follow"),
             "r.h5: found a table or results of railtab, expected a TOML scene");
-  EXPECT_EQ(refused("h.h5", "\x89HDF\r\n\x1a\n"), "h.h5: found an HDF5 file, expected a TOML scene");
-  EXPECT_EQ(refused("b.toml", std::string("a = 1\0", 6)), "b.toml: found a binary file, expected a TOML scene");
+  EXPECT_EQ(rejected("h.h5", "\x89HDF\r\n\x1a\n"), "h.h5: found an HDF5 file, expected a TOML scene");
+  EXPECT_EQ(rejected("b.toml", std::string("a = 1\0", 6)), "b.toml: found a binary file, expected a TOML scene");
 }
 
 }  // namespace

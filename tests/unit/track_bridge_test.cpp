@@ -266,7 +266,7 @@ std::string message_of(const std::function<void(TrackParameters&, BridgeParamete
   return "no InputError";
 }
 
-TEST(TrackBridge, RefusesWrongParameters) {
+TEST(TrackBridge, RejectsWrongParameters) {
   EXPECT_EQ(message_of([](auto& track, auto&) { track.elements_per_bay = 1; }), "no InputError");
   EXPECT_NE(message_of([](auto& track, auto&) { track.pad.kz = 0; }).find("track.pad.kz: found 0"), std::string::npos);
   EXPECT_NE(message_of([](auto& track, auto&) { track.ballast_deck.cy = -1; }).find("track.ballast_deck.cy: found -1"),

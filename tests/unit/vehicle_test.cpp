@@ -223,7 +223,7 @@ std::string message_of(const std::function<void()>& action) {
   return "no InputError";
 }
 
-TEST(Vehicle, RefusesWhatIsNoVehicle) {
+TEST(Vehicle, RejectsWhatIsNoVehicle) {
   const RigidBody axle{"axle", 1000, {500, 60, 500}, {0, 0, -0.5}};
   const RigidBody box{"box", 3000, {500, 500, 500}, {0, 0, -1.0}};
   const Suspension spring{0, 1, {0, 0, -0.5}, {1e6, 1e6, 1e6}, {0, 0, 0}, {1e6, 1e6, 1e6}};

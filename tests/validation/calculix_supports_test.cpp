@@ -154,7 +154,7 @@ TEST_F(CalculixSlab, TenDigitsAreEnough) {
 }
 
 // One node at midspan held by the model itself.
-TEST_F(CalculixSlab, OnOtherGroundTooItIsRefused) {
+TEST_F(CalculixSlab, OnOtherGroundTooItIsRejected) {
   const StructureModel held = laid(assembled("held", "*BOUNDARY\nMIDDLE, 3, 3\n"));
   EXPECT_TRUE(held.supports.alike_only());
   EXPECT_NE(held.supports.beyond.find("stands on more than its [[support]]s"), std::string::npos)

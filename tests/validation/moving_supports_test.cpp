@@ -159,7 +159,7 @@ TEST(MovingSupports, ImportedAndReducedMassesAreTheClosedFormOscillator) {
 }
 
 // A support forgotten in the table: the rail does not follow those that are there.
-TEST(MovingSupports, SupportsThatDoNotCarryTheRailsAreRefused) {
+TEST(MovingSupports, SupportsThatDoNotCarryTheRailsAreRejected) {
   static_cast<void>(imported_masses());
   const auto K = write("k",
                        "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 3e6\n2 2 2e6\n3 1 -2e6\n"

@@ -128,7 +128,7 @@ TEST(Start, EveryShiftUpToTheTipOfTheFlangeHasItsSeat) {
   }
 }
 
-TEST(Start, WithAWheelBesideItsRailIsRefused) {
+TEST(Start, WithAWheelBesideItsRailIsRejected) {
   SceneParameters scene = coach_on_rigid_track(50.0);
   scene.contact.dimensions.track_gauge = 1.55;
   scene.train.initial_lateral_shift = 0.02;

@@ -20,7 +20,7 @@ fmi::DrivenTrack driven_track(const SceneParameters& scene) {
   const VsiModel train = train_model(scene);
   for (int w = 0; w < train.wheelsets(); ++w) track.wheelset_x.push_back(train.wheelset_x(w, 0.0));
   SceneParameters loaded = scene;
-  loaded.contact.normal = NormalContact::hertz;  // forces act between nodes
+  loaded.contact.normal = NormalContact::hertz;  // forces act between nodes, along y too
   track.structure = scene_structure(loaded);
   return track;
 }

@@ -279,8 +279,7 @@ int RunPool::make(Board& board, std::size_t number, SharedSetUp& shared) const {
 }
 
 /// The run, where it is not finished, and its row.
-int RunPool::make_row(Board& board, std::size_t number, SceneParameters scene, SharedSetUp& shared) const {
-  if (!options_.keep_results) scene.output.paraview_instants = 0;
+int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& scene, SharedSetUp& shared) const {
   const PooledRun& run = (*runs_)[number];
   const fs::path results = file(run.name, ".h5");
   const auto tidy = [&] {

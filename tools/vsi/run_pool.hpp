@@ -53,7 +53,7 @@ class RunPool {
   void check_results(const std::string& name, const SceneParameters& scene) const;
   void set_others_aside(const std::string& name, const SceneParameters& scene) const;
   [[nodiscard]] int make(Board& board, std::size_t run, SharedSetUp& shared) const;
-  [[nodiscard]] int make_row(Board& board, std::size_t run, SceneParameters scene, SharedSetUp& shared) const;
+  [[nodiscard]] int make_row(Board& board, std::size_t run, const SceneParameters& scene, SharedSetUp& shared) const;
   void write_warnings(const std::string& name, const std::string& warnings) const;
   void say_early_end(const std::string& name, const SceneParameters& scene, const report::Headline& headline,
                      const RunSummary& summary) const;

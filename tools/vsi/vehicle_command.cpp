@@ -50,16 +50,16 @@ struct Described {
 
 // A model of the vehicle by itself on the table's profiles, as a scene has it.
 VsiModel on_table(const std::string& name, const VehicleData& data, const std::string& table) {
-  const auto refuse = [&](const std::string& found, const std::string& expected) {
+  const auto reject = [&](const std::string& found, const std::string& expected) {
     return input_error("--table", found, expected);
   };
   if (data.motion == MotionPlane::vertical) {
-    throw refuse(fmt::format("{}, whose data are vertical only", data.name), "a vehicle with lateral springs");
+    throw reject(fmt::format("{}, whose data are vertical only", data.name), "a vehicle with lateral springs");
   }
   const double radius = in_file(
       table, [&] { return TableContact(GeometryTable(read_geometry_table(table))).search().pair().nominal_radius(); });
   if (std::abs(radius - data.parts.nominal_radius) > 1e-9) {
-    throw refuse(fmt::format("{}, of wheels of {} m radius", table, radius),
+    throw reject(fmt::format("{}, of wheels of {} m radius", table, radius),
                  fmt::format("a table for {} m, the wheels of {} (tablegen geometry --wheel-radius)",
                              data.parts.nominal_radius, data.name));
   }
