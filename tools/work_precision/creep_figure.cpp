@@ -16,7 +16,7 @@ WorkFigure creep_figure(const std::vector<std::filesystem::path>& tables, bool q
   figure.least_error = 1e-5;
   figure.advice =
       "Take the table: its error is more than an order of magnitude below FASTSIM's on any grid, in less time. "
-      "Polach's closed form takes a little less time than the table. Use it and linear theory only where large spin "
+      "Polach's closed form takes less time than the table. Use it and linear theory only where large spin "
       "and slender ellipses do not occur, for their errors are largest there.";
   CreepVerificationOptions options;
   options.samples = quick ? 200 : 4000;
