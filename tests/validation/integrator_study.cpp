@@ -39,6 +39,16 @@ constexpr int wheelsets = static_cast<int>(wheelset_x.size());
 constexpr double duration = 0.84, judged_from = 0.1, reference_step = 5e-5;  // s
 constexpr const char* header = "elements_per_bay,method,order,solutions,time_step_ms,force_percent,deck_percent\n";
 
+/// Adds a matrix, times a factor, to the entries of a larger one, from a row and a column on.
+void add_block(const Sparse& matrix, double factor, Eigen::Index row, Eigen::Index column,
+               std::vector<Eigen::Triplet<double>>& entries) {
+  for (int j = 0; j < matrix.outerSize(); ++j) {
+    for (Sparse::InnerIterator e(matrix, j); e; ++e) {
+      entries.emplace_back(row + e.row(), column + j, factor * e.value());
+    }
+  }
+}
+
 /// M a'' + C v + K a = g − B f, f = k_H (Bᵀ a − r): track and bridge, the wheelsets behind their unknowns. Bᵀ a is how
 /// far a wheelset has come down further than its rails, r their deviation.
 struct Scene {
@@ -95,9 +105,7 @@ struct Scene {
  private:
   [[nodiscard]] Sparse with_wheelsets(const Sparse& matrix, double of_wheelset) const {
     std::vector<Eigen::Triplet<double>> entries;
-    for (int j = 0; j < matrix.outerSize(); ++j) {
-      for (Sparse::InnerIterator e(matrix, j); e; ++e) entries.emplace_back(e.row(), j, e.value());
-    }
+    add_block(matrix, 1.0, 0, 0, entries);
     for (int w = 0; w < wheelsets; ++w) entries.emplace_back(structure.dofs() + w, structure.dofs() + w, of_wheelset);
     Sparse result(unknowns, unknowns);
     result.setFromTriplets(entries.begin(), entries.end());
@@ -205,18 +213,11 @@ Step fully_implicit(const Scene& s, const Tableau& t, double dt) {
   const Eigen::Index n = s.unknowns;
   const MatrixXd A2 = t.A * t.A;
   std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](const Sparse& matrix, double factor, Eigen::Index row, Eigen::Index column) {
-    for (int j = 0; j < matrix.outerSize(); ++j) {
-      for (Sparse::InnerIterator e(matrix, j); e; ++e) {
-        entries.emplace_back(row * n + e.row(), column * n + j, factor * e.value());
-      }
-    }
-  };
   for (Eigen::Index i = 0; i < 2; ++i) {
-    add(s.mass, 1.0, i, i);
+    add_block(s.mass, 1.0, i * n, i * n, entries);
     for (Eigen::Index j = 0; j < 2; ++j) {
-      add(s.damping, dt * t.A(i, j), i, j);
-      add(s.stiffness, dt * dt * A2(i, j), i, j);
+      add_block(s.damping, dt * t.A(i, j), i * n, j * n, entries);
+      add_block(s.stiffness, dt * dt * A2(i, j), i * n, j * n, entries);
     }
   }
   Sparse both(2 * n, 2 * n);
@@ -245,7 +246,8 @@ Step fully_implicit(const Scene& s, const Tableau& t, double dt) {
 
 Tableau tableau(const MatrixXd& A, const VectorXd& b) { return {A, b, A.rowwise().sum()}; }
 
-/// A-stable, third order, two stages; leaves 0.73 of the highest frequencies a step [HairerWanner1996, Table 6.3].
+/// A-stable, third order, two stages; leaves 0.73 of the highest frequencies' motion after a step [HairerWanner1996,
+/// Table 6.3].
 Tableau two_stages_of_third_order() {
   const double g = (3.0 + std::sqrt(3.0)) / 6.0;
   MatrixXd A(2, 2);
