@@ -134,8 +134,9 @@ void exchange(Archive& archive, DrivenTrack& track) {
     exchange_list(archive, rail.x);
     exchange_list(archive, rail.dof);
     archive.values(&rail.head_height, 1);
-    for (double* stiffness : {&rail.stiffness.EIy, &rail.stiffness.EIz, &rail.stiffness.GJ})
-      archive.values(stiffness, 1);
+    RailStiffness& of = rail.stiffness;
+    for (double* stiffness : {&of.EIy, &of.EIz, &of.GJ, &of.warping_length}) archive.values(stiffness, 1);
+    exchange_list(archive, rail.twist_rate);
   }
   archive.size(structure.nodes);
   for (StructureNode& node : structure.nodes) {
@@ -147,7 +148,7 @@ void exchange(Archive& archive, DrivenTrack& track) {
   exchange_list(archive, structure.dof_line);
 }
 
-bool are_dofs(const DofIndices& dofs, int count) {
+bool are_dofs(std::span<const int> dofs, int count) {
   for (int dof : dofs) {
     if (dof != held && (dof < 0 || dof >= count)) return false;
   }
@@ -161,9 +162,13 @@ bool increases(const std::vector<double>& x) {
   return true;
 }
 
-bool is_known_or_not(const RailStiffness& stiffness) {
+// Stiffness and twist rates are known both, or neither.
+bool is_known_or_not(const RailLine& rail) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
-  return stiffness == RailStiffness{} || (positive(stiffness.EIy) && positive(stiffness.EIz) && positive(stiffness.GJ));
+  const RailStiffness& of = rail.stiffness;
+  if (of == RailStiffness{}) return rail.twist_rate.empty();
+  return positive(of.EIy) && positive(of.EIz) && positive(of.GJ) && positive(of.warping_length) &&
+         rail.twist_rate.size() == rail.x.size();
 }
 
 // Whether indices and counts of what was read fit each other, and it can be stepped.
@@ -176,7 +181,7 @@ bool is_consistent(const DrivenTrack& track) {
               s.dof_line.size() == s.dof_x.size() && track.scheme.time_step > 0.0 &&
               track.scheme.alpha >= smallest_alpha && track.scheme.alpha <= 0.0;
   for (const RailLine& rail : s.rail) {
-    fits = fits && is_known_or_not(rail.stiffness);
+    fits = fits && is_known_or_not(rail) && are_dofs(rail.twist_rate, n);
     fits = fits && rail.x.size() >= 2 && rail.dof.size() == rail.x.size() && increases(rail.x);
     for (const DofIndices& dofs : rail.dof) fits = fits && are_dofs(dofs, n);
   }

@@ -49,8 +49,8 @@ struct Bridge {
   std::function<std::optional<DofSum>(double x, double y)> surface{};
 };
 
-/// Lines of dofs (StructureModel::dof_line) that a track has: six of each rail and of the sleepers.
-inline constexpr int track_lines = 18;
+/// Lines of dofs (StructureModel::dof_line) that a track has: of the sleepers, of the left and of the right rail.
+inline constexpr int track_lines = 3 * lines_per_node;
 
 /// Simply supported beam spans from x = 0.
 /// @param report positions along the track whose nearest beam node between supports is reported; empty: midspans [m]

@@ -31,18 +31,22 @@ inline std::array<int, 12> joined(const DofIndices& a, const DofIndices& b) noex
   return {a[0], a[1], a[2], a[3], a[4], a[5], b[0], b[1], b[2], b[3], b[4], b[5]};
 }
 
+/// Adds an element with this damping.
+template <class Element>
+void add_element(MatrixAssembly& assembly, std::span<const int> dof, const Element& mass, const Element& stiffness,
+                 const RayleighDamping& damping) {
+  add_element(assembly.mass, dof, mass);
+  add_element(assembly.stiffness, dof, stiffness);
+  add_element(assembly.damping, dof, Element(damping.mass_factor * mass + damping.stiffness_factor * stiffness));
+}
+
 /// Adds a line of beam elements between neighbouring nodes.
 inline void add_beam(MatrixAssembly& assembly, const std::vector<double>& x, const std::vector<DofIndices>& dof,
                      const BeamSection& section, const RayleighDamping& damping) {
   for (size_t e = 0; e + 1 < x.size(); ++e) {
     const double length = x[e + 1] - x[e];
-    const BeamMatrix K = beam_stiffness(section, length);
-    const BeamMatrix M = beam_mass(section, length);
-    const BeamMatrix C = damping.mass_factor * M + damping.stiffness_factor * K;
-    const std::array<int, 12> dofs = joined(dof[e], dof[e + 1]);
-    add_element(assembly.stiffness, dofs, K);
-    add_element(assembly.mass, dofs, M);
-    add_element(assembly.damping, dofs, C);
+    add_element(assembly, joined(dof[e], dof[e + 1]), beam_mass(section, length), beam_stiffness(section, length),
+                damping);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
+#include "railtab/runtime/structure/torsion_element.hpp"
 
 namespace railtab {
 
@@ -12,19 +13,51 @@ bool contains(const RailLine& rail, double x) noexcept {
   return rail.x.size() >= 2 && x >= rail.x.front() && x <= rail.x.back();
 }
 
+DofIndices head_dofs(const RailLine& rail, std::size_t node) noexcept {
+  DofIndices dofs = rail.dof[node];
+  dofs[0] = rail.twist_rate.empty() ? held : rail.twist_rate[node];
+  return dofs;
+}
+
+namespace {
+
+/// Torsion of the element after this node. @pre the rail's twist is smooth
+TorsionElement torsion_of(const RailLine& rail, std::size_t e) noexcept {
+  return {rail.stiffness.GJ, rail.stiffness.warping_length, rail.x[e + 1] - rail.x[e]};
+}
+
+/// Torsion at s from the node e; linear where the rail's twist is.
+TorsionPlace torsion_at(const RailLine& rail, std::size_t e, double s) noexcept {
+  if (!rail.twist_rate.empty()) return torsion_at(torsion_of(rail, e), s);
+  const double length = rail.x[e + 1] - rail.x[e];
+  return {{1.0 - s / length, 0.0, s / length, 0.0}, {-1.0 / length, 0.0, 1.0 / length, 0.0}, 0.0, 0.0};
+}
+
+}  // namespace
+
 RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
   assert(contains(rail, x));
   const size_t e = interval_at(rail.x, x);
-  const double length = rail.x[e + 1] - rail.x[e];
+  const double length = rail.x[e + 1] - rail.x[e], h = rail.head_height;
   const BeamShape N = beam_shape(length, x - rail.x[e]);
   RailInterpolation rows;
+  for (std::size_t node = 0; node < 2; ++node) {
+    const DofIndices dofs = head_dofs(rail, e + node);
+    std::copy(dofs.begin(), dofs.end(), rows.dof.begin() + static_cast<std::ptrdiff_t>(6 * node));
+  }
   for (int k = 0; k < 12; ++k) {
-    rows.dof[k] = k < 6 ? rail.dof[e][k] : rail.dof[e + 1][k - 6];
-    rows.y[k] = N(1, k) + rail.head_height * N(3, k);
+    rows.y[k] = N(1, k);
     rows.z[k] = N(2, k);
-    rows.roll[k] = N(3, k);
     rows.yaw[k] = N(5, k);
     rows.pitch[k] = N(4, k);
+  }
+  rows.roll = {};
+  const TorsionPlace torsion = torsion_at(rail, e, x - rail.x[e]);
+  constexpr std::array<std::size_t, 4> place{3, 0, 9, 6};  // roll and twist rate of either node
+  for (std::size_t i = 0; i < 4; ++i) {
+    rows.roll[place[i]] = torsion.twist[static_cast<Eigen::Index>(i)];
+    rows.y[place[i]] = h * rows.roll[place[i]];
+    rows.yaw[place[i]] = h * torsion.rate[static_cast<Eigen::Index>(i)];  // the head's line has the rail's twist in it
   }
   const double t = (x - rail.x[e]) / length;
   rows.bend = {};
@@ -32,9 +65,6 @@ RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
   rows.bend[4] = -(6 * t - 4) / length;  // pitch = -dz/dx
   rows.bend[8] = -rows.bend[2];
   rows.bend[10] = -(6 * t - 2) / length;
-  // the slope of the head's line has the twist of the rail in it
-  rows.yaw[3] -= rail.head_height / length;
-  rows.yaw[9] += rail.head_height / length;
   return rows;
 }
 
@@ -49,36 +79,30 @@ Eigen::Matrix3d of_head(double y, double z, double roll, double h) {
   return C;
 }
 
-/// λ: a rail's warping smooths the twist at point loads and fastenings [m]. That of 60E1 is 0.15 m; with the least
-/// length that does away with jumps, elements of any length agree.
-constexpr double warping_length = 0.04;
-
-/// 1 − e^(−2x/λ), of which sinh(x/λ) is ½ e^(x/λ) times as much.
-double faded(double x) noexcept { return -std::expm1(-2.0 / warping_length * x); }
-
 }  // namespace
 
 Eigen::Matrix3d element_compliance(const RailLine& rail, double x, double loaded) noexcept {
   assert(contains(rail, x) && contains(rail, loaded));
   const size_t e = interval_at(rail.x, loaded);
   const RailStiffness& of = rail.stiffness;
-  if (!(of.GJ > 0.0) || (x != loaded && interval_at(rail.x, x) != e)) return Eigen::Matrix3d::Zero();
+  if (rail.twist_rate.empty() || (x != loaded && interval_at(rail.x, x) != e)) return Eigen::Matrix3d::Zero();
   const double L = rail.x[e + 1] - rail.x[e];
   // By Maxwell's theorem the load is the one farther from the first node.
   const double s = std::min(x, loaded) - rail.x[e], a = std::max(x, loaded) - rail.x[e], b = L - a;
   const double bending = b * b * s * s * (3.0 * a * L - s * (3.0 * a + b)) / (6.0 * L * L * L);
-  const double warping = 0.5 * warping_length * std::exp((s - a) / warping_length) * faded(s) * faded(b) / faded(L);
-  return of_head(bending / of.EIz, bending / of.EIy, (s * b / L - warping) / of.GJ, rail.head_height);
+  return of_head(bending / of.EIz, bending / of.EIy, torsion_compliance(torsion_of(rail, e), s, a), rail.head_height);
 }
 
-Eigen::Matrix3d element_compliance_slope(const RailLine& rail, double x) noexcept {
+OwnCompliance own_element_compliance(const RailLine& rail, double x) noexcept {
+  assert(contains(rail, x));
+  if (rail.twist_rate.empty()) return {};
   const size_t e = interval_at(rail.x, x);
   const RailStiffness& of = rail.stiffness;
-  if (!(of.GJ > 0.0)) return Eigen::Matrix3d::Zero();
-  const double L = rail.x[e + 1] - rail.x[e], a = x - rail.x[e], b = L - a;
-  const double bending = a * a * b * b * (b - a) / (L * L * L);
-  const double twist = (b - a) / L - (faded(b) - faded(a)) / faded(L);
-  return of_head(bending / of.EIz, bending / of.EIy, twist / of.GJ, rail.head_height);
+  const double L = rail.x[e + 1] - rail.x[e], a = x - rail.x[e], b = L - a, ab = a * b / L;
+  const double bending = ab * ab * ab / 3.0, slope = ab * ab * (b - a) / L;
+  const TorsionPlace torsion = torsion_at(rail, e, a);
+  return {of_head(bending / of.EIz, bending / of.EIy, torsion.compliance, rail.head_height),
+          of_head(slope / of.EIz, slope / of.EIy, torsion.compliance_rate, rail.head_height)};
 }
 
 }  // namespace railtab

@@ -15,11 +15,12 @@
 
 namespace railtab {
 
-/// Bending and torsion of a rail as a beam.
+/// Bending and torsion of a rail as a beam; all zero: not known, as of imported rails.
 struct RailStiffness {
-  double EIy = 0.0;  ///< vertical bending [N m²]
-  double EIz = 0.0;  ///< lateral bending [N m²]
-  double GJ = 0.0;   ///< torsion [N m²]; 0: none of the three is known, as of imported rails
+  double EIy = 0.0;             ///< vertical bending [N m²]
+  double EIz = 0.0;             ///< lateral bending [N m²]
+  double GJ = 0.0;              ///< torsion [N m²]
+  double warping_length = 0.0;  ///< √(E I_ω/GJ) [m]
   bool operator==(const RailStiffness&) const = default;
 };
 
@@ -29,10 +30,16 @@ struct RailLine {
   std::vector<DofIndices> dof;  ///< of each node
   double head_height = 0.0;     ///< of the rail-head top above the beam axis [m]
   RailStiffness stiffness{};
+  /// Dof of the twist's rate d(roll)/dx at each node, with the stiffness; empty: roll is linear between nodes.
+  std::vector<int> twist_rate{};
 };
 
-/// Rows that give the rail head's motion at a position from the 12 dofs of the beam element there (cubic Hermite for
-/// bending, linear for torsion): value = Σ row[k]·a[dof[k]], held dofs skipped. The transpose distributes a load.
+/// The dofs of a node that its rail head's motion depends on: the twist's rate, then y, z, roll, pitch, yaw.
+[[nodiscard]] DofIndices head_dofs(const RailLine& rail, std::size_t node) noexcept;
+
+/// Rows that give the rail head's motion at a position from the head_dofs() of both nodes of the beam element there
+/// (cubic Hermite for bending, torsion_at() or linear for roll): value = Σ row[k]·a[dof[k]], held dofs skipped. The
+/// transpose distributes a load.
 struct RailInterpolation {
   std::array<int, 12> dof;
   std::array<double, 12> y, z, roll;  ///< lateral and vertical displacement of the rail head, roll
@@ -49,12 +56,15 @@ struct RailInterpolation {
 /// Displacement (y, z, roll) of the rail head at x from unit loads (lateral and vertical force, moment about x) on the
 /// rail head at `loaded` with the nodes of the element held: what rail_interpolation() has not of a load between nodes.
 /// With a, b from `loaded` to the element's ends and L = a + b, at the load itself a³b³/(3 EI L³) [Przemieniecki1968]
-/// and (ab/L − λ sinh(a/λ) sinh(b/λ)/sinh(L/λ))/GJ: warping smooths the twist over λ = 0.04 m
-/// (docs/theory/coupling.md). Zero where the two are not on one element or the stiffness is not known.
+/// and torsion_compliance(). Zero where the two are not on one element or the stiffness is not known.
 /// @pre both lie on the rail
 [[nodiscard]] Eigen::Matrix3d element_compliance(const RailLine& rail, double x, double loaded) noexcept;
-/// Derivative of element_compliance(rail, x, x) along x.
-[[nodiscard]] Eigen::Matrix3d element_compliance_slope(const RailLine& rail, double x) noexcept;
+struct OwnCompliance {
+  Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();  ///< element_compliance(rail, x, x)
+  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();       ///< its derivative along x
+};
+/// @pre x lies on the rail
+[[nodiscard]] OwnCompliance own_element_compliance(const RailLine& rail, double x) noexcept;
 
 /// A node whose motion is asked for by name ("deck-midspan").
 struct StructureNode {
@@ -84,6 +94,10 @@ struct StructureSupports {
   [[nodiscard]] int columns() const noexcept { return static_cast<int>(2 * x.size()); }
   [[nodiscard]] bool alike_only() const noexcept { return !beyond.empty(); }
 };
+
+/// The dofs of a node of a track or beam are on lines (StructureModel::dof_line) from a multiple of this number on: x,
+/// y, z, roll, pitch, yaw, twist rate.
+inline constexpr int lines_per_node = 7;
 
 /// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite.
 struct StructureModel {

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/structure/bridge.hpp"
+#include "railtab/runtime/structure/torsion_element.hpp"
 
 namespace railtab {
 namespace {
@@ -19,7 +21,8 @@ namespace {
 struct NodeLine {
   std::vector<double> x;
   std::vector<DofIndices> dof;
-  double y = 0.0, z = 0.0;  // right of the track's centre, below the rail-head tops [m]
+  std::vector<int> twist_rate{};  // of rails
+  double y = 0.0, z = 0.0;        // right of the track's centre, below the rail-head tops [m]
 };
 
 struct TrackNodes {
@@ -50,6 +53,8 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPl
     rail.dof.push_back(free);
   }
   rail.dof.front() = rail.dof.back() = {held, free[1], free[2], free[3], held, held};
+  rail.twist_rate.assign(rail.x.size(), free[3]);
+  rail.twist_rate.front() = rail.twist_rate.back() = held;
   rail.z = track.rail.head_height;
   nodes.rail = {rail, rail};
   nodes.rail[0].y = -track.half_rail_distance;
@@ -60,13 +65,14 @@ TrackNodes place_nodes(const TrackParameters& track, double bridge_end, MotionPl
 /// Numbers of the track's dofs, after those of the bridge. @param first_line StructureModel::dof_line of its x
 void number_dofs(NodeLine& line, int first_line, Bridge& bridge) {
   for (size_t i = 0; i < line.x.size(); ++i) {
-    for (size_t k = 0; k < 6; ++k) {
-      int& index = line.dof[i][k];
-      if (index == held) continue;
+    const auto number = [&](int& index, size_t motion) {
+      if (index == held) return;
       index = static_cast<int>(bridge.dof_x.size());
       bridge.dof_x.push_back(line.x[i]);
-      bridge.dof_line.push_back(first_line + static_cast<int>(k));
-    }
+      bridge.dof_line.push_back(first_line + static_cast<int>(motion));
+    };
+    for (size_t k = 0; k < 6; ++k) number(line.dof[i][k], k);
+    if (!line.twist_rate.empty()) number(line.twist_rate[i], 6);
   }
 }
 
@@ -80,6 +86,19 @@ struct SpringDamper {
         k_about(k_roll, 0, 0),
         c_about(c_roll, 0, 0) {}
 };
+
+/// Bending of the beam, and torsion with warping.
+void add_rail(MatrixAssembly& assembly, const NodeLine& line, const RailBeamParameters& rail) {
+  const RayleighDamping damping{rail.mass_damping, rail.stiffness_damping};
+  add_beam(assembly, line.x, line.dof, {.E = rail.E, .A = rail.A, .Iy = rail.Iy, .Iz = rail.Iz, .mass = rail.mass},
+           damping);
+  for (size_t e = 0; e + 1 < line.x.size(); ++e) {
+    const TorsionElement element{rail.GJ, rail.warping_length, line.x[e + 1] - line.x[e]};
+    constexpr size_t roll = 3;
+    const std::array<int, 4> dofs{line.dof[e][roll], line.twist_rate[e], line.dof[e + 1][roll], line.twist_rate[e + 1]};
+    add_element(assembly, dofs, torsion_mass(element, rail.rotary_inertia), torsion_stiffness(element), damping);
+  }
+}
 
 void add_sleeper_mass(MatrixAssembly& assembly, const DofIndices& dof, const SleeperParameters& sleeper) {
   Eigen::Matrix<double, 6, 1> inertia;
@@ -192,7 +211,7 @@ class OrderAlongTrack {
     for (size_t i = 0; i < of_dof.size(); ++i) sorted[static_cast<size_t>(number_[i])] = of_dof[i];
     of_dof = std::move(sorted);
   }
-  void renumber(DofIndices& dof) const {
+  void renumber(std::span<int> dof) const {
     for (int& index : dof) {
       if (index >= 0) index = number_[static_cast<size_t>(index)];
     }
@@ -259,13 +278,11 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
   TrackNodes nodes = place_nodes(track, bridge.end, plane);
   bridge.dof_line.resize(bridge.dof_x.size(), -1);
   number_dofs(nodes.sleeper, 0, bridge);
-  for (size_t side = 0; side < 2; ++side) number_dofs(nodes.rail[side], 6 + 6 * static_cast<int>(side), bridge);
+  for (int side = 0; side < 2; ++side) number_dofs(nodes.rail[size_t(side)], lines_per_node * (1 + side), bridge);
 
   MatrixAssembly& assembly = bridge.matrices;
   const RailBeamParameters& rail = track.rail;
-  const BeamSection section{rail.E, rail.A, rail.Iy, rail.Iz, rail.GJ, rail.mass, rail.rotary_inertia};
-  for (const NodeLine& line : nodes.rail)
-    add_beam(assembly, line.x, line.dof, section, {rail.mass_damping, rail.stiffness_damping});
+  for (const NodeLine& line : nodes.rail) add_rail(assembly, line, rail);
   const SleeperGround ground = add_sleepers(assembly, nodes, track, bridge, bridge.support_x);
   if (record == DeckRecord::everywhere) add_track_channels(track, nodes.sleeper.x, ground, plane, bridge);
 
@@ -278,6 +295,7 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
   for (StructureNode& node : model.nodes) order.renumber(node.dof);
   for (NodeLine& line : nodes.rail) {
     for (DofIndices& dof : line.dof) order.renumber(dof);
+    order.renumber(line.twist_rate);
   }
   build_matrices(assembly, static_cast<int>(bridge.dof_x.size()), model);
   set_rows(bridge, order, model);
@@ -292,8 +310,12 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
     model.left_out.push_back(longitudinal_left_out(nodes, plane, longitudinal.change));
   }
   for (size_t side = 0; side < 2; ++side) {
-    model.rail[side] = {
-        nodes.rail[side].x, nodes.rail[side].dof, rail.head_height, {rail.E * rail.Iy, rail.E * rail.Iz, rail.GJ}};
+    const NodeLine& line = nodes.rail[side];
+    model.rail[side] = {line.x,
+                        line.dof,
+                        rail.head_height,
+                        {rail.E * rail.Iy, rail.E * rail.Iz, rail.GJ, rail.warping_length},
+                        line.twist_rate};
   }
   return model;
 }

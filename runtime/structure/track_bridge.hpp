@@ -14,18 +14,19 @@ struct SupportParameters {
   bool operator==(const SupportParameters&) const = default;
 };
 
-/// One rail as an Euler–Bernoulli beam; the defaults are 60E1 (EN 13674-1).
+/// One rail as an Euler–Bernoulli beam that twists and warps; the defaults are 60E1 (EN 13674-1).
 struct RailBeamParameters {
-  double E = 210e9;                 ///< [Pa]
-  double A = 76.70e-4;              ///< [m²]
-  double Iy = 3038e-8;              ///< vertical bending [m⁴]
-  double Iz = 512e-8;               ///< lateral bending [m⁴]
-  double GJ = 195.87e3;             ///< torsional stiffness [N m²]; published for CHN60, a rail of the same size
-  double mass = 60.21;              ///< [kg/m]
-  double rotary_inertia = 0.279;    ///< about x [kg m²/m]: steel's density times (Iy + Iz)
-  double height = 0.172;            ///< rail-head top to rail foot [m]
-  double head_height = 0.0911;      ///< rail-head top above the centroid [m], < height
-  double mass_damping = 0.0;        ///< Rayleigh, times M [1/s]
+  double E = 210e9;               ///< [Pa]
+  double A = 76.70e-4;            ///< [m²]
+  double Iy = 3038e-8;            ///< vertical bending [m⁴]
+  double Iz = 512e-8;             ///< lateral bending [m⁴]
+  double GJ = 195.87e3;           ///< torsional stiffness [N m²]; published for CHN60, a rail of the same size
+  double warping_length = 0.135;  ///< λ = √(E I_ω/GJ) [m]; that of the section's outline (docs/theory/structure.md)
+  double mass = 60.21;            ///< [kg/m]
+  double rotary_inertia = 0.279;  ///< about x [kg m²/m]: steel's density times (Iy + Iz)
+  double height = 0.172;          ///< rail-head top to rail foot [m]
+  double head_height = 0.0911;    ///< rail-head top above the centroid [m], < height
+  double mass_damping = 0.0;      ///< Rayleigh, times M [1/s]
   double stiffness_damping = 2e-6;  ///< Rayleigh, times K [s]: 0.6 % of critical at 1 kHz
   bool operator==(const RailBeamParameters&) const = default;
 };
@@ -102,7 +103,8 @@ struct BridgeParameters {
 ///
 /// Sleepers stand at whole multiples of the spacing; one at start <= x < end of a span rests on that span, joined by
 /// rigid arms to the beam axis (Hermite interpolation between deck nodes, no degrees of freedom of its own). At the two
-/// ends of the model the rails' x, pitch and yaw are held (symmetry: the track goes on beyond), all else is free.
+/// ends of the model the rails' x, pitch, yaw and twist rate are held (symmetry: the track goes on beyond), all else is
+/// free.
 ///
 /// Named nodes, spans counted from 1: "deck-midspan-<i>" (beam axis), "rail-left-midspan-<i>" and
 /// "rail-right-midspan-<i>" (nearest rail node); with `report`, positions along the track [m], "deck-<x>",

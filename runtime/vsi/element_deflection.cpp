@@ -15,10 +15,10 @@ void element_motion(const std::vector<RailContact>& contacts, const Eigen::Vecto
   };
   for (int i = 0; i < wheels; ++i) {
     const RailContact& at = contacts[index(i)];
-    if (!at.on_rail || !(at.rail->stiffness.GJ > 0.0)) continue;
+    if (!at.on_rail || at.rail->twist_rate.empty()) continue;
     RailHeadMotion& m = motion[index(i)];
-    const Vector3 slope = 0.5 * at.own_slope * slope_force.segment<3>(3 * i);
-    add(i, at.own_compliance, i);
+    const Vector3 slope = 0.5 * at.own.slope * slope_force.segment<3>(3 * i);
+    add(i, at.own.compliance, i);
     m.velocity += speed * slope;
     m.yaw = slope[0];
     m.slope = slope[1];

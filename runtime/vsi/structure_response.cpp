@@ -55,14 +55,13 @@ RailContact rail_contact(const StructureModel& structure, RailSide side, double 
   contact.x = x;
   contact.rows = rail_interpolation(rail, x);
   contact.rail = &rail;
-  contact.own_compliance = element_compliance(rail, x, x);
-  contact.own_slope = element_compliance_slope(rail, x);
+  contact.own = own_element_compliance(rail, x);
   return contact;
 }
 
 Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept {
   if (!i.on_rail || !j.on_rail || i.side != j.side || i.element != j.element) return Eigen::Matrix3d::Zero();
-  return i.x == j.x ? j.own_compliance : element_compliance(*j.rail, i.x, j.x);
+  return i.x == j.x ? j.own.compliance : element_compliance(*j.rail, i.x, j.x);
 }
 
 void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
@@ -126,25 +125,24 @@ namespace {
 MirrorPairs rail_pairs(const StructureModel& structure) {
   MirrorPairs pairs;
   const auto& [left, right] = structure.rail;
+  const auto join = [&](int l, int r) {
+    if (l != held && r != held) pairs.push_back({std::min(l, r), std::max(l, r)});
+  };
   for (std::size_t i = 0; i < std::min(left.dof.size(), right.dof.size()); ++i) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      const int l = left.dof[i][k], r = right.dof[i][k];
-      if (l != held && r != held) pairs.push_back({std::min(l, r), std::max(l, r)});
-    }
+    for (std::size_t k = 0; k < 6; ++k) join(left.dof[i][k], right.dof[i][k]);
+    if (!left.twist_rate.empty() && !right.twist_rate.empty()) join(left.twist_rate[i], right.twist_rate[i]);
   }
   return pairs;
 }
 
-// The six unknowns of a node of the track or of a beam bridge are on neighbouring lines at one x. Others count as
-// nodes.
+// The unknowns of a node of the track or of a beam bridge are on neighbouring lines at one x. Others count as nodes.
 std::vector<int> mesh_nodes(const StructureModel& structure) {
   std::map<std::pair<double, int>, int> known;
   std::vector<int> node(structure.dof_line.size());
   int nodes = 0;
   for (std::size_t i = 0; i < node.size(); ++i) {
-    constexpr int per_node = 6;
     const int line = structure.dof_line[i];
-    node[i] = line < 0 ? nodes : known.try_emplace({structure.dof_x[i], line / per_node}, nodes).first->second;
+    node[i] = line < 0 ? nodes : known.try_emplace({structure.dof_x[i], line / lines_per_node}, nodes).first->second;
     nodes += node[i] == nodes;
   }
   return node;
@@ -376,7 +374,8 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
       if (dof != held) involved.push_back(dof);
     }
   };
-  involve(rail.dof[node]);
+  const DofIndices of_node = head_dofs(rail, node);
+  involve(of_node);
   for (std::size_t other = 0; other < 2; ++other) {
     const RailLine& to = structure.rail[other];
     const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - reach) - to.x.begin();
@@ -384,21 +383,22 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     column.first[other] = static_cast<int>(begin);
     column.rows[other].reserve(room[other]);
     column.rows[other].assign(static_cast<std::size_t>(end - begin), Block::Zero());
-    for (auto n = begin; n < end; ++n) involve(to.dof[static_cast<std::size_t>(n)]);
+    for (auto n = begin; n < end; ++n) involve(head_dofs(to, static_cast<std::size_t>(n)));
   }
   s.solution.begin(factor, involved);
   for (std::size_t load = 0; load < 6; ++load) {
-    const int loaded = rail.dof[node][load];
+    const int loaded = of_node[load];
     if (loaded == held) continue;
     s.load[loaded] = 1.0;
     const Eigen::VectorXd& moved = s.respond(factor);
     s.load[loaded] = 0.0;
     for (std::size_t other = 0; other < 2; ++other) {
-      const DofIndices* const dofs = &structure.rail[other].dof[static_cast<std::size_t>(column.first[other])];
+      const auto first = static_cast<std::size_t>(column.first[other]);
       for (std::size_t n = 0; n < column.rows[other].size(); ++n) {
+        const DofIndices dofs = head_dofs(structure.rail[other], first + n);
         for (std::size_t k = 0; k < 6; ++k) {
-          if (dofs[n][k] == held) continue;
-          column.rows[other][n](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(load)) = moved[dofs[n][k]];
+          if (dofs[k] == held) continue;
+          column.rows[other][n](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(load)) = moved[dofs[k]];
         }
       }
     }
@@ -457,48 +457,57 @@ void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j,
 
 namespace {
 
-// Displacements y, z, roll, pitch and yaw of a node: the first four side by side.
+// Twist rate, y, z, roll, pitch and yaw of a node: the four after the first side by side.
 struct NodeMotion {
   Pack four{};
-  double yaw = 0.0;
+  double yaw = 0.0, twist_rate = 0.0;
 
   void add(double weight, const double* column) noexcept {
     Pack moved;
     std::memcpy(&moved, column + 1, sizeof moved);
     four += weight * moved;
     yaw += weight * column[5];
+    twist_rate += weight * column[0];
+  }
+  void add(double weight, const NodeMotion& other) noexcept {
+    four += weight * other.four;
+    yaw += weight * other.yaw;
+    twist_rate += weight * other.twist_rate;
   }
 };
 
 }  // namespace
 
 Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
-  // Of the rows y, z and roll only these entries are not zero (rail_interpolation): y has the node's y, roll and yaw, z
-  // its z and pitch, roll its roll.
-  constexpr std::size_t y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
+  // Of the rows y, z and roll only these entries are not zero (rail_interpolation): y has the node's y and yaw and,
+  // times the head's height, what roll has; z its z and pitch; roll its roll and twist rate.
+  constexpr std::size_t twist = 0, y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
+  if (!i.on_rail || !j.on_rail) return Eigen::Matrix3d::Zero();
   NodeMotion node[2][3];  // of i, under unit loads y, z and roll on rail head j
   visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {
     const RailInterpolation& c = j.rows;
     const auto column = [&](std::size_t k) { return block.data() + 6 * k; };
     auto& [of_y, of_z, of_roll] = node[p / 6];
     of_y.add(c.y[q + y], column(y));
-    of_y.add(c.y[q + roll], column(roll));
     of_y.add(c.y[q + yaw], column(yaw));
     of_z.add(c.z[q + z], column(z));
     of_z.add(c.z[q + pitch], column(pitch));
     of_roll.add(c.roll[q + roll], column(roll));
+    of_roll.add(c.roll[q + twist], column(twist));
   });
   const RailInterpolation& r = i.rows;
   Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
   for (std::size_t p = 0; p < 2; ++p) {
     const std::size_t first = 6 * p;
+    node[p][0].add(j.rail->head_height, node[p][2]);
     for (Eigen::Index load = 0; load < 3; ++load) {
       const NodeMotion& m = node[p][load];
-      result(0, load) += r.y[first + y] * m.four[0] + r.y[first + roll] * m.four[2] + r.y[first + yaw] * m.yaw;
+      result(0, load) += r.y[first + y] * m.four[0] + r.y[first + yaw] * m.yaw;
       result(1, load) += r.z[first + z] * m.four[1] + r.z[first + pitch] * m.four[3];
-      result(2, load) += r.roll[first + roll] * m.four[2];
+      result(2, load) += r.roll[first + roll] * m.four[2] + r.roll[first + twist] * m.twist_rate;
     }
   }
+  result.row(0) += i.rail->head_height * result.row(2);
   return result;
 }
 

@@ -20,8 +20,7 @@ struct RailContact {
   double x = 0.0;   ///< along the track [m]
   RailInterpolation rows{};
   const RailLine* rail = nullptr;  ///< of the structure; set where on_rail is
-  /// element_compliance(rail, x, x), and its derivative along x
-  Eigen::Matrix3d own_compliance = Eigen::Matrix3d::Zero(), own_slope = Eigen::Matrix3d::Zero();
+  OwnCompliance own{};             ///< of the element there
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
 

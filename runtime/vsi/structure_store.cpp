@@ -18,7 +18,8 @@ bool equal(const Sparse& a, const Sparse& b) {
 }
 
 bool equal(const RailLine& a, const RailLine& b) {
-  return a.x == b.x && a.dof == b.dof && a.head_height == b.head_height && a.stiffness == b.stiffness;
+  return a.x == b.x && a.dof == b.dof && a.head_height == b.head_height && a.stiffness == b.stiffness &&
+         a.twist_rate == b.twist_rate;
 }
 
 // What responses are made of: matrices, rails, places of the unknowns.

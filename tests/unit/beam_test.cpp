@@ -130,6 +130,26 @@ TEST(RailInterpolation, ReproducesCubicBendingAndLinearTwistWithTheHeadsArm) {
   }
 }
 
+// A bar that warps in each of its own shapes: constant, linear, cosh and sinh.
+TEST(RailInterpolation, ReproducesTheTwistOfABarThatWarps) {
+  RailLine rail = uneven_rail();
+  rail.stiffness = {6e6, 1e6, 2e5, 0.4};
+  rail.twist_rate = {24, 25, 26, 27};
+  const auto roll = [](double x) { return 0.2 + 0.4 * x + 0.1 * std::cosh(x / 0.4) - 0.3 * std::sinh(x / 0.4); };
+  const auto rate = [](double x) { return 0.4 + 0.25 * std::sinh(x / 0.4) - 0.75 * std::cosh(x / 0.4); };
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(28);
+  for (size_t node = 0; node < 4; ++node) {
+    a[rail.dof[node][3]] = roll(rail.x[node]);
+    a[rail.twist_rate[node]] = rate(rail.x[node]);
+  }
+  for (const double x : {-1.0, -0.3, 0.5, 0.7, 0.9, 2.2, 3.9, 4.0}) {
+    const RailInterpolation rows = rail_interpolation(rail, x);
+    EXPECT_NEAR(value(rows.roll, rows, a), roll(x), 1e-11 * std::cosh(x / 0.4)) << "x = " << x;
+    EXPECT_NEAR(value(rows.y, rows, a), 0.09 * roll(x), 1e-11 * std::cosh(x / 0.4));
+    EXPECT_NEAR(value(rows.yaw, rows, a), 0.09 * rate(x), 1e-11 * std::cosh(x / 0.4));
+  }
+}
+
 TEST(RailInterpolation, LateralForceAtTheHeadTwistsTheAxis) {
   const RailLine rail = uneven_rail();
   const RailInterpolation rows = rail_interpolation(rail, 0.7);

@@ -19,6 +19,7 @@ MirrorPairs both_rails(const StructureModel& s) {
     for (std::size_t k = 0; k < 6; ++k) {
       if (s.rail[0].dof[i][k] != held) pairs.push_back({s.rail[0].dof[i][k], s.rail[1].dof[i][k]});
     }
+    if (s.rail[0].twist_rate[i] != held) pairs.push_back({s.rail[0].twist_rate[i], s.rail[1].twist_rate[i]});
   }
   return pairs;
 }

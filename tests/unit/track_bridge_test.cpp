@@ -81,6 +81,9 @@ TEST(TrackBridge, MassIsThatOfRailsAndSleepers) {
       }
       down[dof[2]] = 1;
     }
+    for (const int i : rail.twist_rate) {
+      if (i != held) of_rail[i] = 1;
+    }
   }
   const double rails = down.dot(model.mass * down);
   EXPECT_NEAR(rails, 2 * 60.21 * 60.0, 1e-9 * rails);
@@ -251,6 +254,9 @@ TEST(TrackBridge, EndsOfTheRailsAreGuided) {
       EXPECT_EQ(dof[4], held);
       EXPECT_EQ(dof[5], held);
     }
+    EXPECT_EQ(rail.twist_rate.front(), held);
+    EXPECT_EQ(rail.twist_rate.back(), held);
+    EXPECT_EQ(std::count(rail.twist_rate.begin(), rail.twist_rate.end(), held), 2);
   }
 }
 

@@ -1,0 +1,128 @@
+#include "railtab/runtime/structure/torsion_element.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace railtab {
+namespace {
+
+/// e^−x − 1 of the distances of a place from both ends, by λ.
+struct Fading {
+  double first, last;
+
+  Fading(const TorsionElement& element, double s)
+      : first(std::expm1(-s / element.warping_length)),
+        last(std::expm1((s - element.length) / element.warping_length)) {}
+};
+
+/// sinh x by ½ e^x, from e^−x − 1.
+double sinh_by_half_exp(double fading) noexcept { return -fading * (2.0 + fading); }
+
+/// Three solutions about the middle of the element, z = (s − L/2)/λ and h = L/(2λ). Hyperbolic functions are by e^h.
+class Solutions {
+ public:
+  explicit Solutions(const TorsionElement& element)
+      : lambda_(element.warping_length), h_(0.5 * element.length / lambda_) {
+    const double fading = std::expm1(-2.0 * h_);
+    sinh_h_ = -0.5 * fading;
+    cosh_h_ = 1.0 + 0.5 * fading;
+    of_twisted_ = h_ - sinh_h_ / cosh_h_;
+    of_odd_ = 1.0 - h_ * cosh_h_ / sinh_h_;
+  }
+
+  struct Value {
+    double value, slope;
+  };
+  struct At {
+    Value twisted;  ///< φ = ∓1, φ' = 0 at the two ends
+    Value even;     ///< φ = 0, φ' = ∓1
+    Value odd;      ///< φ = 0, φ' = 1 at both
+  };
+  [[nodiscard]] At at(double s, const Fading& fading) const noexcept {
+    const double z = s / lambda_ - h_;
+    const double sinh_z = 0.5 * (fading.last - fading.first), cosh_z = 1.0 + 0.5 * (fading.last + fading.first);
+    return {{(z - sinh_z / cosh_h_) / of_twisted_, (1.0 - cosh_z / cosh_h_) / (lambda_ * of_twisted_)},
+            {lambda_ * (cosh_z - cosh_h_) / sinh_h_, sinh_z / sinh_h_},
+            {lambda_ * (z - h_ * sinh_z / sinh_h_) / of_odd_, (1.0 - h_ * cosh_z / sinh_h_) / of_odd_}};
+  }
+
+  /// 1 − e^(−2L/λ)
+  [[nodiscard]] double sinh_of_length() const noexcept { return 4.0 * sinh_h_ * (1.0 - sinh_h_); }
+  /// Torque of the first and of the third, by GJ [1/m, -].
+  [[nodiscard]] double torque_of_twisted() const noexcept { return 1.0 / (lambda_ * of_twisted_); }
+  [[nodiscard]] double torque_of_odd() const noexcept { return 1.0 / of_odd_; }
+  /// Bimoments at the ends of the second and of the third, by GJ [m].
+  [[nodiscard]] double bimoment_of_even() const noexcept { return lambda_ * cosh_h_ / sinh_h_; }
+  [[nodiscard]] double bimoment_of_odd() const noexcept { return -lambda_ * h_ / of_odd_; }
+
+ private:
+  double lambda_, h_, sinh_h_, cosh_h_, of_twisted_, of_odd_;
+};
+
+/// Twist at s under a unit moment at a >= s, by 1/GJ: between forks, which let the ends warp, less what the bimoments
+/// that hold the rates there take back.
+double twist_under(const TorsionElement& element, const Solutions& solutions, double s, const Fading& at_s, double a,
+                   const Fading& at_a) noexcept {
+  const double L = element.length, lambda = element.warping_length;
+  const double warping = 0.5 * lambda * std::exp((s - a) / lambda) * sinh_by_half_exp(at_s.first) *
+                         sinh_by_half_exp(at_a.last) / solutions.sinh_of_length();
+  const Solutions::At of_s = solutions.at(s, at_s), of_a = solutions.at(a, at_a);
+  return s * (L - a) / L - warping - 0.5 * of_s.even.value * of_a.even.value / solutions.bimoment_of_even() -
+         0.5 * of_s.odd.value * of_a.odd.value / solutions.bimoment_of_odd();
+}
+
+}  // namespace
+
+TorsionPlace torsion_at(const TorsionElement& element, double s) noexcept {
+  assert(element.length > 0 && s >= 0 && s <= element.length);
+  const Fading fading(element, s);
+  const Solutions solutions(element);
+  const auto [twisted, even, odd] = solutions.at(s, fading);
+  const auto shapes = [](double t, double e, double o, double one) {
+    return Eigen::Vector4d(0.5 * (one - t), 0.5 * (o - e), 0.5 * (one + t), 0.5 * (o + e));
+  };
+  const double between_forks =
+      (element.length - 2.0 * s) / element.length -
+      (sinh_by_half_exp(fading.last) - sinh_by_half_exp(fading.first)) / solutions.sinh_of_length();
+  const double held_back =
+      even.value * even.slope / solutions.bimoment_of_even() + odd.value * odd.slope / solutions.bimoment_of_odd();
+  return {shapes(twisted.value, even.value, odd.value, 1.0), shapes(twisted.slope, even.slope, odd.slope, 0.0),
+          twist_under(element, solutions, s, fading, s, fading) / element.GJ, (between_forks - held_back) / element.GJ};
+}
+
+Eigen::Matrix4d torsion_stiffness(const TorsionElement& element) noexcept {
+  const Solutions solutions(element);
+  const double torque = 0.5 * solutions.torque_of_twisted(), couple = -0.5 * solutions.torque_of_odd();
+  const double even = 0.5 * solutions.bimoment_of_even(), odd = 0.5 * solutions.bimoment_of_odd();
+  Eigen::Matrix4d K;
+  K << torque, couple, -torque, couple,         //
+      couple, odd + even, -couple, odd - even,  //
+      -torque, -couple, torque, -couple,        //
+      couple, odd - even, -couple, odd + even;
+  return element.GJ * K;
+}
+
+Eigen::Matrix4d torsion_mass(const TorsionElement& element, double rotary_inertia) noexcept {
+  // Gauss's eight points on −1..1: place and weight of those on one side.
+  constexpr std::array<std::array<double, 2>, 4> points{{{0.1834346424956498, 0.3626837833783620},
+                                                         {0.5255324099163290, 0.3137066458778873},
+                                                         {0.7966664774136267, 0.2223810344533745},
+                                                         {0.9602898564975363, 0.1012285362903763}}};
+  Eigen::Matrix4d M = Eigen::Matrix4d::Zero();
+  for (const auto& [place, weight] : points) {
+    for (const double t : {-place, place}) {
+      const Eigen::Vector4d N = torsion_at(element, 0.5 * element.length * (1.0 + t)).twist;
+      M += 0.5 * element.length * weight * rotary_inertia * N * N.transpose();
+    }
+  }
+  return M;
+}
+
+double torsion_compliance(const TorsionElement& element, double x, double loaded) noexcept {
+  const double s = std::min(x, loaded), a = std::max(x, loaded);  // by Maxwell's theorem
+  return twist_under(element, Solutions(element), s, Fading(element, s), a, Fading(element, a)) / element.GJ;
+}
+
+}  // namespace railtab
