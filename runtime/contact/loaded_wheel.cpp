@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "railtab/runtime/base/dual.hpp"
+#include "railtab/runtime/base/smooth_step.hpp"
 #include "railtab/runtime/contact/contact_pair.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
 #include "railtab/runtime/contact/reflection.hpp"
@@ -248,6 +249,9 @@ class LoadedContactForce {
  private:
   static constexpr bool derivatives = !std::is_same_v<T, V>;
   static constexpr bool single = std::is_same_v<V, double>;
+  /// Saddles over which two parts count as two ellipses, and from which on as one: between the two both are as close to
+  /// the solution of the half-space (docs/validation/loaded_contact.md).
+  static constexpr double apart_up_to = 0.25, merged_from = 0.35;
   static constexpr double largest_side_by_side = 1e60;  ///< creepage whose square is far from overflow
   using Parts = std::array<Part<T>, LoadedLookup::capacity>;
 
@@ -360,7 +364,8 @@ class LoadedContactForce {
     }
   }
 
-  // The force per length at the saddle over the lesser of the largest on both sides, 0 to 1.
+  // How far the parts on both sides of the cut before part k count as one ellipse, 0 to 1: by the force per length at
+  // the saddle between them over the lesser of the largest on both sides.
   T merging(const Parts& parts, std::size_t k) const {
     const auto is_part = [&](std::size_t p) { return lookup_.part[p].share > V{}; };
     T below = parts[0].peak, above = parts[k].peak;
@@ -371,7 +376,15 @@ class LoadedContactForce {
       above = select(is_part(p) & (number(parts[p].peak) > number(above)), parts[p].peak, above);
     }
     const T ratio = parts[k - 1].saddle / select(number(below) < number(above), below, above);
-    return select(is_part(k), select(number(ratio) >= 1.0, constant<T>(1.0), ratio), constant<T>(0.0));
+    constexpr double width = merged_from - apart_up_to;
+    const V t = (number(ratio) - apart_up_to) * (1.0 / width), share = smooth_step(t);
+    const T none = constant<T>(0.0);
+    if constexpr (derivatives) {
+      const auto between = (share > V{}) & (share < broadcast<V>(1.0));
+      return select(is_part(k), chained(ratio, share, select(between, 6.0 / width * t * (1.0 - t), V{})), none);
+    } else {
+      return select(is_part(k), share, none);
+    }
   }
 
   static Part<T> together(const Parts& parts, std::size_t first, std::size_t last) {

@@ -17,10 +17,11 @@ struct Fading {
         last(std::expm1((s - element.length) / element.warping_length)) {}
 };
 
-/// sinh x by ½ e^x, from e^−x − 1.
-double sinh_by_half_exp(double fading) noexcept { return -fading * (2.0 + fading); }
+/// sinh x over ½ e^x, from e^−x − 1.
+double sinh_over_half_exp(double fading) noexcept { return -fading * (2.0 + fading); }
 
-/// Three solutions about the middle of the element, z = (s − L/2)/λ and h = L/(2λ). Hyperbolic functions are by e^h.
+/// Three solutions about the middle of the element, z = (s − L/2)/λ and h = L/(2λ). Hyperbolic functions are kept
+/// over e^h, which no length lets overflow.
 class Solutions {
  public:
   explicit Solutions(const TorsionElement& element)
@@ -48,8 +49,7 @@ class Solutions {
             {lambda_ * (z - h_ * sinh_z / sinh_h_) / of_odd_, (1.0 - h_ * cosh_z / sinh_h_) / of_odd_}};
   }
 
-  /// 1 − e^(−2L/λ)
-  [[nodiscard]] double sinh_of_length() const noexcept { return 4.0 * sinh_h_ * (1.0 - sinh_h_); }
+  [[nodiscard]] double sinh_of_length_over_half_exp() const noexcept { return 4.0 * sinh_h_ * (1.0 - sinh_h_); }
   /// Torque of the first and of the third, by GJ [1/m, -].
   [[nodiscard]] double torque_of_twisted() const noexcept { return 1.0 / (lambda_ * of_twisted_); }
   [[nodiscard]] double torque_of_odd() const noexcept { return 1.0 / of_odd_; }
@@ -66,8 +66,8 @@ class Solutions {
 double twist_under(const TorsionElement& element, const Solutions& solutions, double s, const Fading& at_s, double a,
                    const Fading& at_a) noexcept {
   const double L = element.length, lambda = element.warping_length;
-  const double warping = 0.5 * lambda * std::exp((s - a) / lambda) * sinh_by_half_exp(at_s.first) *
-                         sinh_by_half_exp(at_a.last) / solutions.sinh_of_length();
+  const double warping = 0.5 * lambda * std::exp((s - a) / lambda) * sinh_over_half_exp(at_s.first) *
+                         sinh_over_half_exp(at_a.last) / solutions.sinh_of_length_over_half_exp();
   const Solutions::At of_s = solutions.at(s, at_s), of_a = solutions.at(a, at_a);
   return s * (L - a) / L - warping - 0.5 * of_s.even.value * of_a.even.value / solutions.bimoment_of_even() -
          0.5 * of_s.odd.value * of_a.odd.value / solutions.bimoment_of_odd();
@@ -85,7 +85,7 @@ TorsionPlace torsion_at(const TorsionElement& element, double s) noexcept {
   };
   const double between_forks =
       (element.length - 2.0 * s) / element.length -
-      (sinh_by_half_exp(fading.last) - sinh_by_half_exp(fading.first)) / solutions.sinh_of_length();
+      (sinh_over_half_exp(fading.last) - sinh_over_half_exp(fading.first)) / solutions.sinh_of_length_over_half_exp();
   const double held_back =
       even.value * even.slope / solutions.bimoment_of_even() + odd.value * odd.slope / solutions.bimoment_of_odd();
   return {shapes(twisted.value, even.value, odd.value, 1.0), shapes(twisted.slope, even.slope, odd.slope, 0.0),

@@ -3,8 +3,8 @@
 //     loaded_table_study TABLE.h5 REFERENCE FOLDER
 //
 // TABLE.h5 is a geometry table with a loaded part of the profiles that CONTACT used (profiles/MBench_*), of steel with
-// G = 82 GPa; REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, steps of the force
-// along random lines, work on closed paths.
+// G = 82 GPa; REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, of two merging
+// parts by the depth of the saddle between them, steps of the force along random lines, work on closed paths.
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -21,7 +21,9 @@
 #include "contact_reference.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/contact/contact_response.hpp"
+#include "railtab/runtime/contact/loaded_wheel.hpp"
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/tablegen/loaded_rolling.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
 namespace {
@@ -67,6 +69,9 @@ class Study {
       differences_.add("A", kind, "approach", (motion.displacement[2] - touch) / row["approach"] - 1.0);
       differences_.add("A", kind, "total force D2",
                        std::hypot(force.rail_x - row["fx"], force.rail[0] - row["fy"]) / bound);
+      differences_.add(
+          "A", kind, "total force of the half-space",
+          (Eigen::Vector2d(force.rail_x, force.rail[0]) - half_space(motion, row["fz_prescribed"])).norm() / bound);
       differences_.add("A", kind, "largest pressure", lookup(motion).largest_pressure() / patch["pmax"] - 1.0);
     }
   }
@@ -100,6 +105,35 @@ class Study {
       differences_.add("C", kind, "approach", (motion.displacement[2] - row["z_ws"]) / (row["z_ws"] - touch));
       differences_.add("C", kind, "lateral force", (side * force.rail[0] - row["fy"]) / row["load"]);
       differences_.add("C", kind, "largest pressure", lookup(motion).largest_pressure() / row["pmax"] - 1.0);
+    }
+  }
+
+  /// Two parts that merge, at random poses and creepages: as two ellipses, as one, and as runs take them.
+  void merging(int count) {
+    for (int n = 0; n < count; ++n) {
+      WheelsetMotion motion = placed(uniform(-6e-3, 6e-3), uniform(-3e-3, 3e-3), uniform(-6e-3, 6e-3));
+      const double load = std::exp(uniform(std::log(20e3), std::log(150e3)));
+      motion.velocity[4] = -uniform(-3e-3, 3e-3) * model_.speed / pair().nominal_radius();
+      at_load(model_, motion, touch_height(motion), load);
+      LoadedLookup found = lookup(motion);
+      if (found.table_share < 1.0 || found.parts != 2) continue;
+      const double saddle = found.part[0].saddle / std::min(found.part[0].peak, found.part[1].peak);
+      if (!(saddle > 0.0)) continue;
+      const Eigen::Vector2d solution = half_space(motion, load);
+      const auto error = [&]() {
+        const LoadedWheelForce force = loaded_wheel_force(model_, WheelSide::right, motion, {}, found);
+        return (Eigen::Vector2d(force.rail_x, force.rail[0]) - solution).norm() / (friction * load);
+      };
+      const std::string kind = saddle < 0.25   ? "0 to 0.25"
+                               : saddle < 0.35 ? "0.25 to 0.35"
+                               : saddle < 0.5  ? "0.35 to 0.5"
+                               : saddle < 0.75 ? "0.5 to 0.75"
+                                               : "0.75 to 1";
+      differences_.add("merging", kind, "as in runs", error());
+      found.part[0].saddle = 0.0;
+      differences_.add("merging", kind, "two ellipses", error());
+      found.part[0].saddle = found.part[0].peak + found.part[1].peak;
+      differences_.add("merging", kind, "one ellipse", error());
     }
   }
 
@@ -157,7 +191,8 @@ class Study {
   [[nodiscard]] std::string summary() const {
     return "# Forces of a loaded table: absolute differences from CONTACT's loaded cases, relative to its value "
            "(forces "
-           "of\n# set A in mu F_n, of set B in the normal force, lateral force of set C in the load); steps along "
+           "of\n# set A and of merging parts in mu F_n, of set B in the normal force, lateral force of set C in the "
+           "load); steps along "
            "lines, work on\n# closed paths over its amount. Made by tests/validation/loaded_table_study, " +
            fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))) +
            "\nset,kind,quantity,cases,mean,p95,largest\n" + differences_.csv();
@@ -180,6 +215,24 @@ class Study {
   [[nodiscard]] Eigen::Vector4d loaded_force(const Eigen::Vector4d& p) const {
     return loaded_->lookup(p[0], p[1], p[2], p[3]).force;
   }
+  /// Force on the rail along x and y of the half-space solution with friction, at the motion's shift, roll, yaw and
+  /// pitch rate, under the load.
+  [[nodiscard]] Eigen::Vector2d half_space(const WheelsetMotion& at, double load) const {
+    LoadedContactOptions options;
+    options.wheel = options.rail = model_.normal.material;
+    options.elements.most = 400000;
+    LoadedRollingOptions rolling;
+    rolling.friction = friction;
+    rolling.speed = model_.speed;
+    const WheelsetPose pose{at.displacement[1], 0.0, at.displacement[3], at.displacement[5]};
+    const RelativeMotion motion =
+        running_motion(pose, rolling.speed, at.velocity[4] - model_.speed / pair().nominal_radius());
+    const auto roll = [&](const LoadedContact& c) { return loaded_rolling(pair(), c, options, motion, rolling); };
+    const ContactAtLoad found = contact_at_load(*search_, pose, load, options,
+                                                [&](const LoadedContact& c) { return roll(c).on_rail.force.z(); });
+    if (!found.converged) throw std::runtime_error("no half-space solution at the load");
+    return (found.contact.on_rail.force + roll(found.contact).on_rail.force).head<2>();
+  }
   /// Lowers the wheel until the rail carries the load.
   WheelForce at_load(const WheelContactModel& model, WheelsetMotion& motion, double touch, double load) const {
     WheelForce force;
@@ -191,7 +244,9 @@ class Study {
     };
     boost::uintmax_t passes = 200;
     const auto close = [](double a, double b) { return std::abs(a - b) < 1e-14; };
-    const auto [low, high] = boost::math::tools::toms748_solve(excess, 1e-9, 3e-3, close, passes);
+    double deep = 1e-5;
+    while (deep < 3e-3 && excess(deep) < 0.0) deep *= 2.0;
+    const auto [low, high] = boost::math::tools::toms748_solve(excess, 1e-9, deep, close, passes);
     excess(0.5 * (low + high));
     return force;
   }
@@ -227,6 +282,7 @@ int main(int count, char** arguments) {
     study.rolling();
     study.frictionless();
     study.wheelset();
+    study.merging(3000);
     study.lines(1000);
     study.closed_paths(200);
     write_text_file(fs::path(arguments[3]) / "loaded_table.csv", study.summary(), "# Forces of a loaded table");
