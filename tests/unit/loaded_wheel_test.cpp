@@ -261,6 +261,38 @@ TEST(LoadedWheel, TangentIsTheDerivativeInATimeStep) {
   EXPECT_GT(compared, 700);  // of 720
 }
 
+// Two parts of a contact are two ellipses where the saddle between them is low, one where it is high.
+TEST(LoadedWheel, PartsMergeByTheSaddleBetweenThem) {
+  WheelContactModel model = model_with(creep_law("table", 0.28));
+  model.geometry = &geometry_over_jump();
+  int merging = 0;
+  for (const WheelState& s : mixed_wheels(geometry_over_jump(), 0.2e-3)) {
+    LoadedLookup lookup =
+        wheel_contact(*model.geometry, relative_pose(model.geometry->pair(), s.side, s.wheelset, s.rail)).loaded;
+    if (s.side != WheelSide::right || s.rail.friction == 0.0 || lookup.table_share < 1.0 || lookup.parts != 2) continue;
+    ++merging;
+    const double least = std::min(lookup.part[0].peak, lookup.part[1].peak);
+    const auto force = [&](double saddle) {
+      lookup.part[0].saddle = saddle * least;
+      return total(loaded_wheel_force(model, s.side, s.wheelset, s.rail, lookup));
+    };
+    const Vector9 two = force(0.0), one = force(1.0);
+    EXPECT_GT((one - two).norm(), 1e-5 * two.norm());
+    EXPECT_EQ((force(0.25) - two).norm(), 0.0);
+    EXPECT_EQ((force(0.35) - one).norm(), 0.0);
+    EXPECT_LT((force(0.3) - 0.5 * (one + two)).norm(), 1e-9 * two.norm());
+    // The derivative knows of the change: by the saddle's own along the shift.
+    const auto along_shift = [&](double of_saddle) -> Vector9 {
+      LoadedSlopes slopes{};
+      slopes.part[0].saddle[0] = of_saddle;
+      return loaded_wheel_response(model, s.side, s.wheelset, s.rail, lookup, slopes, {}, nullptr).tangent.col(1);
+    };
+    const Vector9 found = along_shift(least) - along_shift(0.0);
+    EXPECT_LT((found - 1.5 / 0.1 * (one - two)).norm(), 1e-6 * found.norm());
+  }
+  EXPECT_GE(merging, 5);
+}
+
 TEST(LoadedWheel, LeftIsTheMirrorImageOfRight) {
   States states;
   const WheelContactModel model = model_with(creep_law("table", 0.28), 0.02);
