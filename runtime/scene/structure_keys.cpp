@@ -86,7 +86,7 @@ std::vector<KeyRow> rail_keys() {
       {"track.rail.GJ", "N m²", "torsional stiffness",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::GJ>, {100.0, 1e12}}},
       {"track.rail.warping_length", "m", "√(E I_ω/GJ), of the warping stiffness E I_ω",
-       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::warping_length>, {0.02, 10.0}}},
+       NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::warping_length>, {0.02, 2.0}}},
       {"track.rail.mass", "kg/m", "mass per length",
        NumberKey{of_track<&TrackParameters::rail, &RailBeamParameters::mass>, {1.0, 1e4}}},
       {"track.rail.rotary_inertia", "kg m²/m", "rotary inertia about x, per length",

@@ -59,6 +59,7 @@ struct RailInterpolation {
 /// and torsion_compliance(). Zero where the two are not on one element or the stiffness is not known.
 /// @pre both lie on the rail
 [[nodiscard]] Eigen::Matrix3d element_compliance(const RailLine& rail, double x, double loaded) noexcept;
+/// Of a load at the place itself.
 struct OwnCompliance {
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();  ///< element_compliance(rail, x, x)
   Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();       ///< its derivative along x

@@ -278,7 +278,9 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
   TrackNodes nodes = place_nodes(track, bridge.end, plane);
   bridge.dof_line.resize(bridge.dof_x.size(), -1);
   number_dofs(nodes.sleeper, 0, bridge);
-  for (int side = 0; side < 2; ++side) number_dofs(nodes.rail[size_t(side)], lines_per_node * (1 + side), bridge);
+  for (size_t side = 0; side < 2; ++side) {
+    number_dofs(nodes.rail[side], lines_per_node * (1 + static_cast<int>(side)), bridge);
+  }
 
   MatrixAssembly& assembly = bridge.matrices;
   const RailBeamParameters& rail = track.rail;

@@ -25,7 +25,7 @@ void check_rail(const RailBeamParameters& rail) {
   require_positive("track.rail.Iy", rail.Iy, "m⁴");
   require_positive("track.rail.Iz", rail.Iz, "m⁴");
   require_positive("track.rail.GJ", rail.GJ, "N m²");
-  require_between("track.rail.warping_length", rail.warping_length, 0.02, 10.0, "m");
+  require_between("track.rail.warping_length", rail.warping_length, 0.02, 2.0, "m");
   require_positive("track.rail.mass", rail.mass, "kg/m");
   require_positive("track.rail.rotary_inertia", rail.rotary_inertia, "kg m²/m");
   require_positive("track.rail.height", rail.height, "m");
