@@ -12,4 +12,12 @@ template <class V>
   return s * s * (3.0 - 2.0 * s);
 }
 
+/// Derivative of smooth_step().
+template <class V>
+[[nodiscard]] V smooth_step_slope(const V& x) noexcept {
+  const V zero{}, one = broadcast<V>(1.0);
+  const V s = select(x > zero, at_most(x, one), zero);
+  return 6.0 * s * (1.0 - s);
+}
+
 }  // namespace railtab

@@ -249,8 +249,8 @@ class LoadedContactForce {
  private:
   static constexpr bool derivatives = !std::is_same_v<T, V>;
   static constexpr bool single = std::is_same_v<V, double>;
-  /// Saddles over which two parts count as two ellipses, and from which on as one: between the two both are as close to
-  /// the solution of the half-space (docs/validation/loaded_contact.md).
+  /// Saddles up to which two parts count as two ellipses, and from which on as one; what either differs by from the
+  /// half-space solution is in docs/validation/loaded_contact.md.
   static constexpr double apart_up_to = 0.25, merged_from = 0.35;
   static constexpr double largest_side_by_side = 1e60;  ///< creepage whose square is far from overflow
   using Parts = std::array<Part<T>, LoadedLookup::capacity>;
@@ -380,8 +380,7 @@ class LoadedContactForce {
     const V t = (number(ratio) - apart_up_to) * (1.0 / width), share = smooth_step(t);
     const T none = constant<T>(0.0);
     if constexpr (derivatives) {
-      const auto between = (share > V{}) & (share < broadcast<V>(1.0));
-      return select(is_part(k), chained(ratio, share, select(between, 6.0 / width * t * (1.0 - t), V{})), none);
+      return select(is_part(k), chained(ratio, share, (1.0 / width) * smooth_step_slope(t)), none);
     } else {
       return select(is_part(k), share, none);
     }

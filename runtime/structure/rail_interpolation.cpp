@@ -26,11 +26,11 @@ TorsionElement torsion_of(const RailLine& rail, std::size_t e) noexcept {
   return {rail.stiffness.GJ, rail.stiffness.warping_length, rail.x[e + 1] - rail.x[e]};
 }
 
-/// Torsion at s from the node e; linear where the rail's twist is.
-TorsionPlace torsion_at(const RailLine& rail, std::size_t e, double s) noexcept {
-  if (!rail.twist_rate.empty()) return torsion_at(torsion_of(rail, e), s);
+/// Shapes of roll at s from the node e; linear where the rail's twist is.
+TorsionShape torsion_shape(const RailLine& rail, std::size_t e, double s) noexcept {
+  if (!rail.twist_rate.empty()) return torsion_shape(torsion_of(rail, e), s);
   const double length = rail.x[e + 1] - rail.x[e];
-  return {{1.0 - s / length, 0.0, s / length, 0.0}, {-1.0 / length, 0.0, 1.0 / length, 0.0}, 0.0, 0.0};
+  return {{1.0 - s / length, 0.0, s / length, 0.0}, {-1.0 / length, 0.0, 1.0 / length, 0.0}};
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
     rows.pitch[k] = N(4, k);
   }
   rows.roll = {};
-  const TorsionPlace torsion = torsion_at(rail, e, x - rail.x[e]);
+  const TorsionShape torsion = torsion_shape(rail, e, x - rail.x[e]);
   constexpr std::array<std::size_t, 4> place{3, 0, 9, 6};  // roll and twist rate of either node
   for (std::size_t i = 0; i < 4; ++i) {
     rows.roll[place[i]] = torsion.twist[static_cast<Eigen::Index>(i)];
@@ -100,9 +100,9 @@ OwnCompliance own_element_compliance(const RailLine& rail, double x) noexcept {
   const RailStiffness& of = rail.stiffness;
   const double L = rail.x[e + 1] - rail.x[e], a = x - rail.x[e], b = L - a, ab = a * b / L;
   const double bending = ab * ab * ab / 3.0, slope = ab * ab * (b - a) / L;
-  const TorsionPlace torsion = torsion_at(rail, e, a);
+  const OwnTwist torsion = own_torsion_compliance(torsion_of(rail, e), a);
   return {of_head(bending / of.EIz, bending / of.EIy, torsion.compliance, rail.head_height),
-          of_head(slope / of.EIz, slope / of.EIy, torsion.compliance_rate, rail.head_height)};
+          of_head(slope / of.EIz, slope / of.EIy, torsion.slope, rail.head_height)};
 }
 
 }  // namespace railtab

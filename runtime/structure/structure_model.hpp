@@ -38,7 +38,7 @@ struct RailLine {
 [[nodiscard]] DofIndices head_dofs(const RailLine& rail, std::size_t node) noexcept;
 
 /// Rows that give the rail head's motion at a position from the head_dofs() of both nodes of the beam element there
-/// (cubic Hermite for bending, torsion_at() or linear for roll): value = Σ row[k]·a[dof[k]], held dofs skipped. The
+/// (cubic Hermite for bending, torsion_shape() or linear for roll): value = Σ row[k]·a[dof[k]], held dofs skipped. The
 /// transpose distributes a load.
 struct RailInterpolation {
   std::array<int, 12> dof;

@@ -8,15 +8,6 @@
 namespace railtab {
 namespace {
 
-/// e^−x − 1 of the distances of a place from both ends, by λ.
-struct Fading {
-  double first, last;
-
-  Fading(const TorsionElement& element, double s)
-      : first(std::expm1(-s / element.warping_length)),
-        last(std::expm1((s - element.length) / element.warping_length)) {}
-};
-
 /// sinh x over ½ e^x, from e^−x − 1.
 double sinh_over_half_exp(double fading) noexcept { return -fading * (2.0 + fading); }
 
@@ -36,15 +27,21 @@ class Solutions {
   struct Value {
     double value, slope;
   };
+  /// One place, s from the first node.
   struct At {
-    Value twisted;  ///< φ = ∓1, φ' = 0 at the two ends
-    Value even;     ///< φ = 0, φ' = ∓1
-    Value odd;      ///< φ = 0, φ' = 1 at both
+    double s;            ///< [m]
+    double first, last;  ///< e^−x − 1 of the distances x from both ends, over λ
+    Value twisted;       ///< φ = ∓1, φ' = 0 at the two ends
+    Value even;          ///< φ = 0, φ' = ∓1
+    Value odd;           ///< φ = 0, φ' = 1 at both
   };
-  [[nodiscard]] At at(double s, const Fading& fading) const noexcept {
-    const double z = s / lambda_ - h_;
-    const double sinh_z = 0.5 * (fading.last - fading.first), cosh_z = 1.0 + 0.5 * (fading.last + fading.first);
-    return {{(z - sinh_z / cosh_h_) / of_twisted_, (1.0 - cosh_z / cosh_h_) / (lambda_ * of_twisted_)},
+  [[nodiscard]] At at(double s) const noexcept {
+    const double z = s / lambda_ - h_, first = std::expm1(-s / lambda_), last = std::expm1(s / lambda_ - 2.0 * h_);
+    const double sinh_z = 0.5 * (last - first), cosh_z = 1.0 + 0.5 * (last + first);
+    return {s,
+            first,
+            last,
+            {(z - sinh_z / cosh_h_) / of_twisted_, (1.0 - cosh_z / cosh_h_) / (lambda_ * of_twisted_)},
             {lambda_ * (cosh_z - cosh_h_) / sinh_h_, sinh_z / sinh_h_},
             {lambda_ * (z - h_ * sinh_z / sinh_h_) / of_odd_, (1.0 - h_ * cosh_z / sinh_h_) / of_odd_}};
   }
@@ -61,35 +58,38 @@ class Solutions {
   double lambda_, h_, sinh_h_, cosh_h_, of_twisted_, of_odd_;
 };
 
-/// Twist at s under a unit moment at a >= s, by 1/GJ: between forks, which let the ends warp, less what the bimoments
+/// Twist at x under a unit moment at a >= x, by 1/GJ: between forks, which let the ends warp, less what the bimoments
 /// that hold the rates there take back.
-double twist_under(const TorsionElement& element, const Solutions& solutions, double s, const Fading& at_s, double a,
-                   const Fading& at_a) noexcept {
+double twist_under(const TorsionElement& element, const Solutions& solutions, const Solutions::At& x,
+                   const Solutions::At& a) noexcept {
   const double L = element.length, lambda = element.warping_length;
-  const double warping = 0.5 * lambda * std::exp((s - a) / lambda) * sinh_over_half_exp(at_s.first) *
-                         sinh_over_half_exp(at_a.last) / solutions.sinh_of_length_over_half_exp();
-  const Solutions::At of_s = solutions.at(s, at_s), of_a = solutions.at(a, at_a);
-  return s * (L - a) / L - warping - 0.5 * of_s.even.value * of_a.even.value / solutions.bimoment_of_even() -
-         0.5 * of_s.odd.value * of_a.odd.value / solutions.bimoment_of_odd();
+  const double warping = 0.5 * lambda * std::exp((x.s - a.s) / lambda) * sinh_over_half_exp(x.first) *
+                         sinh_over_half_exp(a.last) / solutions.sinh_of_length_over_half_exp();
+  return x.s * (L - a.s) / L - warping - 0.5 * x.even.value * a.even.value / solutions.bimoment_of_even() -
+         0.5 * x.odd.value * a.odd.value / solutions.bimoment_of_odd();
 }
 
 }  // namespace
 
-TorsionPlace torsion_at(const TorsionElement& element, double s) noexcept {
+TorsionShape torsion_shape(const TorsionElement& element, double s) noexcept {
   assert(element.length > 0 && s >= 0 && s <= element.length);
-  const Fading fading(element, s);
-  const Solutions solutions(element);
-  const auto [twisted, even, odd] = solutions.at(s, fading);
-  const auto shapes = [](double t, double e, double o, double one) {
-    return Eigen::Vector4d(0.5 * (one - t), 0.5 * (o - e), 0.5 * (one + t), 0.5 * (o + e));
+  const Solutions::At x = Solutions(element).at(s);
+  const auto shapes = [](double twisted, double even, double odd, double one) {
+    return Eigen::Vector4d(0.5 * (one - twisted), 0.5 * (odd - even), 0.5 * (one + twisted), 0.5 * (odd + even));
   };
+  return {shapes(x.twisted.value, x.even.value, x.odd.value, 1.0),
+          shapes(x.twisted.slope, x.even.slope, x.odd.slope, 0.0)};
+}
+
+OwnTwist own_torsion_compliance(const TorsionElement& element, double s) noexcept {
+  const Solutions solutions(element);
+  const Solutions::At x = solutions.at(s);
   const double between_forks =
       (element.length - 2.0 * s) / element.length -
-      (sinh_over_half_exp(fading.last) - sinh_over_half_exp(fading.first)) / solutions.sinh_of_length_over_half_exp();
-  const double held_back =
-      even.value * even.slope / solutions.bimoment_of_even() + odd.value * odd.slope / solutions.bimoment_of_odd();
-  return {shapes(twisted.value, even.value, odd.value, 1.0), shapes(twisted.slope, even.slope, odd.slope, 0.0),
-          twist_under(element, solutions, s, fading, s, fading) / element.GJ, (between_forks - held_back) / element.GJ};
+      (sinh_over_half_exp(x.last) - sinh_over_half_exp(x.first)) / solutions.sinh_of_length_over_half_exp();
+  const double held_back = x.even.value * x.even.slope / solutions.bimoment_of_even() +
+                           x.odd.value * x.odd.slope / solutions.bimoment_of_odd();
+  return {twist_under(element, solutions, x, x) / element.GJ, (between_forks - held_back) / element.GJ};
 }
 
 Eigen::Matrix4d torsion_stiffness(const TorsionElement& element) noexcept {
@@ -113,7 +113,7 @@ Eigen::Matrix4d torsion_mass(const TorsionElement& element, double rotary_inerti
   Eigen::Matrix4d M = Eigen::Matrix4d::Zero();
   for (const auto& [place, weight] : points) {
     for (const double t : {-place, place}) {
-      const Eigen::Vector4d N = torsion_at(element, 0.5 * element.length * (1.0 + t)).twist;
+      const Eigen::Vector4d N = torsion_shape(element, 0.5 * element.length * (1.0 + t)).twist;
       M += 0.5 * element.length * weight * rotary_inertia * N * N.transpose();
     }
   }
@@ -121,8 +121,9 @@ Eigen::Matrix4d torsion_mass(const TorsionElement& element, double rotary_inerti
 }
 
 double torsion_compliance(const TorsionElement& element, double x, double loaded) noexcept {
-  const double s = std::min(x, loaded), a = std::max(x, loaded);  // by Maxwell's theorem
-  return twist_under(element, Solutions(element), s, Fading(element, s), a, Fading(element, a)) / element.GJ;
+  const Solutions solutions(element);
+  const Solutions::At near = solutions.at(std::min(x, loaded)), far = solutions.at(std::max(x, loaded));
+  return twist_under(element, solutions, near, far) / element.GJ;  // by Maxwell's theorem
 }
 
 }  // namespace railtab

@@ -13,16 +13,13 @@ struct TorsionElement {
   double length = 0.0;          ///< > 0 [m]
 };
 
-/// The element at one place.
-struct TorsionPlace {
-  Eigen::Vector4d twist;   ///< shapes of (φ_1, φ_1', φ_2, φ_2') [-, m, -, m]
-  Eigen::Vector4d rate;    ///< their derivatives along x [1/m, -, 1/m, -]
-  double compliance;       ///< torsion_compliance(element, s, s)
-  double compliance_rate;  ///< its derivative along s [rad/(N m²)]
+/// Shapes of (φ_1, φ_1', φ_2, φ_2') at one place.
+struct TorsionShape {
+  Eigen::Vector4d twist;  ///< [-, m, -, m]
+  Eigen::Vector4d rate;   ///< derivatives along x [1/m, -, 1/m, -]
 };
-
 /// @param s from the first node [m] @pre 0 <= s <= length
-[[nodiscard]] TorsionPlace torsion_at(const TorsionElement& element, double s) noexcept;
+[[nodiscard]] TorsionShape torsion_shape(const TorsionElement& element, double s) noexcept;
 
 /// Stiffness by (φ_1, φ_1', φ_2, φ_2').
 [[nodiscard]] Eigen::Matrix4d torsion_stiffness(const TorsionElement& element) noexcept;
@@ -32,5 +29,13 @@ struct TorsionPlace {
 /// Twist at x under a unit moment at `loaded`, both from the first node, of the element whose nodes neither twist nor
 /// warp [rad/(N m)]. @pre both within 0..length
 [[nodiscard]] double torsion_compliance(const TorsionElement& element, double x, double loaded) noexcept;
+
+/// Of a moment at the place itself.
+struct OwnTwist {
+  double compliance;  ///< torsion_compliance(element, s, s)
+  double slope;       ///< its derivative along s [rad/(N m²)]
+};
+/// @pre 0 <= s <= length
+[[nodiscard]] OwnTwist own_torsion_compliance(const TorsionElement& element, double s) noexcept;
 
 }  // namespace railtab

@@ -15,7 +15,7 @@ const TorsionElement elements[] = {{2e5, 0.006, 0.6}, {2e5, 0.15, 0.6}, {2e5, 6.
 
 TEST(TorsionElement, ShapesAreOneAtTheirOwnEnd) {
   for (const TorsionElement& element : elements) {
-    const TorsionPlace first = torsion_at(element, 0.0), last = torsion_at(element, element.length);
+    const TorsionShape first = torsion_shape(element, 0.0), last = torsion_shape(element, element.length);
     EXPECT_LT((first.twist - Eigen::Vector4d::Unit(0)).norm(), 1e-10) << element.warping_length;
     EXPECT_LT((first.rate - Eigen::Vector4d::Unit(1)).norm(), 1e-9);
     EXPECT_LT((last.twist - Eigen::Vector4d::Unit(2)).norm(), 1e-10);
@@ -27,8 +27,9 @@ TEST(TorsionElement, RatesAreTheSlopesOfTwists) {
   constexpr double h = 1e-5;
   for (const TorsionElement& element : elements) {
     for (const double s : {0.002, 0.1, 0.3, 0.55}) {
-      const Eigen::Vector4d slope = (torsion_at(element, s + h).twist - torsion_at(element, s - h).twist) / (2.0 * h);
-      EXPECT_LT((torsion_at(element, s).rate - slope).norm(), 1e-5) << element.warping_length << ", " << s;
+      const Eigen::Vector4d slope =
+          (torsion_shape(element, s + h).twist - torsion_shape(element, s - h).twist) / (2.0 * h);
+      EXPECT_LT((torsion_shape(element, s).rate - slope).norm(), 1e-5) << element.warping_length << ", " << s;
     }
   }
 }
@@ -36,7 +37,7 @@ TEST(TorsionElement, RatesAreTheSlopesOfTwists) {
 // Little warping leaves linear shapes, much warping the cubic ones of a beam in bending.
 TEST(TorsionElement, ShapesHaveTheirLimits) {
   const double t = 0.3, L = 0.6, s = t * L;
-  const TorsionPlace stiff = torsion_at({2e5, 100.0 * L, L}, s), soft = torsion_at({2e5, 1e-3 * L, L}, s);
+  const TorsionShape stiff = torsion_shape({2e5, 100.0 * L, L}, s), soft = torsion_shape({2e5, 1e-3 * L, L}, s);
   const Eigen::Vector4d cubic(1 - t * t * (3 - 2 * t), s * (1 - t) * (1 - t), t * t * (3 - 2 * t), -s * t * (1 - t));
   EXPECT_LT((stiff.twist - cubic).norm(), 1e-4);
   EXPECT_LT((soft.twist - Eigen::Vector4d(1 - t, 0.0, t, 0.0)).norm(), 2e-3);
@@ -51,8 +52,9 @@ TEST(TorsionElement, StiffnessIsTheIntegralOfTheStrains) {
     for (int i = 0; i <= intervals; ++i) {
       const double s = std::clamp(i * step, h, element.length - h);
       const double weight = step / 3.0 * (i == 0 || i == intervals ? 1.0 : i % 2 == 1 ? 4.0 : 2.0);
-      const Eigen::Vector4d rate = torsion_at(element, s).rate;
-      const Eigen::Vector4d bend = (torsion_at(element, s + h).rate - torsion_at(element, s - h).rate) / (2.0 * h);
+      const Eigen::Vector4d rate = torsion_shape(element, s).rate;
+      const Eigen::Vector4d bend =
+          (torsion_shape(element, s + h).rate - torsion_shape(element, s - h).rate) / (2.0 * h);
       expected += weight * element.GJ *
                   (rate * rate.transpose() + element.warping_length * element.warping_length * bend * bend.transpose());
     }
@@ -83,7 +85,7 @@ Eigen::Vector2d twist_of_two(double GJ, double lambda, double first, double seco
   const Eigen::Matrix2d K =
       torsion_stiffness(before).bottomRightCorner<2, 2>() + torsion_stiffness(after).topLeftCorner<2, 2>();
   const Eigen::Vector2d node = dense_solution(K, Eigen::Vector2d(1.0, 0.0));
-  return {node[0], torsion_at(after, x).twist.head<2>().dot(node)};
+  return {node[0], torsion_shape(after, x).twist.head<2>().dot(node)};
 }
 
 // The exact solution of one element, loaded between its nodes, is that of two with a node under the load.
@@ -94,6 +96,7 @@ TEST(TorsionElement, ComplianceIsThatWithANodeUnderTheLoad) {
       const Eigen::Vector2d twist =
           twist_of_two(element.GJ, element.warping_length, loaded, element.length - loaded, beyond);
       const double own = torsion_compliance(element, loaded, loaded);
+      EXPECT_EQ(own_torsion_compliance(element, loaded).compliance, own);
       EXPECT_NEAR(own, twist[0], 1e-7 * twist[0]) << element.warping_length << ", " << loaded;
       EXPECT_NEAR(torsion_compliance(element, loaded + beyond, loaded), twist[1], 1e-7 * twist[0]);
       EXPECT_NEAR(torsion_compliance(element, loaded, loaded + beyond), twist[1], 1e-7 * twist[0]);
@@ -108,7 +111,7 @@ TEST(TorsionElement, ComplianceHasItsSlope) {
       const double difference =
           (torsion_compliance(element, x + h, x + h) - torsion_compliance(element, x - h, x - h)) / (2.0 * h);
       const double scale = torsion_compliance(element, 0.3, 0.3) / element.length;
-      EXPECT_NEAR(torsion_at(element, x).compliance_rate, difference, 1e-5 * scale)
+      EXPECT_NEAR(own_torsion_compliance(element, x).slope, difference, 1e-5 * scale)
           << element.warping_length << ", " << x;
     }
   }

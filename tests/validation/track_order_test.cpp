@@ -53,7 +53,7 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
 
 // Rails that bend and twist without kinks load their nodes smoothly as a wheel passes. The curvature of the shapes
 // jumps at nodes, the less the shorter elements are, and rings at frequencies that no such step resolves.
-TEST(TrackOrder, WheelForcesAreOfSecondOrder) {
+TEST(TrackOrder, WheelForcesAreOfSecondOrderOnShortElements) {
   struct Case {
     const char* name;
     int elements_per_bay;  // 0: the default
