@@ -2,15 +2,20 @@
 
 namespace railtab {
 
-void DividedSubstitution::begin(const SubstitutionFactor& factor, std::span<const int> few) {
-  few_.assign(few.begin(), few.end());
-  factor.find_path(few_, path_);
+void DividedSubstitution::begin(const SubstitutionFactor& factor, const LoadedUnknowns& few) {
+  few_.assign(few.now.begin(), few.now.end());
+  if (path_of_ != factor.id() || !factor.covers(path_, few_)) {
+    on_path_ = few_;
+    on_path_.insert(on_path_.end(), few.soon.begin(), few.soon.end());
+    factor.find_path(on_path_, path_);
+    path_of_ = factor.id();
+  }
   if (work_.size() == factor.room()) return;
   for (Eigen::VectorXd* vector : {&known_, &work_, &solved_}) vector->setZero(factor.room());
 }
 
 void DividedSubstitution::begin(const SubstitutionFactor& factor, const Eigen::VectorXd& known,
-                                std::span<const int> few) {
+                                const LoadedUnknowns& few) {
   begin(factor, few);
   factor.into(known, known_);
   factor.forward(known_);

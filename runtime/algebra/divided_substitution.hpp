@@ -8,6 +8,12 @@
 
 namespace railtab {
 
+/// Unknowns that loads stand on now, repeated ones are welcome, and others that they may soon stand on: a path of both
+/// serves until the loads leave it.
+struct LoadedUnknowns {
+  std::span<const int> now, soon;
+};
+
 /// One back-substitution of a system whose load is known but for few unknowns: the wheels' forces, which the solution
 /// under the wheels decides.
 ///
@@ -20,17 +26,17 @@ namespace railtab {
 /// use.
 class DividedSubstitution {
  public:
-  /// Forward half of the known load. @param few  unknowns that later loads stand on; repeated ones are welcome
-  void begin(const SubstitutionFactor& factor, const Eigen::VectorXd& known, std::span<const int> few);
+  /// Forward half of the known load. @param few  unknowns that later loads stand on @pre all are unknowns of the factor
+  void begin(const SubstitutionFactor& factor, const Eigen::VectorXd& known, const LoadedUnknowns& few);
   /// The same with the known load that set_known(ordered) sets in the factor's order.
   template <class SetKnown>
-  void begin_with(const SubstitutionFactor& factor, std::span<const int> few, SetKnown&& set_known) {
+  void begin_with(const SubstitutionFactor& factor, const LoadedUnknowns& few, SetKnown&& set_known) {
     begin(factor, few);
     set_known(known_);
     factor.forward(known_);
   }
   /// The same without known load: for few entries of solutions under loads on few unknowns.
-  void begin(const SubstitutionFactor& factor, std::span<const int> few);
+  void begin(const SubstitutionFactor& factor, const LoadedUnknowns& few);
   /// The solution at the few unknowns under the known load. Writes only their entries.
   void respond(const SubstitutionFactor& factor, Eigen::VectorXd& solution);
   /// Under known + weight·extra. Writes only their entries. @pre extra is zero at all others
@@ -40,8 +46,9 @@ class DividedSubstitution {
   void finish(const SubstitutionFactor& factor, Eigen::VectorXd& solution);
 
  private:
-  std::vector<int> few_;
+  std::vector<int> few_, on_path_;
   SubstitutionFactor::Path path_;
+  long path_of_ = 0;                       // id() of the factor that found the path
   Eigen::VectorXd known_, work_, solved_;  // in the factor's order
 };
 

@@ -371,8 +371,10 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
   double* const to = ordered.data();
   const double* const from = natural.data();
   Lanes* const slot = lanes(ordered);
+  const int* const of = unknown.data();
   const auto gather = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) to[k] = unknown[k] < 0 ? 0.0 : from[unknown[k]];
+#pragma GCC ivdep
+    for (std::size_t k = begin; k < end; ++k) to[k] = of[k] < 0 ? 0.0 : from[of[k]];
   };
   constexpr std::size_t eight = 8 * sections;
   for (std::size_t b = 0; b < consecutive.size(); ++b) {

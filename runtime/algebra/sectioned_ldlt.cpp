@@ -1,6 +1,7 @@
 #include "railtab/runtime/algebra/sectioned_ldlt.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -29,7 +30,8 @@ void forward_column(const LaneColumns& c, int j, Lanes* y) noexcept {
 
 void backward_column(const LaneColumns& c, int j, const Lanes* inverse_D, const Lanes* y, Lanes* x) noexcept {
   Lanes own = y[c.slot[j]] * inverse_D[j];
-  for (int p = c.begin[j]; p < c.begin[j + 1]; ++p) own -= c.value[p] * x[c.row[p]];
+  // The first row is often the column just solved: read last, it hides the time that its store takes.
+  for (int p = c.begin[j + 1]; p-- > c.begin[j];) own -= c.value[p] * x[c.row[p]];
   x[c.slot[j]] = own;
 }
 
@@ -196,9 +198,39 @@ void SectionedLdlt::find_path(std::span<const int> unknowns, Path& path) const {
   path.sort();
 }
 
+bool SectionedLdlt::covers(const Path& path, std::span<const int> unknowns) const {
+  const auto covered = [&](int unknown) {
+    assert(unknown >= layout_->range.begin && unknown < layout_->range.end());
+    const SectionLayout::Place& p = layout_->place[static_cast<std::size_t>(unknown - layout_->range.begin)];
+    return p.section < 0 || path.contains(rank(p.number));
+  };
+  return std::all_of(unknowns.begin(), unknowns.end(), [&](int unknown) {
+    const int other = layout_->mirrored[static_cast<std::size_t>(unknown - layout_->range.begin)];
+    return covered(unknown) && (other < 0 || covered(other));
+  });
+}
+
 void SectionedLdlt::into(const Vector& natural, Vector& ordered) const {
-  ordered.setZero(room());
+  ordered.resize(room());
+  ordered.tail(room() - layout_->border_begin()).setZero();
   layout_->into(natural, ordered);
+}
+
+void SectionedLdlt::into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
+  ordered.setZero(room());
+  set(few, weight, natural, ordered);
+}
+
+void SectionedLdlt::set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
+  const auto value = [&](Eigen::Index unknown) { return natural[unknown]; };
+  const auto set_one = [&](int unknown) {
+    ordered[layout_->position(unknown)] = weight * layout_->combined(unknown, value);
+  };
+  for (int unknown : few) {
+    set_one(unknown);
+    const int other = layout_->mirrored[static_cast<std::size_t>(unknown - layout_->range.begin)];
+    if (other >= 0) set_one(other);
+  }
 }
 
 void SectionedLdlt::out_of(const Vector& ordered, Vector& natural) const {
@@ -211,15 +243,7 @@ void SectionedLdlt::load(const Path& path, std::span<const int> few, double weig
   Lanes* const y = lanes(ordered);
   for (int j : path.nodes()) y[layout_->elimination[static_cast<std::size_t>(j)]] = Lanes{};
   ordered.tail(room() - layout_->border_begin()).setZero();
-  const auto value = [&](Eigen::Index unknown) { return natural[unknown]; };
-  const auto set = [&](int unknown) {
-    ordered[layout_->position(unknown)] = weight * layout_->combined(unknown, value);
-  };
-  for (int unknown : few) {
-    set(unknown);
-    const int other = layout_->mirrored[static_cast<std::size_t>(unknown - layout_->range.begin)];
-    if (other >= 0) set(other);
-  }
+  set(few, weight, natural, ordered);
 }
 
 void SectionedLdlt::add(const Path& path, const Vector& known, Vector& y) const {

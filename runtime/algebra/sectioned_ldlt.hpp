@@ -25,7 +25,9 @@ class SectionedLdlt final : public SubstitutionFactor {
   [[nodiscard]] std::size_t stored_bytes() const noexcept override;
 
   void find_path(std::span<const int> unknowns, Path& path) const override;
+  [[nodiscard]] bool covers(const Path& path, std::span<const int> unknowns) const override;
   void into(const Vector& natural, Vector& ordered) const override;
+  void into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const override;
   void out_of(const Vector& ordered, Vector& natural) const override;
   void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
             Vector& ordered) const override;
@@ -47,6 +49,7 @@ class SectionedLdlt final : public SubstitutionFactor {
   [[nodiscard]] Eigen::Index factor_begin() const noexcept {
     return layout_->interface_begin() + static_cast<Eigen::Index>(layout_->interfaces.size());
   }
+  void set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const;
   void forward_interfaces(Vector& y) const;
   void backward_interfaces(const Vector& y, Vector& x) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <numeric>
 #include <string>
 
@@ -223,10 +224,22 @@ void SparseLdlt::find_path(std::span<const int> unknowns, Path& path) const {
   path.sort();
 }
 
+bool SparseLdlt::covers(const Path& path, std::span<const int> unknowns) const {
+  return std::all_of(unknowns.begin(), unknowns.end(), [&](int unknown) {
+    assert(unknown >= first_ && unknown - first_ < size());
+    return path.contains(block_of_[static_cast<std::size_t>(position(unknown))]);
+  });
+}
+
 void SparseLdlt::into(const Vector& natural, Vector& ordered) const {
   ordered.resize(room());
   for (Eigen::Index i = 0; i < size(); ++i) ordered[position_[static_cast<std::size_t>(i)]] = natural[first_ + i];
   ordered[size()] = 0.0;
+}
+
+void SparseLdlt::into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
+  ordered.setZero(room());
+  for (int unknown : few) ordered[position(unknown)] = weight * natural[unknown];
 }
 
 void SparseLdlt::out_of(const Vector& ordered, Vector& natural) const {
@@ -329,6 +342,56 @@ void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) cons
   for (std::size_t b = blocks_.size(); b-- > 0;) {
     if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b], scratch.data());
   }
+}
+
+Eigen::Map<const Eigen::MatrixXd> SparseLdlt::wide(const Block& block) const {
+  return {values_.data() + block.value, in_fours(block.columns + block.below), block.columns};
+}
+
+void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const {
+  if (block.columns <= narrow) {
+    for (Eigen::Index k = 0; k < y.cols(); ++k) forward(y.col(k).data(), block, scratch.data());
+    return;
+  }
+  auto own = y.middleRows(block.first, block.columns);
+  auto change = scratch.topLeftCorner(in_fours(block.columns + block.below), y.cols());
+  change.noalias() = wide(block) * own;
+  own = change.topRows(block.columns);
+  const int* const row = rows_.data() + block.rows;
+  for (int i = 0; i < block.below; ++i) y.row(row[i]) -= change.row(block.columns + i);
+}
+
+void SparseLdlt::backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const {
+  if (block.columns <= narrow) {
+    for (Eigen::Index k = 0; k < x.cols(); ++k) backward(x.col(k).data(), block, scratch.data());
+    return;
+  }
+  auto own = x.middleRows(block.first, block.columns);
+  auto known = scratch.topLeftCorner(in_fours(block.columns + block.below), x.cols());
+  known.topRows(block.columns) = own;
+  const int* const row = rows_.data() + block.rows;
+  for (int i = 0; i < block.below; ++i) known.row(block.columns + i) = -x.row(row[i]);
+  known.bottomRows(known.rows() - block.columns - block.below).setZero();
+  own.noalias() = wide(block).transpose() * known;
+}
+
+Eigen::MatrixXd SparseLdlt::solve_columns(const Eigen::MatrixXd& loads) const {
+  constexpr Eigen::Index together = 16;
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
+  for (Eigen::Index first = 0; first < loads.cols(); first += together) {
+    const Eigen::Index count = std::min(together, loads.cols() - first);
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(room(), count), scratch(most_height_, count);
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      x.row(position_[static_cast<std::size_t>(i)]) = loads.row(first_ + i).segment(first, count);
+    }
+    for (const Block& block : blocks_) forward(x, block, scratch);
+    x.topRows(size()).array().colwise() *= inverse_D_.array();
+    for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, scratch);
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      result.row(first_ + i).segment(first, count) = x.row(position_[static_cast<std::size_t>(i)]);
+    }
+  }
+  return result;
 }
 
 }  // namespace railtab

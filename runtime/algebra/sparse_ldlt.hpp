@@ -49,12 +49,17 @@ class SparseLdlt final : public SubstitutionFactor {
     return position_[static_cast<std::size_t>(unknown - first_)];
   }
   void find_path(std::span<const int> unknowns, Path& path) const override;
+  [[nodiscard]] bool covers(const Path& path, std::span<const int> unknowns) const override;
   void into(const Vector& natural, Vector& ordered) const override;
+  void into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const override;
   void out_of(const Vector& ordered, Vector& natural) const override;
   void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
             Vector& ordered) const override;
   void add(const Path& path, const Vector& known, Vector& y) const override;
   void read(std::span<const int> few, const Vector& ordered, Vector& natural) const override;
+
+  /// Full solutions under every column of loads, some at a time: the factor is read once for all of them.
+  [[nodiscard]] Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& loads) const;
 
   void forward(Vector& y) const override { forward(y.data()); }
   /// The same of room() numbers.
@@ -84,6 +89,11 @@ class SparseLdlt final : public SubstitutionFactor {
   void forward(double* y, const Block& block, double* scratch) const;
   void backward(double* x, const Block& block, double* scratch) const;
   void backward(const Vector& y, Vector& x, const Block& block, double* scratch) const;
+  /// The same for columns of y and x.
+  void forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const;
+  void backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const;
+  /// T⁻¹ and below it B T⁻¹, of a block that is not narrow.
+  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> wide(const Block& block) const;
 
   std::vector<Block> blocks_;
   std::vector<int> rows_;

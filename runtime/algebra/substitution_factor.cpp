@@ -1,6 +1,13 @@
 #include "railtab/runtime/algebra/substitution_factor.hpp"
 
+#include <atomic>
+
 namespace railtab {
+
+SubstitutionFactor::SubstitutionFactor() {
+  static std::atomic<long> made = 0;
+  id_ = ++made;
+}
 
 SubstitutionFactor::Vector SubstitutionFactor::solve(const Vector& load) const {
   Path nothing;
@@ -12,12 +19,6 @@ SubstitutionFactor::Vector SubstitutionFactor::solve(const Vector& load) const {
   backward_off(nothing, y, x);
   out_of(x, natural);
   return natural;
-}
-
-Eigen::MatrixXd SubstitutionFactor::solve_columns(const Eigen::MatrixXd& loads) const {
-  Eigen::MatrixXd result(loads.rows(), loads.cols());
-  for (Eigen::Index k = 0; k < loads.cols(); ++k) result.col(k) = solve(loads.col(k));
-  return result;
 }
 
 }  // namespace railtab

@@ -25,9 +25,16 @@ class SubstitutionFactor {
   /// All that it keeps [bytes].
   [[nodiscard]] virtual std::size_t stored_bytes() const noexcept = 0;
 
+  /// The same for this factor and its copies, another for every other factor: says whether a path is still of use.
+  [[nodiscard]] long id() const noexcept { return id_; }
+
   /// Of unknowns, repeated ones are welcome.
   virtual void find_path(std::span<const int> unknowns, Path& path) const = 0;
+  /// Whether a path that this factor found contains the paths of these unknowns. @pre they are the factor's
+  [[nodiscard]] virtual bool covers(const Path& path, std::span<const int> unknowns) const = 0;
   virtual void into(const Vector& natural, Vector& ordered) const = 0;
+  /// The same of a vector that is zero but for few unknowns, times a weight.
+  virtual void into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const = 0;
   virtual void out_of(const Vector& ordered, Vector& natural) const = 0;
   /// A load that is zero but for few unknowns of the path, times a weight; sets the entries on the path.
   virtual void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
@@ -48,15 +55,16 @@ class SubstitutionFactor {
 
   /// Full solution in the natural order, of all unknowns of the system; 0 where they are held.
   [[nodiscard]] Vector solve(const Vector& load) const;
-  /// Of every column of loads.
-  [[nodiscard]] Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& loads) const;
 
  protected:
-  SubstitutionFactor() = default;
+  SubstitutionFactor();
   SubstitutionFactor(const SubstitutionFactor&) = default;
   SubstitutionFactor(SubstitutionFactor&&) = default;
   SubstitutionFactor& operator=(const SubstitutionFactor&) = default;
   SubstitutionFactor& operator=(SubstitutionFactor&&) = default;
+
+ private:
+  long id_;
 };
 
 }  // namespace railtab

@@ -170,14 +170,16 @@ inline constexpr std::array summary_counts{SummaryEntry<long>{"steps", &RunSumma
                                            SummaryEntry<long>{"outside_creep_table", &RunSummary::outside_creep_table},
                                            SummaryEntry<long>{"structure_dofs", &RunSummary::structure_dofs},
                                            SummaryEntry<long>{"vehicle_dofs", &RunSummary::vehicle_dofs}};
-inline constexpr std::array summary_numbers{SummaryEntry<double>{"window_error", &RunSummary::window_error, false},
-                                            SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},
-                                            SummaryEntry<double>{"seconds_setup", &RunSummary::seconds_setup},
-                                            SummaryEntry<double>{"seconds_lookup", &RunSummary::seconds_lookup},
-                                            SummaryEntry<double>{"seconds_contact", &RunSummary::seconds_contact},
-                                            SummaryEntry<double>{"seconds_structure", &RunSummary::seconds_structure},
-                                            SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},
-                                            SummaryEntry<double>{"seconds_output", &RunSummary::seconds_output}};
+inline constexpr std::array summary_numbers{
+    SummaryEntry<double>{"window_error", &RunSummary::window_error, false},
+    SummaryEntry<double>{"seconds_total", &RunSummary::seconds_total},
+    SummaryEntry<double>{"seconds_setup", &RunSummary::seconds_setup},
+    SummaryEntry<double>{"seconds_pre_roll", &RunSummary::seconds_pre_roll, false},
+    SummaryEntry<double>{"seconds_lookup", &RunSummary::seconds_lookup},
+    SummaryEntry<double>{"seconds_contact", &RunSummary::seconds_contact},
+    SummaryEntry<double>{"seconds_structure", &RunSummary::seconds_structure},
+    SummaryEntry<double>{"seconds_vehicle", &RunSummary::seconds_vehicle},
+    SummaryEntry<double>{"seconds_output", &RunSummary::seconds_output}};
 
 struct ContactEnergyEntry {
   const char* name;

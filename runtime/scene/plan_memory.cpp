@@ -10,6 +10,7 @@
 #include "railtab/runtime/base/process_memory.hpp"
 #include "railtab/runtime/results/deck_envelope.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
+#include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step.hpp"
@@ -40,7 +41,8 @@ bool reads_tables(const ContactParameters& contact) {
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {
   const double wheels = 2.0 * model.wheelsets(), n = model.vehicle.dofs();
-  const double rest = wheels * wheels * (sizeof(RailCoupling) + 2.0 * 9.0 * number);
+  const double kept = wheels > static_cast<double>(most_wheels_with_kept_couplings) ? 0.0 : 3.0;
+  const double rest = wheels * wheels * ((1.0 + kept) * sizeof(RailCoupling) + 2.0 * 9.0 * number);
   constexpr double vehicle_matrices = 8.0;
   return (model.structure ? rest : 0.0) + vehicle_matrices * number * n * n;
 }

@@ -60,10 +60,11 @@ IntegrationParameters pre_roll_parameters(const IntegrationParameters& integrati
   return parameters;
 }
 
-// State at t = 0: steady, after a pre-roll where there is track for it. A pre-roll that fails is left out. Returns why
-// there is no such state, or nothing.
+// State at t = 0: steady, after a pre-roll where there is track for it, whose time is set. A pre-roll that fails is
+// left out. Returns why there is no such state, or nothing.
 template <class Warn>
-std::string start(const SceneParameters& scene, OperatorLevels& operators, const Warn& warn, VsiState& state) {
+std::string start(const SceneParameters& scene, OperatorLevels& operators, const Warn& warn, VsiState& state,
+                  double& seconds_pre_roll) {
   const VsiModel& model = operators.model();
   const std::optional<VsiModel> other = other_model_at_rest(scene, model);
   const VsiModel& at_rest = other ? *other : model;
@@ -75,7 +76,12 @@ std::string start(const SceneParameters& scene, OperatorLevels& operators, const
     VsiState early(model);
     early.time = -static_cast<double>(before) * scene.integration.time_step;
     const EquilibriumReport rest = steady_start(at_rest, early);
-    if (rest.converged && simulate(operators, pre_roll, 0.0, 1, early, {}).complete) {
+    const auto roll = [&] {
+      const RunSummary steps = simulate(operators, pre_roll, 0.0, 1, early, {});
+      if (steps.complete) seconds_pre_roll = steps.seconds_total - steps.seconds_setup;
+      return steps.complete;
+    };
+    if (rest.converged && roll()) {
       warn(steady_start_warning(rest));
       state = std::move(early);
       return {};
@@ -170,11 +176,12 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   std::optional<DeckEnvelope> envelope = deck_envelope(scene, model, header);
   OperatorLevels operators(model, scene.integration.alpha, scene.integration.time_step);
   std::string no_rest;
+  double seconds_pre_roll = 0.0;
   if (resume) {
     unpack(resume->state, state, envelope);
   } else {
     setup("static equilibrium");
-    no_rest = start(scene, operators, warn, state);
+    no_rest = start(scene, operators, warn, state, seconds_pre_roll);
     if (no_rest.empty()) {
       displace(scene, model, state);
       for (const std::string& warning : start_warnings(scene, model, state)) warn(warning);
@@ -202,6 +209,7 @@ RunSummary run_scene(const SceneParameters& scene, const VsiModel& model, const 
   if (!scene.output.wheels) summary.wheel_extremes = {};
   if (envelope) summary.deck = envelope->finish();
   summary.seconds_setup += set_up;
+  summary.seconds_pre_roll = seconds_pre_roll;
   summary.seconds_total += set_up;
   summary.contact_mode = contact_mode_name(scene.contact);
   return summary;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
@@ -39,8 +40,26 @@ constexpr double pitch_rate_compliance =
 
 constexpr int pitch = 4;
 
+// Displacements of rails under wheels from loads on rails under wheels.
+std::vector<RailCoupling> all_couplings(const VsiModel& model, StructureResponse& structure,
+                                        const std::vector<RailContact>& contacts) {
+  const Eigen::MatrixXd compliance = structure.compliance_at(contacts);
+  std::vector<RailCoupling> rail;
+  rail.reserve(contacts.size() * contacts.size());
+  const int wheels = static_cast<int>(contacts.size());
+  for (int i = 0; i < wheels; ++i) {
+    for (int j = 0; j < wheels; ++j) {
+      rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
+      if (model.normal_contact == NormalContact::rigid) continue;
+      rail.back().compliance += element_compliance(contacts[index(i)], contacts[index(j)]);
+    }
+  }
+  return rail;
+}
+
 // The linear parts at rest, made once.
-struct RestOperators {
+class RestOperators {
+ public:
   TrainContact contact;
   std::vector<SeparateSystem> systems;
   VehicleResponse vehicle;
@@ -59,6 +78,46 @@ struct RestOperators {
     structure =
         model.store ? model.store->at_rest(model.structure) : std::make_shared<StructureResponse>(*model.structure);
   }
+
+  // all_couplings() where the train stands at a time; kept, since equilibria return there, where they are not many.
+  std::vector<RailCoupling> couplings(const VsiModel& model, double time, const std::vector<RailContact>& contacts) {
+    if (contacts.size() > most_wheels_with_kept_couplings) return all_couplings(model, *structure, contacts);
+    const auto known = couplings_.find(time);
+    if (known != couplings_.end()) return known->second;
+    return couplings_.emplace(time, all_couplings(model, *structure, contacts)).first->second;
+  }
+
+ private:
+  std::map<double, std::vector<RailCoupling>> couplings_;
+};
+
+// The structure under a load and the wheels' forces. Equilibria are found under the wheels; the rest follows at the
+// end.
+class LoadedStructure {
+ public:
+  LoadedStructure(const StructureResponse& structure, const Eigen::VectorXd& load,
+                  const std::vector<RailContact>& contacts)
+      : factor_(structure.factor()) {
+    for (const RailContact& contact : contacts) append_dofs(contact, dofs_);
+    solution_.begin(factor_, load, {dofs_, {}});
+  }
+
+  // Without wheels, the displacement of what they stand on; writes nothing else.
+  void respond(Eigen::VectorXd& displacement) { solution_.respond(factor_, displacement); }
+  // The same with wheels. @return its largest change
+  double respond(const Eigen::VectorXd& wheels, Eigen::VectorXd& displacement) {
+    before_ = displacement(dofs_);
+    solution_.respond(factor_, 1.0, wheels, displacement);
+    return dofs_.empty() ? 0.0 : (displacement(dofs_) - before_).cwiseAbs().maxCoeff();
+  }
+  // The whole displacement.
+  void finish(Eigen::VectorXd& displacement) { solution_.finish(factor_, displacement); }
+
+ private:
+  const SubstitutionFactor& factor_;
+  std::vector<int> dofs_;
+  DividedSubstitution solution_;
+  Eigen::VectorXd before_;
 };
 
 // A vehicle whose wheelsets are where their contacts put them. What contact forces displace it by would say the same
@@ -98,22 +157,6 @@ class WheelsetConstraint {
   int first_unknown_ = 0;
 };
 
-std::vector<RailCoupling> all_couplings(const VsiModel& model, const RestOperators& rest,
-                                        const std::vector<RailContact>& contacts) {
-  StructureResponse& response = *rest.structure;
-  const Eigen::MatrixXd compliance = response.compliance_at(contacts);
-  std::vector<RailCoupling> rail;
-  const int wheels = static_cast<int>(contacts.size());
-  for (int i = 0; i < wheels; ++i) {
-    for (int j = 0; j < wheels; ++j) {
-      rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
-      if (model.normal_contact == NormalContact::rigid) continue;
-      rail.back().compliance += element_compliance(contacts[index(i)], contacts[index(j)]);
-    }
-  }
-  return rail;
-}
-
 // A wheelset's pitch angle has no effect at rest: in its place stands the deviation from the nominal rotation, which is
 // free of torque. No angle is left behind.
 void clear_pitch(const VsiModel& model, Eigen::VectorXd& dofs) {
@@ -123,7 +166,7 @@ void clear_pitch(const VsiModel& model, Eigen::VectorXd& dofs) {
   }
 }
 
-ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
+ContactProblem rest_problem(const VsiModel& model, RestOperators& rest, double time,
                             const std::vector<RailContact>& contacts) {
   const VehicleResponse& vehicle = rest.vehicle;
   ContactProblem problem;
@@ -142,7 +185,7 @@ ContactProblem rest_problem(const VsiModel& model, const RestOperators& rest,
     problem.vehicle_compliance.col(k).setZero();
     if (free_pitch) problem.vehicle_compliance(k, k) = pitch_rate_compliance;
   }
-  if (rest.structure) problem.rail = all_couplings(model, rest, contacts);
+  if (rest.structure) problem.rail = rest.couplings(model, time, contacts);
   problem.largest_move = 1e-3;
   return problem;
 }
@@ -201,14 +244,19 @@ void add_element_slopes(const std::vector<RailContact>& contacts, const Eigen::V
 }
 
 // Equilibrium at state.time with `structure_load` on the structure besides the wheels.
-EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model, const RestOperators& rest,
+EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model, RestOperators& rest,
                                  const Eigen::VectorXd& structure_load, VsiState& state) {
   EquilibriumReport report;
   const VehicleResponse& vehicle = rest.vehicle;
-  StructureResponse* structure = rest.structure.get();
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
-  ContactProblem problem = rest_problem(model, rest, contacts);
-  if (structure) gather_rails(contacts, structure->solve(structure_load), problem.free);
+  ContactProblem problem = rest_problem(model, rest, state.time, contacts);
+  std::optional<LoadedStructure> structure;
+  if (rest.structure) {
+    structure.emplace(*rest.structure, structure_load, contacts);
+    Eigen::VectorXd free = Eigen::VectorXd::Zero(structure_load.size());
+    structure->respond(free);
+    gather_rails(contacts, free, problem.free);
+  }
   TrainContact contact = rest.contact;
   for (WheelContactModel& wheelset : contact.model) wheelset.normal.material.E *= share.E;
   const WheelsetConstraint constraint(model, vehicle);
@@ -274,9 +322,8 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     }
     if (structure) {
       scatter_rail_forces(contacts, state.contact.force, state.structure.contact_load);
-      const Eigen::VectorXd next = structure->solve(state.structure.contact_load + structure_load);
-      report.change = std::max(report.change, (next - state.structure.displacement).cwiseAbs().maxCoeff());
-      state.structure.displacement = next;
+      report.change =
+          std::max(report.change, structure->respond(state.structure.contact_load, state.structure.displacement));
     }
     const double contact_change = (state.contact.displacement - contact_before).cwiseAbs().maxCoeff();
     const bool gains = report.change < 0.5 * change_before;
@@ -286,6 +333,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     // has not vanished.
     if (report.converged && unbalanced > balanced) return {.iterations = report.iterations + 1};
   }
+  if (structure) structure->finish(state.structure.displacement);
   if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
   state.contact.step_load = state.contact.force;
   state.deflection.force = state.deflection.slope_force = rail_part(state.contact.force);
@@ -309,7 +357,7 @@ struct Growth {
   double first, least;
 };
 
-EquilibriumReport by_growing(const Growth& growth, const VsiModel& model, const RestOperators& rest,
+EquilibriumReport by_growing(const Growth& growth, const VsiModel& model, RestOperators& rest,
                              const Eigen::VectorXd& structure_load, VsiState& state, double& share) {
   VsiState reached = state;
   EquilibriumReport report = equilibrium_at(growth.at(0.0), model, rest, structure_load, reached);
@@ -357,7 +405,7 @@ std::optional<Growth> of_loads(const VsiModel& model, double time) {
 }
 
 // From where the train stands, and if that leads nowhere by a detour.
-EquilibriumReport equilibrium(const VsiModel& model, const RestOperators& rest, const Eigen::VectorXd& structure_load,
+EquilibriumReport equilibrium(const VsiModel& model, RestOperators& rest, const Eigen::VectorXd& structure_load,
                               VsiState& state) {
   const VsiState begin = state;
   EquilibriumReport report = equilibrium_at({}, model, rest, structure_load, state);
@@ -402,7 +450,8 @@ void follow_rails(const VsiModel& model, VsiState& state) {
 }  // namespace
 
 EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
-  return equilibrium(model, RestOperators(model), Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
+  RestOperators rest(model);
+  return equilibrium(model, rest, Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
 }
 
 namespace {
@@ -410,7 +459,7 @@ namespace {
 // With the structure moving as a deflection that travels with the train.
 EquilibriumReport travelling_equilibrium(const VsiModel& model, VsiState& state) {
   const double time_step = travel_between / model.contact.speed;
-  const RestOperators rest(model);
+  RestOperators rest(model);
   Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
   EquilibriumReport report = equilibrium(model, rest, inertia, state);
   if (!model.structure || !report.converged || !(model.contact.speed > 0.0)) return report;
@@ -434,6 +483,7 @@ EquilibriumReport travelling_equilibrium(const VsiModel& model, VsiState& state)
       report.iterations += r.iterations;
       report.steady = report.steady && r.converged;
     }
+    if (!report.steady) break;
     structure.velocity = (after.structure.displacement - before.structure.displacement) / (2.0 * time_step);
     structure.acceleration =
         (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /

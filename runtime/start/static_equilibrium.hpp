@@ -1,13 +1,18 @@
 #pragma once
 
+#include <cstddef>
+
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
 namespace railtab {
 
+/// Up to so many wheels a start keeps the couplings of each wheel with each of up to three places of the train.
+inline constexpr std::size_t most_wheels_with_kept_couplings = 256;
+
 struct EquilibriumReport {
   bool converged = false;
   int iterations = 0;
-  double change = 0.0;           ///< of the last iteration [m, rad]
+  double change = 0.0;  ///< of the last iteration, of the vehicles and of the structure under the wheels [m, rad]
   double deviation_share = 0.0;  ///< of the track's deviations, for which there is a state of rest: 1 where converged
   double load_share = 0.0;       ///< the same, of the loads besides gravity
   bool steady = true;            ///< of steady_start(): false where the structure does not move
@@ -21,7 +26,7 @@ struct EquilibriumReport {
 /// no load (proximal iteration), so that the result is the equilibrium of K itself.
 ///
 /// Where Newton fails, the loads besides gravity, or else the deviations of the track, grow from none to their full
-/// size.
+/// size. A state that has not converged is of no use.
 [[nodiscard]] EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state);
 
 /// The start of a run at constant speed: static equilibrium, with the structure moving as a deflection that travels

@@ -43,7 +43,7 @@ Columns node_rows(const std::vector<StructureNode>& nodes, const Columns& carrie
 
 // Some columns at a time. A support under one sleeper carries a few metres of track: what is zero but for rounding is
 // not kept.
-Sparse carried_by_supports(const SubstitutionFactor& factor, const Columns& of_supports) {
+Sparse carried_by_supports(const SparseLdlt& factor, const Columns& of_supports) {
   constexpr Eigen::Index at_a_time = 16;
   const Sparse columns = of_supports;
   std::vector<Eigen::Triplet<double>> entries;

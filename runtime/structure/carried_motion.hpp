@@ -4,7 +4,7 @@
 
 namespace railtab {
 
-class SubstitutionFactor;
+class SparseLdlt;
 
 /// The same structure in displacements relative to what its supports carry along at rest [CloughPenzien1993, ch. 26],
 ///
@@ -16,7 +16,7 @@ class SubstitutionFactor;
 [[nodiscard]] StructureModel relative_to_supports(StructureModel structure);
 
 /// ι = −K⁻¹ K_s, dofs × 2 per support. @throws ComputationError where K is not positive definite
-[[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const SubstitutionFactor& factor,
+[[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const SparseLdlt& factor,
                                                               const StructureSupports::Columns& of_supports);
 [[nodiscard]] Eigen::SparseMatrix<double> carried_by_supports(const Eigen::SparseMatrix<double>& stiffness,
                                                               const StructureSupports::Columns& of_supports);

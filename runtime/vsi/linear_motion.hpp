@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <vector>
 
 #include "railtab/runtime/base/dof_range.hpp"
 #include "railtab/runtime/vsi/hht.hpp"
@@ -59,6 +61,19 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Predict
   predict(scheme, motion, {0, motion.displacement.size()}, p);
 }
 
+/// The degrees of freedom in `range` that the contacts load at the end of a step: few of a structure's.
+inline void find_loaded(const LinearMotion& motion, const DofRange& range, std::vector<int>& dofs) {
+  dofs.clear();
+  constexpr Eigen::Index together = 16;  // to pass over what is not loaded
+  for (Eigen::Index first = range.begin; first < range.end(); first += together) {
+    const Eigen::Index count = std::min(together, range.end() - first);
+    if (motion.contact_load.segment(first, count).isZero(0.0)) continue;
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      if (motion.contact_load[i] != 0.0) dofs.push_back(static_cast<int>(i));
+    }
+  }
+}
+
 /// What the contact forces up to the beginning of a step add to its right-hand side: −α f(t); with
 /// ContactForceRule::energy (½ f(t) − (1−γ) p(t))/γ, see docs/theory/time_integration.md.
 inline void past_contact_load(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range,
@@ -82,6 +97,12 @@ inline void close_load(const HhtScheme& scheme, const ConstVector& load, const C
   } else {
     p = scheme.load_weight() * load + (0.5 * f - (1.0 - g) * p) / g;
   }
+}
+
+/// The same under ContactForceRule::endpoint at few degrees of freedom, where there is no load elsewhere.
+inline void close_load(const HhtScheme& scheme, const std::vector<int>& dofs, const Eigen::VectorXd& load,
+                       const Eigen::VectorXd& f, Eigen::VectorXd& p) {
+  for (int dof : dofs) p[dof] = scheme.load_weight() * load[dof] - scheme.alpha * f[dof];
 }
 
 /// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.

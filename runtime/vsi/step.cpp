@@ -7,19 +7,53 @@ namespace railtab {
 
 namespace {
 
+bool is_endpoint(const StepContext& step) { return step.hht.contact_force == ContactForceRule::endpoint; }
+
+// What the forces up to the beginning of the step, and the ground, add to the structure's right-hand side.
+KnownLoad known_load(const StepContext& step, const LinearMotion& motion, StepWorkspace& ws) {
+  if (is_endpoint(step) && !step.model.ground_motion) {
+    return {motion.contact_load, ws.past_rail_dofs, -step.hht.alpha};
+  }
+  const DofRange& active = step.operators.structure->active();
+  past_contact_load(step.hht, motion, active, ws.structure_past);
+  add_ground_load(step.model, step.hht, step.begin, active, ws.structure_past);
+  return {ws.structure_past};
+}
+
+// close_load() of the structure, whose loads under ContactForceRule::endpoint stand under the wheels alone.
+void close_structure_load(const StepContext& step, const StepWorkspace& ws, LinearMotion& motion) {
+  const DofRange& active = step.operators.structure->active();
+  if (is_endpoint(step)) {
+    active.of(motion.step_load).setZero();
+    for (const std::vector<int>* dofs : {&ws.past_rail_dofs, &ws.rail_dofs}) {
+      close_load(step.hht, *dofs, ws.structure_load, motion.contact_load, motion.step_load);
+    }
+  } else {
+    close_load(step.hht, active.of(ws.structure_load), active.of(motion.contact_load), active.of(motion.step_load));
+  }
+  active.of(motion.contact_load).setZero();
+  add_rail_forces(step.contacts, ws.solution.end_force, motion.contact_load);
+}
+
 // Predictors of the structure, its right-hand side, and the increment without contact forces at the end of the step,
 // under the wheels only: the forward half of its back-substitution.
 void predict_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
   const StructureResponse& structure = *step.operators.structure;
   const DofRange& active = structure.active();
   predict(step.hht, state.structure, active, ws.structure_prediction);
-  past_contact_load(step.hht, state.structure, active, ws.structure_increment);
-  add_ground_load(step.model, step.hht, step.begin, active, ws.structure_increment);
+  for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   ws.rail_dofs.clear();
-  for (const RailContact& contact : step.contacts) append_dofs(contact, ws.rail_dofs);
-  active.of(ws.structure_load).setZero();
+  ws.rail_dofs_ahead.clear();
+  for (const RailContact& contact : step.contacts) {
+    append_dofs(contact, ws.rail_dofs);
+    append_dofs_ahead(contact, ws.rail_dofs_ahead);
+  }
+  std::erase_if(ws.rail_dofs_ahead, [&](int dof) { return dof < active.begin || dof >= active.end(); });
+  find_loaded(state.structure, active, ws.past_rail_dofs);
   ws.structure_free.resize(step.model.structure->dofs());
-  structure.begin_step(ws.structure_prediction, ws.structure_increment, ws.rail_dofs, ws.structure);
+  ws.structure_increment.resize(step.model.structure->dofs());
+  structure.begin_step(ws.structure_prediction, known_load(step, state.structure, ws),
+                       {ws.rail_dofs, ws.rail_dofs_ahead}, ws.structure);
   ws.structure.substitution.respond(structure.factor(), ws.structure_free);
 }
 
@@ -73,13 +107,10 @@ StepOutcome outcome(const StepLimits& limits, bool converged, ContactChange chan
 void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepWorkspace& ws, StepReport& report) {
   if (step.model.structure) {
     const Stopwatch watch = report.times.measure(Phase::structure);
-    const DofRange& active = step.operators.structure->active();
-    LinearMotion& motion = state.structure;
-    ws.structure.substitution.finish(step.operators.structure->factor(), ws.structure_increment);
-    close_load(step.hht, active.of(ws.structure_load), active.of(motion.contact_load), active.of(motion.step_load));
-    active.of(motion.contact_load).setZero();
-    add_rail_forces(step.contacts, ws.solution.end_force, motion.contact_load);
-    update(step.hht, ws.structure_prediction, ws.structure_increment, active, motion);
+    const StructureResponse& structure = *step.operators.structure;
+    ws.structure.substitution.finish(structure.factor(), ws.structure_increment);
+    close_structure_load(step, ws, state.structure);
+    update(step.hht, ws.structure_prediction, ws.structure_increment, structure.active(), state.structure);
   }
   const Stopwatch watch = report.times.measure(Phase::vehicle);
   contacts.close(step, state, ws);

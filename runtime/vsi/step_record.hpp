@@ -150,9 +150,10 @@ struct RunSummary {
   long back_substitutions = 0;  ///< of the structure's factor
   long contact_queries = 0, table_queries = 0;  ///< queries answered, and those that the table alone answered
   long outside_creep_table = 0;                 ///< creep forces that the creep table left to Polach, wholly or in part
-  /// Set-up; look-ups of the contact geometry; the contact solution besides (forces, tangents, Newton); and so on.
-  double seconds_total = 0, seconds_setup = 0, seconds_lookup = 0, seconds_contact = 0, seconds_structure = 0,
-         seconds_vehicle = 0, seconds_output = 0;
+  /// Set-up and, of it, the steps before the run begins; look-ups of the contact geometry; the contact solution besides
+  /// (forces, tangents, Newton); and so on.
+  double seconds_total = 0, seconds_setup = 0, seconds_pre_roll = 0, seconds_lookup = 0, seconds_contact = 0,
+         seconds_structure = 0, seconds_vehicle = 0, seconds_output = 0;
   long structure_dofs = 0, vehicle_dofs = 0;
   long active_dofs = 0;  ///< most of the structure's unknowns that a step had, all or those of the moving window; not
                          ///< in result files

@@ -71,6 +71,15 @@ void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
   }
 }
 
+void append_dofs_ahead(const RailContact& contact, std::vector<int>& dofs) {
+  if (!contact.on_rail) return;
+  const auto node = static_cast<std::size_t>(contact.element + 2);
+  if (node >= contact.rail->x.size()) return;
+  for (int dof : head_dofs(*contact.rail, node)) {
+    if (dof != held) dofs.push_back(dof);
+  }
+}
+
 Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   if (!contact.on_rail) return value;
@@ -321,19 +330,26 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
   return bytes;
 }
 
-void StructureResponse::begin_step(const Prediction& prediction, Eigen::VectorXd& load, std::span<const int> few,
+void StructureResponse::begin_step(const Prediction& prediction, const KnownLoad& load, const LoadedUnknowns& few,
                                    StructureSolution& solution) const {
   const Eigen::VectorXd& u = prediction.weighted_displacement;
   const Eigen::VectorXd& v = prediction.weighted_velocity;
+  assert(load.at || load.weight == 1.0);
   if (product_) {
     solution.substitution.begin_with(*factor_, few, [&](Eigen::VectorXd& known) {
-      factor_->into(load, known);
+      if (load.at) {
+        factor_->into(*load.at, load.weight, load.vector, known);
+      } else {
+        factor_->into(load.vector, known);
+      }
       product_->subtract(u, v, solution.motion, known);
     });
     return;
   }
+  solution.load.resize(dofs_);
+  active_.of(solution.load) = load.weight * active_.of(load.vector);
   const Eigen::Index first = active_.begin, last = active_.end();
-  double* const f = load.data();
+  double* const f = solution.load.data();
   for (Eigen::Index j = first; j < last; ++j) {
     double sum = 0.0;
     for (int p = entry_begin_[static_cast<std::size_t>(j)], end = entry_begin_[static_cast<std::size_t>(j + 1)];
@@ -346,13 +362,13 @@ void StructureResponse::begin_step(const Prediction& prediction, Eigen::VectorXd
     }
     f[j] -= sum;
   }
-  solution.substitution.begin(*factor_, load, few);
+  solution.substitution.begin(*factor_, solution.load, few);
 }
 
-Eigen::VectorXd StructureResponse::increment(const Prediction& prediction, Eigen::VectorXd load) const {
+Eigen::VectorXd StructureResponse::increment(const Prediction& prediction, const Eigen::VectorXd& load) const {
   StructureSolution solution;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dofs_);
-  begin_step(prediction, load, {}, solution);
+  begin_step(prediction, {load}, {}, solution);
   solution.substitution.respond(*factor_, result);
   solution.substitution.finish(*factor_, result);
   return result;
@@ -385,7 +401,7 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     column.rows[other].assign(static_cast<std::size_t>(end - begin), Block::Zero());
     for (auto n = begin; n < end; ++n) involve(head_dofs(to, static_cast<std::size_t>(n)));
   }
-  s.solution.begin(factor, involved);
+  s.solution.begin(factor, {involved, {}});
   for (std::size_t load = 0; load < 6; ++load) {
     const int loaded = of_node[load];
     if (loaded == held) continue;
@@ -527,7 +543,7 @@ Eigen::MatrixXd StructureResponse::compliance_at(const std::vector<RailContact>&
   FewEntries s(dofs_);
   std::vector<int> involved;
   for (const RailContact& contact : contacts) append_dofs(contact, involved);
-  s.solution.begin(*factor_, involved);
+  s.solution.begin(*factor_, {involved, {}});
   Eigen::MatrixXd result(3 * n, 3 * n);
   for (Eigen::Index j = 0; j < 3 * n; ++j) {
     const RailContact& loaded = contacts[static_cast<std::size_t>(j / 3)];

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "railtab/runtime/algebra/divided_substitution.hpp"
@@ -37,10 +39,21 @@ void append_dofs(const RailContact& contact, std::vector<int>& dofs);
 /// Add a rail-head load (y, z, moment about x) to a vector of structure loads: the transpose of rail_head.
 void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept;
 
+/// Append the unknowns of the node ahead of a wheel, on which it will soon stand.
+void append_dofs_ahead(const RailContact& contact, std::vector<int>& dofs);
+
+/// A load on the structure; refers to the vector, and is not kept.
+struct KnownLoad {
+  const Eigen::VectorXd& vector;                          ///< of all unknowns
+  std::optional<std::span<const int>> at = std::nullopt;  ///< active unknowns but for which it is zero; none: any
+  double weight = 1.0;                                    ///< of the vector, where `at` is given
+};
+
 /// Buffers of the structure's solution of one step, reused.
 struct StructureSolution {
   DividedSubstitution substitution;
   SectionedProduct::Buffers motion;
+  Eigen::VectorXd load;
 };
 
 /// The structure for one time-step size: the factor of its effective matrix, made once for every range of active
@@ -65,12 +78,12 @@ class StructureResponse {
   [[nodiscard]] const DofRange& active() const noexcept { return active_; }
 
   /// The forward half of Eq. 13 without contact forces at the end of the step. Not at rest.
-  /// @param load what does not come from the prediction: past_contact_load() and others; is used up
-  /// @param few unknowns that the contact forces stand on
-  void begin_step(const Prediction& prediction, Eigen::VectorXd& load, std::span<const int> few,
+  /// @param load what does not come from the prediction: past_contact_load() and others
+  /// @param few unknowns that the contact forces stand on, or soon will @pre all of them are active
+  void begin_step(const Prediction& prediction, const KnownLoad& load, const LoadedUnknowns& few,
                   StructureSolution& solution) const;
   /// The increment of such a step without contacts.
-  [[nodiscard]] Eigen::VectorXd increment(const Prediction& prediction, Eigen::VectorXd load) const;
+  [[nodiscard]] Eigen::VectorXd increment(const Prediction& prediction, const Eigen::VectorXd& load) const;
   /// What begin_step() reads of stiffness and damping [bytes].
   [[nodiscard]] std::size_t load_bytes() const noexcept;
 

@@ -1,5 +1,7 @@
 #include "railtab/runtime/vsi/structure_step.hpp"
 
+#include <cassert>
+
 namespace railtab {
 
 namespace {
@@ -21,15 +23,18 @@ LinearMotion rest_under(const StructureModel& structure, std::span<const RailLoa
 
 void advance_structure(const StructureResponse& response, const HhtScheme& scheme, std::span<const RailLoad> loads,
                        LinearMotion& motion, StructureStepWorkspace& ws) {
+  assert(scheme.contact_force == ContactForceRule::endpoint);
   const DofRange all{0, motion.displacement.size()};
   predict(scheme, motion, all, ws.prediction);
-  past_contact_load(scheme, motion, all, ws.increment);
+  find_loaded(motion, all, ws.past_rail_dofs);
   ws.rail_dofs.clear();
   for (const RailLoad& rail : loads) append_dofs(rail.place, ws.rail_dofs);
   ws.load.setZero(all.count);
   ws.response.resize(all.count);
+  ws.increment.resize(all.count);
   add_loads(loads, ws.load);
-  response.begin_step(ws.prediction, ws.increment, ws.rail_dofs, ws.solution);
+  response.begin_step(ws.prediction, {motion.contact_load, ws.past_rail_dofs, -scheme.alpha}, {ws.rail_dofs, {}},
+                      ws.solution);
   ws.solution.substitution.respond(response.factor(), scheme.load_weight(), ws.load, ws.response);
   ws.solution.substitution.finish(response.factor(), ws.increment);
   motion.contact_load.swap(ws.load);

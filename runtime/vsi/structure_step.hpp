@@ -18,7 +18,7 @@ struct RailLoad {
 struct StructureStepWorkspace {
   Prediction prediction;
   StructureSolution solution;
-  std::vector<int> rail_dofs;
+  std::vector<int> rail_dofs, past_rail_dofs;
   Eigen::VectorXd load, response, increment;
 };
 

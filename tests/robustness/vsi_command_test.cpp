@@ -250,6 +250,19 @@ TEST_F(VsiCommand, RunSaysWhereItsTimeWent) {
        {"set-up", "structure", "contact look-ups", "contact forces, tangents", "vehicle", "output"}) {
     EXPECT_NE(outcome.output.find(part), std::string::npos) << part << '\n' << outcome.output;
   }
+  EXPECT_EQ(outcome.output.find("pre-roll"), std::string::npos) << outcome.output;  // rigid rails need none
+}
+
+TEST_F(VsiCommand, RunSaysWhatItsPreRollTook) {
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\n[track]\nlength_before = 60.0\nlength_after = 10.0\n[[bridge]]\nlength = "
+        "10.0\n[integration]\nduration = 0.01\n");
+  const Outcome outcome = vsi("run scene.toml -o r.h5");
+  EXPECT_NE(outcome.output.find("of it pre-roll"), std::string::npos) << outcome.output;
+  const Outcome again = vsi("run scene.toml -o r.h5 --quiet --json 2> /dev/null");
+  const auto seconds = nlohmann::json::parse(again.output).at("seconds");
+  EXPECT_GT(seconds.at("pre_roll"), 0.0);
+  EXPECT_LT(seconds.at("pre_roll"), seconds.at("setup"));
 }
 
 TEST_F(VsiCommand, RepairsOfAMeasuredProfileAreSaid) {

@@ -89,6 +89,11 @@ TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
   const int rail = s.rail[0].dof[40][2];
   expect_divided_as_whole(sectioned.factor(), SparseLdlt(sectioned.effective),
                           {{700, 3, 3, 704, 12}, {rail}, {}, {s.dofs() - 1}}, 1e-11);
+  const auto node_dofs = [&](std::size_t node) {
+    const DofIndices& dofs = s.rail[1].dof[node];
+    return std::vector<int>{dofs[1], dofs[2], dofs[3]};
+  };
+  expect_few_as_all(sectioned.factor(), s.dofs(), node_dofs(40), node_dofs(41));
 }
 
 TEST(SectionedLdlt, KeepsALoadThatIsNotANumber) {

@@ -53,6 +53,21 @@ TEST(SparseLdlt, SolvesAsAFactorisationWithoutSymmetryDoes) {
   }
 }
 
+TEST(SparseLdlt, SolvesColumnsTogetherAsOneByOne) {
+  for (const auto& matrix : {short_track(), cube(12)}) {
+    const DofRange range{3, matrix.rows() - 7};
+    const SparseLdlt factor(matrix, range);
+    constexpr Eigen::Index columns = 19;  // more than are taken together
+    const Eigen::MatrixXd loads = Eigen::MatrixXd::Random(matrix.rows(), columns);
+    const Eigen::MatrixXd solutions = factor.solve_columns(loads);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const Eigen::VectorXd alone = factor.solve(loads.col(k));
+      EXPECT_LT(difference(solutions.col(k), alone), 1e-12);
+      EXPECT_EQ(solutions.col(k).head<3>(), Eigen::Vector3d::Zero());
+    }
+  }
+}
+
 TEST(SparseLdlt, AMatrixThatIsNotPositiveDefiniteIsRejected) {
   Eigen::SparseMatrix<double> matrix = cube(8);
   for (const double entry : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
@@ -99,6 +114,29 @@ TEST(DividedSubstitution, AnswersAChangingLoadAndGivesTheWholeSolution) {
   const Eigen::SparseMatrix<double> matrix = short_track();
   const SparseLdlt factor(matrix);
   expect_divided_as_whole(factor, factor, {{700, 3, 3, 704, 12}, {5}, {}}, 1e-12);
+  expect_few_as_all(factor, matrix.rows(), {700, 3}, {705, 14});
+}
+
+// Unknowns that lie on the path in one factor are looked for in the other.
+TEST(DividedSubstitution, SubstitutesInTurnWithSeveralFactors) {
+  const Eigen::SparseMatrix<double> matrix = short_track(), stiffer = 3.0 * matrix;
+  const DofRange all{0, matrix.rows()};
+  const SparseLdlt one(matrix, all, "", EliminationOrder::minimum_degree);
+  const SparseLdlt other(stiffer, all, "", EliminationOrder::nested_dissection);
+  const std::vector<int> few{700, 12};
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(all.count);
+  load[700] = 1.0;
+  const Eigen::VectorXd expected = one.solve(load);
+  DividedSubstitution solution;
+  for (int round = 0; round < 2; ++round) {
+    for (const auto& [factor, size] : {std::pair{&one, 1.0}, std::pair{&other, 3.0}}) {
+      Eigen::VectorXd whole = load;
+      solution.begin(*factor, load, {few, {}});
+      solution.respond(*factor, whole);
+      solution.finish(*factor, whole);
+      EXPECT_LT(difference(size * whole, expected), 1e-12);
+    }
+  }
 }
 
 }  // namespace

@@ -26,6 +26,75 @@ StructureModel short_bridge() {
   return build_track_bridge(track, {span});
 }
 
+// A step that rails loaded before bend on, by a workspace: its end under further loads there.
+Eigen::VectorXd increment(const StructureResponse& response, const Prediction& prediction, const KnownLoad& load,
+                          const std::vector<int>& few, StructureSolution& solution) {
+  Eigen::VectorXd extra = Eigen::VectorXd::Zero(prediction.displacement.size()), result = extra;
+  for (int dof : few) extra[dof] = 1e4 + dof;
+  response.begin_step(prediction, load, {few, {}}, solution);
+  solution.substitution.respond(response.factor(), 0.9, extra, result);
+  solution.substitution.finish(response.factor(), result);
+  return result;
+}
+
+// In sections and as a whole, all unknowns active or those of a window.
+TEST(StructureResponse, LoadsOnFewUnknownsAreAsOnAll) {
+  TrackParameters track;
+  track.length_before = track.length_after = 60.0;
+  for (const bool long_one : {true, false}) {
+    const StructureModel structure = long_one ? build_track_bridge(track, {BridgeParameters{}}) : short_bridge();
+    const Eigen::Index n = structure.dofs();
+    Prediction prediction;
+    prediction.displacement = prediction.velocity = Eigen::VectorXd::Zero(n);
+    prediction.weighted_displacement = 1e-3 * Eigen::VectorXd::Random(n);
+    prediction.weighted_velocity = 0.1 * Eigen::VectorXd::Random(n);
+    StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
+    EXPECT_EQ(response.in_sections(), long_one);
+    StructureSolution kept;
+    for (const DofRange& active : {DofRange{0, n}, DofRange{n / 8, n - n / 4}, DofRange{0, n}}) {
+      response.activate(active);
+      LinearMotion motion(n);
+      for (const Eigen::Index dof : {active.begin, n / 2, n / 2 + 1, active.end() - 1}) {
+        motion.contact_load[dof] = 5e4 + static_cast<double>(dof);
+      }
+      std::vector<int> loaded;
+      find_loaded(motion, active, loaded);
+      EXPECT_EQ(loaded.size(), 4U);
+      const std::vector<int> few{loaded[1], loaded[2]};
+      StructureSolution fresh;
+      const Eigen::VectorXd of_all = increment(response, prediction, {0.1 * motion.contact_load}, few, fresh);
+      const Eigen::VectorXd of_few = increment(response, prediction, {motion.contact_load, loaded, 0.1}, few, kept);
+      EXPECT_LT((of_few - of_all).cwiseAbs().maxCoeff(), 1e-12 * of_all.cwiseAbs().maxCoeff());
+      EXPECT_GT(of_all.cwiseAbs().maxCoeff(), 0.0);
+    }
+  }
+}
+
+TEST(LinearMotion, FindsItsLoads) {
+  LinearMotion motion(100);
+  for (const int dof : {3, 17, 31, 32, 78}) motion.contact_load[dof] = -1.0;
+  motion.contact_load[40] = std::numeric_limits<double>::quiet_NaN();
+  std::vector<int> loaded{1, 2};
+  find_loaded(motion, {5, 73}, loaded);
+  EXPECT_EQ(loaded, (std::vector<int>{17, 31, 32, 40}));
+  find_loaded(motion, {0, 100}, loaded);
+  EXPECT_EQ(loaded, (std::vector<int>{3, 17, 31, 32, 40, 78}));
+}
+
+// Of few unknowns as of all of them.
+TEST(LinearMotion, ClosesFewLoadsAsAll) {
+  const HhtScheme scheme{.alpha = -0.1, .time_step = 1e-3, .contact_force = ContactForceRule::endpoint};
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(9), before = load, of_all = Eigen::VectorXd::Ones(9), of_few = load;
+  load[2] = 3.0;
+  load[4] = 5.0;
+  before[4] = 7.0;
+  before[8] = 11.0;
+  close_load(scheme, load, before, of_all);
+  close_load(scheme, {4, 8}, load, before, of_few);
+  close_load(scheme, {2, 4}, load, before, of_few);
+  EXPECT_EQ(of_few, of_all);
+}
+
 // Three routes: the table of node compliances with shape functions, single entries of the inverse for the very
 // positions, and whole solutions with the factor of the time steps.
 TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {

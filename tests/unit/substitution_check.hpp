@@ -29,7 +29,7 @@ inline void expect_divided_as_whole(const SubstitutionFactor& factor, const Spar
   DividedSubstitution solution;
   for (const std::vector<int>& few : loaded) {
     const Eigen::VectorXd known = Eigen::VectorXd::Random(n);
-    solution.begin(factor, known, few);
+    solution.begin(factor, known, {few, {}});
     Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n), whole;
     for (const double size : {0.0, 1.0, -7.0}) {
       for (int unknown : few) extra[unknown] = size * (1.0 + 0.1 * unknown);
@@ -44,11 +44,35 @@ inline void expect_divided_as_whole(const SubstitutionFactor& factor, const Spar
   }
 }
 
+/// Known loads on few unknowns alone, and unknowns that are named before they are loaded, change nothing.
+inline void expect_few_as_all(const SubstitutionFactor& factor, Eigen::Index n, const std::vector<int>& now,
+                              const std::vector<int>& soon) {
+  Eigen::VectorXd known = Eigen::VectorXd::Zero(n), of_all, of_few;
+  for (int unknown : now) known[unknown] = 1.0 + 0.1 * unknown;
+  factor.into(Eigen::VectorXd(-0.7 * known), of_all);
+  factor.into(now, -0.7, known, of_few);
+  EXPECT_LT(difference(of_few, of_all), 1e-15);
+
+  const auto answers = [&](DividedSubstitution& solution, const LoadedUnknowns& few) {
+    Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n), whole;
+    for (int unknown : few.now) extra[unknown] = 2.0 + 0.3 * unknown;
+    solution.begin(factor, known, few);
+    solution.respond(factor, 1.1, extra, answer);
+    solution.finish(factor, whole);
+    for (int unknown : few.now) EXPECT_EQ(answer[unknown], whole[unknown]);
+    return whole;
+  };
+  DividedSubstitution kept, fresh;
+  EXPECT_EQ(answers(kept, {now, soon}), answers(fresh, {now, {}}));
+  EXPECT_EQ(answers(kept, {soon, {}}), answers(fresh, {soon, {}}));  // on the path that is there
+  EXPECT_EQ(answers(kept, {now, {}}), answers(fresh, {now, {}}));
+}
+
 /// A load that is not a number makes a solution that is none, however small the loads beside it.
 inline void expect_nan_is_kept(const SubstitutionFactor& factor, Eigen::Index n, int unknown) {
   const std::vector<int> few{unknown};
   DividedSubstitution solution;
-  solution.begin(factor, Eigen::VectorXd::Zero(n), few);
+  solution.begin(factor, Eigen::VectorXd::Zero(n), {few, {}});
   Eigen::VectorXd extra = Eigen::VectorXd::Zero(n), answer = Eigen::VectorXd::Zero(n);
   extra[unknown] = std::numeric_limits<double>::quiet_NaN();
   solution.respond(factor, 1.0, extra, answer);

@@ -102,6 +102,7 @@ std::string headline_text(const Headline& headline, const RunSummary& summary) {
   const auto steps = static_cast<double>(summary.steps - summary.counted_from);
   TimeTable times(text, total, steps);
   times.once("set-up", summary.seconds_setup);
+  if (summary.seconds_pre_roll > 0.0) times.once("  of it pre-roll", summary.seconds_pre_roll);
   times.every_step("structure", summary.seconds_structure);
   times.every_step("contact look-ups", summary.seconds_lookup);
   times.every_step("contact forces, tangents", summary.seconds_contact);
@@ -148,10 +149,10 @@ nlohmann::ordered_json headline_json(const Headline& headline, const RunSummary&
   json["back_substitutions"] = summary.back_substitutions;
   json["structure_dofs"] = summary.structure_dofs;
   json["vehicle_dofs"] = summary.vehicle_dofs;
-  json["seconds"] = {{"total", summary.seconds_total},         {"setup", summary.seconds_setup},
-                     {"lookup", summary.seconds_lookup},       {"contact", summary.seconds_contact},
-                     {"structure", summary.seconds_structure}, {"vehicle", summary.seconds_vehicle},
-                     {"output", summary.seconds_output}};
+  json["seconds"] = {{"total", summary.seconds_total},       {"setup", summary.seconds_setup},
+                     {"pre_roll", summary.seconds_pre_roll}, {"lookup", summary.seconds_lookup},
+                     {"contact", summary.seconds_contact},   {"structure", summary.seconds_structure},
+                     {"vehicle", summary.seconds_vehicle},   {"output", summary.seconds_output}};
   if (summary.stops) {
     json["stops"] = {{"first", {{"time", summary.stops->first_time}, {"where", summary.stops->first_name}}},
                      {"largest_force",

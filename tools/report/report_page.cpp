@@ -68,7 +68,8 @@ struct Share {
 
 /// Where the run's wall time went: a stacked bar and its table.
 std::string time_figure(const RunSummary& summary) {
-  std::array<Share, 7> shares{{{"set-up", summary.seconds_setup, "#8795a6"},
+  std::array<Share, 8> shares{{{"set-up without pre-roll", summary.seconds_setup - summary.seconds_pre_roll, "#8795a6"},
+                               {"pre-roll", summary.seconds_pre_roll, "#b3a2c7"},
                                {"contact look-ups", summary.seconds_lookup, "#e58a6f"},
                                {"contact forces", summary.seconds_contact, "#c8442f"},
                                {"structure", summary.seconds_structure, "#0b6aa2"},
@@ -83,6 +84,7 @@ std::string time_figure(const RunSummary& summary) {
   std::string bar, rows;
   double from = 0.0;
   for (const Share& share : shares) {
+    if (!(share.seconds > 0.0)) continue;
     const double width = 1000.0 * share.seconds / total;
     bar += fmt::format("<rect x=\"{:.2f}\" width=\"{:.2f}\" height=\"10\" fill=\"{}\"><title>{}: {} s</title></rect>",
                        from, width, share.colour, share.name, shown(share.seconds));
