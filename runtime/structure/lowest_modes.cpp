@@ -122,7 +122,8 @@ class BlockLanczos {
 
 ModalBasis lowest_modes(const Sparse& stiffness, const Sparse& mass, int modes, double tolerance) {
   const Eigen::Index wanted = std::min<Eigen::Index>(modes, mass.rows());
-  BlockLanczos lanczos(stiffness, mass, std::min<Eigen::Index>(8, wanted));
+  constexpr Eigen::Index block = 8;  // vectors for which the factor is read once
+  BlockLanczos lanczos(stiffness, mass, std::min(block, mass.rows()));
   // A space of some twice the modes has them. One that grows far beyond that never will.
   const Eigen::Index most = 20 * wanted + 200;
   ModalBasis basis;
