@@ -372,6 +372,7 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
   const double* const from = natural.data();
   Lanes* const slot = lanes(ordered);
   const int* const of = unknown.data();
+  // The vectors do not overlap: with that known, the compiler gathers several entries at once.
   const auto gather = [&](std::size_t begin, std::size_t end) {
 #pragma GCC ivdep
     for (std::size_t k = begin; k < end; ++k) to[k] = of[k] < 0 ? 0.0 : from[of[k]];
