@@ -40,15 +40,15 @@ ResultSize result_size(const ResultHeader& header, double records, double state,
   constexpr double number = sizeof(double);
   // as in ArrayFileWriter: chunks of 16 KiB, at least 8 records, in pages of their own; indices, names, attributes
   constexpr double chunk_values = 2048.0, fewest = 8.0, page = 4096.0, per_dataset = 16384.0, least = 262144.0;
-  // HDF5 keeps chunks, and buffers for as many, of each dataset
-  constexpr double cache = 2.0 * (1 << 20), library = 4e6;
+  // HDF5 keeps chunks of each dataset, and buffers besides: three tenths of them
+  constexpr double kept = 1.3, cache = kept * (1 << 20), library = 4e6;
   constexpr double between_flushes = 200.0;
   ResultSize size{.file = least, .memory = library};
   for (double row : row_sizes) {
     const double chunk = std::max(fewest, std::floor(chunk_values / row));
     const double bytes = page * std::ceil(number * row * chunk / page) * std::ceil(records / chunk);
     size.file += bytes + per_dataset;
-    size.memory += std::min(2.0 * bytes, cache) + number * row * std::min(records, between_flushes);
+    size.memory += std::min(kept * bytes, cache) + number * row * std::min(records, between_flushes);
   }
   constexpr double indices = 1.01;  // of chunks, and their checksums
   size.file *= indices;
