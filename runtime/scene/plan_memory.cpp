@@ -41,8 +41,8 @@ bool reads_tables(const ContactParameters& contact) {
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {
   const double wheels = 2.0 * model.wheelsets(), n = model.vehicle.dofs();
-  const double kept = wheels > static_cast<double>(most_wheels_with_kept_couplings) ? 0.0 : 3.0;
-  const double rest = wheels * wheels * ((1.0 + kept) * sizeof(RailCoupling) + 2.0 * 9.0 * number);
+  const double tables = 1.0 + kept_couplings(static_cast<std::size_t>(wheels));
+  const double rest = wheels * wheels * (tables * sizeof(RailCoupling) + 2.0 * 9.0 * number);
   constexpr double vehicle_matrices = 8.0;
   return (model.structure ? rest : 0.0) + vehicle_matrices * number * n * n;
 }

@@ -76,12 +76,10 @@ std::string start(const SceneParameters& scene, OperatorLevels& operators, const
     VsiState early(model);
     early.time = -static_cast<double>(before) * scene.integration.time_step;
     const EquilibriumReport rest = steady_start(at_rest, early);
-    const auto roll = [&] {
-      const RunSummary steps = simulate(operators, pre_roll, 0.0, 1, early, {});
-      if (steps.complete) seconds_pre_roll = steps.seconds_total - steps.seconds_setup;
-      return steps.complete;
-    };
-    if (rest.converged && roll()) {
+    RunSummary rolled;
+    if (rest.converged) rolled = simulate(operators, pre_roll, 0.0, 1, early, {});
+    if (rolled.complete) {
+      seconds_pre_roll = rolled.seconds_total - rolled.seconds_setup;
       warn(steady_start_warning(rest));
       state = std::move(early);
       return {};

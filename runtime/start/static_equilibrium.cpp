@@ -81,7 +81,7 @@ class RestOperators {
 
   // all_couplings() where the train stands at a time; kept, since equilibria return there, where they are not many.
   std::vector<RailCoupling> couplings(const VsiModel& model, double time, const std::vector<RailContact>& contacts) {
-    if (contacts.size() > most_wheels_with_kept_couplings) return all_couplings(model, *structure, contacts);
+    if (kept_couplings(contacts.size()) == 0) return all_couplings(model, *structure, contacts);
     const auto known = couplings_.find(time);
     if (known != couplings_.end()) return known->second;
     return couplings_.emplace(time, all_couplings(model, *structure, contacts)).first->second;

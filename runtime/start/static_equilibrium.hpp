@@ -6,8 +6,9 @@
 
 namespace railtab {
 
-/// Up to so many wheels a start keeps the couplings of each wheel with each of up to three places of the train.
-inline constexpr std::size_t most_wheels_with_kept_couplings = 256;
+/// Places of the train of which a start keeps the couplings of each wheel with each, at most: those that
+/// steady_start() returns to, unless wheels are many.
+[[nodiscard]] constexpr int kept_couplings(std::size_t wheels) noexcept { return wheels > 256 ? 0 : 3; }
 
 struct EquilibriumReport {
   bool converged = false;

@@ -50,8 +50,6 @@ void predict_structure(const StepContext& step, const VsiState& state, StepWorks
   }
   std::erase_if(ws.rail_dofs_ahead, [&](int dof) { return dof < active.begin || dof >= active.end(); });
   find_loaded(state.structure, active, ws.past_rail_dofs);
-  ws.structure_free.resize(step.model.structure->dofs());
-  ws.structure_increment.resize(step.model.structure->dofs());
   structure.begin_step(ws.structure_prediction, known_load(step, state.structure, ws),
                        {ws.rail_dofs, ws.rail_dofs_ahead}, ws.structure);
   ws.structure.substitution.respond(structure.factor(), ws.structure_free);
@@ -123,6 +121,8 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
 StepWorkspace::StepWorkspace(const VsiModel& model)
     : vehicle_load(Eigen::VectorXd::Zero(model.vehicle.dofs())),
       structure_load(Eigen::VectorXd::Zero(model.structure ? model.structure->dofs() : 0)),
+      structure_free(structure_load),
+      structure_increment(structure_load),
       solution(VsiState(model).contact) {}
 
 //   Eq. 12, 13   predictors ã, ṽ and right-hand sides ψ of K̄ Δa + D̄ X = ψ     predict

@@ -64,20 +64,24 @@ Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) n
   return i.x == j.x ? j.own.compliance : element_compliance(*j.rail, i.x, j.x);
 }
 
-void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
-  if (!contact.on_rail) return;
-  for (int dof : contact.rows.dof) {
+namespace {
+
+void append_free(std::span<const int> from, std::vector<int>& dofs) {
+  for (int dof : from) {
     if (dof != held) dofs.push_back(dof);
   }
+}
+
+}  // namespace
+
+void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
+  if (contact.on_rail) append_free(contact.rows.dof, dofs);
 }
 
 void append_dofs_ahead(const RailContact& contact, std::vector<int>& dofs) {
   if (!contact.on_rail) return;
   const auto node = static_cast<std::size_t>(contact.element + 2);
-  if (node >= contact.rail->x.size()) return;
-  for (int dof : head_dofs(*contact.rail, node)) {
-    if (dof != held) dofs.push_back(dof);
-  }
+  if (node < contact.rail->x.size()) append_free(head_dofs(*contact.rail, node), dofs);
 }
 
 Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
@@ -385,13 +389,8 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
   const RailLine& rail = structure.rail[side];
   Column column;
   std::vector<int> involved;
-  const auto involve = [&](const DofIndices& dofs) {
-    for (int dof : dofs) {
-      if (dof != held) involved.push_back(dof);
-    }
-  };
   const DofIndices of_node = head_dofs(rail, node);
-  involve(of_node);
+  append_free(of_node, involved);
   for (std::size_t other = 0; other < 2; ++other) {
     const RailLine& to = structure.rail[other];
     const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - reach) - to.x.begin();
@@ -399,7 +398,7 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     column.first[other] = static_cast<int>(begin);
     column.rows[other].reserve(room[other]);
     column.rows[other].assign(static_cast<std::size_t>(end - begin), Block::Zero());
-    for (auto n = begin; n < end; ++n) involve(head_dofs(to, static_cast<std::size_t>(n)));
+    for (auto n = begin; n < end; ++n) append_free(head_dofs(to, static_cast<std::size_t>(n)), involved);
   }
   s.solution.begin(factor, {involved, {}});
   for (std::size_t load = 0; load < 6; ++load) {
