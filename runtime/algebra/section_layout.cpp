@@ -367,15 +367,28 @@ Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
   return result;
 }
 
-void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const {
+template <std::size_t count>
+void SectionLayout::into(const WeightedSum<count>& natural, Eigen::VectorXd& ordered) const {
+  const auto from = [&](Eigen::Index i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < count; ++k) sum += natural.weight[k] * natural.vector[k][i];
+    return sum;
+  };
+  const auto four_from = [&](Eigen::Index i, Pack& sum) {
+    sum = Pack{};
+    for (std::size_t k = 0; k < count; ++k) {
+      Pack part;
+      std::memcpy(&part, natural.vector[k] + i, sizeof part);
+      sum += natural.weight[k] * part;
+    }
+  };
   double* const to = ordered.data();
-  const double* const from = natural.data();
   Lanes* const slot = lanes(ordered);
   const int* const of = unknown.data();
   // The vectors do not overlap: with that known, the compiler gathers several entries at once.
   const auto gather = [&](std::size_t begin, std::size_t end) {
 #pragma GCC ivdep
-    for (std::size_t k = begin; k < end; ++k) to[k] = of[k] < 0 ? 0.0 : from[of[k]];
+    for (std::size_t k = begin; k < end; ++k) to[k] = of[k] < 0 ? 0.0 : from(of[k]);
   };
   constexpr std::size_t eight = 8 * sections;
   for (std::size_t b = 0; b < consecutive.size(); ++b) {
@@ -387,7 +400,7 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
       for (std::size_t first = 0; first < 8; first += 4) {
         Pack part[4], of_slot[4];
         for (std::size_t s = 0; s < 4; ++s) {
-          std::memcpy(&part[s], from + unknown[eight * b + section + s] + first, sizeof part[s]);
+          four_from(unknown[eight * b + section + s] + static_cast<Eigen::Index>(first), part[s]);
         }
         transpose(part[0], part[1], part[2], part[3], of_slot);
         double* const block = to + eight * b + 8 * first + section;
@@ -402,10 +415,12 @@ void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordere
     slot[two] = root_half * (u - v);
   }
   for (std::size_t k = 0; k < interfaces.size(); ++k) {
-    to[interface_begin() + static_cast<Eigen::Index>(k)] =
-        combined(interfaces[k].unknown, [&](Eigen::Index i) { return from[i]; });
+    to[interface_begin() + static_cast<Eigen::Index>(k)] = combined(interfaces[k].unknown, from);
   }
 }
+template void SectionLayout::into(const WeightedSum<1>&, Eigen::VectorXd&) const;
+template void SectionLayout::into(const WeightedSum<2>&, Eigen::VectorXd&) const;
+template void SectionLayout::into(const WeightedSum<3>&, Eigen::VectorXd&) const;
 
 void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
   double* const to = natural.data();

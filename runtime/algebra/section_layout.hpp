@@ -11,6 +11,13 @@
 
 namespace railtab {
 
+/// The sum of some vectors of all unknowns, each times its weight. Refers to them, and is not kept.
+template <std::size_t count>
+struct WeightedSum {
+  std::array<const double*, count> vector;
+  std::array<double, count> weight;
+};
+
 /// Where the unknowns of a long structure stand.
 struct UnknownPlaces {
   std::vector<double> x;  ///< along the structure, not decreasing [m]; empty: not known
@@ -95,8 +102,12 @@ struct SectionLayout {
     if (other < 0) return value(u);
     return other > u ? root_half * (value(u) + value(other)) : root_half * (value(other) - value(u));
   }
-  /// Sets the slots and the interface unknowns.
-  void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const;
+  /// Sets the slots and the interface unknowns to those of a sum of up to three vectors.
+  template <std::size_t count>
+  void into(const WeightedSum<count>& natural, Eigen::VectorXd& ordered) const;
+  void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const {
+    into(WeightedSum<1>{{natural.data()}, {1.0}}, ordered);
+  }
   void out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const;
   /// Copies interface unknowns to the borders beside the sections.
   void spread_interfaces(Eigen::VectorXd& ordered) const;

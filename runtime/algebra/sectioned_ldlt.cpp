@@ -222,14 +222,19 @@ void SectionedLdlt::into(std::span<const int> few, double weight, const Vector& 
 }
 
 void SectionedLdlt::set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
-  const auto value = [&](Eigen::Index unknown) { return natural[unknown]; };
-  const auto set_one = [&](int unknown) {
-    ordered[layout_->position(unknown)] = weight * layout_->combined(unknown, value);
-  };
+  const double of_pair = root_half * weight;
   for (int unknown : few) {
-    set_one(unknown);
     const int other = layout_->mirrored[static_cast<std::size_t>(unknown - layout_->range.begin)];
-    if (other >= 0) set_one(other);
+    const double value = natural[unknown];
+    if (other < 0) {
+      ordered[layout_->position(unknown)] = weight * value;
+      continue;
+    }
+    const double of_other = natural[other];
+    if (other < unknown && of_other != 0.0) continue;  // the other one is of the few, too, and sets both
+    const auto [first, second] = std::minmax(unknown, other);
+    ordered[layout_->position(first)] = of_pair * (value + of_other);
+    ordered[layout_->position(second)] = of_pair * (unknown < other ? value - of_other : of_other - value);
   }
 }
 

@@ -70,17 +70,17 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   }
 }
 
-void SectionedProduct::subtract(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Buffers& buffers,
+void SectionedProduct::subtract(const WeightedSum<3>& u, const WeightedSum<2>& v, Buffers& buffers,
                                 Eigen::VectorXd& ordered) const {
   const SectionLayout& l = *layout_;
   if (buffers.u.size() != ordered.size()) {
     buffers.u.setZero(ordered.size());
     buffers.v.setZero(ordered.size());
   }
-  for (const auto& [from, to] : {std::pair{&u, &buffers.u}, std::pair{&v, &buffers.v}}) {
-    l.into(*from, *to);
-    l.spread_interfaces(*to);
-  }
+  l.into(u, buffers.u);
+  l.into(v, buffers.v);
+  l.spread_interfaces(buffers.u);
+  l.spread_interfaces(buffers.v);
   const Lanes *const U = lanes(buffers.u), *const V = lanes(buffers.v);
   Lanes* const y = lanes(ordered);
   for (int j = 0; j < l.slots; ++j) {

@@ -20,8 +20,8 @@ class SectionedProduct {
   struct Buffers {
     Eigen::VectorXd u, v;
   };
-  /// ordered <- ordered − K u − C v. @param u, v of all unknowns @param ordered room for the whole layout
-  void subtract(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Buffers& buffers, Eigen::VectorXd& ordered) const;
+  /// ordered <- ordered − K u − C v. @param ordered room for the whole layout
+  void subtract(const WeightedSum<3>& u, const WeightedSum<2>& v, Buffers& buffers, Eigen::VectorXd& ordered) const;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
 

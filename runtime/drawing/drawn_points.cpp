@@ -8,7 +8,8 @@ namespace railtab::drawing {
 namespace {
 
 void append(std::vector<float>& values, const Eigen::Vector3d& vector) {
-  for (const double value : vector) values.push_back(static_cast<float>(value));
+  const Eigen::Vector3f as_float = vector.cast<float>();
+  values.insert(values.end(), as_float.begin(), as_float.end());
 }
 
 }  // namespace

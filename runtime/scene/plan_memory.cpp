@@ -25,7 +25,7 @@ constexpr double number = sizeof(double);
 // Vectors of all degrees of freedom of the structure.
 constexpr double state_vectors = 5.0;                        // LinearMotion
 constexpr double start_vectors = 6.0 * state_vectors + 8.0;  // states of steady_start(), loads and solutions
-constexpr double step_vectors = 2.0 * state_vectors + 14.0;  // StepWorkspace, and the state that the run begins with
+constexpr double step_vectors = 2.0 * state_vectors + 12.0;  // StepWorkspace, and the state that the run begins with
 constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
 constexpr double small = 1 << 20;    // bytes: vectors that the allocator keeps when they are freed, in pieces
 constexpr double most_pieces = 8e6;  // bytes: of what the start has freed, where it is not used again
@@ -40,9 +40,9 @@ bool reads_tables(const ContactParameters& contact) {
 
 /// Beside the structure: couplings of wheels at rest, each with each, and the vehicles' matrices.
 double train_bytes(const VsiModel& model) {
-  const double wheels = 2.0 * model.wheelsets(), n = model.vehicle.dofs();
-  const double tables = 1.0 + kept_couplings(static_cast<std::size_t>(wheels));
-  const double rest = wheels * wheels * (tables * sizeof(RailCoupling) + 2.0 * 9.0 * number);
+  const double wheelsets = model.wheelsets(), n = model.vehicle.dofs();
+  const double tables = 1.0 + kept_couplings(2 * static_cast<std::size_t>(model.wheelsets()));
+  const double rest = wheelsets * wheelsets * (tables * sizeof(RailCoupling) + 2.0 * sizeof(Matrix6));
   constexpr double vehicle_matrices = 8.0;
   return (model.structure ? rest : 0.0) + vehicle_matrices * number * n * n;
 }
@@ -105,7 +105,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
       model.window ? MovingWindow(model, integration.time_step).largest(duration) : DofRange{0, s.dofs()};
   const StructureResponse response(s, hht, active);
   const StructureResponse::Memory m = response.memory(), at_rest = StructureResponse(s).memory();
-  const double table = StepOperators::largest_table(model, duration, integration.time_step);
+  const double table = StepOperators::largest_table(model, response, duration, integration.time_step);
   const double one = m.kept + m.low + table;
   const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
   const double start = number * n * start_vectors + at_rest.kept + at_rest.setup;

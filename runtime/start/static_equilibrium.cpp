@@ -44,14 +44,14 @@ constexpr int pitch = 4;
 std::vector<RailCoupling> all_couplings(const VsiModel& model, StructureResponse& structure,
                                         const std::vector<RailContact>& contacts) {
   const Eigen::MatrixXd compliance = structure.compliance_at(contacts);
+  const int wheelsets = static_cast<int>(contacts.size()) / 2;
   std::vector<RailCoupling> rail;
-  rail.reserve(contacts.size() * contacts.size());
-  const int wheels = static_cast<int>(contacts.size());
-  for (int i = 0; i < wheels; ++i) {
-    for (int j = 0; j < wheels; ++j) {
-      rail.push_back({i, j, compliance.block<3, 3>(3 * i, 3 * j)});
+  rail.reserve(index(wheelsets) * index(wheelsets));
+  for (int i = 0; i < wheelsets; ++i) {
+    for (int j = 0; j < wheelsets; ++j) {
+      rail.push_back({i, j, compliance.block<6, 6>(6 * i, 6 * j)});
       if (model.normal_contact == NormalContact::rigid) continue;
-      rail.back().compliance += element_compliance(contacts[index(i)], contacts[index(j)]);
+      add_element_compliance(rail_heads(contacts, i), rail_heads(contacts, j), 1.0, rail.back().compliance);
     }
   }
   return rail;

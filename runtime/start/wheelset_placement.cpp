@@ -139,8 +139,8 @@ void load_rails(const VsiModel& model, const ContactProblem& problem, Eigen::Vec
   for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel)
     displacement.segment<3>(rail_unknown(wheel)) = problem.free.segment<3>(rail_unknown(wheel));
   for (const RailCoupling& c : problem.rail) {
-    const double load = static_wheel_load(model.vehicle, c.j / 2 % model.wheelsets_per_vehicle());
-    displacement.segment<3>(rail_unknown(c.i)) += load * c.compliance.col(1);
+    const double load = static_wheel_load(model.vehicle, c.j % model.wheelsets_per_vehicle());
+    displacement.segment<6>(rails_unknown(c.i)) += load * c.under_vertical_loads();
   }
 }
 

@@ -19,6 +19,20 @@ DofIndices head_dofs(const RailLine& rail, std::size_t node) noexcept {
   return dofs;
 }
 
+std::array<int, 12> element_dofs(const RailLine& rail, std::size_t node) noexcept {
+  std::array<int, 12> dofs;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const DofIndices of_node = head_dofs(rail, node + k);
+    std::copy(of_node.begin(), of_node.end(), dofs.begin() + static_cast<std::ptrdiff_t>(6 * k));
+  }
+  return dofs;
+}
+
+bool alike(const RailLine& a, const RailLine& b, std::size_t node) noexcept {
+  return a.x[node] == b.x[node] && a.x[node + 1] == b.x[node + 1] && a.head_height == b.head_height &&
+         a.stiffness == b.stiffness && a.twist_rate.empty() == b.twist_rate.empty();
+}
+
 namespace {
 
 /// Torsion of the element after this node. @pre the rail's twist is smooth
@@ -41,10 +55,7 @@ RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
   const double length = rail.x[e + 1] - rail.x[e], h = rail.head_height;
   const BeamShape N = beam_shape(length, x - rail.x[e]);
   RailInterpolation rows;
-  for (std::size_t node = 0; node < 2; ++node) {
-    const DofIndices dofs = head_dofs(rail, e + node);
-    std::copy(dofs.begin(), dofs.end(), rows.dof.begin() + static_cast<std::ptrdiff_t>(6 * node));
-  }
+  rows.dof = element_dofs(rail, e);
   for (int k = 0; k < 12; ++k) {
     rows.y[k] = N(1, k);
     rows.z[k] = N(2, k);

@@ -37,6 +37,11 @@ struct RailLine {
 /// The dofs of a node that its rail head's motion depends on: the twist's rate, then y, z, roll, pitch, yaw.
 [[nodiscard]] DofIndices head_dofs(const RailLine& rail, std::size_t node) noexcept;
 
+/// The same of both nodes of the element after a node.
+[[nodiscard]] std::array<int, 12> element_dofs(const RailLine& rail, std::size_t node) noexcept;
+/// Whether two rails have the same element after a node: all but its dofs.
+[[nodiscard]] bool alike(const RailLine& a, const RailLine& b, std::size_t node) noexcept;
+
 /// Rows that give the rail head's motion at a position from the head_dofs() of both nodes of the beam element there
 /// (cubic Hermite for bending, torsion_shape() or linear for roll): value = Σ row[k]·a[dof[k]], held dofs skipped. The
 /// transpose distributes a load.

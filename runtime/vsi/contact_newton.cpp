@@ -59,10 +59,10 @@ void assemble_compliances(const ContactProblem& problem, NewtonWorkspace& ws) {
     }
   }
   for (const RailCoupling& c : problem.rail) {
-    const int g = ws.group_of[index(c.i / 2)];
-    if (ws.group_of[index(c.j / 2)] != g) continue;
-    const int first = 2 * ws.range[index(g)].first;
-    ws.compliance[index(g)].block<3, 3>(rail_unknown(c.i - first), rail_unknown(c.j - first)) = c.compliance;
+    const int g = ws.group_of[index(c.i)];
+    if (ws.group_of[index(c.j)] != g) continue;
+    const int first = ws.range[index(g)].first;
+    ws.compliance[index(g)].block<6, 6>(rails_unknown(c.i - first), rails_unknown(c.j - first)) = c.compliance;
   }
 }
 
@@ -224,12 +224,24 @@ class TrainNewton {
 
   [[nodiscard]] int groups() const { return static_cast<int>(ws_.group.size()); }
 
+  // The correction that a group's residual asks for.
+  void set_correction(int g) const {
+    const Eigen::MatrixXd& inverse = ws_.inverse[index(g)];
+    if (problem_.wheelsets_per_group > 1) {
+      part_of(ws_.correction, g).noalias() = inverse * part_of(ws_.residual, g);
+      return;
+    }
+    const int first = wheelset_unknowns * ws_.range[index(g)].first;
+    ws_.correction.segment<wheelset_unknowns>(first).noalias() =
+        Eigen::Map<const Matrix12>(inverse.data()) * ws_.residual.segment<wheelset_unknowns>(first);
+  }
+
   // The first correction of groups whose tangents are known, from estimated forces.
   void predict(std::span<const int> known) {
     contact_residual(problem_, s_, ws_.residual);
     for (int g : known) {
       auto correction = part_of(ws_.correction, g);
-      correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
+      set_correction(g);
       limit_moves(problem_, correction);
       part_of(s_.displacement, g) += correction;
     }
@@ -339,7 +351,7 @@ class TrainNewton {
       n.moved = true;
       return false;
     }
-    correction.noalias() = ws_.inverse[index(g)] * part_of(ws_.residual, g);
+    set_correction(g);
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
     const double of_forces = force_change(ws_, wheelsets(g));
@@ -440,7 +452,7 @@ void contact_residual(const ContactProblem& problem, const ContactSolution& s, E
     }
   }
   for (const RailCoupling& c : problem.rail) {
-    r.segment<3>(rail_unknown(c.i)) += c.compliance * s.force.segment<3>(rail_unknown(c.j));
+    r.segment<6>(rails_unknown(c.i)) += c.compliance * s.force.segment<6>(rails_unknown(c.j));
   }
   if (problem.elements) problem.elements->respond(s.force, r);
 }

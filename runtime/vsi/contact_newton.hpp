@@ -21,11 +21,16 @@ inline constexpr int wheelset_unknowns = 12;
 [[nodiscard]] constexpr int rail_unknown(int wheel) noexcept {
   return wheelset_unknowns * (wheel / 2) + 6 + 3 * (wheel % 2);
 }
+/// First of the six rail-head unknowns of a wheelset.
+[[nodiscard]] constexpr int rails_unknown(int wheelset) noexcept { return rail_unknown(2 * wheelset); }
 
-/// Compliance between two rail heads, (wheel i, wheel j) with wheel = 2·wheelset + side.
+/// Motion of the rail heads under wheelset i from loads on those under wheelset j.
 struct RailCoupling {
   int i, j;
-  Eigen::Matrix3d compliance;
+  Matrix6 compliance;  ///< y, z, roll of the left, then of the right rail head
+
+  /// Of a unit vertical load on each of both rail heads under j.
+  [[nodiscard]] Vector6 under_vertical_loads() const { return compliance.col(1) + compliance.col(4); }
 };
 
 /// Solution and last contact forces, kept from step to step.

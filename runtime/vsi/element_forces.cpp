@@ -47,6 +47,8 @@ ElementForces::ElementForces(const VehicleModel& vehicle, const SeparateSystem& 
     : system_(system),
       whole_(static_cast<int>(system.dofs.size()) == vehicle.dofs()),
       elements_(elements_of(system, vehicle.elements)) {
+  const auto is = [](ForceElementKind kind) { return [=](const ForceElement& e) { return e.kind == kind; }; };
+  only_stops_ = std::all_of(elements_.element.begin(), elements_.element.end(), is(ForceElementKind::stop));
   const Eigen::Index rows = elements_.rows.rows();
   for (Eigen::VectorXd* v : {&x0_, &v0_, &predicted_, &predicted_rate_, &x_, &share_, &end_}) v->setZero(rows);
   friction_ = friction_end_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(elements_.element.size()));
@@ -73,10 +75,11 @@ void ElementForces::begin(const Step& step, const Start& start) {
   step_ = step;
   friction_ = start.friction(system_.elements);
   elongate(start.motion.displacement, x0_);
+  elongate(start.guess, x_);
+  if (only_stops_) return;  // to which rates are nothing
   elongate(start.motion.velocity, v0_);
   elongate(start.prediction.displacement, predicted_);
   elongate(start.prediction.velocity, predicted_rate_);
-  elongate(start.guess, x_);
 }
 
 void ElementForces::begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction) {
@@ -157,6 +160,13 @@ bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::Vect
     residual_.noalias() += compliance.own * share_;
     return residual_.cwiseAbs().maxCoeff();
   };
+  if (only_stops_) {
+    x_before_ = x_;
+    x_ = free;
+    evaluate();
+    if (rests()) return true;  // all within their clearance
+    x_ = x_before_;
+  }
   double size = residual();
   for (int iteration = 0; iteration < most_iterations && !(size <= rounding); ++iteration) {
     factor(compliance);
@@ -234,6 +244,7 @@ void TrainElements::respond(const Eigen::VectorXd& force, Eigen::VectorXd& displ
       displacement.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
     }
+    if (system_[s].rests()) continue;
     wheelset_displacement_.noalias() = response.to_wheelsets * system_[s].share();
     for (std::size_t w = 0; w < wheelsets.size(); ++w) {
       displacement.segment<6>(first_unknown(w)) -= wheelset_displacement_.segment<6>(static_cast<Eigen::Index>(6 * w));

@@ -23,17 +23,19 @@ double element_weight(const HhtScheme& hht) {
 void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   const std::vector<RailContact>& contacts = step.contacts;
   rail.clear();
-  const int wheels = static_cast<int>(contacts.size());
+  const int wheelsets = static_cast<int>(contacts.size()) / 2;
   const double of_elements = element_weight(step.hht);
-  for (int j = 0; j < wheels; ++j) {
-    if (!contacts[index(j)].on_rail) continue;
-    // Wheels are ordered along the train, so those within reach are neighbours in the list; the compliance is
+  for (int j = 0; j < wheelsets; ++j) {
+    // Wheelsets are ordered along the train, so those within reach are neighbours in the list; the compliance is
     // symmetric.
-    for (int i = j; i < wheels; ++i) {
-      const Eigen::Matrix3d c =
-          step.hht.load_weight() * step.operators.structure->compliance(contacts[index(i)], contacts[index(j)]) +
-          of_elements * element_compliance(contacts[index(i)], contacts[index(j)]);
-      if (c.isZero(0.0)) break;
+    for (int i = j; i < wheelsets; ++i) {
+      const RailHeads at_i = rail_heads(contacts, i), at_j = rail_heads(contacts, j);
+      Matrix6 c = step.hht.load_weight() * step.operators.structure->compliance(at_i, at_j);
+      add_element_compliance(at_i, at_j, of_elements, c);
+      if (c.isZero(0.0)) {
+        if (i == j) continue;  // beyond the modelled track
+        break;
+      }
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
     }
@@ -92,7 +94,7 @@ class HertzContacts : public ContactLaw {
       gather_structure(step, state, ws);
       couple_rails(step, problem_.rail);
     }
-    rail_deviation(step.model, step.contacts, step.end, ws.structure_prediction.displacement, problem_.deviation);
+    rail_deviation(step.model, step.contacts, step.end, ws.structure_predicted, problem_.deviation);
     if (step.model.structure) predict_elements(step, state);
     problem_.velocity_rate = Vector6::Constant(step.hht.velocity_rate());
     problem_.rail_velocity_rate = step.hht.velocity_rate();
@@ -192,9 +194,8 @@ class HertzContacts : public ContactLaw {
   }
 
   void gather_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
-    const Prediction& p = ws.structure_prediction;
-    gather_rails(step.contacts, p.displacement, problem_.predicted);
-    gather_rails(step.contacts, p.velocity, problem_.predicted_velocity);
+    gather_rails(step.contacts, ws.structure_predicted, problem_.predicted);
+    gather_rails(step.contacts, ws.structure_predicted_velocity, problem_.predicted_velocity);
     gather_rails(step.contacts, state.structure.velocity, begin_velocity_);
     gather_rails(step.contacts, ws.structure_free, problem_.free);
     for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {

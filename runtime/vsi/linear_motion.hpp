@@ -29,6 +29,20 @@ struct LinearMotion {
         step_load(Eigen::VectorXd::Zero(dofs)) {}
 };
 
+/// What one HHT step predicts of displacement and velocity.
+struct Predictor {
+  double time_step, by_acceleration, faster;
+
+  explicit Predictor(const HhtScheme& scheme)
+      : time_step(scheme.time_step),
+        by_acceleration(scheme.time_step * scheme.time_step * (0.5 - scheme.beta())),
+        faster(scheme.time_step * (1.0 - scheme.gamma())) {}
+  [[nodiscard]] double displacement(double a, double v, double acceleration) const noexcept {
+    return a + time_step * v + by_acceleration * acceleration;
+  }
+  [[nodiscard]] double velocity(double v, double acceleration) const noexcept { return v + faster * acceleration; }
+};
+
 /// Predictors of one HHT step, caller-owned so that a step allocates nothing.
 struct Prediction {
   Eigen::VectorXd displacement, velocity;                    ///< ã, ṽ
@@ -37,39 +51,47 @@ struct Prediction {
 
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Predictors of the degrees of freedom in `range`, in one pass through the memory; those of others keep their values.
-inline void predict(const HhtScheme& scheme, const LinearMotion& motion, const DofRange& range, Prediction& p) {
-  for (Eigen::VectorXd* vector : {&p.displacement, &p.velocity, &p.weighted_displacement, &p.weighted_velocity})
-    vector->resize(motion.displacement.size());
-  const double dt = scheme.time_step, weight = scheme.load_weight(), alpha = scheme.alpha;
-  const double by_acceleration = dt * dt * (0.5 - scheme.beta()), faster = dt * (1.0 - scheme.gamma());
-  const double *const a = motion.displacement.data(), *const v = motion.velocity.data();
-  const double* const acceleration = motion.acceleration.data();
-  double *const predicted = p.displacement.data(), *const velocity = p.velocity.data();
-  double *const weighted = p.weighted_displacement.data(), *const weighted_velocity = p.weighted_velocity.data();
-#pragma GCC ivdep
-  for (Eigen::Index i = range.begin; i < range.end(); ++i) {
-    const double a_1 = a[i] + dt * v[i] + by_acceleration * acceleration[i];
-    const double v_1 = v[i] + faster * acceleration[i];
-    predicted[i] = a_1;
-    velocity[i] = v_1;
-    weighted[i] = weight * a_1 - alpha * a[i];
-    weighted_velocity[i] = weight * v_1 - alpha * v[i];
-  }
-}
 inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
-  predict(scheme, motion, {0, motion.displacement.size()}, p);
+  const Predictor predictor(scheme);
+  const double weight = scheme.load_weight(), alpha = scheme.alpha;
+  p.displacement =
+      motion.displacement + predictor.time_step * motion.velocity + predictor.by_acceleration * motion.acceleration;
+  p.velocity = motion.velocity + predictor.faster * motion.acceleration;
+  p.weighted_displacement = weight * p.displacement - alpha * motion.displacement;
+  p.weighted_velocity = weight * p.velocity - alpha * motion.velocity;
 }
 
-/// The degrees of freedom in `range` that the contacts load at the end of a step: few of a structure's.
+/// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.
+inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, const DofRange& range,
+                   LinearMotion& motion) {
+  const Predictor predictor(scheme);
+  const double velocity_rate = scheme.velocity_rate(), acceleration_rate = scheme.acceleration_rate();
+  const double* const delta = increment.data();
+  double *const displacement = motion.displacement.data(), *const velocity = motion.velocity.data();
+  double* const acceleration = motion.acceleration.data();
+#pragma GCC ivdep
+  for (Eigen::Index i = range.begin; i < range.end(); ++i) {
+    displacement[i] = predictor.displacement(displacement[i], velocity[i], acceleration[i]) + delta[i];
+    velocity[i] = predictor.velocity(velocity[i], acceleration[i]) + velocity_rate * delta[i];
+    acceleration[i] = acceleration_rate * delta[i];
+  }
+}
+inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, LinearMotion& motion) {
+  update(scheme, increment, {0, increment.size()}, motion);
+}
+
+/// The degrees of freedom in `range` that the contacts loaded at the end of a step or in its mean: few of a
+/// structure's.
 inline void find_loaded(const LinearMotion& motion, const DofRange& range, std::vector<int>& dofs) {
   dofs.clear();
   constexpr Eigen::Index together = 16;  // to pass over what is not loaded
   for (Eigen::Index first = range.begin; first < range.end(); first += together) {
     const Eigen::Index count = std::min(together, range.end() - first);
-    if (motion.contact_load.segment(first, count).isZero(0.0)) continue;
+    const auto loaded =
+        motion.contact_load.segment(first, count).array().abs() + motion.step_load.segment(first, count).array().abs();
+    if (loaded.isZero(0.0)) continue;
     for (Eigen::Index i = first; i < first + count; ++i) {
-      if (motion.contact_load[i] != 0.0) dofs.push_back(static_cast<int>(i));
+      if (motion.contact_load[i] != 0.0 || motion.step_load[i] != 0.0) dofs.push_back(static_cast<int>(i));
     }
   }
 }
@@ -105,24 +127,12 @@ inline void close_load(const HhtScheme& scheme, const std::vector<int>& dofs, co
   for (int dof : dofs) p[dof] = scheme.load_weight() * load[dof] - scheme.alpha * f[dof];
 }
 
-/// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.
-inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
-                   const DofRange& range, LinearMotion& motion) {
-  const double velocity_rate = scheme.velocity_rate(), acceleration_rate = scheme.acceleration_rate();
-  const double *const predicted = p.displacement.data(), *const predicted_velocity = p.velocity.data();
-  const double* const delta = increment.data();
-  double *const displacement = motion.displacement.data(), *const velocity = motion.velocity.data();
-  double* const acceleration = motion.acceleration.data();
-#pragma GCC ivdep
-  for (Eigen::Index i = range.begin; i < range.end(); ++i) {
-    displacement[i] = predicted[i] + delta[i];
-    velocity[i] = predicted_velocity[i] + velocity_rate * delta[i];
-    acceleration[i] = acceleration_rate * delta[i];
-  }
-}
+/// Closes a step with the increment Δ over the prediction.
 inline void update(const HhtScheme& scheme, const Prediction& p, const Eigen::VectorXd& increment,
                    LinearMotion& motion) {
-  update(scheme, p, increment, {0, increment.size()}, motion);
+  motion.displacement = p.displacement + increment;
+  motion.velocity = p.velocity + scheme.velocity_rate() * increment;
+  motion.acceleration = scheme.acceleration_rate() * increment;
 }
 
 }  // namespace railtab

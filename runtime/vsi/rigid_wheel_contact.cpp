@@ -111,11 +111,11 @@ class RigidWheels : public ContactLaw {
       known_.back() += Vector3d(ground.z, ground.rate, ground.acceleration);
     }
     if (!model.structure) return;
-    const Prediction& p = ws.structure_prediction;
     couplings_ = line_couplings(step);
     for (int w = 0; w < model.wheelsets(); ++w) {
       const RailContact* contact = &step.contacts[index(2 * w)];
-      known_[index(w)] += followed(mean_line(contact, p.displacement), mean_line(contact, p.velocity), 0.0, running_);
+      known_[index(w)] += followed(mean_line(contact, ws.structure_predicted),
+                                   mean_line(contact, ws.structure_predicted_velocity), 0.0, running_);
       free_[index(w)] = mean_line(contact, ws.structure_free);
     }
     add_carried(step);

@@ -132,7 +132,10 @@ void rest_on_rails(const ContactProblem& problem, ContactSolution& solution) {
       system(i, j) += problem.vehicle_compliance(6 * (i - first) + heave, 6 * (j - first) + heave);
     }
   }
-  for (const RailCoupling& c : problem.rail) system(c.i / 2, c.j / 2) += 0.25 * c.compliance(1, 1);
+  for (const RailCoupling& c : problem.rail) {
+    const Vector6 moved = c.under_vertical_loads();
+    system(c.i, c.j) += 0.25 * (moved[1] + moved[4]);
+  }
   const Eigen::VectorXd force = dense_solution(system, gap);
   set_vertical_forces(force, solution);
 
@@ -145,7 +148,7 @@ void rest_on_rails(const ContactProblem& problem, ContactSolution& solution) {
     }
   }
   for (const RailCoupling& c : problem.rail) {
-    solution.displacement.segment<3>(rail_unknown(c.i)) += c.compliance.col(1) * (-0.5 * force[c.j / 2]);
+    solution.displacement.segment<6>(rails_unknown(c.i)) += -0.5 * force[c.j] * c.under_vertical_loads();
   }
 }
 

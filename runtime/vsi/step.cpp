@@ -24,14 +24,14 @@ KnownLoad known_load(const StepContext& step, const LinearMotion& motion, StepWo
 void close_structure_load(const StepContext& step, const StepWorkspace& ws, LinearMotion& motion) {
   const DofRange& active = step.operators.structure->active();
   if (is_endpoint(step)) {
-    active.of(motion.step_load).setZero();
     for (const std::vector<int>* dofs : {&ws.past_rail_dofs, &ws.rail_dofs}) {
       close_load(step.hht, *dofs, ws.structure_load, motion.contact_load, motion.step_load);
     }
+    for (int dof : ws.past_rail_dofs) motion.contact_load[dof] = 0.0;
   } else {
     close_load(step.hht, active.of(ws.structure_load), active.of(motion.contact_load), active.of(motion.step_load));
+    active.of(motion.contact_load).setZero();
   }
-  active.of(motion.contact_load).setZero();
   add_rail_forces(step.contacts, ws.solution.end_force, motion.contact_load);
 }
 
@@ -40,7 +40,7 @@ void close_structure_load(const StepContext& step, const StepWorkspace& ws, Line
 void predict_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
   const StructureResponse& structure = *step.operators.structure;
   const DofRange& active = structure.active();
-  predict(step.hht, state.structure, active, ws.structure_prediction);
+  const LinearMotion& motion = state.structure;
   for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   ws.rail_dofs.clear();
   ws.rail_dofs_ahead.clear();
@@ -49,9 +49,15 @@ void predict_structure(const StepContext& step, const VsiState& state, StepWorks
     append_dofs_ahead(contact, ws.rail_dofs_ahead);
   }
   std::erase_if(ws.rail_dofs_ahead, [&](int dof) { return dof < active.begin || dof >= active.end(); });
-  find_loaded(state.structure, active, ws.past_rail_dofs);
-  structure.begin_step(ws.structure_prediction, known_load(step, state.structure, ws),
-                       {ws.rail_dofs, ws.rail_dofs_ahead}, ws.structure);
+  const Predictor predictor(step.hht);
+  for (int dof : ws.rail_dofs) {
+    const double velocity = motion.velocity[dof], acceleration = motion.acceleration[dof];
+    ws.structure_predicted[dof] = predictor.displacement(motion.displacement[dof], velocity, acceleration);
+    ws.structure_predicted_velocity[dof] = predictor.velocity(velocity, acceleration);
+  }
+  if (is_endpoint(step)) find_loaded(motion, active, ws.past_rail_dofs);
+  structure.begin_step(step.hht, motion, known_load(step, motion, ws), {ws.rail_dofs, ws.rail_dofs_ahead},
+                       ws.structure);
   ws.structure.substitution.respond(structure.factor(), ws.structure_free);
 }
 
@@ -108,7 +114,7 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
     const StructureResponse& structure = *step.operators.structure;
     ws.structure.substitution.finish(structure.factor(), ws.structure_increment);
     close_structure_load(step, ws, state.structure);
-    update(step.hht, ws.structure_prediction, ws.structure_increment, structure.active(), state.structure);
+    update(step.hht, ws.structure_increment, structure.active(), state.structure);
   }
   const Stopwatch watch = report.times.measure(Phase::vehicle);
   contacts.close(step, state, ws);
@@ -121,6 +127,8 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
 StepWorkspace::StepWorkspace(const VsiModel& model)
     : vehicle_load(Eigen::VectorXd::Zero(model.vehicle.dofs())),
       structure_load(Eigen::VectorXd::Zero(model.structure ? model.structure->dofs() : 0)),
+      structure_predicted(structure_load),
+      structure_predicted_velocity(structure_load),
       structure_free(structure_load),
       structure_increment(structure_load),
       solution(VsiState(model).contact) {}

@@ -52,13 +52,13 @@ struct StepReport {
 /// Buffers of a step, reused. The next step needs nothing that is in them, but that structure_load is zero outside of
 /// rail_dofs.
 struct StepWorkspace {
-  Prediction structure_prediction;
   StructureSolution structure;
   /// Unknowns of the structure that the wheels load at the end of the step, those of the nodes ahead of them, and those
   /// that are loaded at its beginning.
   std::vector<int> rail_dofs, rail_dofs_ahead, past_rail_dofs;
-  Eigen::VectorXd vehicle_load;    ///< of one vehicle
-  Eigen::VectorXd structure_load;  ///< zero but for rail_dofs
+  Eigen::VectorXd vehicle_load;                                       ///< of one vehicle
+  Eigen::VectorXd structure_load;                                     ///< zero but for rail_dofs
+  Eigen::VectorXd structure_predicted, structure_predicted_velocity;  ///< ã, ṽ at the rail_dofs
   Eigen::VectorXd structure_past, structure_free, structure_increment, far_field;
   ContactSolution solution;
 

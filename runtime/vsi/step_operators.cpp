@@ -42,15 +42,15 @@ double StepOperators::vehicle_bytes(const VsiModel& model) {
   return matrices * sizeof(double) * model.vehicle.dofs() * model.vehicle.dofs();
 }
 
-double StepOperators::largest_table(const VsiModel& model, double duration, double time_step) {
-  if (!model.structure) return 0.0;
+double StepOperators::largest_table(const VsiModel& model, const StructureResponse& structure, double duration,
+                                    double time_step) {
   constexpr int looks = 200;
   double largest = 0.0;
   for (int i = 0; i <= looks; ++i) {
     const double time = duration * i / looks;
     const double rear = model.wheelset_x(model.wheelsets() - 1, time - time_step);
-    largest = std::max(largest, StructureResponse::table_bytes(*model.structure, compliance_window, rear,
-                                                               model.wheelset_x(0, time) + compliance_ahead));
+    largest = std::max(largest, structure.table_bytes(*model.structure, compliance_window, rear,
+                                                      model.wheelset_x(0, time) + compliance_ahead));
   }
   return largest;
 }

@@ -59,9 +59,36 @@ RailContact rail_contact(const StructureModel& structure, RailSide side, double 
   return contact;
 }
 
+RailHeads rail_heads(std::span<const RailContact> contacts, int wheelset) noexcept {
+  return RailHeads(contacts.subspan(2 * static_cast<std::size_t>(wheelset), 2));
+}
+
+void append_rail_heads(const StructureModel& structure, double x, std::vector<RailContact>& contacts) {
+  const RailContact& left = contacts.emplace_back(rail_contact(structure, RailSide::left, x));
+  const RailLine& rail = structure.rail[static_cast<std::size_t>(RailSide::right)];
+  const auto node = static_cast<std::size_t>(left.element);
+  if (!left.on_rail || node + 1 >= rail.x.size() || !alike(*left.rail, rail, node)) {
+    contacts.push_back(rail_contact(structure, RailSide::right, x));
+    return;
+  }
+  RailContact right = left;
+  right.side = RailSide::right;
+  right.rail = &rail;
+  right.rows.dof = element_dofs(rail, node);
+  contacts.push_back(right);
+}
+
 Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept {
   if (!i.on_rail || !j.on_rail || i.side != j.side || i.element != j.element) return Eigen::Matrix3d::Zero();
   return i.x == j.x ? j.own.compliance : element_compliance(*j.rail, i.x, j.x);
+}
+
+void add_element_compliance(RailHeads i, RailHeads j, double weight, Matrix6& compliance) noexcept {
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (i[side].element != j[side].element) continue;
+    const auto first = static_cast<Eigen::Index>(3 * side);
+    compliance.block<3, 3>(first, first) += weight * element_compliance(i[side], j[side]);
+  }
 }
 
 namespace {
@@ -113,6 +140,20 @@ void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eige
   }
 }
 
+namespace {
+
+// The compliance of (y, z, roll) of rail heads on a symmetric structure seen in a mirror along the track.
+Eigen::Matrix3d mirrored(const Eigen::Matrix3d& compliance) {
+  Eigen::Matrix3d result = compliance;
+  for (const int odd : {0, 2}) {
+    result(odd, 1) = -compliance(odd, 1);
+    result(1, odd) = -compliance(1, odd);
+  }
+  return result;
+}
+
+}  // namespace
+
 /// Few entries of solutions.
 struct StructureResponse::FewEntries {
   DividedSubstitution solution{};
@@ -148,6 +189,42 @@ MirrorPairs rail_pairs(const StructureModel& structure) {
   return pairs;
 }
 
+// Whether a symmetric structure carries both rails, by what couples with what. Of a node of the rails, the sums of z
+// and pitch then take part with the differences of the others, apart from all else.
+bool rails_mirror_each_other(const StructureModel& structure, const MirrorPairs& pairs, const Sparse& effective) {
+  const auto& [left, right] = structure.rail;
+  if (pairs.empty() || left.x != right.x || left.head_height != right.head_height ||
+      left.stiffness != right.stiffness || left.twist_rate.empty() != right.twist_rate.empty()) {
+    return false;
+  }
+  enum : char { unknown, symmetric, antisymmetric };
+  std::vector<char> kind(static_cast<std::size_t>(effective.rows()), unknown);
+  std::vector<int> reached;
+  for (std::size_t node = 0; node < left.x.size(); ++node) {
+    const DofIndices l = head_dofs(left, node), r = head_dofs(right, node);
+    for (std::size_t k = 0; k < l.size(); ++k) {
+      if ((l[k] == held) != (r[k] == held)) return false;
+      if (l[k] == held) continue;
+      const bool even = k == 2 || k == 4;  // z, pitch
+      const auto [sum, difference] = std::minmax(l[k], r[k]);
+      reached.push_back(even ? sum : difference);
+      kind[static_cast<std::size_t>(reached.back())] = symmetric;
+      kind[static_cast<std::size_t>(even ? difference : sum)] = antisymmetric;
+    }
+  }
+  while (!reached.empty()) {
+    const int column = reached.back();
+    reached.pop_back();
+    for (Sparse::InnerIterator entry(effective, column); entry; ++entry) {
+      char& other = kind[static_cast<std::size_t>(entry.row())];
+      if (other == antisymmetric) return false;
+      if (other == unknown) reached.push_back(static_cast<int>(entry.row()));
+      other = symmetric;
+    }
+  }
+  return true;
+}
+
 // The unknowns of a node of the track or of a beam bridge are on neighbouring lines at one x. Others count as nodes.
 std::vector<int> mesh_nodes(const StructureModel& structure) {
   std::map<std::pair<double, int>, int> known;
@@ -174,6 +251,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
   if (divisible_) {
     divisible_->stiffness = by_sums_and_differences(structure.stiffness, divisible_->pairs);
     divisible_->damping = by_sums_and_differences(structure.damping, divisible_->pairs);
+    rails_mirror_ = rails_mirror_each_other(structure, divisible_->pairs, divisible_->effective);
   }
   if (!divisible_) set_entries(structure.stiffness, structure.damping);
   if (active.count > 0) activate(active);
@@ -320,9 +398,9 @@ std::size_t most_nodes(const RailLine& rail, double reach) {
 
 }  // namespace
 
-double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) {
+double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) const {
   double bytes = 0.0;
-  for (const RailLine& rail : structure.rail) {
+  for (const RailLine& rail : std::span(structure.rail).first(rails_mirror_ ? 1 : 2)) {
     const double longest = longest_element(rail), reach = reach_of(rail, window);
     double blocks = 0.0;
     for (const RailLine& other : structure.rail) blocks += static_cast<double>(most_nodes(other, reach));
@@ -334,11 +412,13 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
   return bytes;
 }
 
-void StructureResponse::begin_step(const Prediction& prediction, const KnownLoad& load, const LoadedUnknowns& few,
-                                   StructureSolution& solution) const {
-  const Eigen::VectorXd& u = prediction.weighted_displacement;
-  const Eigen::VectorXd& v = prediction.weighted_velocity;
+void StructureResponse::begin_step(const HhtScheme& scheme, const LinearMotion& motion, const KnownLoad& load,
+                                   const LoadedUnknowns& few, StructureSolution& solution) const {
   assert(load.at || load.weight == 1.0);
+  // (1+α)ã − αa(t) and (1+α)ṽ − αv(t)
+  const Predictor predictor(scheme);
+  const double weight = scheme.load_weight(), by_velocity = weight * predictor.time_step;
+  const double by_acceleration = weight * predictor.by_acceleration, faster = weight * predictor.faster;
   if (product_) {
     solution.substitution.begin_with(*factor_, few, [&](Eigen::VectorXd& known) {
       if (load.at) {
@@ -346,12 +426,20 @@ void StructureResponse::begin_step(const Prediction& prediction, const KnownLoad
       } else {
         factor_->into(load.vector, known);
       }
-      product_->subtract(u, v, solution.motion, known);
+      const double *const v = motion.velocity.data(), *const a = motion.acceleration.data();
+      product_->subtract({{motion.displacement.data(), v, a}, {1.0, by_velocity, by_acceleration}},
+                         {{v, a}, {1.0, faster}}, solution.motion, known);
     });
     return;
   }
   solution.load.resize(dofs_);
   active_.of(solution.load) = load.weight * active_.of(load.vector);
+  auto& [u, v] = solution.motion;
+  u.resize(dofs_);
+  v.resize(dofs_);
+  const auto velocity = active_.of(motion.velocity), acceleration = active_.of(motion.acceleration);
+  active_.of(u) = active_.of(motion.displacement) + by_velocity * velocity + by_acceleration * acceleration;
+  active_.of(v) = velocity + faster * acceleration;
   const Eigen::Index first = active_.begin, last = active_.end();
   double* const f = solution.load.data();
   for (Eigen::Index j = first; j < last; ++j) {
@@ -369,10 +457,11 @@ void StructureResponse::begin_step(const Prediction& prediction, const KnownLoad
   solution.substitution.begin(*factor_, solution.load, few);
 }
 
-Eigen::VectorXd StructureResponse::increment(const Prediction& prediction, const Eigen::VectorXd& load) const {
+Eigen::VectorXd StructureResponse::increment(const HhtScheme& scheme, const LinearMotion& motion,
+                                             const Eigen::VectorXd& load) const {
   StructureSolution solution;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dofs_);
-  begin_step(prediction, {load}, {}, solution);
+  begin_step(scheme, motion, {load}, {}, solution);
   solution.substitution.respond(*factor_, result);
   solution.substitution.finish(*factor_, result);
   return result;
@@ -427,7 +516,7 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   const RailLine& line = structure.rail[0];
   const bool keeps = keeps_compliances_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
   const auto visit = [&](auto&& visitor) {
-    for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < (rails_mirror_ ? 1 : 2); ++side) {
       const RailLine& rail = structure.rail[side];
       const double longest = longest_element(rail);
       for (std::size_t node = 0; node < rail.x.size(); ++node) {
@@ -455,10 +544,12 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
 template <class Visitor>
 void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept {
   if (!i.on_rail || !j.on_rail) return;
-  const auto row_side = static_cast<std::size_t>(i.side);
+  const bool by_mirror = rails_mirror_ && j.side == RailSide::right;
+  const auto row_side = static_cast<std::size_t>(by_mirror ? other(i.side) : i.side);
+  const auto column_side = static_cast<std::size_t>(by_mirror ? RailSide::left : j.side);
   for (int q = 0; q < 2; ++q) {
-    const Column& from = column_[static_cast<std::size_t>(j.side)][static_cast<std::size_t>(j.element + q)];
-    assert(!from.rows[static_cast<std::size_t>(j.side)].empty() && "the table does not cover this position");
+    const Column& from = column_[column_side][static_cast<std::size_t>(j.element + q)];
+    assert(!from.rows[column_side].empty() && "the table does not cover this position");
     const auto count = static_cast<int>(from.rows[row_side].size());
     for (int p = 0; p < 2; ++p) {
       const int offset = i.element + p - from.first[row_side];
@@ -523,6 +614,18 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
     }
   }
   result.row(0) += i.rail->head_height * result.row(2);
+  return rails_mirror_ && j.side == RailSide::right ? mirrored(result) : result;
+}
+
+Matrix6 StructureResponse::compliance(RailHeads i, RailHeads j) const noexcept {
+  const Eigen::Matrix3d left = compliance(i[0], j[0]), right = compliance(i[1], j[0]);
+  Matrix6 result;
+  result.leftCols<3>() << left, right;
+  if (rails_mirror_) {
+    result.rightCols<3>() << mirrored(right), mirrored(left);
+  } else {
+    result.rightCols<3>() << compliance(i[0], j[1]), compliance(i[1], j[1]);
+  }
   return result;
 }
 

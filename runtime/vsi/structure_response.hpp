@@ -9,6 +9,7 @@
 #include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
+#include "railtab/runtime/contact/wheel_contact.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
@@ -26,8 +27,17 @@ struct RailContact {
 };
 [[nodiscard]] RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept;
 
+/// Where both wheels of a wheelset stand, at one x: left, then right.
+using RailHeads = std::span<const RailContact, 2>;
+/// Of a wheelset of those that stand on `contacts`, left and right in turn.
+[[nodiscard]] RailHeads rail_heads(std::span<const RailContact> contacts, int wheelset) noexcept;
+/// Both wheels of a wheelset at x. What rails that are alike there have in common is found once.
+void append_rail_heads(const StructureModel& structure, double x, std::vector<RailContact>& contacts);
+
 /// element_compliance() of rail head i from loads on rail head j; zero unless both stand on one element.
 [[nodiscard]] Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept;
+/// Add the same of the rail heads under two wheelsets, times a weight.
+void add_element_compliance(RailHeads i, RailHeads j, double weight, Matrix6& compliance) noexcept;
 
 /// Append the structure's unknowns that a wheel loads.
 void append_dofs(const RailContact& contact, std::vector<int>& dofs);
@@ -52,7 +62,7 @@ struct KnownLoad {
 /// Buffers of the structure's solution of one step, reused.
 struct StructureSolution {
   DividedSubstitution substitution;
-  SectionedProduct::Buffers motion;
+  SectionedProduct::Buffers motion;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
   Eigen::VectorXd load;
 };
 
@@ -78,12 +88,14 @@ class StructureResponse {
   [[nodiscard]] const DofRange& active() const noexcept { return active_; }
 
   /// The forward half of Eq. 13 without contact forces at the end of the step. Not at rest.
-  /// @param load what does not come from the prediction: past_contact_load() and others
+  /// @param motion at the beginning of the step @param scheme that of the constructor
+  /// @param load what does not come from the motion: past_contact_load() and others
   /// @param few unknowns that the contact forces stand on, or soon will @pre all of them are active
-  void begin_step(const Prediction& prediction, const KnownLoad& load, const LoadedUnknowns& few,
+  void begin_step(const HhtScheme& scheme, const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                   StructureSolution& solution) const;
   /// The increment of such a step without contacts.
-  [[nodiscard]] Eigen::VectorXd increment(const Prediction& prediction, const Eigen::VectorXd& load) const;
+  [[nodiscard]] Eigen::VectorXd increment(const HhtScheme& scheme, const LinearMotion& motion,
+                                          const Eigen::VectorXd& load) const;
   /// What begin_step() reads of stiffness and damping [bytes].
   [[nodiscard]] std::size_t load_bytes() const noexcept;
 
@@ -97,7 +109,7 @@ class StructureResponse {
   };
   [[nodiscard]] Memory memory() const;
   /// Of a table of compliances with the train between positions `from` and `to` [bytes].
-  [[nodiscard]] static double table_bytes(const StructureModel& structure, double window, double from, double to);
+  [[nodiscard]] double table_bytes(const StructureModel& structure, double window, double from, double to) const;
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
@@ -112,6 +124,8 @@ class StructureResponse {
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
   /// @pre the table covers `j`
   [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
+  /// The same of the rail heads under two wheelsets: y, z, roll of the left one, then of the right one.
+  [[nodiscard]] Matrix6 compliance(RailHeads i, RailHeads j) const noexcept;
 
   /// Vertical displacement z, slope dz/dx and curvature d²z/dx² of rail `i` from a unit vertical load on rail `j`, from
   /// the same table.
@@ -162,7 +176,9 @@ class StructureResponse {
   bool factored_in_sections_ = false, at_rest_ = false;
   std::vector<int> node_;  ///< of every unknown, for the order of elimination
   Eigen::Index dofs_ = 0;
-  std::array<std::vector<Column>, 2> column_;  ///< per rail and node
+  /// Per rail and node. Where the rails mirror each other: of the left one only.
+  std::array<std::vector<Column>, 2> column_;
+  bool rails_mirror_ = false;
   bool keeps_compliances_ = false;
 };
 

@@ -25,7 +25,6 @@ void advance_structure(const StructureResponse& response, const HhtScheme& schem
                        LinearMotion& motion, StructureStepWorkspace& ws) {
   assert(scheme.contact_force == ContactForceRule::endpoint);
   const DofRange all{0, motion.displacement.size()};
-  predict(scheme, motion, all, ws.prediction);
   find_loaded(motion, all, ws.past_rail_dofs);
   ws.rail_dofs.clear();
   for (const RailLoad& rail : loads) append_dofs(rail.place, ws.rail_dofs);
@@ -33,12 +32,12 @@ void advance_structure(const StructureResponse& response, const HhtScheme& schem
   ws.response.resize(all.count);
   ws.increment.resize(all.count);
   add_loads(loads, ws.load);
-  response.begin_step(ws.prediction, {motion.contact_load, ws.past_rail_dofs, -scheme.alpha}, {ws.rail_dofs, {}},
+  response.begin_step(scheme, motion, {motion.contact_load, ws.past_rail_dofs, -scheme.alpha}, {ws.rail_dofs, {}},
                       ws.solution);
   ws.solution.substitution.respond(response.factor(), scheme.load_weight(), ws.load, ws.response);
   ws.solution.substitution.finish(response.factor(), ws.increment);
   motion.contact_load.swap(ws.load);
-  update(scheme, ws.prediction, ws.increment, motion);
+  update(scheme, ws.increment, motion);
 }
 
 }  // namespace railtab

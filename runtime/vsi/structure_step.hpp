@@ -16,7 +16,6 @@ struct RailLoad {
 
 /// Buffers of advance_structure(), reused; the next step needs nothing that is in them.
 struct StructureStepWorkspace {
-  Prediction prediction;
   StructureSolution solution;
   std::vector<int> rail_dofs, past_rail_dofs;
   Eigen::VectorXd load, response, increment;

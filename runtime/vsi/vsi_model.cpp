@@ -145,9 +145,7 @@ std::vector<RailContact> place_wheels(const VsiModel& model, double time) {
   if (!model.structure) return contacts;
   contacts.reserve(index(2 * model.wheelsets()));
   for (int w = 0; w < model.wheelsets(); ++w) {
-    const double x = model.wheelset_x(w, time);
-    contacts.push_back(rail_contact(*model.structure, RailSide::left, x));
-    contacts.push_back(rail_contact(*model.structure, RailSide::right, x));
+    append_rail_heads(*model.structure, model.wheelset_x(w, time), contacts);
   }
   return contacts;
 }

@@ -118,10 +118,14 @@ TEST(SectionedProduct, IsThatOfTheMatrices) {
   const SectionedLdlt factor = sectioned.factor();
   const SectionedProduct product(by_sums_and_differences(s.stiffness, sectioned.pairs),
                                  by_sums_and_differences(s.damping, sectioned.pairs), sectioned.layout);
-  const Eigen::VectorXd u = Eigen::VectorXd::Random(s.dofs()), v = 1e3 * Eigen::VectorXd::Random(s.dofs());
+  const Eigen::MatrixXd vectors = Eigen::MatrixXd::Random(s.dofs(), 3);
+  const auto column = [&](Eigen::Index k) { return vectors.col(k).data(); };
+  const Eigen::VectorXd u = vectors * Eigen::Vector3d(1.0, 0.3, -2.0),
+                        v = vectors.rightCols<2>() * Eigen::Vector2d(7e2, 1e3);
   SectionedProduct::Buffers buffers;
   Eigen::VectorXd ordered = Eigen::VectorXd::Zero(factor.room());
-  product.subtract(u, v, buffers, ordered);
+  product.subtract({{column(0), column(1), column(2)}, {1.0, 0.3, -2.0}}, {{column(1), column(2)}, {7e2, 1e3}}, buffers,
+                   ordered);
   sectioned.layout->fold_borders(ordered);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(s.dofs());
   factor.out_of(ordered, result);

@@ -26,12 +26,20 @@ StructureModel short_bridge() {
   return build_track_bridge(track, {span});
 }
 
+LinearMotion random_motion(Eigen::Index dofs) {
+  LinearMotion motion(dofs);
+  motion.displacement = 1e-3 * Eigen::VectorXd::Random(dofs);
+  motion.velocity = 0.1 * Eigen::VectorXd::Random(dofs);
+  motion.acceleration = 10.0 * Eigen::VectorXd::Random(dofs);
+  return motion;
+}
+
 // A step that rails loaded before bend on, by a workspace: its end under further loads there.
-Eigen::VectorXd increment(const StructureResponse& response, const Prediction& prediction, const KnownLoad& load,
-                          const std::vector<int>& few, StructureSolution& solution) {
-  Eigen::VectorXd extra = Eigen::VectorXd::Zero(prediction.displacement.size()), result = extra;
+Eigen::VectorXd increment(const StructureResponse& response, const HhtScheme& scheme, const LinearMotion& motion,
+                          const KnownLoad& load, const std::vector<int>& few, StructureSolution& solution) {
+  Eigen::VectorXd extra = Eigen::VectorXd::Zero(motion.displacement.size()), result = extra;
   for (int dof : few) extra[dof] = 1e4 + dof;
-  response.begin_step(prediction, load, {few, {}}, solution);
+  response.begin_step(scheme, motion, load, {few, {}}, solution);
   solution.substitution.respond(response.factor(), 0.9, extra, result);
   solution.substitution.finish(response.factor(), result);
   return result;
@@ -44,16 +52,13 @@ TEST(StructureResponse, LoadsOnFewUnknownsAreAsOnAll) {
   for (const bool long_one : {true, false}) {
     const StructureModel structure = long_one ? build_track_bridge(track, {BridgeParameters{}}) : short_bridge();
     const Eigen::Index n = structure.dofs();
-    Prediction prediction;
-    prediction.displacement = prediction.velocity = Eigen::VectorXd::Zero(n);
-    prediction.weighted_displacement = 1e-3 * Eigen::VectorXd::Random(n);
-    prediction.weighted_velocity = 0.1 * Eigen::VectorXd::Random(n);
-    StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
+    const HhtScheme scheme{.alpha = -0.1, .time_step = 1e-3};
+    StructureResponse response(structure, scheme);
     EXPECT_EQ(response.in_sections(), long_one);
     StructureSolution kept;
     for (const DofRange& active : {DofRange{0, n}, DofRange{n / 8, n - n / 4}, DofRange{0, n}}) {
       response.activate(active);
-      LinearMotion motion(n);
+      LinearMotion motion = random_motion(n);
       for (const Eigen::Index dof : {active.begin, n / 2, n / 2 + 1, active.end() - 1}) {
         motion.contact_load[dof] = 5e4 + static_cast<double>(dof);
       }
@@ -62,8 +67,8 @@ TEST(StructureResponse, LoadsOnFewUnknownsAreAsOnAll) {
       EXPECT_EQ(loaded.size(), 4U);
       const std::vector<int> few{loaded[1], loaded[2]};
       StructureSolution fresh;
-      const Eigen::VectorXd of_all = increment(response, prediction, {0.1 * motion.contact_load}, few, fresh);
-      const Eigen::VectorXd of_few = increment(response, prediction, {motion.contact_load, loaded, 0.1}, few, kept);
+      const Eigen::VectorXd of_all = increment(response, scheme, motion, {0.1 * motion.contact_load}, few, fresh);
+      const Eigen::VectorXd of_few = increment(response, scheme, motion, {motion.contact_load, loaded, 0.1}, few, kept);
       EXPECT_LT((of_few - of_all).cwiseAbs().maxCoeff(), 1e-12 * of_all.cwiseAbs().maxCoeff());
       EXPECT_GT(of_all.cwiseAbs().maxCoeff(), 0.0);
     }
@@ -72,7 +77,8 @@ TEST(StructureResponse, LoadsOnFewUnknownsAreAsOnAll) {
 
 TEST(LinearMotion, FindsItsLoads) {
   LinearMotion motion(100);
-  for (const int dof : {3, 17, 31, 32, 78}) motion.contact_load[dof] = -1.0;
+  for (const int dof : {3, 17, 32, 78}) motion.contact_load[dof] = -1.0;
+  motion.step_load[31] = 1.0;
   motion.contact_load[40] = std::numeric_limits<double>::quiet_NaN();
   std::vector<int> loaded{1, 2};
   find_loaded(motion, {5, 73}, loaded);
@@ -113,6 +119,13 @@ TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
       const Eigen::Matrix3d exact =
           solved.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j));
       EXPECT_LT((tabulated - exact).cwiseAbs().maxCoeff(), 1e-10 * solved.cwiseAbs().maxCoeff()) << i << " " << j;
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      const Matrix6 of_wheelsets = response.compliance(rail_heads(contacts, i), rail_heads(contacts, j));
+      const Matrix6 exact = solved.block<6, 6>(6 * i, 6 * j);
+      EXPECT_LT((of_wheelsets - exact).cwiseAbs().maxCoeff(), 1e-10 * solved.cwiseAbs().maxCoeff()) << i << " " << j;
     }
   }
   for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -227,17 +240,15 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
   const HhtScheme scheme{.alpha = -0.1, .time_step = 1e-3};
   StructureResponse in_sections(structure, scheme), whole(unlike, scheme);
   const int n = structure.dofs();
-  Prediction prediction;
-  prediction.weighted_displacement = 1e-3 * Eigen::VectorXd::Random(n);
-  prediction.weighted_velocity = Eigen::VectorXd::Random(n);
+  const LinearMotion motion = random_motion(n);
   const Eigen::VectorXd load = 1e5 * Eigen::VectorXd::Random(n);
   for (const DofRange& range : {DofRange{0, n}, DofRange{300, 400}, DofRange{0, n}}) {
     in_sections.activate(range);
     whole.activate(range);
     EXPECT_EQ(in_sections.in_sections(), range.count == n);
     EXPECT_FALSE(whole.in_sections());
-    const Eigen::VectorXd expected = whole.increment(prediction, load);
-    EXPECT_LT((in_sections.increment(prediction, load) - expected).cwiseAbs().maxCoeff(),
+    const Eigen::VectorXd expected = whole.increment(scheme, motion, load);
+    EXPECT_LT((in_sections.increment(scheme, motion, load) - expected).cwiseAbs().maxCoeff(),
               1e-11 * expected.cwiseAbs().maxCoeff());
   }
 }

@@ -321,15 +321,13 @@ std::vector<double> shaken(const StructureModel& structure) {
   const HhtScheme hht{.alpha = -0.05, .time_step = 1e-3};
   const StructureResponse response(structure, hht);
   LinearMotion motion(structure.dofs());
-  Prediction p;
   Eigen::VectorXd load;
   const int midspan = structure.nodes.front().dof[2];
   std::vector<double> relative;
   for (int step = 0; step < 1000; ++step) {
-    predict(hht, motion, p);
     past_contact_load(hht, motion, {0, structure.dofs()}, load);
     add_ground_load(model, hht, step * hht.time_step, {0, structure.dofs()}, load);
-    update(hht, p, response.increment(p, load), motion);
+    update(hht, response.increment(hht, motion, load), motion);
     const double ground = model.ground_motion->at(0.0, (step + 1) * hht.time_step).displacement[1];
     relative.push_back(motion.displacement[midspan] - ground);
   }

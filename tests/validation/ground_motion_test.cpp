@@ -137,16 +137,14 @@ double supported_mass_error(double time_step) {
   const HhtScheme hht{.alpha = -0.05, .time_step = time_step};
   StructureResponse response(s, hht);
   LinearMotion motion(1);
-  Prediction p;
   Eigen::VectorXd load;
   const std::vector<double> expected = oscillator(shaking(), omega, zeta, 1.0 + at_support / m);
   std::vector<double> relative{0.0};
   const int every = static_cast<int>(std::lround(point_step / time_step));
   for (int step = 0; relative.size() < expected.size(); ++step) {
-    predict(hht, motion, p);
     past_contact_load(hht, motion, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, p, response.increment(p, load), motion);
+    update(hht, response.increment(hht, motion, load), motion);
     const double ground = model.ground_motion->at(3.0, (step + 1) * time_step).displacement[1];
     if ((step + 1) % every == 0) relative.push_back(motion.displacement[0] - ground);
   }
@@ -185,22 +183,19 @@ double two_routes(double time_step) {
   const Eigen::VectorXd inertia = s.mass * carried + s.supports.mass * supports;
 
   LinearMotion absolute(s.dofs()), relative(s.dofs());
-  Prediction p;
   Eigen::VectorXd load;
   const int midspan = s.nodes.front().dof[1];
   double worst = 0.0, size = 0.0;
   for (int step = 0; step * time_step < 2.0; ++step) {
     const double end = (step + 1) * time_step;
-    predict(hht, absolute, p);
     past_contact_load(hht, absolute, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, p, response.increment(p, load), absolute);
+    update(hht, response.increment(hht, absolute, load), absolute);
     const GroundPoint now = model.ground_motion->at(0.0, end);
-    predict(hht, relative, p);
     past_contact_load(hht, relative, {0, s.dofs()}, load);
     const double before = model.ground_motion->at(0.0, step * time_step).acceleration[0];
     load -= (hht.load_weight() * now.acceleration[0] - hht.alpha * before) * inertia;
-    update(hht, p, response.increment(p, load), relative);
+    update(hht, response.increment(hht, relative, load), relative);
     worst = std::max(worst,
                      std::abs(absolute.displacement[midspan] - now.displacement[0] - relative.displacement[midspan]));
     size = std::max(size, std::abs(relative.displacement[midspan]));
