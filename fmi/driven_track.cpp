@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -146,6 +147,7 @@ void exchange(Archive& archive, DrivenTrack& track) {
   }
   exchange_list(archive, structure.dof_x);
   exchange_list(archive, structure.dof_line);
+  exchange_list(archive, structure.dof_node);
 }
 
 bool are_dofs(std::span<const int> dofs, int count) {
@@ -153,6 +155,12 @@ bool are_dofs(std::span<const int> dofs, int count) {
     if (dof != held && (dof < 0 || dof >= count)) return false;
   }
   return true;
+}
+
+bool are_nodes(const std::vector<int>& nodes, int count) {
+  if (nodes.empty()) return true;
+  return nodes.size() == static_cast<std::size_t>(count) &&
+         std::all_of(nodes.begin(), nodes.end(), [=](int node) { return node >= 0 && node < count; });
 }
 
 bool increases(const std::vector<double>& x) {
@@ -178,7 +186,7 @@ bool is_consistent(const DrivenTrack& track) {
   constexpr double smallest_alpha = -1.0 / 3.0;
   bool fits = n > 0 && s.damping.rows() == n && s.stiffness.rows() == n && !track.wheelset_x.empty() &&
               (s.dof_x.empty() || s.dof_x.size() == static_cast<std::size_t>(n)) &&
-              s.dof_line.size() == s.dof_x.size() && track.scheme.time_step > 0.0 &&
+              s.dof_line.size() == s.dof_x.size() && are_nodes(s.dof_node, n) && track.scheme.time_step > 0.0 &&
               track.scheme.alpha >= smallest_alpha && track.scheme.alpha <= 0.0;
   for (const RailLine& rail : s.rail) {
     fits = fits && is_known_or_not(rail) && are_dofs(rail.twist_rate, n);

@@ -265,12 +265,12 @@ class Division {
   }
 
   void find_consecutive() {
-    layout_.consecutive.assign(static_cast<std::size_t>(layout_.slots / 8), 1);
-    for (std::size_t b = 0; b < layout_.consecutive.size(); ++b) {
-      const int* const first = &layout_.unknown[8 * sections * b];
-      for (int k = 0; k < 8 * sections; ++k) {
-        if (first[k] < 0 || first[k] != first[k % sections] + k / sections) layout_.consecutive[b] = 0;
-      }
+    layout_.consecutive.assign(static_cast<std::size_t>(layout_.slots / 4 * sections), -1);
+    for (std::size_t c = 0; c < layout_.consecutive.size(); ++c) {
+      const int* const column = &layout_.unknown[c / sections * 4 * sections + c % sections];
+      bool follow = column[0] >= 0;
+      for (int k = 1; k < 4; ++k) follow &= column[sections * k] == column[0] + k;
+      if (follow) layout_.consecutive[c] = column[0];
     }
   }
 
@@ -301,8 +301,10 @@ class Division {
       layout_.unknown[static_cast<std::size_t>(sections * p.number + p.section)] = static_cast<int>(i);
     }
     find_consecutive();
-    for (int slot = 0; slot < layout_.slots; ++slot) {
-      if (other[static_cast<std::size_t>(slot)] < 0) layout_.single_slots.push_back(slot);
+    layout_.partner.resize(other.size());
+    for (const auto& [one, two] : layout_.paired_slots) {
+      layout_.partner[static_cast<std::size_t>(one)] = {two, false};
+      layout_.partner[static_cast<std::size_t>(two)] = {one, true};
     }
     return true;
   }
@@ -367,74 +369,93 @@ Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
   return result;
 }
 
-template <std::size_t count>
-void SectionLayout::into(const WeightedSum<count>& natural, Eigen::VectorXd& ordered) const {
-  const auto from = [&](Eigen::Index i) {
+template <std::size_t vectors, std::size_t sums>
+void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
+                         const std::array<Eigen::VectorXd*, sums>& ordered) const {
+  std::array<double*, sums> to;
+  for (std::size_t m = 0; m < sums; ++m) to[m] = ordered[m]->data();
+  const auto value = [&](std::size_t m, Eigen::Index i) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < count; ++k) sum += natural.weight[k] * natural.vector[k][i];
+    for (std::size_t k = 0; k < vectors; ++k) sum += natural.weight[m][k] * natural.vector[k][i];
     return sum;
   };
-  const auto four_from = [&](Eigen::Index i, Pack& sum) {
-    sum = Pack{};
-    for (std::size_t k = 0; k < count; ++k) {
-      Pack part;
-      std::memcpy(&part, natural.vector[k] + i, sizeof part);
-      sum += natural.weight[k] * part;
-    }
-  };
-  double* const to = ordered.data();
-  Lanes* const slot = lanes(ordered);
-  const int* const of = unknown.data();
-  // The vectors do not overlap: with that known, the compiler gathers several entries at once.
-  const auto gather = [&](std::size_t begin, std::size_t end) {
-#pragma GCC ivdep
-    for (std::size_t k = begin; k < end; ++k) to[k] = of[k] < 0 ? 0.0 : from(of[k]);
-  };
-  constexpr std::size_t eight = 8 * sections;
-  for (std::size_t b = 0; b < consecutive.size(); ++b) {
-    if (consecutive[b] == 0) {
-      gather(eight * b, eight * (b + 1));
-      continue;
-    }
-    for (std::size_t section = 0; section < 8; section += 4) {
-      for (std::size_t first = 0; first < 8; first += 4) {
-        Pack part[4], of_slot[4];
-        for (std::size_t s = 0; s < 4; ++s) {
-          four_from(unknown[eight * b + section + s] + static_cast<Eigen::Index>(first), part[s]);
+  for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
+    const std::size_t first = c / sections * 4 * sections + c % sections;
+    Pack of_section[sums][4] = {}, of_slot[4];
+    for (std::size_t s = 0; s < 4; ++s) {
+      Pack part[vectors] = {};
+      if (const int begin = consecutive[c + s]; begin >= 0) {
+        for (std::size_t k = 0; k < vectors; ++k) std::memcpy(&part[k], natural.vector[k] + begin, sizeof part[k]);
+      } else {
+        for (int row = 0; row < 4; ++row) {
+          const int from = unknown[first + sections * static_cast<std::size_t>(row) + s];
+          if (from < 0) continue;
+          for (std::size_t k = 0; k < vectors; ++k) part[k][row] = natural.vector[k][from];
         }
-        transpose(part[0], part[1], part[2], part[3], of_slot);
-        double* const block = to + eight * b + 8 * first + section;
-        for (std::size_t k = 0; k < 4; ++k) std::memcpy(block + 8 * k, &of_slot[k], sizeof of_slot[k]);
+      }
+      for (std::size_t m = 0; m < sums; ++m) {
+        for (std::size_t k = 0; k < vectors; ++k) of_section[m][s] += natural.weight[m][k] * part[k];
+      }
+    }
+    for (std::size_t m = 0; m < sums; ++m) {
+      transpose(of_section[m][0], of_section[m][1], of_section[m][2], of_section[m][3], of_slot);
+      for (std::size_t row = 0; row < 4; ++row) {
+        std::memcpy(to[m] + first + sections * row, &of_slot[row], sizeof of_slot[row]);
       }
     }
   }
-  gather(eight * consecutive.size(), unknown.size());
-  for (const auto& [one, two] : paired_slots) {
-    const Lanes u = slot[one], v = slot[two];
-    slot[one] = root_half * (u + v);
-    slot[two] = root_half * (u - v);
-  }
-  for (std::size_t k = 0; k < interfaces.size(); ++k) {
-    to[interface_begin() + static_cast<Eigen::Index>(k)] = combined(interfaces[k].unknown, from);
+  for (std::size_t m = 0; m < sums; ++m) {
+    for (std::size_t entry = 4 * consecutive.size(); entry < unknown.size(); ++entry) {
+      to[m][entry] = unknown[entry] < 0 ? 0.0 : value(m, unknown[entry]);
+    }
+    Lanes* const slot = lanes(*ordered[m]);
+    for (const auto& [one, two] : paired_slots) {
+      const Lanes u = slot[one], v = slot[two];
+      slot[one] = root_half * (u + v);
+      slot[two] = root_half * (u - v);
+    }
+    for (std::size_t k = 0; k < interfaces.size(); ++k) {
+      to[m][interface_begin() + static_cast<Eigen::Index>(k)] =
+          combined(interfaces[k].unknown, [&](Eigen::Index i) { return value(m, i); });
+    }
   }
 }
-template void SectionLayout::into(const WeightedSum<1>&, Eigen::VectorXd&) const;
-template void SectionLayout::into(const WeightedSum<2>&, Eigen::VectorXd&) const;
-template void SectionLayout::into(const WeightedSum<3>&, Eigen::VectorXd&) const;
+template void SectionLayout::into(const WeightedSums<1, 1>&, const std::array<Eigen::VectorXd*, 1>&) const;
+template void SectionLayout::into(const WeightedSums<3, 2>&, const std::array<Eigen::VectorXd*, 2>&) const;
 
 void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
   double* const to = natural.data();
   const Lanes* const slot = lanes(ordered);
-  const auto write = [&](int number, const Lanes& value) {
-    const int* const of = &unknown[static_cast<std::size_t>(sections * number)];
-    for (int s = 0; s < sections; ++s) {
-      if (of[s] >= 0) to[of[s]] = value[s];
-    }
+  // what stands in a slot, in the place of the sum or the difference
+  const auto own = [&](std::size_t k) {
+    const auto& [other, is_second] = partner[k];
+    if (other < 0) return slot[k];
+    return is_second ? root_half * (slot[other] - slot[k]) : root_half * (slot[k] + slot[other]);
   };
-  for (int number : single_slots) write(number, slot[number]);
-  for (const auto& [one, two] : paired_slots) {
-    write(one, root_half * (slot[one] + slot[two]));
-    write(two, root_half * (slot[one] - slot[two]));
+  const auto write = [&](std::size_t entry, double value) {
+    if (unknown[entry] >= 0) to[unknown[entry]] = value;
+  };
+  Lanes four[4];
+  for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
+    const std::size_t block = c / sections * 4, half = c % sections, first = sections * block + half;
+    if (half == 0) {
+      for (std::size_t k = 0; k < 4; ++k) four[k] = own(block + k);
+    }
+    Pack of_slot[4], of_section[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::memcpy(&of_slot[k], reinterpret_cast<const double*>(&four[k]) + half, sizeof of_slot[k]);  // NOLINT
+    }
+    transpose(of_slot[0], of_slot[1], of_slot[2], of_slot[3], of_section);
+    for (std::size_t s = 0; s < 4; ++s) {
+      if (consecutive[c + s] >= 0) {
+        std::memcpy(to + consecutive[c + s], &of_section[s], sizeof of_section[s]);
+      } else {
+        for (std::size_t k = 0; k < 4; ++k) write(first + sections * k + s, of_section[s][k]);
+      }
+    }
+  }
+  for (std::size_t entry = 4 * consecutive.size(); entry < unknown.size(); ++entry) {
+    write(entry, own(entry / sections)[static_cast<int>(entry % sections)]);
   }
   for (const Interface& f : interfaces) {
     to[f.unknown] = combined(f.unknown, [&](Eigen::Index k) { return ordered[position(k)]; });

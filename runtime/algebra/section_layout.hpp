@@ -11,11 +11,11 @@
 
 namespace railtab {
 
-/// The sum of some vectors of all unknowns, each times its weight. Refers to them, and is not kept.
-template <std::size_t count>
-struct WeightedSum {
-  std::array<const double*, count> vector;
-  std::array<double, count> weight;
+/// Sums of some vectors of all unknowns, each times its weight. Refers to them, and is not kept.
+template <std::size_t vectors, std::size_t sums>
+struct WeightedSums {
+  std::array<const double*, vectors> vector;
+  std::array<std::array<double, vectors>, sums> weight;
 };
 
 /// Where the unknowns of a long structure stand.
@@ -81,8 +81,14 @@ struct SectionLayout {
   std::vector<int> mirrored;          ///< of the unknowns in the range the other one of the pair; -1: none
   std::vector<int> unknown;           ///< of every slot and section; -1: none
   MirrorPairs paired_slots;           ///< of the first and the second unknowns of pairs, alike in all sections
-  std::vector<int> single_slots;      ///< of unknowns without a pair
-  std::vector<char> consecutive;      ///< of every eight slots, whether they are consecutive unknowns in all sections
+  struct Partner {
+    int slot = -1;  ///< of the other unknown of the pair; -1: there is none
+    bool is_second = false;
+  };
+  std::vector<Partner> partner;  ///< of every slot
+  /// Of every four slots and section, the first of their unknowns where these are four consecutive ones; -1: they are
+  /// not.
+  std::vector<int> consecutive;
 
   [[nodiscard]] Eigen::Index border_begin() const noexcept { return Eigen::Index{sections} * slots; }
   [[nodiscard]] Eigen::Index interface_begin() const noexcept {
@@ -102,11 +108,11 @@ struct SectionLayout {
     if (other < 0) return value(u);
     return other > u ? root_half * (value(u) + value(other)) : root_half * (value(other) - value(u));
   }
-  /// Sets the slots and the interface unknowns to those of a sum of up to three vectors.
-  template <std::size_t count>
-  void into(const WeightedSum<count>& natural, Eigen::VectorXd& ordered) const;
+  /// Sets the slots and the interface unknowns: one vector, or two sums of three vectors.
+  template <std::size_t vectors, std::size_t sums>
+  void into(const WeightedSums<vectors, sums>& natural, const std::array<Eigen::VectorXd*, sums>& ordered) const;
   void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const {
-    into(WeightedSum<1>{{natural.data()}, {1.0}}, ordered);
+    into(WeightedSums<1, 1>{{natural.data()}, {{{1.0}}}}, {&ordered});
   }
   void out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const;
   /// Copies interface unknowns to the borders beside the sections.

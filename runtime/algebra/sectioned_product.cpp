@@ -70,15 +70,13 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   }
 }
 
-void SectionedProduct::subtract(const WeightedSum<3>& u, const WeightedSum<2>& v, Buffers& buffers,
-                                Eigen::VectorXd& ordered) const {
+void SectionedProduct::subtract(const WeightedSums<3, 2>& motion, Buffers& buffers, Eigen::VectorXd& ordered) const {
   const SectionLayout& l = *layout_;
   if (buffers.u.size() != ordered.size()) {
     buffers.u.setZero(ordered.size());
     buffers.v.setZero(ordered.size());
   }
-  l.into(u, buffers.u);
-  l.into(v, buffers.v);
+  l.into(motion, {&buffers.u, &buffers.v});
   l.spread_interfaces(buffers.u);
   l.spread_interfaces(buffers.v);
   const Lanes *const U = lanes(buffers.u), *const V = lanes(buffers.v);

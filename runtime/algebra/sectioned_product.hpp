@@ -20,8 +20,8 @@ class SectionedProduct {
   struct Buffers {
     Eigen::VectorXd u, v;
   };
-  /// ordered <- ordered − K u − C v. @param ordered room for the whole layout
-  void subtract(const WeightedSum<3>& u, const WeightedSum<2>& v, Buffers& buffers, Eigen::VectorXd& ordered) const;
+  /// ordered <- ordered − K u − C v. @param motion u and v @param ordered room for the whole layout
+  void subtract(const WeightedSums<3, 2>& motion, Buffers& buffers, Eigen::VectorXd& ordered) const;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
 

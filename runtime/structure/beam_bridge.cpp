@@ -33,7 +33,9 @@ DeckLine deck_line(const BridgeParameters& span, double start, MotionPlane plane
       dof[k] = static_cast<int>(dof_x.size());
       dof_x.push_back(x);
       bridge.dof_line.push_back(track_lines + static_cast<int>(k));
+      bridge.dof_node.push_back(bridge.node_count);
     }
+    ++bridge.node_count;
     deck.x.push_back(x);
     deck.dof.push_back(dof);
   }

@@ -118,6 +118,8 @@ struct StructureModel {
   /// Dofs of one number are alike and follow each other along x, such as the vertical displacements of a rail's nodes;
   /// -1: alike to no other. Empty where dof_x is.
   std::vector<int> dof_line{};
+  /// Node of the mesh of every dof, from 0 on, for an order of elimination; empty: not known.
+  std::vector<int> dof_node{};
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.
   std::vector<std::array<double, 2>> spans;
   StructureSupports supports;

@@ -70,9 +70,11 @@ void number_dofs(NodeLine& line, int first_line, Bridge& bridge) {
       index = static_cast<int>(bridge.dof_x.size());
       bridge.dof_x.push_back(line.x[i]);
       bridge.dof_line.push_back(first_line + static_cast<int>(motion));
+      bridge.dof_node.push_back(bridge.node_count);
     };
     for (size_t k = 0; k < 6; ++k) number(line.dof[i][k], k);
     if (!line.twist_rate.empty()) number(line.twist_rate[i], 6);
+    ++bridge.node_count;
   }
 }
 
@@ -277,6 +279,7 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
   const TrackParameters track = with(longitudinal.motion, parameters);
   TrackNodes nodes = place_nodes(track, bridge.end, plane);
   bridge.dof_line.resize(bridge.dof_x.size(), -1);
+  while (bridge.dof_node.size() < bridge.dof_x.size()) bridge.dof_node.push_back(bridge.node_count++);
   number_dofs(nodes.sleeper, 0, bridge);
   for (size_t side = 0; side < 2; ++side) {
     number_dofs(nodes.rail[side], lines_per_node * (1 + static_cast<int>(side)), bridge);
@@ -305,6 +308,8 @@ StructureModel lay_track(const TrackParameters& parameters, Bridge bridge, const
   model.dof_x = std::move(bridge.dof_x);
   order.sort(bridge.dof_line);
   model.dof_line = std::move(bridge.dof_line);
+  order.sort(bridge.dof_node);
+  model.dof_node = std::move(bridge.dof_node);
   model.spans = std::move(bridge.spans);
   model.warnings = std::move(bridge.warnings);
   model.left_out = std::move(bridge.left_out);

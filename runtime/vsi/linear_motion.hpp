@@ -86,11 +86,11 @@ inline void find_loaded(const LinearMotion& motion, const DofRange& range, std::
   dofs.clear();
   constexpr Eigen::Index together = 16;  // to pass over what is not loaded
   for (Eigen::Index first = range.begin; first < range.end(); first += together) {
-    const Eigen::Index count = std::min(together, range.end() - first);
-    const auto loaded =
-        motion.contact_load.segment(first, count).array().abs() + motion.step_load.segment(first, count).array().abs();
-    if (loaded.isZero(0.0)) continue;
-    for (Eigen::Index i = first; i < first + count; ++i) {
+    if (first + together <= range.end()) {
+      const auto amount = [=](const Eigen::VectorXd& load) { return load.segment<together>(first).array().abs(); };
+      if ((amount(motion.contact_load) + amount(motion.step_load)).sum() == 0.0) continue;
+    }
+    for (Eigen::Index i = first; i < std::min(first + together, range.end()); ++i) {
       if (motion.contact_load[i] != 0.0 || motion.step_load[i] != 0.0) dofs.push_back(static_cast<int>(i));
     }
   }

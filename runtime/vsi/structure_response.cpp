@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <string_view>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
@@ -225,26 +224,13 @@ bool rails_mirror_each_other(const StructureModel& structure, const MirrorPairs&
   return true;
 }
 
-// The unknowns of a node of the track or of a beam bridge are on neighbouring lines at one x. Others count as nodes.
-std::vector<int> mesh_nodes(const StructureModel& structure) {
-  std::map<std::pair<double, int>, int> known;
-  std::vector<int> node(structure.dof_line.size());
-  int nodes = 0;
-  for (std::size_t i = 0; i < node.size(); ++i) {
-    const int line = structure.dof_line[i];
-    node[i] = line < 0 ? nodes : known.try_emplace({structure.dof_x[i], line / lines_per_node}, nodes).first->second;
-    nodes += node[i] == nodes;
-  }
-  return node;
-}
-
 }  // namespace
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : StructureResponse(structure, scheme, {0, structure.dofs()}) {}
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active)
-    : node_(mesh_nodes(structure)), dofs_(structure.dofs()) {
+    : node_(structure.dof_node), dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
   set_divisible(structure, active);
@@ -426,9 +412,9 @@ void StructureResponse::begin_step(const HhtScheme& scheme, const LinearMotion& 
       } else {
         factor_->into(load.vector, known);
       }
-      const double *const v = motion.velocity.data(), *const a = motion.acceleration.data();
-      product_->subtract({{motion.displacement.data(), v, a}, {1.0, by_velocity, by_acceleration}},
-                         {{v, a}, {1.0, faster}}, solution.motion, known);
+      product_->subtract({{motion.displacement.data(), motion.velocity.data(), motion.acceleration.data()},
+                          {{{1.0, by_velocity, by_acceleration}, {0.0, 1.0, faster}}}},
+                         solution.motion, known);
     });
     return;
   }

@@ -25,7 +25,8 @@ bool equal(const RailLine& a, const RailLine& b) {
 // What responses are made of: matrices, rails, places of the unknowns.
 bool equal(const StructureModel& a, const StructureModel& b) {
   return equal(a.mass, b.mass) && equal(a.damping, b.damping) && equal(a.stiffness, b.stiffness) &&
-         equal(a.rail[0], b.rail[0]) && equal(a.rail[1], b.rail[1]) && a.dof_x == b.dof_x && a.dof_line == b.dof_line;
+         equal(a.rail[0], b.rail[0]) && equal(a.rail[1], b.rail[1]) && a.dof_x == b.dof_x && a.dof_line == b.dof_line &&
+         a.dof_node == b.dof_node;
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ TEST(DrivenTrack, IsStoredToTheLastBit) {
   EXPECT_EQ(read.structure.rail[1].twist_rate, track.structure.rail[1].twist_rate);
   EXPECT_EQ(read.structure.rail[0].stiffness, track.structure.rail[0].stiffness);
   EXPECT_EQ(read.structure.dof_line, track.structure.dof_line);
+  EXPECT_EQ(read.structure.dof_node, track.structure.dof_node);
   EXPECT_EQ(read.structure.nodes.size(), track.structure.nodes.size());
   EXPECT_EQ(track_guid(bytes).size(), 32u);
 }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -171,6 +172,24 @@ TrackParameters short_track() {
 }
 
 class ImportedSpan : public ::testing::TestWithParam<FeFormat> {};
+
+// How many unknowns the nodes have, of both.
+TEST_P(ImportedSpan, NodesOfTheMeshAreTheBuiltInOnes) {
+  TrackParameters track = short_track();
+  track.longitudinal = LongitudinalMotion::kept;
+  const auto unknowns_of_nodes = [](const StructureModel& model) {
+    EXPECT_EQ(model.dof_node.size(), static_cast<std::size_t>(model.dofs()));
+    std::map<int, int> count;
+    for (const int node : model.dof_node) ++count[node];
+    std::vector<int> sizes;
+    for (const auto& [node, size] : count) sizes.push_back(size);
+    std::sort(sizes.begin(), sizes.end());
+    return sizes;
+  };
+  const WrittenSpan written(GetParam());
+  EXPECT_EQ(unknowns_of_nodes(build_track_on_import(track, written.parameters)),
+            unknowns_of_nodes(build_track_bridge(track, {span()})));
+}
 
 // The vertical and lateral compliance of the rail head over the whole model, from both: signs, units, axes, the order
 // of the rows, the arms and the damping all enter.

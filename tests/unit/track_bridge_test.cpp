@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -241,6 +242,23 @@ TEST(TrackBridge, NamesItsNodesAndCoversTheTrack) {
   EXPECT_NEAR(node(model, "rail-left-midspan-2").x, 44.0, 0.15 + 1e-12);
   EXPECT_NE(node(model, "rail-left-midspan-1").dof[2], node(model, "rail-right-midspan-1").dof[2]);
   EXPECT_EQ(node(build_track_bridge(track, {}), "rail-right-origin").x, 0.0);
+}
+
+TEST(TrackBridge, UnknownsOfARailsNodeAreOneNodeOfTheMesh) {
+  const StructureModel model = build_track_bridge(TrackParameters{}, {BridgeParameters{}});
+  std::set<int> nodes;
+  for (const RailLine& rail : model.rail) {
+    for (std::size_t i = 0; i < rail.x.size(); ++i) {
+      const auto node_of = [&](int dof) { return model.dof_node[static_cast<std::size_t>(dof)]; };
+      const int node = node_of(rail.dof[i][2]);
+      EXPECT_TRUE(nodes.insert(node).second) << i;
+      for (const int dof : head_dofs(rail, i)) {
+        if (dof != held) {
+          EXPECT_EQ(node_of(dof), node) << i;
+        }
+      }
+    }
+  }
 }
 
 TEST(TrackBridge, EndsOfTheRailsAreGuided) {
