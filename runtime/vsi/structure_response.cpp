@@ -618,6 +618,7 @@ Matrix6 StructureResponse::compliance(RailHeads i, RailHeads j) const noexcept {
 Eigen::Vector3d StructureResponse::vertical_compliance(const RailContact& i, const RailContact& j) const noexcept {
   using Row = Eigen::Matrix<double, 1, 6>;
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  // z and pitch, the only unknowns of these rows, are the same in a mirror.
   visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {
     const Eigen::Matrix<double, 6, 1> moved = block * Row::Map(&j.rows.z[q]).transpose();
     result += Eigen::Vector3d(Row::Map(&i.rows.z[p]) * moved, -Row::Map(&i.rows.pitch[p]) * moved,
