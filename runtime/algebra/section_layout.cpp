@@ -268,9 +268,9 @@ class Division {
     layout_.consecutive.assign(static_cast<std::size_t>(layout_.slots / 4 * sections), -1);
     for (std::size_t c = 0; c < layout_.consecutive.size(); ++c) {
       const int* const column = &layout_.unknown[c / sections * 4 * sections + c % sections];
-      bool follow = column[0] >= 0;
-      for (int k = 1; k < 4; ++k) follow &= column[sections * k] == column[0] + k;
-      if (follow) layout_.consecutive[c] = column[0];
+      bool is_run = column[0] >= 0;
+      for (int k = 1; k < 4; ++k) is_run = is_run && column[sections * k] == column[0] + k;
+      if (is_run) layout_.consecutive[c] = column[0];
     }
   }
 

@@ -86,8 +86,8 @@ struct SectionLayout {
     bool is_second = false;
   };
   std::vector<Partner> partner;  ///< of every slot
-  /// Of every four slots and section, the first of their unknowns where these are four consecutive ones; -1: they are
-  /// not.
+  /// For each block of four slots and each section: the first of their four consecutive unknowns; -1: they are not
+  /// consecutive.
   std::vector<int> consecutive;
 
   [[nodiscard]] Eigen::Index border_begin() const noexcept { return Eigen::Index{sections} * slots; }

@@ -231,7 +231,7 @@ void SectionedLdlt::set(std::span<const int> few, double weight, const Vector& n
       continue;
     }
     const double of_other = natural[other];
-    if (other < unknown && of_other != 0.0) continue;  // the other one is of the few, too, and sets both
+    if (other < unknown && of_other != 0.0) continue;  // not zero, so one of the few: it sets both
     const auto [first, second] = std::minmax(unknown, other);
     ordered[layout_->position(first)] = of_pair * (value + of_other);
     ordered[layout_->position(second)] = of_pair * (unknown < other ? value - of_other : of_other - value);

@@ -4,7 +4,7 @@ namespace railtab {
 
 enum class RailSide { left = 0, right = 1 };
 
-[[nodiscard]] constexpr RailSide other(RailSide side) noexcept {
+[[nodiscard]] constexpr RailSide opposite(RailSide side) noexcept {
   return side == RailSide::left ? RailSide::right : RailSide::left;
 }
 

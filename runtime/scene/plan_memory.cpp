@@ -42,7 +42,7 @@ bool reads_tables(const ContactParameters& contact) {
 double train_bytes(const VsiModel& model) {
   const double wheelsets = model.wheelsets(), n = model.vehicle.dofs();
   const double tables = 1.0 + kept_couplings(2 * static_cast<std::size_t>(model.wheelsets()));
-  const double rest = wheelsets * wheelsets * (tables * sizeof(RailCoupling) + 2.0 * sizeof(Matrix6));
+  const double rest = wheelsets * wheelsets * (tables * sizeof(RailCoupling) + 2.0 * sizeof(RailHeadsCompliance));
   constexpr double vehicle_matrices = 8.0;
   return (model.structure ? rest : 0.0) + vehicle_matrices * number * n * n;
 }

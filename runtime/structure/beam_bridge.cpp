@@ -35,7 +35,7 @@ DeckLine deck_line(const BridgeParameters& span, double start, MotionPlane plane
       bridge.dof_line.push_back(track_lines + static_cast<int>(k));
       bridge.dof_node.push_back(bridge.node_count);
     }
-    ++bridge.node_count;
+    bridge.end_node();
     deck.x.push_back(x);
     deck.dof.push_back(dof);
   }

@@ -24,10 +24,14 @@ struct DeckAttachment {
 /// A bridge without its track, in railtab's axes and SI units; x = 0 and the track's centre are those of the track.
 struct Bridge {
   MatrixAssembly matrices;
-  std::vector<double> dof_x;                 // position along the track of each dof [m]
-  std::vector<int> dof_line{};               // StructureModel::dof_line, from track_lines on; empty: all -1
-  std::vector<int> dof_node{};               // StructureModel::dof_node; empty: each is a node
-  int node_count = 0;                        // that dof_node has
+  std::vector<double> dof_x;    // position along the track of each dof [m]
+  std::vector<int> dof_line{};  // StructureModel::dof_line, from track_lines on; empty: all -1
+  std::vector<int> dof_node{};  // StructureModel::dof_node; empty: each is a node
+  int node_count = 0;           // that dof_node has
+  /// The dofs that were added last are all of their node; a node without any is not counted.
+  void end_node() {
+    if (!dof_node.empty() && dof_node.back() == node_count) ++node_count;
+  }
   std::vector<std::array<double, 2>> spans;  // from and to [m]
   std::vector<double> support_x;             // of each support, whose y and z are two columns of it [m]
   std::string beyond_supports;               // StructureSupports::beyond

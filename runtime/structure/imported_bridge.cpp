@@ -83,16 +83,15 @@ void fit_rotations(const FeStructure& structure, const std::vector<ReportedDeckN
   }
 }
 
-/// StructureModel::dof_node; an element's inner mode is a node of its own.
-std::vector<int> nodes_of_rows(const FeStructure& structure) {
+/// Sets StructureModel::dof_node; an element's inner mode is a node of its own. @return number of nodes
+int number_nodes(const FeStructure& structure, std::vector<int>& nodes) {
   std::map<int, int> known;
-  std::vector<int> nodes;
   int count = 0;
   for (const int number : structure.node_of_row) {
     nodes.push_back(number == no_node ? count : known.try_emplace(number, count).first->second);
     count += nodes.back() == count ? 1 : 0;
   }
-  return nodes;
+  return count;
 }
 
 Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, DeckRecord record) {
@@ -112,9 +111,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, Deck
   bridge.support_x = supports.x;
   bridge.beyond_supports = supports.beyond;
   bridge.dof_x = row_positions(structure);
-  bridge.dof_node = nodes_of_rows(structure);
-  bridge.node_count =
-      bridge.dof_node.empty() ? 0 : 1 + *std::max_element(bridge.dof_node.begin(), bridge.dof_node.end());
+  bridge.node_count = number_nodes(structure, bridge.dof_node);
   const DeckExtent extent = plausible_deck_extent(structure, deck);
   bridge.end = extent.end;
   for (std::string& sentence : deck_place_warnings(extent)) bridge.warnings.push_back(std::move(sentence));
@@ -293,7 +290,7 @@ StructureModel import_with_rails(const ImportParameters& parameters, DeckRecord 
   model.stiffness = structure.stiffness;
   FeDampingMatrix damping = damping_matrix(structure, parameters.damping);
   model.damping = damping.of_unknowns;
-  model.dof_node = nodes_of_rows(structure);
+  static_cast<void>(number_nodes(structure, model.dof_node));
   model.warnings = plausibility_warnings(mass_per_length(structure), damping.first_frequency);
   model.supports = settled_supports(structure, damping);
   model.rail[0] = rail_line(structure, parameters.rail_left, "structure.rail_left");

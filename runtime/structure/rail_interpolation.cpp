@@ -28,7 +28,7 @@ std::array<int, 12> element_dofs(const RailLine& rail, std::size_t node) noexcep
   return dofs;
 }
 
-bool alike(const RailLine& a, const RailLine& b, std::size_t node) noexcept {
+bool same_element(const RailLine& a, const RailLine& b, std::size_t node) noexcept {
   return a.x[node] == b.x[node] && a.x[node + 1] == b.x[node + 1] && a.head_height == b.head_height &&
          a.stiffness == b.stiffness && a.twist_rate.empty() == b.twist_rate.empty();
 }

@@ -39,8 +39,8 @@ struct RailLine {
 
 /// The same of both nodes of the element after a node.
 [[nodiscard]] std::array<int, 12> element_dofs(const RailLine& rail, std::size_t node) noexcept;
-/// Whether two rails have the same element after a node: all but its dofs.
-[[nodiscard]] bool alike(const RailLine& a, const RailLine& b, std::size_t node) noexcept;
+/// Whether the elements of two rails after a node are the same but for their dofs. @pre both have the next node
+[[nodiscard]] bool same_element(const RailLine& a, const RailLine& b, std::size_t node) noexcept;
 
 /// Rows that give the rail head's motion at a position from the head_dofs() of both nodes of the beam element there
 /// (cubic Hermite for bending, torsion_shape() or linear for roll): value = Σ row[k]·a[dof[k]], held dofs skipped. The
@@ -118,7 +118,8 @@ struct StructureModel {
   /// Dofs of one number are alike and follow each other along x, such as the vertical displacements of a rail's nodes;
   /// -1: alike to no other. Empty where dof_x is.
   std::vector<int> dof_line{};
-  /// Node of the mesh of every dof, from 0 on, for an order of elimination; empty: not known.
+  /// Node of the mesh that every dof belongs to, for an order of elimination: numbers from 0 on, below that of the
+  /// dofs; empty: not known.
   std::vector<int> dof_node{};
   /// Parts that move as wholes, from and to [m]: the spans of a bridge.
   std::vector<std::array<double, 2>> spans;

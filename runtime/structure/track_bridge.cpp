@@ -74,7 +74,7 @@ void number_dofs(NodeLine& line, int first_line, Bridge& bridge) {
     };
     for (size_t k = 0; k < 6; ++k) number(line.dof[i][k], k);
     if (!line.twist_rate.empty()) number(line.twist_rate[i], 6);
-    ++bridge.node_count;
+    bridge.end_node();
   }
 }
 

@@ -27,7 +27,7 @@ inline constexpr int wheelset_unknowns = 12;
 /// Motion of the rail heads under wheelset i from loads on those under wheelset j.
 struct RailCoupling {
   int i, j;
-  Matrix6 compliance;  ///< y, z, roll of the left, then of the right rail head
+  RailHeadsCompliance compliance;
 
   /// Of a unit vertical load on each of both rail heads under j.
   [[nodiscard]] Vector6 under_vertical_loads() const { return compliance.col(1) + compliance.col(4); }

@@ -76,7 +76,7 @@ void ElementForces::begin(const Step& step, const Start& start) {
   friction_ = start.friction(system_.elements);
   elongate(start.motion.displacement, x0_);
   elongate(start.guess, x_);
-  if (only_stops_) return;  // to which rates are nothing
+  if (only_stops_) return;  // which do not depend on rates
   elongate(start.motion.velocity, v0_);
   elongate(start.prediction.displacement, predicted_);
   elongate(start.prediction.velocity, predicted_rate_);
@@ -149,7 +149,8 @@ void ElementForces::factor(const ElementCompliance& compliance) {
 }
 
 // Newton's method on x − x_free + C f(x) = 0. f is piecewise linear and, but for friction under a load that changes,
-// monotone: a few iterations end it exactly. A correction that makes the residual larger is halved.
+// monotone: a few iterations end it exactly. A correction that makes the residual larger is halved. Stops within their
+// clearance exert nothing: x = x_free is the solution.
 bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::VectorXd& free) {
   if (empty()) return true;
   constexpr double rounding = 1e-14, good_enough = 1e-11;  // m, rad
@@ -164,7 +165,7 @@ bool ElementForces::solve(const ElementCompliance& compliance, const Eigen::Vect
     x_before_ = x_;
     x_ = free;
     evaluate();
-    if (rests()) return true;  // all within their clearance
+    if (exert_nothing()) return true;
     x_ = x_before_;
   }
   double size = residual();
@@ -244,7 +245,7 @@ void TrainElements::respond(const Eigen::VectorXd& force, Eigen::VectorXd& displ
       displacement.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
     }
-    if (system_[s].rests()) continue;
+    if (system_[s].exert_nothing()) continue;
     wheelset_displacement_.noalias() = response.to_wheelsets * system_[s].share();
     for (std::size_t w = 0; w < wheelsets.size(); ++w) {
       displacement.segment<6>(first_unknown(w)) -= wheelset_displacement_.segment<6>(static_cast<Eigen::Index>(6 * w));

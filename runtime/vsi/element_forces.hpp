@@ -65,8 +65,8 @@ class ElementForces {
   void begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction);
 
   [[nodiscard]] bool empty() const noexcept { return elements_.empty(); }
-  /// Whether the elements exert nothing in the step, and would not where it ends a little elsewhere.
-  [[nodiscard]] bool rests() const noexcept { return share_.isZero(0.0) && slope_.isZero(0.0); }
+  /// Whether the share of all elements in the step and its derivative vanish.
+  [[nodiscard]] bool exert_nothing() const noexcept { return share_.isZero(0.0) && slope_.isZero(0.0); }
   /// Elongations of the system's elements.
   void elongate(const Eigen::VectorXd& displacement, Eigen::VectorXd& elongation) const;
   /// Solves (E1). @param free x without the elements' forces at the end. False where it does not converge.

@@ -26,16 +26,14 @@ void couple_rails(const StepContext& step, std::vector<RailCoupling>& rail) {
   const int wheelsets = static_cast<int>(contacts.size()) / 2;
   const double of_elements = element_weight(step.hht);
   for (int j = 0; j < wheelsets; ++j) {
+    const RailHeads at_j = rail_heads(contacts, j);
     // Wheelsets are ordered along the train, so those within reach are neighbours in the list; the compliance is
     // symmetric.
     for (int i = j; i < wheelsets; ++i) {
-      const RailHeads at_i = rail_heads(contacts, i), at_j = rail_heads(contacts, j);
-      Matrix6 c = step.hht.load_weight() * step.operators.structure->compliance(at_i, at_j);
+      const RailHeads at_i = rail_heads(contacts, i);
+      RailHeadsCompliance c = step.hht.load_weight() * step.operators.structure->compliance(at_i, at_j);
       add_element_compliance(at_i, at_j, of_elements, c);
-      if (c.isZero(0.0)) {
-        if (i == j) continue;  // beyond the modelled track
-        break;
-      }
+      if (c.isZero(0.0)) break;  // out of reach, or wheelset j beyond the modelled track
       rail.push_back({i, j, c});
       if (i != j) rail.push_back({j, i, c.transpose()});
     }

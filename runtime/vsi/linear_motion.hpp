@@ -29,18 +29,22 @@ struct LinearMotion {
         step_load(Eigen::VectorXd::Zero(dofs)) {}
 };
 
-/// What one HHT step predicts of displacement and velocity.
-struct Predictor {
-  double time_step, by_acceleration, faster;
+/// Newmark's predictors ã = a + Δt v + Δt²(½−β) a'' and ṽ = v + Δt(1−γ) a''.
+struct NewmarkPredictor {
+  double time_step;                     ///< Δt [s]
+  double displacement_by_acceleration;  ///< Δt²(½−β) [s²]
+  double velocity_by_acceleration;      ///< Δt(1−γ) [s]
 
-  explicit Predictor(const HhtScheme& scheme)
+  explicit NewmarkPredictor(const HhtScheme& scheme)
       : time_step(scheme.time_step),
-        by_acceleration(scheme.time_step * scheme.time_step * (0.5 - scheme.beta())),
-        faster(scheme.time_step * (1.0 - scheme.gamma())) {}
+        displacement_by_acceleration(scheme.time_step * scheme.time_step * (0.5 - scheme.beta())),
+        velocity_by_acceleration(scheme.time_step * (1.0 - scheme.gamma())) {}
   [[nodiscard]] double displacement(double a, double v, double acceleration) const noexcept {
-    return a + time_step * v + by_acceleration * acceleration;
+    return a + time_step * v + displacement_by_acceleration * acceleration;
   }
-  [[nodiscard]] double velocity(double v, double acceleration) const noexcept { return v + faster * acceleration; }
+  [[nodiscard]] double velocity(double v, double acceleration) const noexcept {
+    return v + velocity_by_acceleration * acceleration;
+  }
 };
 
 /// Predictors of one HHT step, caller-owned so that a step allocates nothing.
@@ -51,12 +55,13 @@ struct Prediction {
 
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
+/// The prediction of the step that begins with this motion.
 inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Prediction& p) {
-  const Predictor predictor(scheme);
+  const NewmarkPredictor predictor(scheme);
   const double weight = scheme.load_weight(), alpha = scheme.alpha;
-  p.displacement =
-      motion.displacement + predictor.time_step * motion.velocity + predictor.by_acceleration * motion.acceleration;
-  p.velocity = motion.velocity + predictor.faster * motion.acceleration;
+  p.displacement = motion.displacement + predictor.time_step * motion.velocity +
+                   predictor.displacement_by_acceleration * motion.acceleration;
+  p.velocity = motion.velocity + predictor.velocity_by_acceleration * motion.acceleration;
   p.weighted_displacement = weight * p.displacement - alpha * motion.displacement;
   p.weighted_velocity = weight * p.velocity - alpha * motion.velocity;
 }
@@ -64,7 +69,7 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Predict
 /// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.
 inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, const DofRange& range,
                    LinearMotion& motion) {
-  const Predictor predictor(scheme);
+  const NewmarkPredictor predictor(scheme);
   const double velocity_rate = scheme.velocity_rate(), acceleration_rate = scheme.acceleration_rate();
   const double* const delta = increment.data();
   double *const displacement = motion.displacement.data(), *const velocity = motion.velocity.data();
@@ -87,8 +92,9 @@ inline void find_loaded(const LinearMotion& motion, const DofRange& range, std::
   constexpr Eigen::Index together = 16;  // to pass over what is not loaded
   for (Eigen::Index first = range.begin; first < range.end(); first += together) {
     if (first + together <= range.end()) {
-      const auto amount = [=](const Eigen::VectorXd& load) { return load.segment<together>(first).array().abs(); };
-      if ((amount(motion.contact_load) + amount(motion.step_load)).sum() == 0.0) continue;
+      const double loaded = motion.contact_load.segment<together>(first).cwiseAbs().sum() +
+                            motion.step_load.segment<together>(first).cwiseAbs().sum();
+      if (loaded == 0.0) continue;
     }
     for (Eigen::Index i = first; i < std::min(first + together, range.end()); ++i) {
       if (motion.contact_load[i] != 0.0 || motion.step_load[i] != 0.0) dofs.push_back(static_cast<int>(i));

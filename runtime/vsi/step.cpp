@@ -20,7 +20,8 @@ KnownLoad known_load(const StepContext& step, const LinearMotion& motion, StepWo
   return {ws.structure_past};
 }
 
-// close_load() of the structure, whose loads under ContactForceRule::endpoint stand under the wheels alone.
+// close_load() of the structure. Under ContactForceRule::endpoint all loads but those under the wheels and of the
+// past_rail_dofs are zero.
 void close_structure_load(const StepContext& step, const StepWorkspace& ws, LinearMotion& motion) {
   const DofRange& active = step.operators.structure->active();
   if (is_endpoint(step)) {
@@ -49,15 +50,14 @@ void predict_structure(const StepContext& step, const VsiState& state, StepWorks
     append_dofs_ahead(contact, ws.rail_dofs_ahead);
   }
   std::erase_if(ws.rail_dofs_ahead, [&](int dof) { return dof < active.begin || dof >= active.end(); });
-  const Predictor predictor(step.hht);
+  const NewmarkPredictor predictor(step.hht);
   for (int dof : ws.rail_dofs) {
     const double velocity = motion.velocity[dof], acceleration = motion.acceleration[dof];
     ws.structure_predicted[dof] = predictor.displacement(motion.displacement[dof], velocity, acceleration);
     ws.structure_predicted_velocity[dof] = predictor.velocity(velocity, acceleration);
   }
   if (is_endpoint(step)) find_loaded(motion, active, ws.past_rail_dofs);
-  structure.begin_step(step.hht, motion, known_load(step, motion, ws), {ws.rail_dofs, ws.rail_dofs_ahead},
-                       ws.structure);
+  structure.begin_step(motion, known_load(step, motion, ws), {ws.rail_dofs, ws.rail_dofs_ahead}, ws.structure);
   ws.structure.substitution.respond(structure.factor(), ws.structure_free);
 }
 

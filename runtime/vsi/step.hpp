@@ -53,8 +53,8 @@ struct StepReport {
 /// rail_dofs.
 struct StepWorkspace {
   StructureSolution structure;
-  /// Unknowns of the structure that the wheels load at the end of the step, those of the nodes ahead of them, and those
-  /// that are loaded at its beginning.
+  /// Unknowns of the structure that the wheels load at the end of the step, and those of the nodes ahead of them; under
+  /// ContactForceRule::endpoint find_loaded() at its beginning, else not set.
   std::vector<int> rail_dofs, rail_dofs_ahead, past_rail_dofs;
   Eigen::VectorXd vehicle_load;                                       ///< of one vehicle
   Eigen::VectorXd structure_load;                                     ///< zero but for rail_dofs

@@ -42,15 +42,15 @@ double StepOperators::vehicle_bytes(const VsiModel& model) {
   return matrices * sizeof(double) * model.vehicle.dofs() * model.vehicle.dofs();
 }
 
-double StepOperators::largest_table(const VsiModel& model, const StructureResponse& structure, double duration,
+double StepOperators::largest_table(const VsiModel& model, const StructureResponse& response, double duration,
                                     double time_step) {
   constexpr int looks = 200;
   double largest = 0.0;
   for (int i = 0; i <= looks; ++i) {
     const double time = duration * i / looks;
     const double rear = model.wheelset_x(model.wheelsets() - 1, time - time_step);
-    largest = std::max(largest, structure.table_bytes(*model.structure, compliance_window, rear,
-                                                      model.wheelset_x(0, time) + compliance_ahead));
+    largest = std::max(largest, response.table_bytes(*model.structure, compliance_window, rear,
+                                                     model.wheelset_x(0, time) + compliance_ahead));
   }
   return largest;
 }

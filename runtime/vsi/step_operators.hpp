@@ -31,8 +31,8 @@ class StepOperators {
 
   /// Memory that the operators keep for a vehicle [bytes].
   [[nodiscard]] static double vehicle_bytes(const VsiModel& model);
-  /// The largest table of compliances of a run of `duration` [s] [bytes]. @param structure of the model's steps
-  [[nodiscard]] static double largest_table(const VsiModel& model, const StructureResponse& structure, double duration,
+  /// The largest table of compliances of a run of `duration` [s] [bytes]. @param response of the model's structure
+  [[nodiscard]] static double largest_table(const VsiModel& model, const StructureResponse& response, double duration,
                                             double time_step);
 
  private:

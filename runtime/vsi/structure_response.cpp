@@ -66,7 +66,7 @@ void append_rail_heads(const StructureModel& structure, double x, std::vector<Ra
   const RailContact& left = contacts.emplace_back(rail_contact(structure, RailSide::left, x));
   const RailLine& rail = structure.rail[static_cast<std::size_t>(RailSide::right)];
   const auto node = static_cast<std::size_t>(left.element);
-  if (!left.on_rail || node + 1 >= rail.x.size() || !alike(*left.rail, rail, node)) {
+  if (!left.on_rail || node + 1 >= rail.x.size() || !same_element(*left.rail, rail, node)) {
     contacts.push_back(rail_contact(structure, RailSide::right, x));
     return;
   }
@@ -82,7 +82,7 @@ Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) n
   return i.x == j.x ? j.own.compliance : element_compliance(*j.rail, i.x, j.x);
 }
 
-void add_element_compliance(RailHeads i, RailHeads j, double weight, Matrix6& compliance) noexcept {
+void add_element_compliance(RailHeads i, RailHeads j, double weight, RailHeadsCompliance& compliance) noexcept {
   for (std::size_t side = 0; side < 2; ++side) {
     if (i[side].element != j[side].element) continue;
     const auto first = static_cast<Eigen::Index>(3 * side);
@@ -188,13 +188,13 @@ MirrorPairs rail_pairs(const StructureModel& structure) {
   return pairs;
 }
 
-// Whether a symmetric structure carries both rails, by what couples with what. Of a node of the rails, the sums of z
-// and pitch then take part with the differences of the others, apart from all else.
+// Whether a symmetric structure carries both rails: its effective matrix then does not couple the symmetric
+// combinations of the rails (sums of z and pitch, differences of y, roll, yaw and the twist's rate) with the others.
 bool rails_mirror_each_other(const StructureModel& structure, const MirrorPairs& pairs, const Sparse& effective) {
   const auto& [left, right] = structure.rail;
-  if (pairs.empty() || left.x != right.x || left.head_height != right.head_height ||
-      left.stiffness != right.stiffness || left.twist_rate.empty() != right.twist_rate.empty()) {
-    return false;
+  if (pairs.empty() || left.x.size() != right.x.size()) return false;
+  for (std::size_t node = 0; node + 1 < left.x.size(); ++node) {
+    if (!same_element(left, right, node)) return false;
   }
   enum : char { unknown, symmetric, antisymmetric };
   std::vector<char> kind(static_cast<std::size_t>(effective.rows()), unknown);
@@ -230,7 +230,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
     : StructureResponse(structure, scheme, {0, structure.dofs()}) {}
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active)
-    : node_(structure.dof_node), dofs_(structure.dofs()) {
+    : scheme_(scheme), node_(structure.dof_node), dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
   set_divisible(structure, active);
@@ -398,13 +398,14 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
   return bytes;
 }
 
-void StructureResponse::begin_step(const HhtScheme& scheme, const LinearMotion& motion, const KnownLoad& load,
-                                   const LoadedUnknowns& few, StructureSolution& solution) const {
+void StructureResponse::begin_step(const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
+                                   StructureSolution& solution) const {
   assert(load.at || load.weight == 1.0);
   // (1+α)ã − αa(t) and (1+α)ṽ − αv(t)
-  const Predictor predictor(scheme);
-  const double weight = scheme.load_weight(), by_velocity = weight * predictor.time_step;
-  const double by_acceleration = weight * predictor.by_acceleration, faster = weight * predictor.faster;
+  const NewmarkPredictor predictor(scheme_);
+  const double weight = scheme_.load_weight();
+  const std::array<double, 3> of_u{1.0, weight * predictor.time_step, weight * predictor.displacement_by_acceleration};
+  const std::array<double, 3> of_v{0.0, 1.0, weight * predictor.velocity_by_acceleration};
   if (product_) {
     solution.substitution.begin_with(*factor_, few, [&](Eigen::VectorXd& known) {
       if (load.at) {
@@ -412,9 +413,9 @@ void StructureResponse::begin_step(const HhtScheme& scheme, const LinearMotion& 
       } else {
         factor_->into(load.vector, known);
       }
-      product_->subtract({{motion.displacement.data(), motion.velocity.data(), motion.acceleration.data()},
-                          {{{1.0, by_velocity, by_acceleration}, {0.0, 1.0, faster}}}},
-                         solution.motion, known);
+      product_->subtract(
+          {{motion.displacement.data(), motion.velocity.data(), motion.acceleration.data()}, {of_u, of_v}},
+          solution.motion, known);
     });
     return;
   }
@@ -424,8 +425,8 @@ void StructureResponse::begin_step(const HhtScheme& scheme, const LinearMotion& 
   u.resize(dofs_);
   v.resize(dofs_);
   const auto velocity = active_.of(motion.velocity), acceleration = active_.of(motion.acceleration);
-  active_.of(u) = active_.of(motion.displacement) + by_velocity * velocity + by_acceleration * acceleration;
-  active_.of(v) = velocity + faster * acceleration;
+  active_.of(u) = active_.of(motion.displacement) + of_u[1] * velocity + of_u[2] * acceleration;
+  active_.of(v) = velocity + of_v[2] * acceleration;
   const Eigen::Index first = active_.begin, last = active_.end();
   double* const f = solution.load.data();
   for (Eigen::Index j = first; j < last; ++j) {
@@ -443,11 +444,10 @@ void StructureResponse::begin_step(const HhtScheme& scheme, const LinearMotion& 
   solution.substitution.begin(*factor_, solution.load, few);
 }
 
-Eigen::VectorXd StructureResponse::increment(const HhtScheme& scheme, const LinearMotion& motion,
-                                             const Eigen::VectorXd& load) const {
+Eigen::VectorXd StructureResponse::increment(const LinearMotion& motion, const Eigen::VectorXd& load) const {
   StructureSolution solution;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dofs_);
-  begin_step(scheme, motion, {load}, {}, solution);
+  begin_step(motion, {load}, {}, solution);
   solution.substitution.respond(*factor_, result);
   solution.substitution.finish(*factor_, result);
   return result;
@@ -531,7 +531,7 @@ template <class Visitor>
 void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept {
   if (!i.on_rail || !j.on_rail) return;
   const bool by_mirror = rails_mirror_ && j.side == RailSide::right;
-  const auto row_side = static_cast<std::size_t>(by_mirror ? other(i.side) : i.side);
+  const auto row_side = static_cast<std::size_t>(by_mirror ? opposite(i.side) : i.side);
   const auto column_side = static_cast<std::size_t>(by_mirror ? RailSide::left : j.side);
   for (int q = 0; q < 2; ++q) {
     const Column& from = column_[column_side][static_cast<std::size_t>(j.element + q)];
@@ -603,9 +603,10 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
   return rails_mirror_ && j.side == RailSide::right ? mirrored(result) : result;
 }
 
-Matrix6 StructureResponse::compliance(RailHeads i, RailHeads j) const noexcept {
+RailHeadsCompliance StructureResponse::compliance(RailHeads i, RailHeads j) const noexcept {
+  assert(i[0].x == i[1].x && j[0].x == j[1].x);
   const Eigen::Matrix3d left = compliance(i[0], j[0]), right = compliance(i[1], j[0]);
-  Matrix6 result;
+  RailHeadsCompliance result;
   result.leftCols<3>() << left, right;
   if (rails_mirror_) {
     result.rightCols<3>() << mirrored(right), mirrored(left);

@@ -9,7 +9,7 @@
 #include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
-#include "railtab/runtime/contact/wheel_contact.hpp"
+
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
@@ -29,15 +29,20 @@ struct RailContact {
 
 /// Where both wheels of a wheelset stand, at one x: left, then right.
 using RailHeads = std::span<const RailContact, 2>;
-/// Of a wheelset of those that stand on `contacts`, left and right in turn.
+/// Those of one wheelset. @param contacts left, right of each wheelset in turn
 [[nodiscard]] RailHeads rail_heads(std::span<const RailContact> contacts, int wheelset) noexcept;
-/// Both wheels of a wheelset at x. What rails that are alike there have in common is found once.
+/// Appends rail_contact() of both rails at x [m]. What two rails with the same element there have in common is found
+/// once.
 void append_rail_heads(const StructureModel& structure, double x, std::vector<RailContact>& contacts);
+
+/// Displacement (y, z, roll) of the left, then of the right rail head under one wheelset from unit forces along y and z
+/// and unit moments about x on those under another [m/N, rad/N, m/(N m), rad/(N m)].
+using RailHeadsCompliance = Eigen::Matrix<double, 6, 6>;
 
 /// element_compliance() of rail head i from loads on rail head j; zero unless both stand on one element.
 [[nodiscard]] Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept;
-/// Add the same of the rail heads under two wheelsets, times a weight.
-void add_element_compliance(RailHeads i, RailHeads j, double weight, Matrix6& compliance) noexcept;
+/// Adds `weight` times that of the rail heads under wheelsets i and j to the blocks of either rail with itself.
+void add_element_compliance(RailHeads i, RailHeads j, double weight, RailHeadsCompliance& compliance) noexcept;
 
 /// Append the structure's unknowns that a wheel loads.
 void append_dofs(const RailContact& contact, std::vector<int>& dofs);
@@ -82,20 +87,24 @@ class StructureResponse {
   [[nodiscard]] const SubstitutionFactor& factor() const noexcept { return *factor_; }
   /// Whether the active unknowns are factored in sections.
   [[nodiscard]] bool in_sections() const noexcept { return factored_in_sections_; }
+  /// Whether a symmetric structure carries both rails, as far as its lines tell: only the left one's compliances are
+  /// tabulated then.
+  [[nodiscard]] bool rails_mirror() const noexcept { return rails_mirror_; }
+  /// That of the constructor. @pre not at rest
+  [[nodiscard]] const HhtScheme& scheme() const noexcept { return scheme_; }
 
   /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
   void activate(const DofRange& dofs);
   [[nodiscard]] const DofRange& active() const noexcept { return active_; }
 
   /// The forward half of Eq. 13 without contact forces at the end of the step. Not at rest.
-  /// @param motion at the beginning of the step @param scheme that of the constructor
+  /// @param motion at the beginning of the step
   /// @param load what does not come from the motion: past_contact_load() and others
   /// @param few unknowns that the contact forces stand on, or soon will @pre all of them are active
-  void begin_step(const HhtScheme& scheme, const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
+  void begin_step(const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                   StructureSolution& solution) const;
   /// The increment of such a step without contacts.
-  [[nodiscard]] Eigen::VectorXd increment(const HhtScheme& scheme, const LinearMotion& motion,
-                                          const Eigen::VectorXd& load) const;
+  [[nodiscard]] Eigen::VectorXd increment(const LinearMotion& motion, const Eigen::VectorXd& load) const;
   /// What begin_step() reads of stiffness and damping [bytes].
   [[nodiscard]] std::size_t load_bytes() const noexcept;
 
@@ -124,8 +133,8 @@ class StructureResponse {
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
   /// @pre the table covers `j`
   [[nodiscard]] Eigen::Matrix3d compliance(const RailContact& i, const RailContact& j) const noexcept;
-  /// The same of the rail heads under two wheelsets: y, z, roll of the left one, then of the right one.
-  [[nodiscard]] Matrix6 compliance(RailHeads i, RailHeads j) const noexcept;
+  /// The same of the rail heads under two wheelsets. @pre the table covers `j`; both wheels of each stand at one x
+  [[nodiscard]] RailHeadsCompliance compliance(RailHeads i, RailHeads j) const noexcept;
 
   /// Vertical displacement z, slope dz/dx and curvature d²z/dx² of rail `i` from a unit vertical load on rail `j`, from
   /// the same table.
@@ -155,6 +164,7 @@ class StructureResponse {
   void set_divisible(const StructureModel& structure, const DofRange& active);
   void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
 
+  HhtScheme scheme_{};
   Eigen::SparseMatrix<double> effective_;  ///< K̄
   std::unique_ptr<Divisible> divisible_;   ///< null where the unknowns have no lines
   std::unique_ptr<SubstitutionFactor> factor_;

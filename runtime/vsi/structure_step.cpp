@@ -24,6 +24,7 @@ LinearMotion rest_under(const StructureModel& structure, std::span<const RailLoa
 void advance_structure(const StructureResponse& response, const HhtScheme& scheme, std::span<const RailLoad> loads,
                        LinearMotion& motion, StructureStepWorkspace& ws) {
   assert(scheme.contact_force == ContactForceRule::endpoint);
+  assert(scheme.time_step == response.scheme().time_step && scheme.alpha == response.scheme().alpha);
   const DofRange all{0, motion.displacement.size()};
   find_loaded(motion, all, ws.past_rail_dofs);
   ws.rail_dofs.clear();
@@ -32,8 +33,7 @@ void advance_structure(const StructureResponse& response, const HhtScheme& schem
   ws.response.resize(all.count);
   ws.increment.resize(all.count);
   add_loads(loads, ws.load);
-  response.begin_step(scheme, motion, {motion.contact_load, ws.past_rail_dofs, -scheme.alpha}, {ws.rail_dofs, {}},
-                      ws.solution);
+  response.begin_step(motion, {motion.contact_load, ws.past_rail_dofs, -scheme.alpha}, {ws.rail_dofs, {}}, ws.solution);
   ws.solution.substitution.respond(response.factor(), scheme.load_weight(), ws.load, ws.response);
   ws.solution.substitution.finish(response.factor(), ws.increment);
   motion.contact_load.swap(ws.load);

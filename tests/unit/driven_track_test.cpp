@@ -48,6 +48,14 @@ TEST(DrivenTrack, OtherContentIsRejectedAndHasAnotherGuid) {
   };
   expect_rejected("");
   expect_rejected("railtab track of another version\n");
+  for (const int node : {-1, short_bridge().structure.dofs()}) {
+    DrivenTrack track = short_bridge();
+    track.structure.dof_node.back() = node;
+    expect_rejected(track_bytes(track));
+  }
+  DrivenTrack track = short_bridge();
+  track.structure.dof_node.pop_back();
+  expect_rejected(track_bytes(track));
   for (std::size_t length = 0; length < bytes.size(); length += 97) expect_rejected(bytes.substr(0, length));
   expect_rejected(bytes + "x");
   for (std::size_t place = 0; place < bytes.size(); place += 101) {

@@ -173,14 +173,18 @@ TrackParameters short_track() {
 
 class ImportedSpan : public ::testing::TestWithParam<FeFormat> {};
 
-// How many unknowns the nodes have, of both.
+// The number of unknowns per node is that of the built-in model, and those of a node stand at one place.
 TEST_P(ImportedSpan, NodesOfTheMeshAreTheBuiltInOnes) {
   TrackParameters track = short_track();
   track.longitudinal = LongitudinalMotion::kept;
   const auto unknowns_of_nodes = [](const StructureModel& model) {
     EXPECT_EQ(model.dof_node.size(), static_cast<std::size_t>(model.dofs()));
     std::map<int, int> count;
-    for (const int node : model.dof_node) ++count[node];
+    std::map<int, double> place;
+    for (std::size_t dof = 0; dof < model.dof_node.size(); ++dof) {
+      ++count[model.dof_node[dof]];
+      EXPECT_EQ(place.try_emplace(model.dof_node[dof], model.dof_x[dof]).first->second, model.dof_x[dof]) << dof;
+    }
     std::vector<int> sizes;
     for (const auto& [node, size] : count) sizes.push_back(size);
     std::sort(sizes.begin(), sizes.end());

@@ -17,12 +17,14 @@
 namespace railtab {
 namespace {
 
-StructureModel short_bridge() {
+// @param offset of the track's centre from the deck's [m]
+StructureModel short_bridge(double offset = 0.0) {
   TrackParameters track;
   track.length_before = track.length_after = 6.0;
   BridgeParameters span;
   span.length = 6.0;
   span.elements = 10;
+  span.track_offset = offset;
   return build_track_bridge(track, {span});
 }
 
@@ -35,11 +37,11 @@ LinearMotion random_motion(Eigen::Index dofs) {
 }
 
 // A step that rails loaded before bend on, by a workspace: its end under further loads there.
-Eigen::VectorXd increment(const StructureResponse& response, const HhtScheme& scheme, const LinearMotion& motion,
-                          const KnownLoad& load, const std::vector<int>& few, StructureSolution& solution) {
+Eigen::VectorXd increment(const StructureResponse& response, const LinearMotion& motion, const KnownLoad& load,
+                          const std::vector<int>& few, StructureSolution& solution) {
   Eigen::VectorXd extra = Eigen::VectorXd::Zero(motion.displacement.size()), result = extra;
   for (int dof : few) extra[dof] = 1e4 + dof;
-  response.begin_step(scheme, motion, load, {few, {}}, solution);
+  response.begin_step(motion, load, {few, {}}, solution);
   solution.substitution.respond(response.factor(), 0.9, extra, result);
   solution.substitution.finish(response.factor(), result);
   return result;
@@ -67,10 +69,43 @@ TEST(StructureResponse, LoadsOnFewUnknownsAreAsOnAll) {
       EXPECT_EQ(loaded.size(), 4U);
       const std::vector<int> few{loaded[1], loaded[2]};
       StructureSolution fresh;
-      const Eigen::VectorXd of_all = increment(response, scheme, motion, {0.1 * motion.contact_load}, few, fresh);
-      const Eigen::VectorXd of_few = increment(response, scheme, motion, {motion.contact_load, loaded, 0.1}, few, kept);
+      const Eigen::VectorXd of_all = increment(response, motion, {0.1 * motion.contact_load}, few, fresh);
+      const Eigen::VectorXd of_few = increment(response, motion, {motion.contact_load, loaded, 0.1}, few, kept);
       EXPECT_LT((of_few - of_all).cwiseAbs().maxCoeff(), 1e-12 * of_all.cwiseAbs().maxCoeff());
       EXPECT_GT(of_all.cwiseAbs().maxCoeff(), 0.0);
+    }
+  }
+}
+
+// Both rails of one mesh, one whose nodes stand elsewhere in two elements, and one that ends earlier.
+TEST(RailHeads, AreTheContactsOfBothRails) {
+  StructureModel structure = short_bridge();
+  RailLine& right = structure.rail[1];
+  right.x[20] += 0.01;
+  right.x.resize(right.x.size() - 2);
+  right.dof.resize(right.x.size());
+  right.twist_rate.resize(right.x.size());
+  const std::vector<double>& x = structure.rail[0].x;
+  for (const double at : {x[3], 0.4 * x[7] + 0.6 * x[8], x[20] + 0.005, x[20] - 0.1, x.back() - 0.1, x.back() + 1.0}) {
+    std::vector<RailContact> both;
+    append_rail_heads(structure, at, both);
+    ASSERT_EQ(both.size(), 2U);
+    for (const RailSide side : {RailSide::left, RailSide::right}) {
+      const RailContact& found = both[static_cast<std::size_t>(side)];
+      const RailContact expected = rail_contact(structure, side, at);
+      EXPECT_EQ(found.side, side);
+      EXPECT_EQ(found.on_rail, expected.on_rail) << at;
+      if (!expected.on_rail) continue;
+      EXPECT_EQ(found.x, at);
+      EXPECT_EQ(found.element, expected.element);
+      EXPECT_EQ(found.rail, expected.rail);
+      EXPECT_EQ(found.rows.dof, expected.rows.dof);
+      for (const auto row : {&RailInterpolation::y, &RailInterpolation::z, &RailInterpolation::roll,
+                             &RailInterpolation::yaw, &RailInterpolation::pitch, &RailInterpolation::bend}) {
+        EXPECT_EQ(found.rows.*row, expected.rows.*row) << at;
+      }
+      EXPECT_EQ(found.own.compliance, expected.own.compliance);
+      EXPECT_EQ(found.own.slope, expected.own.slope);
     }
   }
 }
@@ -78,13 +113,13 @@ TEST(StructureResponse, LoadsOnFewUnknownsAreAsOnAll) {
 TEST(LinearMotion, FindsItsLoads) {
   LinearMotion motion(100);
   for (const int dof : {3, 17, 32, 78}) motion.contact_load[dof] = -1.0;
-  motion.step_load[31] = 1.0;
+  motion.step_load[55] = 1.0;  // in a block without contact loads
   motion.contact_load[40] = std::numeric_limits<double>::quiet_NaN();
   std::vector<int> loaded{1, 2};
   find_loaded(motion, {5, 73}, loaded);
-  EXPECT_EQ(loaded, (std::vector<int>{17, 31, 32, 40}));
+  EXPECT_EQ(loaded, (std::vector<int>{17, 32, 40, 55}));
   find_loaded(motion, {0, 100}, loaded);
-  EXPECT_EQ(loaded, (std::vector<int>{3, 17, 31, 32, 40, 78}));
+  EXPECT_EQ(loaded, (std::vector<int>{3, 17, 32, 40, 55, 78}));
 }
 
 // Of few unknowns as of all of them.
@@ -102,16 +137,25 @@ TEST(LinearMotion, ClosesFewLoadsAsAll) {
 }
 
 // Three routes: the table of node compliances with shape functions, single entries of the inverse for the very
-// positions, and whole solutions with the factor of the time steps.
-TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
-  const StructureModel structure = short_bridge();
+// positions, and whole solutions with the factor of the time steps. On a symmetric bridge, beside the middle of one,
+// and with one rail that is stiffer than the other.
+class RailCompliances : public ::testing::TestWithParam<int> {
+ protected:
+  static StructureModel structure() {
+    StructureModel s = short_bridge(GetParam() == 1 ? 1.5 : 0.0);
+    if (GetParam() == 2) s.stiffness.coeffRef(s.rail[1].dof[9][2], s.rail[1].dof[9][2]) *= 1.2;
+    return s;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Bridges, RailCompliances, ::testing::Values(0, 1, 2));
+
+TEST_P(RailCompliances, AreThoseOfASolveAtThePositions) {
+  const StructureModel structure = RailCompliances::structure();
   StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
   response.tabulate_compliance(structure, 100.0, -100.0, 100.0);  // all of it: nothing is left to the far field
+  EXPECT_EQ(response.rails_mirror(), GetParam() == 0);
   std::vector<RailContact> contacts;
-  for (const double x : {-3.21, 0.1, 2.345, 5.99}) {
-    contacts.push_back(rail_contact(structure, RailSide::left, x));
-    contacts.push_back(rail_contact(structure, RailSide::right, x));
-  }
+  for (const double x : {-3.21, 0.1, 2.345, 5.99}) append_rail_heads(structure, x, contacts);
   const Eigen::MatrixXd solved = response.compliance_at(contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -123,8 +167,8 @@ TEST(StructureResponse, TabulatedComplianceIsThatOfASolveAtThePositions) {
   }
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
-      const Matrix6 of_wheelsets = response.compliance(rail_heads(contacts, i), rail_heads(contacts, j));
-      const Matrix6 exact = solved.block<6, 6>(6 * i, 6 * j);
+      const RailHeadsCompliance of_wheelsets = response.compliance(rail_heads(contacts, i), rail_heads(contacts, j));
+      const RailHeadsCompliance exact = solved.block<6, 6>(6 * i, 6 * j);
       EXPECT_LT((of_wheelsets - exact).cwiseAbs().maxCoeff(), 1e-10 * solved.cwiseAbs().maxCoeff()) << i << " " << j;
     }
   }
@@ -247,8 +291,8 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
     whole.activate(range);
     EXPECT_EQ(in_sections.in_sections(), range.count == n);
     EXPECT_FALSE(whole.in_sections());
-    const Eigen::VectorXd expected = whole.increment(scheme, motion, load);
-    EXPECT_LT((in_sections.increment(scheme, motion, load) - expected).cwiseAbs().maxCoeff(),
+    const Eigen::VectorXd expected = whole.increment(motion, load);
+    EXPECT_LT((in_sections.increment(motion, load) - expected).cwiseAbs().maxCoeff(),
               1e-11 * expected.cwiseAbs().maxCoeff());
   }
 }

@@ -327,7 +327,7 @@ std::vector<double> shaken(const StructureModel& structure) {
   for (int step = 0; step < 1000; ++step) {
     past_contact_load(hht, motion, {0, structure.dofs()}, load);
     add_ground_load(model, hht, step * hht.time_step, {0, structure.dofs()}, load);
-    update(hht, response.increment(hht, motion, load), motion);
+    update(hht, response.increment(motion, load), motion);
     const double ground = model.ground_motion->at(0.0, (step + 1) * hht.time_step).displacement[1];
     relative.push_back(motion.displacement[midspan] - ground);
   }

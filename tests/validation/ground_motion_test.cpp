@@ -144,7 +144,7 @@ double supported_mass_error(double time_step) {
   for (int step = 0; relative.size() < expected.size(); ++step) {
     past_contact_load(hht, motion, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, response.increment(hht, motion, load), motion);
+    update(hht, response.increment(motion, load), motion);
     const double ground = model.ground_motion->at(3.0, (step + 1) * time_step).displacement[1];
     if ((step + 1) % every == 0) relative.push_back(motion.displacement[0] - ground);
   }
@@ -190,12 +190,12 @@ double two_routes(double time_step) {
     const double end = (step + 1) * time_step;
     past_contact_load(hht, absolute, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, response.increment(hht, absolute, load), absolute);
+    update(hht, response.increment(absolute, load), absolute);
     const GroundPoint now = model.ground_motion->at(0.0, end);
     past_contact_load(hht, relative, {0, s.dofs()}, load);
     const double before = model.ground_motion->at(0.0, step * time_step).acceleration[0];
     load -= (hht.load_weight() * now.acceleration[0] - hht.alpha * before) * inertia;
-    update(hht, response.increment(hht, relative, load), relative);
+    update(hht, response.increment(relative, load), relative);
     worst = std::max(worst,
                      std::abs(absolute.displacement[midspan] - now.displacement[0] - relative.displacement[midspan]));
     size = std::max(size, std::abs(relative.displacement[midspan]));

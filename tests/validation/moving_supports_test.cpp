@@ -93,7 +93,7 @@ std::vector<double> relative_history(StructureModel structure, double time_step,
   for (int step = 0; step * time_step < end - 1e-9; ++step) {
     past_contact_load(hht, motion, {0, s.dofs()}, load);
     add_ground_load(model, hht, step * time_step, {0, s.dofs()}, load);
-    update(hht, response.increment(hht, motion, load), motion);
+    update(hht, response.increment(motion, load), motion);
     const SupportMotion now = support_motion(*model.ground_motion, s.supports.x, (step + 1) * time_step);
     const double head = rail_head(at, motion.displacement)[1] + carried_head(at, s.supports, now.displacement)[1];
     relative.push_back(head - now.displacement[1]);
