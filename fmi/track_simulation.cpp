@@ -109,7 +109,7 @@ void TrackSimulation::step(double length) {
     }
     loads_ = loads(state_.applied);
     state_.speed = (mean_x(state_.applied) - from) / time_step;
-    advance_structure(response_, track_.scheme, loads_, state_.motion, workspace_);
+    advance_structure(response_, loads_, state_.motion, workspace_);
     const ElementStep of_step(track_.scheme);
     Eigen::VectorXd end = of_step.free(state_.deflection) + of_step.share * forces(loads_);
     of_step.close(end, state_.deflection);

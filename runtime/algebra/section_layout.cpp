@@ -267,7 +267,7 @@ class Division {
   void find_consecutive() {
     layout_.consecutive.assign(static_cast<std::size_t>(layout_.slots / 4 * sections), -1);
     for (std::size_t c = 0; c < layout_.consecutive.size(); ++c) {
-      const int* const column = &layout_.unknown[c / sections * 4 * sections + c % sections];
+      const int* const column = &layout_.unknown[SectionLayout::column_begin(c)];
       bool is_run = column[0] >= 0;
       for (int k = 1; k < 4; ++k) is_run = is_run && column[sections * k] == column[0] + k;
       if (is_run) layout_.consecutive[c] = column[0];
@@ -277,7 +277,7 @@ class Division {
   // False where pairs stand in slots that differ from section to section.
   bool pair_slots(const MirrorPairs& pairs) {
     layout_.mirrored.assign(section_.size(), -1);
-    std::vector<int> other(static_cast<std::size_t>(layout_.slots), -1);
+    layout_.partner.assign(static_cast<std::size_t>(layout_.slots), {});
     for (const auto& [u, v] : pairs) {
       if (u < layout_.range.begin || v >= layout_.range.end()) continue;
       layout_.mirrored[static_cast<std::size_t>(u - layout_.range.begin)] = v;
@@ -285,27 +285,22 @@ class Division {
       const SectionLayout::Place &p = place(u), &q = place(v);
       if (p.section != q.section) return false;
       if (p.section < 0) continue;
-      if (other[static_cast<std::size_t>(p.number)] < 0) layout_.paired_slots.push_back({p.number, q.number});
-      for (const auto& [one, two] : {std::pair{p.number, q.number}, std::pair{q.number, p.number}}) {
-        int& known = other[static_cast<std::size_t>(one)];
-        if (known >= 0 && known != two) return false;
-        known = two;
+      const SectionLayout::Partner of_first{q.number, false}, of_second{p.number, true};
+      for (const auto& [slot, partner] : {std::pair{p.number, of_first}, std::pair{q.number, of_second}}) {
+        SectionLayout::Partner& known = layout_.partner[static_cast<std::size_t>(slot)];
+        if (known.slot >= 0 && known != partner) return false;
+        known = partner;
       }
     }
     layout_.unknown.assign(static_cast<std::size_t>(layout_.border_begin()), -1);
     for (Eigen::Index i = layout_.range.begin; i < layout_.range.end(); ++i) {
       const SectionLayout::Place& p = place(i);
       if (p.section < 0) continue;
-      const int paired = other[static_cast<std::size_t>(p.number)];
+      const int paired = layout_.partner[static_cast<std::size_t>(p.number)].slot;
       if ((paired >= 0) != (layout_.mirrored[static_cast<std::size_t>(i - layout_.range.begin)] >= 0)) return false;
       layout_.unknown[static_cast<std::size_t>(sections * p.number + p.section)] = static_cast<int>(i);
     }
     find_consecutive();
-    layout_.partner.resize(other.size());
-    for (const auto& [one, two] : layout_.paired_slots) {
-      layout_.partner[static_cast<std::size_t>(one)] = {two, false};
-      layout_.partner[static_cast<std::size_t>(two)] = {one, true};
-    }
     return true;
   }
 
@@ -380,7 +375,7 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
     return sum;
   };
   for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
-    const std::size_t first = c / sections * 4 * sections + c % sections;
+    const std::size_t first = column_begin(c);
     Pack of_section[sums][4] = {}, of_slot[4];
     for (std::size_t s = 0; s < 4; ++s) {
       Pack part[vectors] = {};
@@ -409,10 +404,12 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
       to[m][entry] = unknown[entry] < 0 ? 0.0 : value(m, unknown[entry]);
     }
     Lanes* const slot = lanes(*ordered[m]);
-    for (const auto& [one, two] : paired_slots) {
-      const Lanes u = slot[one], v = slot[two];
-      slot[one] = root_half * (u + v);
-      slot[two] = root_half * (u - v);
+    for (std::size_t first = 0; first < partner.size(); ++first) {
+      const auto& [second, is_second] = partner[first];
+      if (second < 0 || is_second) continue;
+      const Lanes u = slot[first], v = slot[second];
+      slot[first] = root_half * (u + v);
+      slot[second] = root_half * (u - v);
     }
     for (std::size_t k = 0; k < interfaces.size(); ++k) {
       to[m][interface_begin() + static_cast<Eigen::Index>(k)] =
@@ -437,13 +434,13 @@ void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natu
   };
   Lanes four[4];
   for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
-    const std::size_t block = c / sections * 4, half = c % sections, first = sections * block + half;
-    if (half == 0) {
-      for (std::size_t k = 0; k < 4; ++k) four[k] = own(block + k);
+    const std::size_t first = column_begin(c), section = first % sections;
+    if (section == 0) {
+      for (std::size_t k = 0; k < 4; ++k) four[k] = own(first / sections + k);
     }
     Pack of_slot[4], of_section[4];
     for (std::size_t k = 0; k < 4; ++k) {
-      std::memcpy(&of_slot[k], reinterpret_cast<const double*>(&four[k]) + half, sizeof of_slot[k]);  // NOLINT
+      std::memcpy(&of_slot[k], reinterpret_cast<const double*>(&four[k]) + section, sizeof of_slot[k]);  // NOLINT
     }
     transpose(of_slot[0], of_slot[1], of_slot[2], of_slot[3], of_section);
     for (std::size_t s = 0; s < 4; ++s) {

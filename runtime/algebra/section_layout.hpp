@@ -80,15 +80,20 @@ struct SectionLayout {
   std::vector<int> border_of;         ///< of every border slot and section the interface unknown, -1: none
   std::vector<int> mirrored;          ///< of the unknowns in the range the other one of the pair; -1: none
   std::vector<int> unknown;           ///< of every slot and section; -1: none
-  MirrorPairs paired_slots;           ///< of the first and the second unknowns of pairs, alike in all sections
+  /// The other slot of a pair, alike in all sections.
   struct Partner {
-    int slot = -1;  ///< of the other unknown of the pair; -1: there is none
-    bool is_second = false;
+    int slot = -1;           ///< -1: there is none
+    bool is_second = false;  ///< whether this slot has the second unknown of the pair
+    bool operator==(const Partner&) const = default;
   };
   std::vector<Partner> partner;  ///< of every slot
   /// For each block of four slots and each section: the first of their four consecutive unknowns; -1: they are not
   /// consecutive.
   std::vector<int> consecutive;
+  /// Where the first entry of such a column, the next ones `sections` further each, stands in a vector of this layout.
+  [[nodiscard]] static constexpr std::size_t column_begin(std::size_t column) noexcept {
+    return column / sections * 4 * sections + column % sections;
+  }
 
   [[nodiscard]] Eigen::Index border_begin() const noexcept { return Eigen::Index{sections} * slots; }
   [[nodiscard]] Eigen::Index interface_begin() const noexcept {

@@ -47,8 +47,8 @@ ElementForces::ElementForces(const VehicleModel& vehicle, const SeparateSystem& 
     : system_(system),
       whole_(static_cast<int>(system.dofs.size()) == vehicle.dofs()),
       elements_(elements_of(system, vehicle.elements)) {
-  const auto is = [](ForceElementKind kind) { return [=](const ForceElement& e) { return e.kind == kind; }; };
-  only_stops_ = std::all_of(elements_.element.begin(), elements_.element.end(), is(ForceElementKind::stop));
+  only_stops_ = std::all_of(elements_.element.begin(), elements_.element.end(),
+                            [](const ForceElement& e) { return e.kind == ForceElementKind::stop; });
   const Eigen::Index rows = elements_.rows.rows();
   for (Eigen::VectorXd* v : {&x0_, &v0_, &predicted_, &predicted_rate_, &x_, &share_, &end_}) v->setZero(rows);
   friction_ = friction_end_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(elements_.element.size()));

@@ -84,7 +84,6 @@ Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) n
 
 void add_element_compliance(RailHeads i, RailHeads j, double weight, RailHeadsCompliance& compliance) noexcept {
   for (std::size_t side = 0; side < 2; ++side) {
-    if (i[side].element != j[side].element) continue;
     const auto first = static_cast<Eigen::Index>(3 * side);
     compliance.block<3, 3>(first, first) += weight * element_compliance(i[side], j[side]);
   }
@@ -386,7 +385,7 @@ std::size_t most_nodes(const RailLine& rail, double reach) {
 
 double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) const {
   double bytes = 0.0;
-  for (const RailLine& rail : std::span(structure.rail).first(rails_mirror_ ? 1 : 2)) {
+  for (const RailLine& rail : std::span(structure.rail).first(tabulated_rails())) {
     const double longest = longest_element(rail), reach = reach_of(rail, window);
     double blocks = 0.0;
     for (const RailLine& other : structure.rail) blocks += static_cast<double>(most_nodes(other, reach));
@@ -502,7 +501,7 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   const RailLine& line = structure.rail[0];
   const bool keeps = keeps_compliances_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
   const auto visit = [&](auto&& visitor) {
-    for (std::size_t side = 0; side < (rails_mirror_ ? 1 : 2); ++side) {
+    for (std::size_t side = 0; side < tabulated_rails(); ++side) {
       const RailLine& rail = structure.rail[side];
       const double longest = longest_element(rail);
       for (std::size_t node = 0; node < rail.x.size(); ++node) {
@@ -530,9 +529,8 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
 template <class Visitor>
 void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept {
   if (!i.on_rail || !j.on_rail) return;
-  const bool by_mirror = rails_mirror_ && j.side == RailSide::right;
-  const auto row_side = static_cast<std::size_t>(by_mirror ? opposite(i.side) : i.side);
-  const auto column_side = static_cast<std::size_t>(by_mirror ? RailSide::left : j.side);
+  const auto row_side = static_cast<std::size_t>(by_mirror(j) ? opposite(i.side) : i.side);
+  const auto column_side = static_cast<std::size_t>(by_mirror(j) ? RailSide::left : j.side);
   for (int q = 0; q < 2; ++q) {
     const Column& from = column_[column_side][static_cast<std::size_t>(j.element + q)];
     assert(!from.rows[column_side].empty() && "the table does not cover this position");
@@ -600,7 +598,7 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
     }
   }
   result.row(0) += i.rail->head_height * result.row(2);
-  return rails_mirror_ && j.side == RailSide::right ? mirrored(result) : result;
+  return by_mirror(j) ? mirrored(result) : result;
 }
 
 RailHeadsCompliance StructureResponse::compliance(RailHeads i, RailHeads j) const noexcept {

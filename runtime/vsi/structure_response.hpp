@@ -9,7 +9,6 @@
 #include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
-
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
@@ -189,6 +188,11 @@ class StructureResponse {
   /// Per rail and node. Where the rails mirror each other: of the left one only.
   std::array<std::vector<Column>, 2> column_;
   bool rails_mirror_ = false;
+  [[nodiscard]] std::size_t tabulated_rails() const noexcept { return rails_mirror_ ? 1 : 2; }
+  /// Whether a load's compliances come from the table of the other rail.
+  [[nodiscard]] bool by_mirror(const RailContact& loaded) const noexcept {
+    return rails_mirror_ && loaded.side == RailSide::right;
+  }
   bool keeps_compliances_ = false;
 };
 

@@ -21,10 +21,10 @@ LinearMotion rest_under(const StructureModel& structure, std::span<const RailLoa
   return motion;
 }
 
-void advance_structure(const StructureResponse& response, const HhtScheme& scheme, std::span<const RailLoad> loads,
-                       LinearMotion& motion, StructureStepWorkspace& ws) {
+void advance_structure(const StructureResponse& response, std::span<const RailLoad> loads, LinearMotion& motion,
+                       StructureStepWorkspace& ws) {
+  const HhtScheme& scheme = response.scheme();
   assert(scheme.contact_force == ContactForceRule::endpoint);
-  assert(scheme.time_step == response.scheme().time_step && scheme.alpha == response.scheme().alpha);
   const DofRange all{0, motion.displacement.size()};
   find_loaded(motion, all, ws.past_rail_dofs);
   ws.rail_dofs.clear();
