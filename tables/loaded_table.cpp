@@ -181,14 +181,17 @@ struct LoadedTable::NodeSums {
 
 /// The weights of one pose in the value, each twice: for a quantity and its slope.
 struct LoadedTable::ColumnWeights {
-  std::size_t columns, first;  ///< those that are read, and the first of them
+  std::size_t columns, first, yaws;  ///< those that are read, and the first of them
   std::array<double, 2 * most_columns> twice;
+  std::array<double, rolls_read> roll;  ///< of the nodes of roll
 
   template <class V>
   void set(const Weights<V>& weights, int place) noexcept {
     columns = weights.rolls * weights.yaws;
-    first = weights.first_roll[static_cast<std::size_t>(place)] * weights.yaws;
+    yaws = weights.yaws;
+    first = weights.first_roll[static_cast<std::size_t>(place)] * yaws;
     for (std::size_t i = 0, k = 0; i < weights.rolls; ++i) {
+      roll[i] = lane(weights.roll[0][i], place);
       for (std::size_t j = 0; j < weights.yaws; ++j, ++k) {
         twice[2 * k] = twice[2 * k + 1] = lane(weights.roll[0][i], place) * lane(weights.yaw[0][j], place);
       }
@@ -290,10 +293,14 @@ bool LoadedTable::find_lateral(double y, const ColumnWeights& weight, std::size_
     const double at = std::clamp((y0 - first_y0) / range, 0.0, 1.0) * static_cast<double>(buckets);
     return static_cast<std::size_t>(bucket_[std::min(static_cast<std::size_t>(at), buckets - 1)]);
   };
-  // The displacement changes little along y0: from the node at y to that at y less its displacement, and on from there.
-  double slope = 0.0;
+  // The displacement changes little along y0 and with yaw: from the node at y to that at y less its displacement at the
+  // first node of yaw, and on from there.
   const std::size_t near = node_of(y);
-  std::size_t low = node_of(y - (place(near, slope) - data_.lateral[near]));
+  const double* const shift = &data_.shift[2 * (near * data_.columns() + weight.first)];
+  double displaced = -data_.lateral[near];
+  for (std::size_t i = 0; i * weight.yaws < weight.columns; ++i)
+    displaced += weight.roll[i] * shift[2 * i * weight.yaws];
+  std::size_t low = node_of(y - displaced);
   corner[0] = place(low, corner[1]);
   while (low > 0 && corner[0] > y) corner[0] = place(--low, corner[1]);
   corner[2] = place(low + 1, corner[3]);
@@ -306,28 +313,17 @@ bool LoadedTable::find_lateral(double y, const ColumnWeights& weight, std::size_
   return y >= corner[0] && y <= corner[2];
 }
 
-int LoadedTable::find_level(double z, std::size_t node, const std::array<double, 4>& across, double t,
-                            const ColumnWeights& weight) const noexcept {
+int LoadedTable::guess_level(double z, std::size_t node, double t, const ColumnWeights& weight) const noexcept {
   const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
-  const float* const low = &data_.height[4 * (node * levels * columns + weight.first)];
-  const float* const high = low + 4 * levels * columns;
   const double* const touch = &data_.touch[node * columns + weight.first];
-  Pack at_low{}, at_high{};  // value and slope across are the first and the third
   double touch_low = 0.0, touch_high = 0.0;
   for (std::size_t k = 0; k < weight.columns; ++k) {
-    Pack stored;
-    widen(low + 4 * k, stored);
-    at_low += weight.value(k) * stored;
-    widen(high + 4 * k, stored);
-    at_high += weight.value(k) * stored;
     touch_low += weight.value(k) * touch[k];
     touch_high += weight.value(k) * touch[columns + k];
   }
-  const double first_touch = across[0] * (touch_low + at_low[0]) + across[1] * at_low[2] +
-                             across[2] * (touch_high + at_high[0]) + across[3] * at_high[2];
-  if (z <= first_touch) return -1;
-  // By the rise of the middle column; find() goes on from there.
-  const double above = z - first_touch;
+  // By the rise of the middle column.
+  const double above = z - ((1.0 - t) * touch_low + t * touch_high);
+  if (!(above > 0.0)) return 0;
   const float *const rise_low = &rise_[node * levels], *const rise_high = rise_low + levels;
   const auto rise = [&](int level) {
     const auto k = static_cast<std::size_t>(level);
@@ -426,12 +422,15 @@ void LoadedTable::fetch_corners(std::size_t node, int level, const ColumnWeights
     const std::size_t at = lateral * levels + static_cast<std::size_t>(level);
     const float* const height = &data_.height[4 * (at * columns + weight.first)];
     fetch(height, 4 * weight.columns * sizeof(float));
-    if (level == 0) {
-      fetch(&rise_[at], levels * sizeof(float));
-      fetch(&data_.touch[lateral * columns + weight.first], weight.columns * sizeof(double));
-    } else {
-      fetch(height + 4 * columns, 4 * weight.columns * sizeof(float));
-    }
+    fetch(height + 4 * columns, 4 * weight.columns * sizeof(float));
+  }
+}
+
+void LoadedTable::fetch_touch(std::size_t node, const ColumnWeights& weight) const noexcept {
+  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
+  for (const std::size_t lateral : {node, node + 1}) {
+    fetch(&rise_[lateral * levels], levels * sizeof(float));
+    fetch(&data_.touch[lateral * columns + weight.first], weight.columns * sizeof(double));
   }
 }
 
@@ -467,7 +466,7 @@ bool LoadedTable::sum_part(const PartPlace& place, std::size_t part, PartSums& s
       u_rate{-1.0 / level_step_, 1.0 / level_step_};
   const std::array<double, 2> r_rate{-r.rate, r.rate}, s_rate{-s.rate, s.rate};
   auto& sum = sums.sum;
-  std::memset(&sums, 0, sizeof sums);
+  std::memset(&sums, 0, slopes ? sizeof sums : sizeof sum[PartSums::value]);
   for (std::size_t corner = 0; corner < 4; ++corner) {
     const std::uint32_t pressed = data_.pressed[place.node[corner]];
     if ((pressed >> part & 1U) == 0) continue;
@@ -613,7 +612,7 @@ class LoadedTable::LookUp {
       for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends[j];
       lane(from, i) = data_.lateral[lateral_[k]];
       lane(width_, i) = data_.lateral[lateral_[k] + 1] - data_.lateral[lateral_[k]];
-      table_.fetch_corners(lateral_[k], 0, weight_[k]);
+      table_.fetch_touch(lateral_[k], weight_[k]);
     });
     using std::abs;
     t_ = (pose_.y - corner[0]) / (corner[2] - corner[0]);
@@ -638,8 +637,7 @@ class LoadedTable::LookUp {
     found_ = V{};
     each([&](int i, std::size_t k) {
       if (!(lane(inside_, i) > 0.0)) return;
-      level_[k] = table_.find_level(lane(pose_.z, i), lateral_[k], at(across_.value, i), lane(t_, i), weight_[k]);
-      if (level_[k] < 0) return;
+      level_[k] = table_.guess_level(lane(pose_.z, i), lateral_[k], lane(t_, i), weight_[k]);
       lane(found_, i) = 1.0;
       table_.fetch_corners(lateral_[k], level_[k], weight_[k]);
     });
@@ -653,7 +651,11 @@ class LoadedTable::LookUp {
       for (int moved = 0;;) {
         table_.add_corners(lateral_[k], level_[k], weight_[k].first, sums, corners);
         line = corners.across(value, here);
-        if (z < line[0] && level_[k] > 0 && moved <= 0) {
+        if (z <= line[0] && level_[k] == 0) {
+          lane(found_, i) = 0.0;
+          return;
+        }
+        if (z < line[0] && moved <= 0) {
           moved = -1;
           --level_[k];
         } else if (z >= line[2] && moved >= 0) {
@@ -802,11 +804,12 @@ class LoadedTable::LookUp {
       std::array<V, PartSums::count * LoadedPart::quantities> numbers;
       V has{};
       each([&](int i, std::size_t k) {
-        std::array<double, PartSums::count * LoadedPart::quantities> of{};
+        std::array<double, used> of;
         if (p < count[k]) {
-          std::memcpy(of.data(), &sums[k][p], used * sizeof(double));
+          std::memcpy(of.data(), &sums[k][p], sizeof of);
           lane(has, i) = 1.0;
         } else {
+          of.fill(0.0);
           std::fill_n(of.begin(), LoadedPart::quantities, 1.0);
         }
         for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = of[q];
@@ -874,7 +877,9 @@ class LoadedTable::LookUp {
 template <bool slopes, class V>
 void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
                        LoadedSlopesOf<V>* derivatives) const noexcept {
-  result = {};
+  result.table_share = result.energy = V{};
+  for (std::size_t j = 0; j < 4; ++j) element(result.force, j) = V{};
+  result.parts = 0;
   if constexpr (slopes) set_zero(derivatives->stiffness);
   const V inside = margin_share(pose.roll, pose.yaw);
   if (any(inside > V{})) LookUp<slopes, V>(*this, pose, result, derivatives).run(inside);

@@ -200,14 +200,13 @@ class LoadedTable {
   /// The node below y0, and y and ∂y/∂y0 there and at the next. False where y is outside.
   [[nodiscard]] bool find_lateral(double y, const ColumnWeights& weight, std::size_t& node,
                                   std::array<double, 4>& corner) const noexcept;
-  /// The level below z, or one near it, and heights of first touch at both nodes. -1: no contact.
-  [[nodiscard]] int find_level(double z, std::size_t node, const std::array<double, 4>& across, double t,
-                               const ColumnWeights& weight) const noexcept;
+  /// The level below z, or one near it. @param t place between the lateral nodes
+  [[nodiscard]] int guess_level(double z, std::size_t node, double t, const ColumnWeights& weight) const noexcept;
   template <bool slopes>
   void add_corners(std::size_t node, int level, std::size_t first, const NodeSums<slopes>& sums,
                    Corners& corners) const noexcept;
-  /// Ask the memory for what the next steps of a look-up will read: of level 0 to find the level, else its corners;
-  /// the parts.
+  /// Ask the memory for what the next steps of a look-up will read: to guess the level, of its corners, of the parts.
+  void fetch_touch(std::size_t node, const ColumnWeights& weight) const noexcept;
   void fetch_corners(std::size_t node, int level, const ColumnWeights& weight) const noexcept;
   void fetch_parts(std::size_t node, int level, double roll, double yaw) const noexcept;
   template <bool slopes>

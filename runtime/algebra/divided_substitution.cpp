@@ -1,10 +1,13 @@
 #include "railtab/runtime/algebra/divided_substitution.hpp"
 
+#include <algorithm>
+
 namespace railtab {
 
 void DividedSubstitution::begin(const SubstitutionFactor& factor, const LoadedUnknowns& few) {
-  few_.assign(few.now.begin(), few.now.end());
-  if (path_of_ != factor.id() || !factor.covers(path_, few_)) {
+  const bool same = path_of_ == factor.id() && std::ranges::equal(few.now, few_);
+  if (!same) few_.assign(few.now.begin(), few.now.end());
+  if (!same && (path_of_ != factor.id() || !factor.covers(path_, few_))) {
     on_path_ = few_;
     on_path_.insert(on_path_.end(), few.soon.begin(), few.soon.end());
     factor.find_path(on_path_, path_);
@@ -36,8 +39,12 @@ void DividedSubstitution::respond(const SubstitutionFactor& factor, double weigh
 }
 
 void DividedSubstitution::finish(const SubstitutionFactor& factor, Eigen::VectorXd& solution) {
+  factor.out_of(finish(factor), solution);
+}
+
+const Eigen::VectorXd& DividedSubstitution::finish(const SubstitutionFactor& factor) {
   factor.backward_off(path_, known_, solved_);
-  factor.out_of(solved_, solution);
+  return solved_;
 }
 
 }  // namespace railtab

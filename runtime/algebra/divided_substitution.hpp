@@ -44,6 +44,8 @@ class DividedSubstitution {
                Eigen::VectorXd& solution);
   /// The whole solution under the loads of the last respond(), which must have been called.
   void finish(const SubstitutionFactor& factor, Eigen::VectorXd& solution);
+  /// The same in the factor's order; refers to what the next use replaces.
+  [[nodiscard]] const Eigen::VectorXd& finish(const SubstitutionFactor& factor);
 
  private:
   std::vector<int> few_, on_path_;

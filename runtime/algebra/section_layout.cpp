@@ -1,6 +1,5 @@
 #include "railtab/runtime/algebra/section_layout.hpp"
 
-#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
@@ -68,7 +68,8 @@ double mismatch(const Lines& lines, const Cuts& cuts) {
   return sum;
 }
 
-/// Cuts at equal numbers of bays of the sparsest line, the last section being what is left.
+/// Cuts at equal numbers of bays of the sparsest line, the last section being what is left; up to an eighth more than
+/// needed where the sections' nodes then coincide better.
 std::optional<Cuts> best_cuts(const Lines& lines, double from, double to) {
   const std::vector<double> node = sparsest_line(lines, from, to);
   constexpr int least_bays = 6;  // of a section
@@ -77,7 +78,7 @@ std::optional<Cuts> best_cuts(const Lines& lines, double from, double to) {
   const int equal = (bays + sections - 1) / sections;
   std::optional<Cuts> best;
   double least = 0.0;
-  for (int length = equal; length <= equal + equal / 16 && (sections - 1) * length < bays; ++length) {
+  for (int length = equal; length <= equal + equal / 8 && (sections - 1) * length < bays; ++length) {
     Cuts cuts;
     for (int k = 0; k < sections; ++k) {
       cuts.x[static_cast<std::size_t>(k)] = node[static_cast<std::size_t>(k * length)];
@@ -101,6 +102,7 @@ struct Waiting {
 /// assign(unknown, slot).
 template <class Assign>
 int share_slots(std::vector<Waiting>& line, int slot, Assign&& assign) {
+  constexpr double reach = 0.75;  // of the spacing: nodes of sections cut at any phase then share few slots
   std::stable_sort(line.begin(), line.end(), [](const Waiting& a, const Waiting& b) { return a.x < b.x; });
   std::array<double, sections> last{};
   last.fill(-std::numeric_limits<double>::infinity());
@@ -114,7 +116,7 @@ int share_slots(std::vector<Waiting>& line, int slot, Assign&& assign) {
   double begin = 0.0;
   for (const Waiting& w : line) {
     const unsigned bit = 1U << static_cast<unsigned>(w.section);
-    if (taken != 0 && ((taken & bit) != 0 || w.x - begin > 0.5 * spacing)) {
+    if (taken != 0 && ((taken & bit) != 0 || w.x - begin > reach * spacing)) {
       ++slot;
       taken = 0;
     }
@@ -142,7 +144,6 @@ class Division {
     constexpr double most_padding = 1.5;  // slots of all sections over unknowns
     const auto unknowns = static_cast<double>(layout_.range.count);
     if (static_cast<double>(layout_.border_begin()) > most_padding * unknowns) return std::nullopt;
-    order_slots();
     if (!pair_slots(pairs)) return std::nullopt;
     return std::move(layout_);
   }
@@ -243,35 +244,25 @@ class Division {
     }
   }
 
-  // Minimum degree, the borders' slots as a clique that comes last.
-  void order_slots() {
-    const int n = layout_.slots, all = n + layout_.borders;
-    std::vector<Eigen::Triplet<double>> entries;
-    layout_.visit_places(matrix_, [&](const SectionLayout::EntryPlace& p, double) {
-      if (p.section < 0) return;
-      entries.emplace_back(p.row, p.column, 1.0);
-      if (p.row != p.column) entries.emplace_back(p.column, p.row, 1.0);
-    });
-    for (int i = n; i < all; ++i) {
-      for (int j = n; j < all; ++j) entries.emplace_back(i, j, 1.0);
-    }
-    Sparse pattern(all, all);
-    pattern.setFromTriplets(entries.begin(), entries.end());
-    Eigen::AMDOrdering<int>::PermutationType order;
-    Eigen::AMDOrdering<int>()(pattern, order);  // order.indices()[k] is eliminated k-th
-    for (int k = 0; k < all; ++k) {
-      if (order.indices()[k] < n) layout_.elimination.push_back(order.indices()[k]);
-    }
-  }
-
   void find_consecutive() {
     layout_.consecutive.assign(static_cast<std::size_t>(layout_.slots / 4 * sections), -1);
     for (std::size_t c = 0; c < layout_.consecutive.size(); ++c) {
       const int* const column = &layout_.unknown[SectionLayout::column_begin(c)];
       bool is_run = column[0] >= 0;
       for (int k = 1; k < 4; ++k) is_run = is_run && column[sections * k] == column[0] + k;
-      if (is_run) layout_.consecutive[c] = column[0];
+      if (is_run) {
+        layout_.consecutive[c] = column[0];
+        continue;
+      }
+      for (int k = 0; k < 4; ++k) append_single(SectionLayout::column_begin(c) + index(sections * k));
     }
+    for (std::size_t entry = 4 * layout_.consecutive.size(); entry < layout_.unknown.size(); ++entry) {
+      append_single(entry);
+    }
+  }
+
+  void append_single(std::size_t entry) {
+    if (layout_.unknown[entry] >= 0) layout_.single.push_back({static_cast<int>(entry), layout_.unknown[entry]});
   }
 
   // False where pairs stand in slots that differ from section to section.
@@ -381,12 +372,6 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
       Pack part[vectors] = {};
       if (const int begin = consecutive[c + s]; begin >= 0) {
         for (std::size_t k = 0; k < vectors; ++k) std::memcpy(&part[k], natural.vector[k] + begin, sizeof part[k]);
-      } else {
-        for (int row = 0; row < 4; ++row) {
-          const int from = unknown[first + sections * static_cast<std::size_t>(row) + s];
-          if (from < 0) continue;
-          for (std::size_t k = 0; k < vectors; ++k) part[k][row] = natural.vector[k][from];
-        }
       }
       for (std::size_t m = 0; m < sums; ++m) {
         for (std::size_t k = 0; k < vectors; ++k) of_section[m][s] += natural.weight[m][k] * part[k];
@@ -400,9 +385,8 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
     }
   }
   for (std::size_t m = 0; m < sums; ++m) {
-    for (std::size_t entry = 4 * consecutive.size(); entry < unknown.size(); ++entry) {
-      to[m][entry] = unknown[entry] < 0 ? 0.0 : value(m, unknown[entry]);
-    }
+    std::fill(to[m] + 4 * consecutive.size(), to[m] + unknown.size(), 0.0);
+    for (const Single& of : single) to[m][of.entry] = value(m, of.unknown);
     Lanes* const slot = lanes(*ordered[m]);
     for (std::size_t first = 0; first < partner.size(); ++first) {
       const auto& [second, is_second] = partner[first];
@@ -420,8 +404,8 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
 template void SectionLayout::into(const WeightedSums<1, 1>&, const std::array<Eigen::VectorXd*, 1>&) const;
 template void SectionLayout::into(const WeightedSums<3, 2>&, const std::array<Eigen::VectorXd*, 2>&) const;
 
-void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
-  double* const to = natural.data();
+template <class Four, class One>
+void SectionLayout::visit_natural(const Eigen::VectorXd& ordered, Four&& four, One&& one) const {
   const Lanes* const slot = lanes(ordered);
   // what stands in a slot, in the place of the sum or the difference
   const auto own = [&](std::size_t k) {
@@ -429,34 +413,57 @@ void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natu
     if (other < 0) return slot[k];
     return is_second ? root_half * (slot[other] - slot[k]) : root_half * (slot[k] + slot[other]);
   };
-  const auto write = [&](std::size_t entry, double value) {
-    if (unknown[entry] >= 0) to[unknown[entry]] = value;
-  };
-  Lanes four[4];
+  Lanes slots_of_column[4];
   for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
     const std::size_t first = column_begin(c), section = first % sections;
     if (section == 0) {
-      for (std::size_t k = 0; k < 4; ++k) four[k] = own(first / sections + k);
+      for (std::size_t k = 0; k < 4; ++k) slots_of_column[k] = own(first / sections + k);
     }
     Pack of_slot[4], of_section[4];
     for (std::size_t k = 0; k < 4; ++k) {
-      std::memcpy(&of_slot[k], reinterpret_cast<const double*>(&four[k]) + section, sizeof of_slot[k]);  // NOLINT
+      std::memcpy(&of_slot[k], reinterpret_cast<const double*>(&slots_of_column[k]) + section,  // NOLINT
+                  sizeof of_slot[k]);
     }
     transpose(of_slot[0], of_slot[1], of_slot[2], of_slot[3], of_section);
     for (std::size_t s = 0; s < 4; ++s) {
-      if (consecutive[c + s] >= 0) {
-        std::memcpy(to + consecutive[c + s], &of_section[s], sizeof of_section[s]);
-      } else {
-        for (std::size_t k = 0; k < 4; ++k) write(first + sections * k + s, of_section[s][k]);
-      }
+      if (consecutive[c + s] >= 0) four(consecutive[c + s], of_section[s]);
     }
   }
-  for (std::size_t entry = 4 * consecutive.size(); entry < unknown.size(); ++entry) {
-    write(entry, own(entry / sections)[static_cast<int>(entry % sections)]);
+  for (const Single& of : single) {
+    const auto& [other, is_second] = partner[index(of.entry / sections)];
+    double value = ordered[of.entry];
+    if (other >= 0) {
+      const double paired = ordered[sections * other + of.entry % sections];
+      value = root_half * (is_second ? paired - value : value + paired);
+    }
+    one(of.unknown, value);
   }
   for (const Interface& f : interfaces) {
-    to[f.unknown] = combined(f.unknown, [&](Eigen::Index k) { return ordered[position(k)]; });
+    one(f.unknown, combined(f.unknown, [&](Eigen::Index k) { return ordered[position(k)]; }));
   }
+}
+
+void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
+  double* const to = natural.data();
+  visit_natural(
+      ordered, [to](int u, const Pack& values) { std::memcpy(to + u, &values, sizeof values); },
+      [to](int u, double value) { to[u] = value; });
+}
+
+void SectionLayout::out_of(const Eigen::VectorXd& increment, const StepEnd& end) const {
+  visit_natural(
+      increment,
+      [&end](int first, const Pack& delta) {
+        Pack u, v, w;
+        std::memcpy(&u, end.u + first, sizeof u);
+        std::memcpy(&v, end.v + first, sizeof v);
+        std::memcpy(&w, end.w + first, sizeof w);
+        end.move(u, v, w, delta);
+        std::memcpy(end.u + first, &u, sizeof u);
+        std::memcpy(end.v + first, &v, sizeof v);
+        std::memcpy(end.w + first, &w, sizeof w);
+      },
+      [&end](int u, double delta) { end.move(static_cast<std::size_t>(u), delta); });
 }
 
 void SectionLayout::spread_interfaces(Eigen::VectorXd& ordered) const {

@@ -18,6 +18,22 @@ struct WeightedSums {
   std::array<std::array<double, vectors>, sums> weight;
 };
 
+/// A motion at the end of a time step from that at its beginning and an increment δ, in place: u and v grow by sums of
+/// what stands before them, w is replaced,
+///     u += u_v v + u_w w + δ,   v += v_w w + v_δ δ,   w = w_δ δ.
+struct StepEnd {
+  double *u, *v, *w;  ///< of all unknowns
+  double u_v, u_w, v_w, v_delta, w_delta;
+
+  template <class T>
+  void move(T& u_now, T& v_now, T& w_now, const T& delta) const noexcept {
+    u_now += u_v * v_now + u_w * w_now + delta;
+    v_now += v_w * w_now + v_delta * delta;
+    w_now = w_delta * delta;
+  }
+  void move(std::size_t i, double delta) const noexcept { move(u[i], v[i], w[i], delta); }
+};
+
 /// Where the unknowns of a long structure stand.
 struct UnknownPlaces {
   std::vector<double> x;  ///< along the structure, not decreasing [m]; empty: not known
@@ -74,7 +90,6 @@ struct SectionLayout {
 
   DofRange range;
   int slots = 0, borders = 0;
-  std::vector<int> elimination;       ///< the slots in an order of elimination that keeps the factor sparse
   std::vector<Place> place;           ///< of the unknowns in the range
   std::vector<Interface> interfaces;  ///< interface unknowns
   std::vector<int> border_of;         ///< of every border slot and section the interface unknown, -1: none
@@ -90,6 +105,11 @@ struct SectionLayout {
   /// For each block of four slots and each section: the first of their four consecutive unknowns; -1: they are not
   /// consecutive.
   std::vector<int> consecutive;
+  /// An unknown in no such column, and where it stands in a vector of this layout.
+  struct Single {
+    int entry, unknown;
+  };
+  std::vector<Single> single;
   /// Where the first entry of such a column, the next ones `sections` further each, stands in a vector of this layout.
   [[nodiscard]] static constexpr std::size_t column_begin(std::size_t column) noexcept {
     return column / sections * 4 * sections + column % sections;
@@ -120,10 +140,16 @@ struct SectionLayout {
     into(WeightedSums<1, 1>{{natural.data()}, {{{1.0}}}}, {&ordered});
   }
   void out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const;
+  /// Ends a step of the unknowns in the range with an increment in this layout.
+  void out_of(const Eigen::VectorXd& increment, const StepEnd& end) const;
   /// Copies interface unknowns to the borders beside the sections.
   void spread_interfaces(Eigen::VectorXd& ordered) const;
   /// Adds what stands at the borders to the interface unknowns.
   void fold_borders(Eigen::VectorXd& ordered) const;
+
+  /// Calls four(u, pack) for four unknowns that follow each other, one(u, number) for the others.
+  template <class Four, class One>
+  void visit_natural(const Eigen::VectorXd& ordered, Four&& four, One&& one) const;
 
   /// Where an entry (i, j) of a matrix stands: between two slots of a section, border slots counted on from the others,
   /// or between two interface unknowns (section -1).

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <string>
 
+#include "railtab/runtime/algebra/elimination_order.hpp"
+#include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
 namespace railtab {
@@ -14,135 +15,194 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 constexpr int side_by_side = SectionLayout::sections;
+constexpr int widest = 4;  // columns of a strip: their parts of the vector stay in registers
 
-/// Columns of the factor as a substitution reads them, in the order of elimination; their slots and rows.
-struct LaneColumns {
-  const int* slot;
-  const int* begin;
-  const int* row;
-  const Lanes* value;
-};
-
-void forward_column(const LaneColumns& c, int j, Lanes* y) noexcept {
-  const Lanes own = y[c.slot[j]];
-  for (int p = c.begin[j]; p < c.begin[j + 1]; ++p) y[c.row[p]] -= c.value[p] * own;
+template <int n>
+void forward_columns(const int* slot, int rows, const StoredLanes* value, Lanes* y) noexcept {
+  Lanes own[n];
+  own[0] = y[slot[0]];
+  for (int j = 1; j < n; ++j) {
+    own[j] = y[slot[j]];
+    for (int k = 0; k < j; ++k) own[j] -= (value++)->widened() * own[k];
+    y[slot[j]] = own[j];
+  }
+  for (const int* row = slot + n; row < slot + n + rows; ++row) {
+    Lanes sum = y[*row];
+    for (int k = 0; k < n; ++k) sum -= (value++)->widened() * own[k];
+    y[*row] = sum;
+  }
 }
 
-void backward_column(const LaneColumns& c, int j, const Lanes* inverse_D, const Lanes* y, Lanes* x) noexcept {
-  Lanes own = y[c.slot[j]] * inverse_D[j];
-  // The first row is often the column just solved: read last, it hides the time that its store takes.
-  for (int p = c.begin[j + 1]; p-- > c.begin[j];) own -= c.value[p] * x[c.row[p]];
-  x[c.slot[j]] = own;
+template <int n>
+void backward_columns(const int* slot, int rows, const StoredLanes* value, const Lanes* inverse_D, const Lanes* y,
+                      Lanes* x) noexcept {
+  Lanes own[n];
+  for (int j = 0; j < n; ++j) own[j] = y[slot[j]] * inverse_D[j];
+  const StoredLanes* below = value + n * (n - 1) / 2;
+  for (const int* row = slot + n; row < slot + n + rows; ++row) {
+    for (int k = 0; k < n; ++k) own[k] -= (below++)->widened() * x[*row];
+  }
+  for (int j = n; j-- > 1;) {
+    for (int k = 0; k < j; ++k) own[k] -= value[j * (j - 1) / 2 + k].widened() * own[j];
+  }
+  for (int j = 0; j < n; ++j) x[slot[j]] = own[j];
 }
 
 // Far from its load a solution decays until it is a denormal number, on which a processor is a hundred times slower.
 bool vanishes(Lanes& y) noexcept {
   constexpr double nothing = 1e-40;
-  bool all = true;  // false for a NaN, which must reach the solution
-  for (int s = 0; s < side_by_side; ++s) all &= std::abs(y[s]) < nothing;
-  if (all) y = Lanes{};
-  return all;
+  const bool fades = all(abs(y) < broadcast<Lanes>(nothing));  // false for a NaN, which must reach the solution
+  if (fades) y = Lanes{};
+  return fades;
 }
 
 }  // namespace
 
-/// LaneColumns with their rows' places, and what is left of the border's slots, while the factor is made.
+/// Between two slots, the border's counted on from the others.
+struct SectionedLdlt::Entry {
+  int section, row, column;
+  double value;
+};
+
+/// Columns of L by ranks in the order of elimination, the border's slots last.
 struct SectionedLdlt::Numbers {
-  std::vector<Lanes> diagonal;                        // of the slots
+  std::vector<int> begin{0}, row;
+  std::vector<Lanes> value, diagonal;
   std::vector<Lanes> border;                          // borders × borders, of the lower triangle, by columns
   std::vector<Eigen::Triplet<double>> of_interfaces;  // entries between interface unknowns
 
-  explicit Numbers(const SectionLayout& layout)
-      : diagonal(static_cast<std::size_t>(layout.slots)),
-        border(static_cast<std::size_t>(layout.borders) * static_cast<std::size_t>(layout.borders)) {}
+  /// Where the entry of a row stands in a column.
+  [[nodiscard]] std::size_t at(int rank, int column) const {
+    const auto first = row.begin() + begin[index(column)], last = row.begin() + begin[index(column + 1)];
+    return index(static_cast<int>(std::lower_bound(first, last, rank) - row.begin()));
+  }
 };
+
+namespace {
+
+// Minimum degree, the borders' slots as a clique that comes last.
+EliminationTree tree_of(int slots, int borders, std::vector<Eigen::Triplet<double>> pairs) {
+  const int all = slots + borders;
+  for (int i = slots; i < all; ++i) {
+    for (int j = slots; j < all; ++j) pairs.emplace_back(i, j, 1.0);
+  }
+  Sparse pattern(all, all);
+  pattern.setFromTriplets(pairs.begin(), pairs.end());
+  const DofRange whole{0, all};
+  std::vector<int> order = elimination_order(pattern, whole, EliminationOrder::minimum_degree);
+  std::erase_if(order, [&](int slot) { return slot >= slots; });
+  for (int i = slots; i < all; ++i) order.push_back(i);
+  return {pattern, whole, std::move(order)};
+}
+
+}  // namespace
 
 SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const SectionLayout> layout,
                              std::string_view message)
-    : layout_(std::move(layout)), rank_(static_cast<std::size_t>(layout_->slots + layout_->borders)) {
-  for (int k = 0; k < layout_->slots; ++k) {
-    rank_[static_cast<std::size_t>(layout_->elimination[static_cast<std::size_t>(k)])] = k;
-  }
-  std::iota(rank_.begin() + layout_->slots, rank_.end(), layout_->slots);
-  find_columns(matrix);
-  Numbers numbers(*layout_);
+    : layout_(std::move(layout)) {
   const SectionLayout& l = *layout_;
-  for (Lanes& d : numbers.diagonal) {
-    for (int s = 0; s < side_by_side; ++s) d[s] = 1.0;  // of a section that lacks the unknown
-  }
+  Numbers numbers;
+  std::vector<Entry> entries;
+  std::vector<Eigen::Triplet<double>> pairs;  // of slots
   l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double value) {
     if (p.section < 0) {
       numbers.of_interfaces.emplace_back(p.row, p.column, value);
-    } else if (const int row = rank(p.row), column = rank(p.column); row == column) {
-      numbers.diagonal[static_cast<std::size_t>(row)][p.section] = value;
-    } else if (row > column) {
-      const auto first = row_.begin() + begin_[static_cast<std::size_t>(column)];
-      const auto last = row_.begin() + begin_[static_cast<std::size_t>(column + 1)];
-      value_[static_cast<std::size_t>(std::lower_bound(first, last, row) - row_.begin())][p.section] = value;
+      return;
     }
+    pairs.emplace_back(p.row, p.column, 1.0);
+    if (p.row >= p.column) entries.push_back({p.section, p.row, p.column, value});
   });
+  const EliminationTree tree = tree_of(l.slots, l.borders, std::move(pairs));
+  set_strips(tree);
+  for (const Strip& strip : strip_) {
+    const int* const slot = &slot_[index(strip.slot)];
+    for (int j = 0; j < strip.columns; ++j) {
+      for (int k = j + 1; k < strip.columns + strip.rows; ++k) numbers.row.push_back(tree.position[index(slot[k])]);
+      numbers.begin.push_back(static_cast<int>(numbers.row.size()));
+    }
+  }
+  numbers.value.assign(numbers.row.size(), Lanes{});
+  numbers.diagonal.assign(index(l.slots), broadcast<Lanes>(1.0));  // of a section that lacks the unknown
+  numbers.border.assign(index(l.borders * l.borders), Lanes{});
+  for (const Entry& e : entries) {
+    const auto [column, row] = std::minmax(tree.position[index(e.row)], tree.position[index(e.column)]);
+    (row == column ? numbers.diagonal[index(column)] : numbers.value[numbers.at(row, column)])[e.section] = e.value;
+  }
   eliminate(numbers, message);
   factor_interfaces(numbers, message);
-  for (int& row : row_) {
-    if (row < l.slots) row = l.elimination[static_cast<std::size_t>(row)];
-  }
+  store(numbers);
 }
 
-// Rows of L: those of the matrix's column and of every column whose first row this one is [Davis2006, Sect. 4.1].
-void SectionedLdlt::find_columns(const Sparse& matrix) {
-  const SectionLayout& l = *layout_;
-  const auto n = static_cast<std::size_t>(l.slots);
-  std::vector<std::vector<int>> rows(n);
-  l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double) {
-    if (p.section < 0) return;
-    const int row = rank(p.row), column = rank(p.column);
-    if (row > column) rows[static_cast<std::size_t>(column)].push_back(row);
-  });
-  begin_.assign(1, 0);
-  for (std::vector<int>& column : rows) {
-    std::sort(column.begin(), column.end());
-    column.erase(std::unique(column.begin(), column.end()), column.end());
-    row_.insert(row_.end(), column.begin(), column.end());
-    begin_.push_back(static_cast<int>(row_.size()));
-    if (column.empty() || column.front() >= l.slots) continue;
-    std::vector<int>& parent = rows[static_cast<std::size_t>(column.front())];
-    parent.insert(parent.end(), column.begin() + 1, column.end());
-    column = {};
+// The border's columns stay rows: theirs are eliminated with the interface unknowns.
+void SectionedLdlt::set_strips(const EliminationTree& tree) {
+  const int slots = layout_->slots;
+  strip_of_.resize(index(slots));
+  for (int b = 0; b < tree.blocks(); ++b) {
+    const int end = tree.first[index(b) + 1], last = std::min(end, slots);
+    for (int first = tree.first[index(b)]; first < last; first += widest) {
+      Strip strip{std::min(widest, last - first), 0, -1, first, static_cast<int>(slot_.size()), 0};
+      for (int k = first; k < end; ++k) slot_.push_back(tree.unknown[index(k)]);
+      for (const int k : tree.rows(b)) slot_.push_back(tree.unknown[index(k)]);
+      strip.rows = static_cast<int>(slot_.size()) - strip.slot - strip.columns;
+      for (int j = 0; j < strip.columns; ++j) {
+        strip_of_[index(slot_[index(strip.slot + j)])] = static_cast<int>(strip_.size());
+      }
+      strip_.push_back(strip);
+    }
   }
-  value_.assign(row_.size(), Lanes{});
-  inverse_D_.resize(n);
+  int values = 0;
+  for (Strip& strip : strip_) {
+    if (strip.rows > 0) {
+      const int row = slot_[index(strip.slot + strip.columns)];
+      strip.parent = row < slots ? strip_of_[index(row)] : -1;
+    }
+    strip.value = values;
+    values += strip.columns * (strip.columns - 1) / 2 + strip.columns * strip.rows;
+  }
+  value_.resize(index(values));
+  inverse_D_.resize(index(slots));
 }
 
 // Right-looking: a finished column changes the columns of its rows, whose rows include the further ones of its own.
-void SectionedLdlt::eliminate(Numbers& numbers, std::string_view message) {
-  const int n = layout_->slots, borders = layout_->borders;
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  for (int j = 0; j < n; ++j) {
-    const Lanes& d = numbers.diagonal[at(j)];
+void SectionedLdlt::eliminate(Numbers& n, std::string_view message) const {
+  const int slots = layout_->slots, borders = layout_->borders;
+  for (int j = 0; j < slots; ++j) {
+    Lanes& d = n.diagonal[index(j)];
     for (int s = 0; s < side_by_side; ++s) {
       if (!(d[s] > 0.0)) throw ComputationError(std::string(message));
     }
-    const Lanes inverse = 1.0 / d;
-    inverse_D_[at(j)] = inverse;
-    const int end = begin_[at(j + 1)];
-    for (int p = begin_[at(j)]; p < end; ++p) {
-      const int k = row_[at(p)];
-      const Lanes factor = value_[at(p)] * inverse;
-      if (k >= n) {
+    d = 1.0 / d;
+    const int end = n.begin[index(j + 1)];
+    for (int p = n.begin[index(j)]; p < end; ++p) {
+      const int k = n.row[index(p)];
+      const Lanes factor = n.value[index(p)] * d;
+      if (k >= slots) {
         for (int q = p; q < end; ++q) {
-          numbers.border[at((k - n) * borders + row_[at(q)] - n)] -= factor * value_[at(q)];
+          n.border[index((k - slots) * borders + n.row[index(q)] - slots)] -= factor * n.value[index(q)];
         }
         continue;
       }
-      numbers.diagonal[at(k)] -= factor * value_[at(p)];
-      int place = begin_[at(k)];
+      n.diagonal[index(k)] -= factor * n.value[index(p)];
+      int place = n.begin[index(k)];
       for (int q = p + 1; q < end; ++q) {
-        while (row_[at(place)] != row_[at(q)]) ++place;
-        value_[at(place)] -= factor * value_[at(q)];
+        while (n.row[index(place)] != n.row[index(q)]) ++place;
+        n.value[index(place)] -= factor * n.value[index(q)];
       }
     }
-    for (int p = begin_[at(j)]; p < end; ++p) value_[at(p)] *= inverse;
+    for (int p = n.begin[index(j)]; p < end; ++p) n.value[index(p)] *= d;
   }
+}
+
+void SectionedLdlt::store(const Numbers& numbers) {
+  for (const Strip& strip : strip_) {
+    StoredLanes* value = &value_[index(strip.value)];
+    for (int row = 1; row < strip.columns + strip.rows; ++row) {
+      for (int j = 0; j < std::min(row, strip.columns); ++j) {
+        *value++ = StoredLanes(numbers.value[index(numbers.begin[index(strip.first + j)] + row - j - 1)]);
+      }
+    }
+  }
+  inverse_D_ = numbers.diagonal;
 }
 
 void SectionedLdlt::factor_interfaces(const Numbers& numbers, std::string_view message) {
@@ -170,8 +230,8 @@ void SectionedLdlt::factor_interfaces(const Numbers& numbers, std::string_view m
 Eigen::Index SectionedLdlt::room() const noexcept { return factor_begin() + (interfaces_ ? interfaces_->room() : 0); }
 
 std::size_t SectionedLdlt::bytes() const noexcept {
-  return (value_.size() + inverse_D_.size()) * sizeof(Lanes) + (row_.size() + begin_.size()) * sizeof(int) +
-         (interfaces_ ? interfaces_->bytes() : 0);
+  return value_.size() * sizeof(StoredLanes) + inverse_D_.size() * sizeof(Lanes) + slot_.size() * sizeof(int) +
+         strip_.size() * sizeof(Strip) + (interfaces_ ? interfaces_->bytes() : 0);
 }
 
 std::size_t SectionedLdlt::stored_bytes() const noexcept {
@@ -180,19 +240,13 @@ std::size_t SectionedLdlt::stored_bytes() const noexcept {
 }
 
 void SectionedLdlt::find_path(std::span<const int> unknowns, Path& path) const {
-  path.clear(inverse_D_.size());
+  path.clear(strip_.size());
   for (int unknown : unknowns) {
-    const auto own = static_cast<std::size_t>(unknown - layout_->range.begin);
-    for (const int part : {unknown, layout_->mirrored[own]}) {
+    for (const int part : {unknown, layout_->mirrored[index(unknown - range_begin())]}) {
       if (part < 0) continue;
-      const SectionLayout::Place& p = layout_->place[static_cast<std::size_t>(part - layout_->range.begin)];
+      const SectionLayout::Place& p = layout_->place[index(part - range_begin())];
       if (p.section < 0) continue;
-      path.add(rank(p.number), [&](int j) {
-        const int first = begin_[static_cast<std::size_t>(j)];
-        if (first == begin_[static_cast<std::size_t>(j + 1)]) return -1;
-        const int row = row_[static_cast<std::size_t>(first)];
-        return row < layout_->slots ? rank(row) : -1;
-      });
+      path.add(strip_of_[index(p.number)], [&](int s) { return strip_[index(s)].parent; });
     }
   }
   path.sort();
@@ -201,13 +255,21 @@ void SectionedLdlt::find_path(std::span<const int> unknowns, Path& path) const {
 bool SectionedLdlt::covers(const Path& path, std::span<const int> unknowns) const {
   const auto covered = [&](int unknown) {
     assert(unknown >= layout_->range.begin && unknown < layout_->range.end());
-    const SectionLayout::Place& p = layout_->place[static_cast<std::size_t>(unknown - layout_->range.begin)];
-    return p.section < 0 || path.contains(rank(p.number));
+    const SectionLayout::Place& p = layout_->place[index(unknown - range_begin())];
+    return p.section < 0 || path.contains(strip_of_[index(p.number)]);
   };
   return std::all_of(unknowns.begin(), unknowns.end(), [&](int unknown) {
-    const int other = layout_->mirrored[static_cast<std::size_t>(unknown - layout_->range.begin)];
+    const int other = layout_->mirrored[index(unknown - range_begin())];
     return covered(unknown) && (other < 0 || covered(other));
   });
+}
+
+template <class Visitor>
+void SectionedLdlt::visit_slots(const Path& path, Visitor&& visitor) const {
+  for (int s : path.nodes()) {
+    const Strip& strip = strip_[index(s)];
+    for (int j = 0; j < strip.columns; ++j) visitor(slot_[index(strip.slot + j)]);
+  }
 }
 
 void SectionedLdlt::into(const Vector& natural, Vector& ordered) const {
@@ -224,7 +286,7 @@ void SectionedLdlt::into(std::span<const int> few, double weight, const Vector& 
 void SectionedLdlt::set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
   const double of_pair = root_half * weight;
   for (int unknown : few) {
-    const int other = layout_->mirrored[static_cast<std::size_t>(unknown - layout_->range.begin)];
+    const int other = layout_->mirrored[index(unknown - range_begin())];
     const double value = natural[unknown];
     if (other < 0) {
       ordered[layout_->position(unknown)] = weight * value;
@@ -246,7 +308,7 @@ void SectionedLdlt::out_of(const Vector& ordered, Vector& natural) const {
 void SectionedLdlt::load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
                          Vector& ordered) const {
   Lanes* const y = lanes(ordered);
-  for (int j : path.nodes()) y[layout_->elimination[static_cast<std::size_t>(j)]] = Lanes{};
+  visit_slots(path, [&](int slot) { y[slot] = Lanes{}; });
   ordered.tail(room() - layout_->border_begin()).setZero();
   set(few, weight, natural, ordered);
 }
@@ -254,10 +316,7 @@ void SectionedLdlt::load(const Path& path, std::span<const int> few, double weig
 void SectionedLdlt::add(const Path& path, const Vector& known, Vector& y) const {
   Lanes* const to = lanes(y);
   const Lanes* const from = lanes(known);
-  for (int j : path.nodes()) {
-    const int slot = layout_->elimination[static_cast<std::size_t>(j)];
-    to[slot] += from[slot];
-  }
+  visit_slots(path, [&](int slot) { to[slot] += from[slot]; });
   const Eigen::Index count = room() - factor_begin();
   y.tail(count) += known.tail(count);
 }
@@ -287,33 +346,63 @@ void SectionedLdlt::backward_interfaces(const Vector& y, Vector& x) const {
   layout_->spread_interfaces(x);
 }
 
+void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
+  const int* const slot = &slot_[index(strip.slot)];
+  const StoredLanes* const value = value_.data() + strip.value;
+  switch (strip.columns) {
+    case 1:
+      return forward_columns<1>(slot, strip.rows, value, y);
+    case 2:
+      return forward_columns<2>(slot, strip.rows, value, y);
+    case 3:
+      return forward_columns<3>(slot, strip.rows, value, y);
+    default:
+      return forward_columns<widest>(slot, strip.rows, value, y);
+  }
+}
+
+void SectionedLdlt::backward_strip(const Strip& strip, const Lanes* y, Lanes* x) const noexcept {
+  const int* const slot = &slot_[index(strip.slot)];
+  const StoredLanes* const value = value_.data() + strip.value;
+  const Lanes* const inverse_D = &inverse_D_[index(strip.first)];
+  switch (strip.columns) {
+    case 1:
+      return backward_columns<1>(slot, strip.rows, value, inverse_D, y, x);
+    case 2:
+      return backward_columns<2>(slot, strip.rows, value, inverse_D, y, x);
+    case 3:
+      return backward_columns<3>(slot, strip.rows, value, inverse_D, y, x);
+    default:
+      return backward_columns<widest>(slot, strip.rows, value, inverse_D, y, x);
+  }
+}
+
 void SectionedLdlt::forward(Vector& y) const {
-  const LaneColumns columns{layout_->elimination.data(), begin_.data(), row_.data(), value_.data()};
-  for (int j = 0; j < layout_->slots; ++j) forward_column(columns, j, lanes(y));
+  for (const Strip& strip : strip_) forward_strip(strip, lanes(y));
   forward_interfaces(y);
 }
 
 void SectionedLdlt::forward(Vector& y, const Path& path) const {
-  const LaneColumns columns{layout_->elimination.data(), begin_.data(), row_.data(), value_.data()};
   Lanes* const numbers = lanes(y);
-  for (int j : path.nodes()) {
-    if (!vanishes(numbers[columns.slot[j]])) forward_column(columns, j, numbers);
+  for (int s : path.nodes()) {
+    const Strip& strip = strip_[index(s)];
+    bool nothing = true;
+    for (int j = 0; j < strip.columns; ++j) nothing &= vanishes(numbers[slot_[index(strip.slot + j)]]);
+    if (!nothing) forward_strip(strip, numbers);
   }
   forward_interfaces(y);
 }
 
 void SectionedLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
   backward_interfaces(y, x);
-  const LaneColumns columns{layout_->elimination.data(), begin_.data(), row_.data(), value_.data()};
-  for (auto j = path.nodes().rbegin(); j != path.nodes().rend(); ++j) {
-    backward_column(columns, *j, inverse_D_.data(), lanes(y), lanes(x));
+  for (auto s = path.nodes().rbegin(); s != path.nodes().rend(); ++s) {
+    backward_strip(strip_[index(*s)], lanes(y), lanes(x));
   }
 }
 
 void SectionedLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
-  const LaneColumns columns{layout_->elimination.data(), begin_.data(), row_.data(), value_.data()};
-  for (int j = layout_->slots; j-- > 0;) {
-    if (!path.contains(j)) backward_column(columns, j, inverse_D_.data(), lanes(y), lanes(x));
+  for (int s = static_cast<int>(strip_.size()); s-- > 0;) {
+    if (!path.contains(s)) backward_strip(strip_[index(s)], lanes(y), lanes(x));
   }
 }
 

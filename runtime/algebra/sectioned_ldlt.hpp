@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "railtab/runtime/algebra/elimination_tree.hpp"
 #include "railtab/runtime/algebra/section_layout.hpp"
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/base/lane_numbers.hpp"
@@ -40,23 +41,41 @@ class SectionedLdlt final : public SubstitutionFactor {
   void backward_off(const Path& path, const Vector& y, Vector& x) const override;
 
  private:
+  /// Up to four neighbouring columns of L that share the rows below them: a block of the elimination tree, or a part.
+  struct Strip {
+    int columns, rows;  ///< rows below its triangle
+    int parent;         ///< strip of the first of them; -1: none, or a border slot
+    int first;          ///< column, in the order of elimination
+    int slot, value;    ///< where its slots and its numbers begin
+  };
+  struct Entry;    // of the matrix, in a section
   struct Numbers;  // while the factor is made
-  [[nodiscard]] int rank(int slot) const noexcept { return rank_[static_cast<std::size_t>(slot)]; }
-  void find_columns(const Eigen::SparseMatrix<double>& pattern);
-  void eliminate(Numbers& numbers, std::string_view message);
+  void set_strips(const EliminationTree& tree);
+  void eliminate(Numbers& numbers, std::string_view message) const;
   void factor_interfaces(const Numbers& numbers, std::string_view message);
+  void store(const Numbers& numbers);
   /// Where the interface unknowns stand once more, in the order of their factor.
   [[nodiscard]] Eigen::Index factor_begin() const noexcept {
     return layout_->interface_begin() + static_cast<Eigen::Index>(layout_->interfaces.size());
   }
+  [[nodiscard]] int range_begin() const noexcept { return static_cast<int>(layout_->range.begin); }
+  /// Calls visitor(slot) for the columns of the path.
+  template <class Visitor>
+  void visit_slots(const Path& path, Visitor&& visitor) const;
   void set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const;
   void forward_interfaces(Vector& y) const;
   void backward_interfaces(const Vector& y, Vector& x) const;
+  void forward_strip(const Strip& strip, Lanes* y) const noexcept;
+  void backward_strip(const Strip& strip, const Lanes* y, Lanes* x) const noexcept;
 
   std::shared_ptr<const SectionLayout> layout_;
-  std::vector<int> rank_;         ///< of a slot in the order of elimination; border slots come last
-  std::vector<int> begin_, row_;  ///< of the columns of L in that order; rows are slots, of ascending rank
-  std::vector<Lanes> value_, inverse_D_;
+  std::vector<Strip> strip_;   ///< each after all that hang on it
+  std::vector<int> strip_of_;  ///< of the slots
+  std::vector<int> slot_;      ///< of each strip, of its columns, then of its rows
+  /// Of each strip, its triangle and then what is below, row by row. In single precision: a factor of the matrix as
+  /// rounding to 6e-8 of its entries would have it, at half the memory traffic.
+  std::vector<StoredLanes> value_;
+  std::vector<Lanes> inverse_D_;            ///< of the columns
   std::unique_ptr<SparseLdlt> interfaces_;  ///< null where there are none
 };
 

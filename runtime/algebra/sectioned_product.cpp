@@ -1,9 +1,13 @@
 #include "railtab/runtime/algebra/sectioned_product.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
+
+#include "railtab/runtime/base/index.hpp"
 
 namespace railtab {
 
@@ -38,15 +42,19 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
                                    std::shared_ptr<const SectionLayout> layout)
     : layout_(std::move(layout)) {
   const SectionLayout& l = *layout_;
-  std::vector<std::map<int, Pair>> columns(static_cast<std::size_t>(l.slots));
+  struct Entry {
+    int row, section, which;  // 0: stiffness, 1: damping
+    double value;
+  };
+  std::vector<std::vector<Entry>> columns(index(l.slots));
   std::map<std::pair<int, int>, std::array<double, 2>> between;
-  for (const Sparse* matrix : {&stiffness, &damping}) {
-    l.visit_places(*matrix, [&](const SectionLayout::EntryPlace& p, double value) {
+  const std::array matrices{&stiffness, &damping};
+  for (int which = 0; which < 2; ++which) {
+    l.visit_places(*matrices[index(which)], [&](const SectionLayout::EntryPlace& p, double value) {
       if (p.section < 0) {
-        between[{p.row, p.column}][matrix == &damping ? 1 : 0] += value;
+        between[{p.row, p.column}][index(which)] += value;
       } else if (p.row >= p.column) {
-        Pair& pair = columns[static_cast<std::size_t>(p.column)][p.row];
-        (matrix == &damping ? pair.damping : pair.stiffness)[p.section] = value;
+        columns[index(p.column)].push_back({p.row, p.section, which, value});
       }
     });
   }
@@ -55,11 +63,27 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   }
   alike_.begin.assign(1, 0);
   other_.begin.assign(1, 0);
+  std::vector<int> number(index(l.slots + l.borders), -1), rows;
+  std::vector<Pair> pairs;
   for (int j = 0; j < l.slots; ++j) {
-    for (const auto& [row, pair] : columns[static_cast<std::size_t>(j)]) {
-      if (const auto number = common_value(l, row, j, pair.stiffness, pair.damping)) {
+    rows.clear();
+    pairs.clear();
+    for (const Entry& e : columns[index(j)]) {
+      int& of_row = number[index(e.row)];
+      if (of_row < 0) {
+        of_row = static_cast<int>(rows.size());
+        rows.push_back(e.row);
+        pairs.emplace_back();
+      }
+      Pair& pair = pairs[index(of_row)];
+      (e.which == 0 ? pair.stiffness : pair.damping)[e.section] = e.value;
+    }
+    std::sort(rows.begin(), rows.end());
+    for (const int row : rows) {
+      const Pair& pair = pairs[index(std::exchange(number[index(row)], -1))];
+      if (const auto common = common_value(l, row, j, pair.stiffness, pair.damping)) {
         alike_.row.push_back(row);
-        alike_.value.push_back(*number);
+        alike_.value.push_back(*common);
       } else {
         other_.row.push_back(row);
         other_.value.push_back(pair);

@@ -24,6 +24,7 @@ class SectionedProduct {
   void subtract(const WeightedSums<3, 2>& motion, Buffers& buffers, Eigen::VectorXd& ordered) const;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
+  [[nodiscard]] const SectionLayout& layout() const noexcept { return *layout_; }
 
  private:
   struct Pair {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <concepts>
 
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif
+
+#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
 
@@ -68,6 +71,25 @@ struct alignas(sizeof(double) * n) SideBySide {
   }
 };
 using Lanes = SideBySide<8>;
+
+/// Numbers side by side in single precision: half the memory of those that are computed with.
+template <int n>
+struct alignas(sizeof(float) * n) StoredSideBySide {
+  float part[n];
+
+  StoredSideBySide() = default;
+  explicit StoredSideBySide(const SideBySide<n>& of) noexcept {
+    for (int i = 0; i < n; ++i) part[i] = static_cast<float>(of[i]);
+  }
+  [[nodiscard]] SideBySide<n> widened() const noexcept {
+    SideBySide<n> result;
+    for (int r = 0; r < SideBySide<n>::registers; ++r) {
+      widen(part + SideBySide<n>::width * r, result.part[r]);
+    }
+    return result;
+  }
+};
+using StoredLanes = StoredSideBySide<8>;
 
 // Operations that a number and numbers side by side have in common, so that one formula serves a single wheel and
 // several of them.
@@ -210,10 +232,19 @@ template <int n>
 [[nodiscard]] inline bool all(bool mask) noexcept { return mask; }
 template <int n>
 [[nodiscard]] bool any(const LaneMask<n>& mask) noexcept {
-  long bits = 0;
-  for (const auto& r : mask.part)
-    for (int i = 0; i < SideBySide<n>::width; ++i) bits |= r[i];
-  return bits != 0;
+  auto bits = mask.part[0];
+  for (int r = 1; r < SideBySide<n>::registers; ++r) bits |= mask.part[r];
+#if defined(__AVX512F__)
+  if constexpr (sizeof bits == 64)
+    return _mm512_test_epi64_mask(std::bit_cast<__m512i>(bits), std::bit_cast<__m512i>(bits)) != 0;
+#endif
+#if defined(__AVX__)
+  if constexpr (sizeof bits == 32)
+    return _mm256_testz_si256(std::bit_cast<__m256i>(bits), std::bit_cast<__m256i>(bits)) == 0;
+#endif
+  long some = 0;
+  for (int i = 0; i < SideBySide<n>::width; ++i) some |= bits[i];
+  return some != 0;
 }
 template <int n>
 [[nodiscard]] bool all(const LaneMask<n>& mask) noexcept {

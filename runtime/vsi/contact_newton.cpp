@@ -151,7 +151,7 @@ double force_change(const NewtonWorkspace& ws, Wheelsets wheelsets) {
   double largest = 0.0;
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     const Eigen::Matrix<double, wheelset_unknowns, 1> change =
-        ws.tangent[index(w)] * ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w);
+        ws.tangent[index(w)].lazyProduct(ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w));
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
   }
   return largest;
@@ -232,8 +232,9 @@ class TrainNewton {
       return;
     }
     const int first = wheelset_unknowns * ws_.range[index(g)].first;
-    ws_.correction.segment<wheelset_unknowns>(first).noalias() =
-        Eigen::Map<const Matrix12>(inverse.data()) * ws_.residual.segment<wheelset_unknowns>(first);
+    const Eigen::Map<const Matrix12> of_wheelset(inverse.data());
+    ws_.correction.segment<wheelset_unknowns>(first) =
+        of_wheelset.lazyProduct(ws_.residual.segment<wheelset_unknowns>(first));
   }
 
   // The first correction of groups whose tangents are known, from estimated forces.
@@ -296,19 +297,19 @@ class TrainNewton {
     const double square = weighted.dot(move);
     const Vector12 change = part_of(s_.force, g) - part_of(ws_.start_force, g);
     if (!(square > 0.0) || change.cwiseAbs().maxCoeff() < least_change) return;
-    const Vector12 explained = tangent * move;
+    const Vector12 explained = tangent.lazyProduct(move);
     const Vector12 unexplained = change - explained;
     double& error = ws_.tangent_error[index(g)];
     const double now = unexplained.cwiseAbs().maxCoeff() / explained.cwiseAbs().maxCoeff();
     error = std::min(std::max(now, kept_error * error), 1.0);
     Eigen::Map<Matrix12> inverse(ws_.inverse[index(g)].data());
     const Vector12 v = weighted / square;
-    const Vector12 responded = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()) * unexplained;
-    const Vector12 z = inverse * responded;
+    const Vector12 responded = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()).lazyProduct(unexplained);
+    const Vector12 z = inverse.lazyProduct(responded);
     const double denominator = 1.0 - v.dot(z);
     if (!(std::abs(denominator) > nearly_singular)) return;
     tangent += unexplained * v.transpose();
-    const Eigen::Matrix<double, 1, wheelset_unknowns> row = v.transpose() * inverse / denominator;
+    const Eigen::Matrix<double, 1, wheelset_unknowns> row = v.transpose().lazyProduct(inverse) / denominator;
     inverse += z * row;
   }
 
@@ -385,7 +386,8 @@ class TrainNewton {
     }
     if (n.extrapolated == 0.0) error *= growth;
     n.extrapolated = sum;
-    const Vector12 change = ws_.tangent[index(g)] * part_of(ws_.correction, g);
+    const Vector12 change =
+        ws_.tangent[index(g)].lazyProduct(ws_.correction.segment<wheelset_unknowns>(wheelset_unknowns * g));
     part_of(s_.displacement, g) += part_of(ws_.correction, g);
     part_of(s_.force, g) += change;
     part_of(s_.end_force, g) += change;

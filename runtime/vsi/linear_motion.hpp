@@ -89,12 +89,15 @@ inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, Li
 /// structure's.
 inline void find_loaded(const LinearMotion& motion, const DofRange& range, std::vector<int>& dofs) {
   dofs.clear();
-  constexpr Eigen::Index together = 16;  // to pass over what is not loaded
+  constexpr Eigen::Index together = 32, width = 8;  // to pass over what is not loaded
   for (Eigen::Index first = range.begin; first < range.end(); first += together) {
     if (first + together <= range.end()) {
-      const double loaded = motion.contact_load.segment<together>(first).cwiseAbs().sum() +
-                            motion.step_load.segment<together>(first).cwiseAbs().sum();
-      if (loaded == 0.0) continue;
+      Eigen::Array<double, width, 1> loaded = Eigen::Array<double, width, 1>::Zero();
+      for (Eigen::Index i = first; i < first + together; i += width) {
+        loaded +=
+            motion.contact_load.segment<width>(i).array().abs() + motion.step_load.segment<width>(i).array().abs();
+      }
+      if (loaded.sum() == 0.0) continue;
     }
     for (Eigen::Index i = first; i < std::min(first + together, range.end()); ++i) {
       if (motion.contact_load[i] != 0.0 || motion.step_load[i] != 0.0) dofs.push_back(static_cast<int>(i));

@@ -112,9 +112,8 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
   if (step.model.structure) {
     const Stopwatch watch = report.times.measure(Phase::structure);
     const StructureResponse& structure = *step.operators.structure;
-    ws.structure.substitution.finish(structure.factor(), ws.structure_increment);
+    structure.finish_step(ws.structure, state.structure);
     close_structure_load(step, ws, state.structure);
-    update(step.hht, ws.structure_increment, structure.active(), state.structure);
   }
   const Stopwatch watch = report.times.measure(Phase::vehicle);
   contacts.close(step, state, ws);
@@ -130,7 +129,6 @@ StepWorkspace::StepWorkspace(const VsiModel& model)
       structure_predicted(structure_load),
       structure_predicted_velocity(structure_load),
       structure_free(structure_load),
-      structure_increment(structure_load),
       solution(VsiState(model).contact) {}
 
 //   Eq. 12, 13   predictors ã, ṽ and right-hand sides ψ of K̄ Δa + D̄ X = ψ     predict

@@ -59,7 +59,7 @@ struct StepWorkspace {
   Eigen::VectorXd vehicle_load;                                       ///< of one vehicle
   Eigen::VectorXd structure_load;                                     ///< zero but for rail_dofs
   Eigen::VectorXd structure_predicted, structure_predicted_velocity;  ///< ã, ṽ at the rail_dofs
-  Eigen::VectorXd structure_past, structure_free, structure_increment, far_field;
+  Eigen::VectorXd structure_past, structure_free, far_field;
   ContactSolution solution;
 
   explicit StepWorkspace(const VsiModel& model);

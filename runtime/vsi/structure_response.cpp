@@ -70,11 +70,10 @@ void append_rail_heads(const StructureModel& structure, double x, std::vector<Ra
     contacts.push_back(rail_contact(structure, RailSide::right, x));
     return;
   }
-  RailContact right = left;
+  RailContact& right = contacts.emplace_back(left);
   right.side = RailSide::right;
   right.rail = &rail;
   right.rows.dof = element_dofs(rail, node);
-  contacts.push_back(right);
 }
 
 Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept {
@@ -109,13 +108,26 @@ void append_dofs_ahead(const RailContact& contact, std::vector<int>& dofs) {
   if (node < contact.rail->x.size()) append_free(head_dofs(*contact.rail, node), dofs);
 }
 
+namespace {
+
+// A node's unknowns in the order of an element's. Of the rows y, z and roll only these entries are not zero
+// (rail_interpolation): y has the node's y and yaw and, times the head's height, what roll has; z its z and pitch; roll
+// its roll and twist rate.
+enum HeadDof : std::size_t { twist, y, z, roll, pitch, yaw, of_node };
+
+}  // namespace
+
 Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   if (!contact.on_rail) return value;
-  for (std::size_t k = 0; k < 12; ++k) {
-    if (contact.rows.dof[k] == held) continue;
-    value += dofs[contact.rows.dof[k]] * Eigen::Vector3d(contact.rows.y[k], contact.rows.z[k], contact.rows.roll[k]);
+  const RailInterpolation& rows = contact.rows;
+  for (std::size_t p = 0; p < rows.dof.size(); p += of_node) {
+    const auto at = [&](HeadDof k) { return rows.dof[p + k] == held ? 0.0 : dofs[rows.dof[p + k]]; };
+    value[0] += rows.y[p + y] * at(y) + rows.y[p + yaw] * at(yaw);
+    value[1] += rows.z[p + z] * at(z) + rows.z[p + pitch] * at(pitch);
+    value[2] += rows.roll[p + roll] * at(roll) + rows.roll[p + twist] * at(twist);
   }
+  value[0] += contact.rail->head_height * value[2];
   return value;
 }
 
@@ -245,7 +257,7 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
 StructureResponse::StructureResponse(const StructureModel& structure) : at_rest_(true), dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  set_divisible(structure, {0, dofs_});
+  // In double precision: no later step puts a state of rest right.
   activate({0, dofs_});
 }
 
@@ -350,10 +362,10 @@ StructureResponse::Memory StructureResponse::memory() const {
   memory.low += static_cast<double>(whole.stored);
   memory.low_setup = static_cast<double>(whole.made);
   if (factored_in_sections_) {
-    // An estimate of what the division into sections works on: copies of the pattern, or its entries beside the factor.
+    // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's
+    // in double precision.
     const double ordering = 4.0 * entry * nonzeros;
-    memory.setup =
-        std::max(ordering, entry * (0.5 * nonzeros + static_cast<double>(factor_->bytes()) / sizeof(double)));
+    memory.setup = std::max(ordering, entry * nonzeros + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
     memory.setup = static_cast<double>(SparseLdlt::memory(effective_, active_, order_of(active_), node_).made);
   }
@@ -441,6 +453,21 @@ void StructureResponse::begin_step(const LinearMotion& motion, const KnownLoad& 
     f[j] -= sum;
   }
   solution.substitution.begin(*factor_, solution.load, few);
+}
+
+void StructureResponse::finish_step(StructureSolution& solution, LinearMotion& motion) const {
+  if (!product_) {
+    solution.increment.resize(dofs_);
+    solution.substitution.finish(*factor_, solution.increment);
+    update(scheme_, solution.increment, active_, motion);
+    return;
+  }
+  const NewmarkPredictor predictor(scheme_);
+  product_->layout().out_of(
+      solution.substitution.finish(*factor_),
+      StepEnd{motion.displacement.data(), motion.velocity.data(), motion.acceleration.data(), predictor.time_step,
+              predictor.displacement_by_acceleration, predictor.velocity_by_acceleration, scheme_.velocity_rate(),
+              scheme_.acceleration_rate()});
 }
 
 Eigen::VectorXd StructureResponse::increment(const LinearMotion& motion, const Eigen::VectorXd& load) const {
@@ -547,37 +574,33 @@ void StructureResponse::visit_blocks(const RailContact& i, const RailContact& j,
 
 namespace {
 
-// Twist rate, y, z, roll, pitch and yaw of a node: the four after the first side by side.
+// Twist rate, y, z, roll, pitch and yaw of a node: the first four and the last four.
 struct NodeMotion {
-  Pack four{};
-  double yaw = 0.0, twist_rate = 0.0;
+  Pack first{}, last{};
 
   void add(double weight, const double* column) noexcept {
     Pack moved;
-    std::memcpy(&moved, column + 1, sizeof moved);
-    four += weight * moved;
-    yaw += weight * column[5];
-    twist_rate += weight * column[0];
+    std::memcpy(&moved, column, sizeof moved);
+    first += weight * moved;
+    std::memcpy(&moved, column + 2, sizeof moved);
+    last += weight * moved;
   }
   void add(double weight, const NodeMotion& other) noexcept {
-    four += weight * other.four;
-    yaw += weight * other.yaw;
-    twist_rate += weight * other.twist_rate;
+    first += weight * other.first;
+    last += weight * other.last;
   }
+  [[nodiscard]] double operator[](HeadDof k) const noexcept { return k <= roll ? first[k] : last[k - 2]; }
 };
 
 }  // namespace
 
 Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
-  // Of the rows y, z and roll only these entries are not zero (rail_interpolation): y has the node's y and yaw and,
-  // times the head's height, what roll has; z its z and pitch; roll its roll and twist rate.
-  constexpr std::size_t twist = 0, y = 1, z = 2, roll = 3, pitch = 4, yaw = 5;
   if (!i.on_rail || !j.on_rail) return Eigen::Matrix3d::Zero();
   NodeMotion node[2][3];  // of i, under unit loads y, z and roll on rail head j
   visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {
     const RailInterpolation& c = j.rows;
-    const auto column = [&](std::size_t k) { return block.data() + 6 * k; };
-    auto& [of_y, of_z, of_roll] = node[p / 6];
+    const auto column = [&](std::size_t k) { return block.data() + of_node * k; };
+    auto& [of_y, of_z, of_roll] = node[p / of_node];
     of_y.add(c.y[q + y], column(y));
     of_y.add(c.y[q + yaw], column(yaw));
     of_z.add(c.z[q + z], column(z));
@@ -588,13 +611,13 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
   const RailInterpolation& r = i.rows;
   Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
   for (std::size_t p = 0; p < 2; ++p) {
-    const std::size_t first = 6 * p;
+    const std::size_t first = of_node * p;
     node[p][0].add(j.rail->head_height, node[p][2]);
     for (Eigen::Index load = 0; load < 3; ++load) {
       const NodeMotion& m = node[p][load];
-      result(0, load) += r.y[first + y] * m.four[0] + r.y[first + yaw] * m.yaw;
-      result(1, load) += r.z[first + z] * m.four[1] + r.z[first + pitch] * m.four[3];
-      result(2, load) += r.roll[first + roll] * m.four[2] + r.roll[first + twist] * m.twist_rate;
+      result(0, load) += r.y[first + y] * m[y] + r.y[first + yaw] * m[yaw];
+      result(1, load) += r.z[first + z] * m[z] + r.z[first + pitch] * m[pitch];
+      result(2, load) += r.roll[first + roll] * m[roll] + r.roll[first + twist] * m[twist];
     }
   }
   result.row(0) += i.rail->head_height * result.row(2);

@@ -67,7 +67,7 @@ struct KnownLoad {
 struct StructureSolution {
   DividedSubstitution substitution;
   SectionedProduct::Buffers motion;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
-  Eigen::VectorXd load;
+  Eigen::VectorXd load, increment;
 };
 
 /// The structure for one time-step size: the factor of its effective matrix, made once for every range of active
@@ -102,6 +102,9 @@ class StructureResponse {
   /// @param few unknowns that the contact forces stand on, or soon will @pre all of them are active
   void begin_step(const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                   StructureSolution& solution) const;
+  /// Ends such a step under the loads of the last respond(): displacement, velocity and acceleration of the active
+  /// unknowns.
+  void finish_step(StructureSolution& solution, LinearMotion& motion) const;
   /// The increment of such a step without contacts.
   [[nodiscard]] Eigen::VectorXd increment(const LinearMotion& motion, const Eigen::VectorXd& load) const;
   /// What begin_step() reads of stiffness and damping [bytes].

@@ -31,13 +31,11 @@ void advance_structure(const StructureResponse& response, std::span<const RailLo
   for (const RailLoad& rail : loads) append_dofs(rail.place, ws.rail_dofs);
   ws.load.setZero(all.count);
   ws.response.resize(all.count);
-  ws.increment.resize(all.count);
   add_loads(loads, ws.load);
   response.begin_step(motion, {motion.contact_load, ws.past_rail_dofs, -scheme.alpha}, {ws.rail_dofs, {}}, ws.solution);
   ws.solution.substitution.respond(response.factor(), scheme.load_weight(), ws.load, ws.response);
-  ws.solution.substitution.finish(response.factor(), ws.increment);
+  response.finish_step(ws.solution, motion);
   motion.contact_load.swap(ws.load);
-  update(scheme, ws.increment, motion);
 }
 
 }  // namespace railtab

@@ -18,7 +18,7 @@ struct RailLoad {
 struct StructureStepWorkspace {
   StructureSolution solution;
   std::vector<int> rail_dofs, past_rail_dofs;
-  Eigen::VectorXd load, response, increment;
+  Eigen::VectorXd load, response;
 };
 
 /// Static equilibrium of a structure under loads on its rails: displacement K⁻¹f, no rates.

@@ -31,8 +31,8 @@ VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const Eigen::Matri
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const std::vector<SeparateSystem>& systems,
                                  const Eigen::MatrixXd& damping, const HhtScheme& scheme)
     : VehicleResponse(vehicle, systems, effective_matrix(scheme, vehicle.mass, damping, vehicle.stiffness)) {
-  damping_ = SeparateMatrix(systems, damping);
-  stiffness_ = SeparateMatrix(systems, vehicle.stiffness);
+  damping_ = damping.sparseView();
+  stiffness_ = vehicle.stiffness.sparseView();
 }
 
 VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const std::vector<SeparateSystem>& systems,

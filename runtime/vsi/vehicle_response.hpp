@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "railtab/runtime/vehicle/separate_systems.hpp"
 #include "railtab/runtime/vehicle/vehicle_model.hpp"
@@ -50,7 +50,8 @@ class VehicleResponse {
                   const Eigen::MatrixXd& effective);
 
   Eigen::MatrixXd inverse_, compliance_;
-  SeparateMatrix by_systems_, damping_, stiffness_;
+  SeparateMatrix by_systems_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> damping_, stiffness_;
   std::vector<WheelsetRange> coupled_;
 };
 

@@ -57,6 +57,10 @@ StructureModel track_with(const std::vector<double>& spans, double before = 30.0
 
 DofRange whole(const StructureModel& s) { return {0, s.dofs()}; }
 
+// Largest difference between solutions of a factor that is stored in single precision, 6e-8 of its entries, and of one
+// that is not, relative to the largest entry.
+constexpr double stored = 1e-6;
+
 TEST(SectionedLdlt, SolvesAsTheWholeFactorDoes) {
   for (const std::vector<double>& spans :
        {std::vector<double>{}, {32.0}, {20.0, 24.0, 31.5}, {32, 32, 32, 32, 32, 32}}) {
@@ -65,7 +69,7 @@ TEST(SectionedLdlt, SolvesAsTheWholeFactorDoes) {
       const Sectioned sectioned(s, whole(s), paired);
       ASSERT_TRUE(sectioned.layout) << spans.size();
       const Eigen::VectorXd load = Eigen::VectorXd::Random(s.dofs());
-      EXPECT_LT(difference(sectioned.factor().solve(load), SparseLdlt(sectioned.effective).solve(load)), 1e-11)
+      EXPECT_LT(difference(sectioned.factor().solve(load), SparseLdlt(sectioned.effective).solve(load)), stored)
           << spans.size() << " spans, " << (paired ? "sums and differences" : "rails");
     }
   }
@@ -79,7 +83,7 @@ TEST(SectionedLdlt, OfARangeHoldsTheRest) {
   const Sectioned sectioned(s, range);
   ASSERT_TRUE(sectioned.layout);
   const Eigen::VectorXd load = Eigen::VectorXd::Random(s.dofs());
-  EXPECT_LT(difference(sectioned.factor().solve(load), SparseLdlt(sectioned.effective, range).solve(load)), 1e-11);
+  EXPECT_LT(difference(sectioned.factor().solve(load), SparseLdlt(sectioned.effective, range).solve(load)), stored);
 }
 
 TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
@@ -88,7 +92,7 @@ TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
   ASSERT_TRUE(sectioned.layout);
   const int rail = s.rail[0].dof[40][2];
   expect_divided_as_whole(sectioned.factor(), SparseLdlt(sectioned.effective),
-                          {{700, 3, 3, 704, 12}, {rail}, {}, {s.dofs() - 1}}, 1e-11);
+                          {{700, 3, 3, 704, 12}, {rail}, {}, {s.dofs() - 1}}, stored);
   const auto node_dofs = [&](std::size_t node) {
     const DofIndices& dofs = s.rail[1].dof[node];
     return std::vector<int>{dofs[1], dofs[2], dofs[3]};
