@@ -104,6 +104,8 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
   Numbers numbers;
   std::vector<Entry> entries;
   std::vector<Eigen::Triplet<double>> pairs;  // of slots
+  pairs.reserve(static_cast<std::size_t>(matrix.nonZeros() * l.range.count / matrix.rows()));
+  entries.reserve(pairs.capacity() / 2);
   l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double value) {
     if (p.section < 0) {
       numbers.of_interfaces.emplace_back(p.row, p.column, value);

@@ -40,8 +40,8 @@ ResultSize result_size(const ResultHeader& header, double records, double state,
   constexpr double number = sizeof(double);
   // as in ArrayFileWriter: chunks of 16 KiB, at least 8 records, in pages of their own; indices, names, attributes
   constexpr double chunk_values = 2048.0, fewest = 8.0, page = 4096.0, per_dataset = 16384.0, least = 262144.0;
-  // HDF5 keeps chunks of each dataset, and buffers besides: three tenths of them
-  constexpr double kept = 1.3, cache = kept * (1 << 20), library = 4e6;
+  // HDF5 keeps chunks of each dataset, and buffers besides: a quarter of them
+  constexpr double kept = 1.25, cache = kept * (1 << 20), library = 4e6;
   constexpr double between_flushes = 200.0;
   ResultSize size{.file = least, .memory = library};
   for (double row : row_sizes) {

@@ -364,7 +364,7 @@ StructureResponse::Memory StructureResponse::memory() const {
   if (factored_in_sections_) {
     // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's
     // in double precision.
-    const double ordering = 4.0 * entry * nonzeros;
+    const double ordering = 3.5 * entry * nonzeros;
     memory.setup = std::max(ordering, entry * nonzeros + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
     memory.setup = static_cast<double>(SparseLdlt::memory(effective_, active_, order_of(active_), node_).made);
