@@ -179,11 +179,12 @@ struct LoadedTable::NodeSums {
   }
 };
 
-/// The weights of one pose in the value, each twice: for a quantity and its slope.
+/// The weights of one pose in the value.
 struct LoadedTable::ColumnWeights {
-  std::size_t columns, first, yaws;  ///< those that are read, and the first of them
-  std::array<double, 2 * most_columns> twice;
-  std::array<double, rolls_read> roll;  ///< of the nodes of roll
+  std::size_t columns, first;                  ///< those that are read, and the first of them
+  std::size_t yaws;                            ///< columns per node of roll
+  std::array<double, 2 * most_columns> twice;  ///< of the columns, each twice: for a quantity and its slope
+  std::array<double, rolls_read> roll;         ///< of the nodes of roll
 
   template <class V>
   void set(const Weights<V>& weights, int place) noexcept {
@@ -638,7 +639,7 @@ class LoadedTable::LookUp {
     each([&](int i, std::size_t k) {
       if (!(lane(inside_, i) > 0.0)) return;
       level_[k] = table_.guess_level(lane(pose_.z, i), lateral_[k], lane(t_, i), weight_[k]);
-      lane(found_, i) = 1.0;
+      lane(found_, i) = 1.0;  // unless z is above first touch, which the corners say
       table_.fetch_corners(lateral_[k], level_[k], weight_[k]);
     });
     each([&](int i, std::size_t k) {

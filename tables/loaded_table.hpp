@@ -107,8 +107,8 @@ struct LoadedLookupOf {
     }
   }();
   std::size_t parts = 0;  ///< of the pose that has most
-  /// The first `parts`, in increasing arc length on the rail, each with a share. A pose that has fewer has the share 0
-  /// in their place.
+  /// The first `parts`, in increasing arc length on the rail, each with a share; the others are not initialised. A pose
+  /// that has fewer has the share 0 in their place.
   std::array<LoadedPartOf<V>, capacity> part;
 
   [[nodiscard]] V largest_pressure() const noexcept {  ///< [Pa]
@@ -200,7 +200,7 @@ class LoadedTable {
   /// The node below y0, and y and ∂y/∂y0 there and at the next. False where y is outside.
   [[nodiscard]] bool find_lateral(double y, const ColumnWeights& weight, std::size_t& node,
                                   std::array<double, 4>& corner) const noexcept;
-  /// The level below z, or one near it. @param t place between the lateral nodes
+  /// The level below z, or one near it; 0 also above first touch. @param t place between the lateral nodes
   [[nodiscard]] int guess_level(double z, std::size_t node, double t, const ColumnWeights& weight) const noexcept;
   template <bool slopes>
   void add_corners(std::size_t node, int level, std::size_t first, const NodeSums<slopes>& sums,

@@ -6,12 +6,15 @@ namespace railtab {
 
 void DividedSubstitution::begin(const SubstitutionFactor& factor, const LoadedUnknowns& few) {
   const bool same = path_of_ == factor.id() && std::ranges::equal(few.now, few_);
-  if (!same) few_.assign(few.now.begin(), few.now.end());
-  if (!same && (path_of_ != factor.id() || !factor.covers(path_, few_))) {
-    on_path_ = few_;
-    on_path_.insert(on_path_.end(), few.soon.begin(), few.soon.end());
-    factor.find_path(on_path_, path_);
-    path_of_ = factor.id();
+  if (!same) {
+    few_.assign(few.now.begin(), few.now.end());
+    if (path_of_ != factor.id() || !factor.covers(path_, few_)) {
+      path_of_ = 0;  // of none, should the search throw
+      on_path_ = few_;
+      on_path_.insert(on_path_.end(), few.soon.begin(), few.soon.end());
+      factor.find_path(on_path_, path_);
+      path_of_ = factor.id();
+    }
   }
   if (work_.size() == factor.room()) return;
   for (Eigen::VectorXd* vector : {&known_, &work_, &solved_}) vector->setZero(factor.room());

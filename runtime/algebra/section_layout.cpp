@@ -404,18 +404,21 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
 template void SectionLayout::into(const WeightedSums<1, 1>&, const std::array<Eigen::VectorXd*, 1>&) const;
 template void SectionLayout::into(const WeightedSums<3, 2>&, const std::array<Eigen::VectorXd*, 2>&) const;
 
+namespace {
+
+// Calls four(u, pack) for four unknowns that follow each other, one(u, number) for the others.
 template <class Four, class One>
-void SectionLayout::visit_natural(const Eigen::VectorXd& ordered, Four&& four, One&& one) const {
+void visit_natural(const SectionLayout& l, const Eigen::VectorXd& ordered, Four&& four, One&& one) {
   const Lanes* const slot = lanes(ordered);
   // what stands in a slot, in the place of the sum or the difference
   const auto own = [&](std::size_t k) {
-    const auto& [other, is_second] = partner[k];
+    const auto& [other, is_second] = l.partner[k];
     if (other < 0) return slot[k];
     return is_second ? root_half * (slot[other] - slot[k]) : root_half * (slot[k] + slot[other]);
   };
   Lanes slots_of_column[4];
-  for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
-    const std::size_t first = column_begin(c), section = first % sections;
+  for (std::size_t c = 0; c < l.consecutive.size(); c += 4) {  // four slots of four sections
+    const std::size_t first = SectionLayout::column_begin(c), section = first % sections;
     if (section == 0) {
       for (std::size_t k = 0; k < 4; ++k) slots_of_column[k] = own(first / sections + k);
     }
@@ -426,11 +429,11 @@ void SectionLayout::visit_natural(const Eigen::VectorXd& ordered, Four&& four, O
     }
     transpose(of_slot[0], of_slot[1], of_slot[2], of_slot[3], of_section);
     for (std::size_t s = 0; s < 4; ++s) {
-      if (consecutive[c + s] >= 0) four(consecutive[c + s], of_section[s]);
+      if (l.consecutive[c + s] >= 0) four(l.consecutive[c + s], of_section[s]);
     }
   }
-  for (const Single& of : single) {
-    const auto& [other, is_second] = partner[index(of.entry / sections)];
+  for (const SectionLayout::Single& of : l.single) {
+    const auto& [other, is_second] = l.partner[index(of.entry / sections)];
     double value = ordered[of.entry];
     if (other >= 0) {
       const double paired = ordered[sections * other + of.entry % sections];
@@ -438,21 +441,23 @@ void SectionLayout::visit_natural(const Eigen::VectorXd& ordered, Four&& four, O
     }
     one(of.unknown, value);
   }
-  for (const Interface& f : interfaces) {
-    one(f.unknown, combined(f.unknown, [&](Eigen::Index k) { return ordered[position(k)]; }));
+  for (const SectionLayout::Interface& f : l.interfaces) {
+    one(f.unknown, l.combined(f.unknown, [&](Eigen::Index k) { return ordered[l.position(k)]; }));
   }
 }
+
+}  // namespace
 
 void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
   double* const to = natural.data();
   visit_natural(
-      ordered, [to](int u, const Pack& values) { std::memcpy(to + u, &values, sizeof values); },
+      *this, ordered, [to](int u, const Pack& values) { std::memcpy(to + u, &values, sizeof values); },
       [to](int u, double value) { to[u] = value; });
 }
 
 void SectionLayout::out_of(const Eigen::VectorXd& increment, const StepEnd& end) const {
   visit_natural(
-      increment,
+      *this, increment,
       [&end](int first, const Pack& delta) {
         Pack u, v, w;
         std::memcpy(&u, end.u + first, sizeof u);

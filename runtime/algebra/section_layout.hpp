@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "railtab/runtime/algebra/step_end.hpp"
 #include "railtab/runtime/base/dof_range.hpp"
 #include "railtab/runtime/base/lane_numbers.hpp"
 
@@ -16,22 +17,6 @@ template <std::size_t vectors, std::size_t sums>
 struct WeightedSums {
   std::array<const double*, vectors> vector;
   std::array<std::array<double, vectors>, sums> weight;
-};
-
-/// A motion at the end of a time step from that at its beginning and an increment δ, in place: u and v grow by sums of
-/// what stands before them, w is replaced,
-///     u += u_v v + u_w w + δ,   v += v_w w + v_δ δ,   w = w_δ δ.
-struct StepEnd {
-  double *u, *v, *w;  ///< of all unknowns
-  double u_v, u_w, v_w, v_delta, w_delta;
-
-  template <class T>
-  void move(T& u_now, T& v_now, T& w_now, const T& delta) const noexcept {
-    u_now += u_v * v_now + u_w * w_now + delta;
-    v_now += v_w * w_now + v_delta * delta;
-    w_now = w_delta * delta;
-  }
-  void move(std::size_t i, double delta) const noexcept { move(u[i], v[i], w[i], delta); }
 };
 
 /// Where the unknowns of a long structure stand.
@@ -146,10 +131,6 @@ struct SectionLayout {
   void spread_interfaces(Eigen::VectorXd& ordered) const;
   /// Adds what stands at the borders to the interface unknowns.
   void fold_borders(Eigen::VectorXd& ordered) const;
-
-  /// Calls four(u, pack) for four unknowns that follow each other, one(u, number) for the others.
-  template <class Four, class One>
-  void visit_natural(const Eigen::VectorXd& ordered, Four&& four, One&& one) const;
 
   /// Where an entry (i, j) of a matrix stands: between two slots of a section, border slots counted on from the others,
   /// or between two interface unknowns (section -1).

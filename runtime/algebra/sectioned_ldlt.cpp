@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <string>
 
 #include "railtab/runtime/algebra/elimination_order.hpp"
+#include "railtab/runtime/algebra/elimination_tree.hpp"
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -162,7 +162,6 @@ void SectionedLdlt::set_strips(const EliminationTree& tree) {
     values += strip.columns * (strip.columns - 1) / 2 + strip.columns * strip.rows;
   }
   value_.resize(index(values));
-  inverse_D_.resize(index(slots));
 }
 
 // Right-looking: a finished column changes the columns of its rows, whose rows include the further ones of its own.
@@ -237,7 +236,8 @@ std::size_t SectionedLdlt::bytes() const noexcept {
 }
 
 std::size_t SectionedLdlt::stored_bytes() const noexcept {
-  return bytes() + layout_->place.size() * sizeof(SectionLayout::Place) + layout_->border_of.size() * sizeof(int) +
+  return bytes() + layout_->place.size() * sizeof(SectionLayout::Place) +
+         (layout_->border_of.size() + strip_of_.size()) * sizeof(int) +
          (interfaces_ ? interfaces_->stored_bytes() - interfaces_->bytes() : 0);
 }
 

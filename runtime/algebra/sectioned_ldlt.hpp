@@ -5,12 +5,13 @@
 #include <string_view>
 #include <vector>
 
-#include "railtab/runtime/algebra/elimination_tree.hpp"
 #include "railtab/runtime/algebra/section_layout.hpp"
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
+
+struct EliminationTree;
 
 /// Factor of a long structure's matrix by substructuring: the sections of its layout are eliminated side by side, one
 /// in each place of a vector register; what is left is the small system of the interface unknowns (their Schur

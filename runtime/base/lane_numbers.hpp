@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
+#include <limits>
 
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -72,14 +73,16 @@ struct alignas(sizeof(double) * n) SideBySide {
 };
 using Lanes = SideBySide<8>;
 
-/// Numbers side by side in single precision: half the memory of those that are computed with.
+/// Numbers side by side in single precision: half the memory of those that are computed with. What would be a denormal
+/// number there, on which a processor is slow, is zero.
 template <int n>
 struct alignas(sizeof(float) * n) StoredSideBySide {
   float part[n];
 
   StoredSideBySide() = default;
   explicit StoredSideBySide(const SideBySide<n>& of) noexcept {
-    for (int i = 0; i < n; ++i) part[i] = static_cast<float>(of[i]);
+    constexpr double least = std::numeric_limits<float>::min();
+    for (int i = 0; i < n; ++i) part[i] = std::abs(of[i]) < least ? 0.0F : static_cast<float>(of[i]);
   }
   [[nodiscard]] SideBySide<n> widened() const noexcept {
     SideBySide<n> result;

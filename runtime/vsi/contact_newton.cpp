@@ -22,6 +22,12 @@ constexpr int paper_searches = 4;
 // K_h of F_n = K_h d^{3/2}, rounded up [N/m^{3/2}]: a wheel's on a rail is 1e11 at most.
 constexpr double stiffest_contact = 1e11;
 
+// Of a wheelset: without the general kernel for products of matrices, which Eigen calls for twelve columns.
+template <class Matrix, class Vector>
+auto times(const Matrix& matrix, const Vector& vector) {
+  return matrix.lazyProduct(vector);
+}
+
 // Groups of wheelsets, front first: single ones in a time step; at rest all of a vehicle, or of each separate system.
 void find_groups(const ContactProblem& problem, int wheelsets, std::vector<WheelsetRange>& groups) {
   groups.clear();
@@ -151,7 +157,7 @@ double force_change(const NewtonWorkspace& ws, Wheelsets wheelsets) {
   double largest = 0.0;
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     const Eigen::Matrix<double, wheelset_unknowns, 1> change =
-        ws.tangent[index(w)].lazyProduct(ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w));
+        times(ws.tangent[index(w)], ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w));
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
   }
   return largest;
@@ -234,7 +240,7 @@ class TrainNewton {
     const int first = wheelset_unknowns * ws_.range[index(g)].first;
     const Eigen::Map<const Matrix12> of_wheelset(inverse.data());
     ws_.correction.segment<wheelset_unknowns>(first) =
-        of_wheelset.lazyProduct(ws_.residual.segment<wheelset_unknowns>(first));
+        times(of_wheelset, ws_.residual.segment<wheelset_unknowns>(first));
   }
 
   // The first correction of groups whose tangents are known, from estimated forces.
@@ -297,19 +303,19 @@ class TrainNewton {
     const double square = weighted.dot(move);
     const Vector12 change = part_of(s_.force, g) - part_of(ws_.start_force, g);
     if (!(square > 0.0) || change.cwiseAbs().maxCoeff() < least_change) return;
-    const Vector12 explained = tangent.lazyProduct(move);
+    const Vector12 explained = times(tangent, move);
     const Vector12 unexplained = change - explained;
     double& error = ws_.tangent_error[index(g)];
     const double now = unexplained.cwiseAbs().maxCoeff() / explained.cwiseAbs().maxCoeff();
     error = std::min(std::max(now, kept_error * error), 1.0);
     Eigen::Map<Matrix12> inverse(ws_.inverse[index(g)].data());
     const Vector12 v = weighted / square;
-    const Vector12 responded = Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()).lazyProduct(unexplained);
-    const Vector12 z = inverse.lazyProduct(responded);
+    const Vector12 responded = times(Eigen::Map<const Matrix12>(ws_.compliance[index(g)].data()), unexplained);
+    const Vector12 z = times(inverse, responded);
     const double denominator = 1.0 - v.dot(z);
     if (!(std::abs(denominator) > nearly_singular)) return;
     tangent += unexplained * v.transpose();
-    const Eigen::Matrix<double, 1, wheelset_unknowns> row = v.transpose().lazyProduct(inverse) / denominator;
+    const Eigen::Matrix<double, 1, wheelset_unknowns> row = times(v.transpose(), inverse) / denominator;
     inverse += z * row;
   }
 
@@ -387,7 +393,7 @@ class TrainNewton {
     if (n.extrapolated == 0.0) error *= growth;
     n.extrapolated = sum;
     const Vector12 change =
-        ws_.tangent[index(g)].lazyProduct(ws_.correction.segment<wheelset_unknowns>(wheelset_unknowns * g));
+        times(ws_.tangent[index(g)], ws_.correction.segment<wheelset_unknowns>(wheelset_unknowns * g));
     part_of(s_.displacement, g) += part_of(ws_.correction, g);
     part_of(s_.force, g) += change;
     part_of(s_.end_force, g) += change;

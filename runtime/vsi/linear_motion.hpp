@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "railtab/runtime/algebra/step_end.hpp"
 #include "railtab/runtime/base/dof_range.hpp"
 #include "railtab/runtime/vsi/hht.hpp"
 
@@ -66,20 +67,25 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Predict
   p.weighted_velocity = weight * p.velocity - alpha * motion.velocity;
 }
 
+/// Closes a step with increments over its predictor. Refers to the motion.
+inline StepEnd step_end(const HhtScheme& scheme, LinearMotion& motion) {
+  const NewmarkPredictor predictor(scheme);
+  return {motion.displacement.data(),
+          motion.velocity.data(),
+          motion.acceleration.data(),
+          predictor.time_step,
+          predictor.displacement_by_acceleration,
+          predictor.velocity_by_acceleration,
+          scheme.velocity_rate(),
+          scheme.acceleration_rate()};
+}
+
 /// Closes the step of the degrees of freedom in `range` with the increment Δ over the predictor.
 inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, const DofRange& range,
                    LinearMotion& motion) {
-  const NewmarkPredictor predictor(scheme);
-  const double velocity_rate = scheme.velocity_rate(), acceleration_rate = scheme.acceleration_rate();
-  const double* const delta = increment.data();
-  double *const displacement = motion.displacement.data(), *const velocity = motion.velocity.data();
-  double* const acceleration = motion.acceleration.data();
+  const StepEnd end = step_end(scheme, motion);
 #pragma GCC ivdep
-  for (Eigen::Index i = range.begin; i < range.end(); ++i) {
-    displacement[i] = predictor.displacement(displacement[i], velocity[i], acceleration[i]) + delta[i];
-    velocity[i] = predictor.velocity(velocity[i], acceleration[i]) + velocity_rate * delta[i];
-    acceleration[i] = acceleration_rate * delta[i];
-  }
+  for (Eigen::Index i = range.begin; i < range.end(); ++i) end.move(static_cast<std::size_t>(i), increment[i]);
 }
 inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, LinearMotion& motion) {
   update(scheme, increment, {0, increment.size()}, motion);

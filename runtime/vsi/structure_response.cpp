@@ -312,12 +312,10 @@ void StructureResponse::activate(const DofRange& dofs) {
       const auto shared = std::make_shared<const SectionLayout>(std::move(*layout));
       factor_ = std::make_unique<SectionedLdlt>(divisible_->effective, shared, not_positive_definite);
       factored_in_sections_ = true;
-      if (divisible_->stiffness.rows() > 0) {
-        product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
-      }
+      product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
       return;
     }
-    if (entry_begin_.empty() && divisible_->stiffness.rows() > 0) {
+    if (entry_begin_.empty()) {
       const auto back = [&](const Sparse& matrix) { return by_sums_and_differences(matrix, divisible_->pairs); };
       set_entries(back(divisible_->stiffness), back(divisible_->damping));
     }
@@ -456,18 +454,14 @@ void StructureResponse::begin_step(const LinearMotion& motion, const KnownLoad& 
 }
 
 void StructureResponse::finish_step(StructureSolution& solution, LinearMotion& motion) const {
+  assert(!at_rest_);
   if (!product_) {
     solution.increment.resize(dofs_);
     solution.substitution.finish(*factor_, solution.increment);
     update(scheme_, solution.increment, active_, motion);
     return;
   }
-  const NewmarkPredictor predictor(scheme_);
-  product_->layout().out_of(
-      solution.substitution.finish(*factor_),
-      StepEnd{motion.displacement.data(), motion.velocity.data(), motion.acceleration.data(), predictor.time_step,
-              predictor.displacement_by_acceleration, predictor.velocity_by_acceleration, scheme_.velocity_rate(),
-              scheme_.acceleration_rate()});
+  product_->layout().out_of(solution.substitution.finish(*factor_), step_end(scheme_, motion));
 }
 
 Eigen::VectorXd StructureResponse::increment(const LinearMotion& motion, const Eigen::VectorXd& load) const {

@@ -79,7 +79,7 @@ class StructureResponse {
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
   /// @param active the unknowns that take part; none: there is no factor until activate()
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active);
-  /// At rest: K̄ = K.
+  /// At rest: K̄ = K, factored as a whole.
   explicit StructureResponse(const StructureModel& structure);
   ~StructureResponse();
 
@@ -103,7 +103,7 @@ class StructureResponse {
   void begin_step(const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                   StructureSolution& solution) const;
   /// Ends such a step under the loads of the last respond(): displacement, velocity and acceleration of the active
-  /// unknowns.
+  /// unknowns. @pre begin_step() of this response, then respond() @param motion that of begin_step()
   void finish_step(StructureSolution& solution, LinearMotion& motion) const;
   /// The increment of such a step without contacts.
   [[nodiscard]] Eigen::VectorXd increment(const LinearMotion& motion, const Eigen::VectorXd& load) const;

@@ -56,6 +56,8 @@ TEST(LaneNumbers, StoredInSinglePrecisionRoundToIt) {
     EXPECT_EQ(stored[i], static_cast<double>(static_cast<float>(x[i]))) << i;
     EXPECT_NE(stored[i], x[i]) << i;
   }
+  const Lanes denormal = lanes_from(1e-39, 1e-40);
+  for (int i = 0; i < Lanes::count; ++i) EXPECT_EQ(StoredLanes(denormal).widened()[i], 0.0) << i;
 }
 
 TEST(SineCosine, IsExactToRounding) {

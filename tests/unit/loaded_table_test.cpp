@@ -77,6 +77,33 @@ TEST(LoadedTable, ForcesStiffnessAndPartsHaveTheDerivativesOfTheEnergy) {
   EXPECT_GT(compared, 790);  // of 800
 }
 
+// From first touch, which the level is guessed from, down to the last level.
+TEST(LoadedTable, EnergyGrowsFromFirstTouchToTheLastLevel) {
+  const LoadedTable table(tread_table());
+  Poses poses;
+  for (int n = 0; n < 50; ++n) {
+    WheelsetPose pose = poses.next();
+    double above = pose.z - 1e-4, below = pose.z;
+    for (int halving = 0; halving < 60; ++halving) {
+      pose.z = 0.5 * (above + below);
+      (look(table, pose).energy > 0.0 ? below : above) = pose.z;
+    }
+    EXPECT_LT(below - above, 1e-16);
+    const double touch = below;
+    EXPECT_LT(look(table, {pose.y, touch + 1e-9, pose.roll, pose.yaw}).energy, 1e-10);
+    double energy = 0.0, z = touch;
+    for (double share = 1.0; share > 0.0 && z < touch + 1e-3; z += 1e-6) {
+      const LoadedLookup found = look(table, {pose.y, z + 1e-6, pose.roll, pose.yaw});
+      share = found.table_share;
+      if (share == 0.0) break;
+      EXPECT_GT(found.energy, energy) << "at " << z - touch << " m below first touch";
+      energy = found.energy;
+    }
+    EXPECT_GT(std::pow(energy, 0.2), 0.9 * table.data().largest_level);
+    EXPECT_EQ(look(table, {pose.y, touch - 1e-6, pose.roll, pose.yaw}).energy, 0.0);
+  }
+}
+
 TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) {
   const LoadedTable table(tread_table());
   Poses poses;

@@ -100,6 +100,31 @@ TEST(SectionedLdlt, AnswersAChangingLoadAndGivesTheWholeSolution) {
   expect_few_as_all(sectioned.factor(), s.dofs(), node_dofs(40), node_dofs(41));
 }
 
+// Loads on the same unknowns keep their path, with the factor that found it.
+TEST(SectionedLdlt, FindsAPathAgainForAnotherFactor) {
+  const StructureModel s = track_with({32.0, 32.0});
+  Sectioned sectioned(s, whole(s));
+  ASSERT_TRUE(sectioned.layout);
+  const SectionedLdlt in_sections = sectioned.factor();
+  const SparseLdlt as_a_whole(sectioned.effective);
+  const std::vector<int> few{s.rail[0].dof[40][2], s.rail[1].dof[41][2]};
+  const Eigen::VectorXd load = Eigen::VectorXd::Random(s.dofs());
+  const Eigen::VectorXd expected = as_a_whole.solve(load);
+  DividedSubstitution divided;
+  const auto solved = [&](const SubstitutionFactor& factor) {
+    Eigen::VectorXd at_few = Eigen::VectorXd::Zero(s.dofs()), solution = at_few;
+    divided.begin(factor, load, {few, {}});
+    divided.respond(factor, at_few);
+    divided.finish(factor, solution);
+    for (int unknown : few) EXPECT_EQ(at_few[unknown], solution[unknown]);
+    return solution;
+  };
+  for (int turn = 0; turn < 2; ++turn) {
+    for (int again = 0; again < 2; ++again) EXPECT_LT(difference(solved(in_sections), expected), stored);
+    for (int again = 0; again < 2; ++again) EXPECT_LT(difference(solved(as_a_whole), expected), 1e-13);
+  }
+}
+
 TEST(SectionedLdlt, KeepsALoadThatIsNotANumber) {
   const StructureModel s = track_with({32.0, 32.0});
   const Sectioned sectioned(s, whole(s));

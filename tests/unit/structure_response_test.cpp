@@ -297,25 +297,34 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
   }
 }
 
-// In sections the state is updated from the solution in their order.
+// In sections the state is updated from the solution in their order, in a window at its place.
 TEST(StructureResponse, EndsAStepInSectionsAsTheIncrementDoes) {
   TrackParameters track;
-  track.length_before = track.length_after = 15.0;
+  track.length_before = track.length_after = 40.0;
   const StructureModel structure = build_track_bridge(track, {BridgeParameters{}});
-  const StructureResponse response(structure, {.alpha = -0.1, .time_step = 1e-3});
-  ASSERT_TRUE(response.in_sections());
+  const auto begin_of = [&](double x) {
+    return std::lower_bound(structure.dof_x.begin(), structure.dof_x.end(), x) - structure.dof_x.begin();
+  };
+  const DofRange whole{0, structure.dofs()}, window{begin_of(-20.0), begin_of(50.0) - begin_of(-20.0)};
   const LinearMotion begin = random_motion(structure.dofs());
   const Eigen::VectorXd load = 1e5 * Eigen::VectorXd::Random(structure.dofs());
-  LinearMotion expected = begin, end = begin;
-  update(response.scheme(), response.increment(begin, load), expected);
-  StructureSolution solution;
-  Eigen::VectorXd nowhere;
-  response.begin_step(begin, {load}, {}, solution);
-  solution.substitution.respond(response.factor(), nowhere);
-  response.finish_step(solution, end);
-  for (const auto member : {&LinearMotion::displacement, &LinearMotion::velocity, &LinearMotion::acceleration}) {
-    EXPECT_LT((end.*member - expected.*member).cwiseAbs().maxCoeff(), 1e-14 * (expected.*member).cwiseAbs().maxCoeff());
-    EXPECT_GT((end.*member - begin.*member).cwiseAbs().minCoeff(), 0.0);
+  for (const DofRange& range : {whole, window}) {
+    const StructureResponse response(structure, {.alpha = -0.1, .time_step = 1e-3}, range);
+    ASSERT_TRUE(response.in_sections());
+    LinearMotion expected = begin, end = begin;
+    update(response.scheme(), response.increment(begin, load), range, expected);
+    StructureSolution solution;
+    Eigen::VectorXd nowhere;
+    response.begin_step(begin, {load}, {}, solution);
+    solution.substitution.respond(response.factor(), nowhere);
+    response.finish_step(solution, end);
+    for (const auto member : {&LinearMotion::displacement, &LinearMotion::velocity, &LinearMotion::acceleration}) {
+      const Eigen::VectorXd &ended = end.*member, &wanted = expected.*member, &began = begin.*member;
+      EXPECT_LT((ended - wanted).cwiseAbs().maxCoeff(), 1e-14 * wanted.cwiseAbs().maxCoeff());
+      EXPECT_GT(range.of(ended - began).cwiseAbs().minCoeff(), 0.0);
+      EXPECT_EQ(ended.head(range.begin), began.head(range.begin));
+      EXPECT_EQ(ended.tail(whole.count - range.end()), began.tail(whole.count - range.end()));
+    }
   }
 }
 
