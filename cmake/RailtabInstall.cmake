@@ -12,7 +12,6 @@ set(railtab_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/railtab)
 set(railtab_contact_headers
   runtime/base/input_error.hpp
   runtime/base/lane_numbers.hpp
-  runtime/base/pack.hpp
   tables/creep_table.hpp
   tables/geometry_leaf.hpp
   tables/geometry_table.hpp

@@ -18,32 +18,32 @@ constexpr int side_by_side = SectionLayout::sections;
 constexpr int widest = 4;  // columns of a strip: their parts of the vector stay in registers
 
 template <int n>
-void forward_columns(const int* slot, int rows, const StoredLanes* value, Lanes* y) noexcept {
+void forward_columns(const int* slot, int rows, const Lanes* value, Lanes* y) noexcept {
   Lanes own[n];
   own[0] = y[slot[0]];
   for (int j = 1; j < n; ++j) {
     own[j] = y[slot[j]];
-    for (int k = 0; k < j; ++k) own[j] -= (value++)->widened() * own[k];
+    for (int k = 0; k < j; ++k) own[j] -= *value++ * own[k];
     y[slot[j]] = own[j];
   }
   for (const int* row = slot + n; row < slot + n + rows; ++row) {
     Lanes sum = y[*row];
-    for (int k = 0; k < n; ++k) sum -= (value++)->widened() * own[k];
+    for (int k = 0; k < n; ++k) sum -= *value++ * own[k];
     y[*row] = sum;
   }
 }
 
 template <int n>
-void backward_columns(const int* slot, int rows, const StoredLanes* value, const Lanes* inverse_D, const Lanes* y,
+void backward_columns(const int* slot, int rows, const Lanes* value, const Lanes* inverse_D, const Lanes* y,
                       Lanes* x) noexcept {
   Lanes own[n];
   for (int j = 0; j < n; ++j) own[j] = y[slot[j]] * inverse_D[j];
-  const StoredLanes* below = value + n * (n - 1) / 2;
+  const Lanes* below = value + n * (n - 1) / 2;
   for (const int* row = slot + n; row < slot + n + rows; ++row) {
-    for (int k = 0; k < n; ++k) own[k] -= (below++)->widened() * x[*row];
+    for (int k = 0; k < n; ++k) own[k] -= *below++ * x[*row];
   }
   for (int j = n; j-- > 1;) {
-    for (int k = 0; k < j; ++k) own[k] -= value[j * (j - 1) / 2 + k].widened() * own[j];
+    for (int k = 0; k < j; ++k) own[k] -= value[j * (j - 1) / 2 + k] * own[j];
   }
   for (int j = 0; j < n; ++j) x[slot[j]] = own[j];
 }
@@ -196,10 +196,10 @@ void SectionedLdlt::eliminate(Numbers& n, std::string_view message) const {
 
 void SectionedLdlt::store(const Numbers& numbers) {
   for (const Strip& strip : strip_) {
-    StoredLanes* value = &value_[index(strip.value)];
+    Lanes* value = &value_[index(strip.value)];
     for (int row = 1; row < strip.columns + strip.rows; ++row) {
       for (int j = 0; j < std::min(row, strip.columns); ++j) {
-        *value++ = StoredLanes(numbers.value[index(numbers.begin[index(strip.first + j)] + row - j - 1)]);
+        *value++ = numbers.value[index(numbers.begin[index(strip.first + j)] + row - j - 1)];
       }
     }
   }
@@ -231,7 +231,7 @@ void SectionedLdlt::factor_interfaces(const Numbers& numbers, std::string_view m
 Eigen::Index SectionedLdlt::room() const noexcept { return factor_begin() + (interfaces_ ? interfaces_->room() : 0); }
 
 std::size_t SectionedLdlt::bytes() const noexcept {
-  return value_.size() * sizeof(StoredLanes) + inverse_D_.size() * sizeof(Lanes) + slot_.size() * sizeof(int) +
+  return (value_.size() + inverse_D_.size()) * sizeof(Lanes) + slot_.size() * sizeof(int) +
          strip_.size() * sizeof(Strip) + (interfaces_ ? interfaces_->bytes() : 0);
 }
 
@@ -350,7 +350,7 @@ void SectionedLdlt::backward_interfaces(const Vector& y, Vector& x) const {
 
 void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
   const int* const slot = &slot_[index(strip.slot)];
-  const StoredLanes* const value = value_.data() + strip.value;
+  const Lanes* const value = value_.data() + strip.value;
   switch (strip.columns) {
     case 1:
       return forward_columns<1>(slot, strip.rows, value, y);
@@ -365,7 +365,7 @@ void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
 
 void SectionedLdlt::backward_strip(const Strip& strip, const Lanes* y, Lanes* x) const noexcept {
   const int* const slot = &slot_[index(strip.slot)];
-  const StoredLanes* const value = value_.data() + strip.value;
+  const Lanes* const value = value_.data() + strip.value;
   const Lanes* const inverse_D = &inverse_D_[index(strip.first)];
   switch (strip.columns) {
     case 1:

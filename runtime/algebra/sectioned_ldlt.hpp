@@ -70,12 +70,10 @@ class SectionedLdlt final : public SubstitutionFactor {
   void backward_strip(const Strip& strip, const Lanes* y, Lanes* x) const noexcept;
 
   std::shared_ptr<const SectionLayout> layout_;
-  std::vector<Strip> strip_;   ///< each after all that hang on it
-  std::vector<int> strip_of_;  ///< of the slots
-  std::vector<int> slot_;      ///< of each strip, of its columns, then of its rows
-  /// Of each strip, its triangle and then what is below, row by row. In single precision: a factor of the matrix as
-  /// rounding to 6e-8 of its entries would have it, at half the memory traffic.
-  std::vector<StoredLanes> value_;
+  std::vector<Strip> strip_;                ///< each after all that hang on it
+  std::vector<int> strip_of_;               ///< of the slots
+  std::vector<int> slot_;                   ///< of each strip, of its columns, then of its rows
+  std::vector<Lanes> value_;                ///< of each strip, its triangle and then what is below, row by row
   std::vector<Lanes> inverse_D_;            ///< of the columns
   std::unique_ptr<SparseLdlt> interfaces_;  ///< null where there are none
 };

@@ -4,13 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <limits>
 
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif
-
-#include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
 
@@ -72,27 +69,6 @@ struct alignas(sizeof(double) * n) SideBySide {
   }
 };
 using Lanes = SideBySide<8>;
-
-/// Numbers side by side in single precision: half the memory of those that are computed with. What would be a denormal
-/// number there, on which a processor is slow, is zero.
-template <int n>
-struct alignas(sizeof(float) * n) StoredSideBySide {
-  float part[n];
-
-  StoredSideBySide() = default;
-  explicit StoredSideBySide(const SideBySide<n>& of) noexcept {
-    constexpr double least = std::numeric_limits<float>::min();
-    for (int i = 0; i < n; ++i) part[i] = std::abs(of[i]) < least ? 0.0F : static_cast<float>(of[i]);
-  }
-  [[nodiscard]] SideBySide<n> widened() const noexcept {
-    SideBySide<n> result;
-    for (int r = 0; r < SideBySide<n>::registers; ++r) {
-      widen(part + SideBySide<n>::width * r, result.part[r]);
-    }
-    return result;
-  }
-};
-using StoredLanes = StoredSideBySide<8>;
 
 // Operations that a number and numbers side by side have in common, so that one formula serves a single wheel and
 // several of them.
@@ -238,12 +214,14 @@ template <int n>
   auto bits = mask.part[0];
   for (int r = 1; r < SideBySide<n>::registers; ++r) bits |= mask.part[r];
 #if defined(__AVX512F__)
-  if constexpr (sizeof bits == 64)
+  if constexpr (sizeof bits == 64) {
     return _mm512_test_epi64_mask(std::bit_cast<__m512i>(bits), std::bit_cast<__m512i>(bits)) != 0;
+  }
 #endif
 #if defined(__AVX__)
-  if constexpr (sizeof bits == 32)
+  if constexpr (sizeof bits == 32) {
     return _mm256_testz_si256(std::bit_cast<__m256i>(bits), std::bit_cast<__m256i>(bits)) == 0;
+  }
 #endif
   long some = 0;
   for (int i = 0; i < SideBySide<n>::width; ++i) some |= bits[i];

@@ -19,22 +19,13 @@ inline void transpose(const Pack& a, const Pack& b, const Pack& c, const Pack& d
   rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
 }
 
-/// Neighbouring floats as the doubles of a vector type. GCC 12 converts it by halves, in twice the instructions.
-template <class Vector>
-void widen(const float* from, Vector& to) noexcept {
-#ifdef __AVX512F__
-  if constexpr (sizeof to == 64) {
-    to = _mm512_cvtps_pd(_mm256_loadu_ps(from));
-    return;
-  }
-#endif
+/// Four neighbouring floats as doubles. GCC 12 converts a vector type by halves, in twice the instructions.
+inline void widen(const float* from, Pack& to) noexcept {
 #ifdef __AVX__
-  if constexpr (sizeof to == 32) {
-    to = _mm256_cvtps_pd(_mm_loadu_ps(from));
-    return;
-  }
+  to = _mm256_cvtps_pd(_mm_loadu_ps(from));
+#else
+  for (int i = 0; i < 4; ++i) to[i] = static_cast<double>(from[i]);
 #endif
-  for (unsigned i = 0; i < sizeof to / sizeof(double); ++i) to[i] = static_cast<double>(from[i]);
 }
 
 }  // namespace railtab

@@ -257,7 +257,6 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
 StructureResponse::StructureResponse(const StructureModel& structure) : at_rest_(true), dofs_(structure.dofs()) {
   require_finite(structure);
   effective_ = structure.stiffness;
-  // In double precision: no later step puts a state of rest right.
   activate({0, dofs_});
 }
 
@@ -361,9 +360,9 @@ StructureResponse::Memory StructureResponse::memory() const {
   memory.low_setup = static_cast<double>(whole.made);
   if (factored_in_sections_) {
     // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's
-    // in double precision.
+    // beside the factor.
     const double ordering = 3.5 * entry * nonzeros;
-    memory.setup = std::max(ordering, entry * nonzeros + 2.0 * static_cast<double>(factor_->bytes()));
+    memory.setup = std::max(ordering, entry * nonzeros + static_cast<double>(factor_->bytes()));
   } else {
     memory.setup = static_cast<double>(SparseLdlt::memory(effective_, active_, order_of(active_), node_).made);
   }

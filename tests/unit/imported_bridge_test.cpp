@@ -486,8 +486,7 @@ TEST_P(ImportedSpan, HasTheSectionForcesOfTheBuiltInOneUnderACoach) {
     EXPECT_GT(largest, least);
     for (double x = first; x < 24.0; x += 4.0) {
       for (std::size_t end = 0; end < 2; ++end) {
-        // the built-in one's factor is stored in single precision
-        EXPECT_NEAR(imported.at(x)[end], built.at(x)[end], 1e-7 * largest) << quantity << " at " << x;
+        EXPECT_NEAR(imported.at(x)[end], built.at(x)[end], 1e-9 * largest) << quantity << " at " << x;
       }
     }
   }

@@ -48,18 +48,6 @@ TEST(LaneNumbers, AnyAndAllAskEveryPlace) {
   }
 }
 
-TEST(LaneNumbers, StoredInSinglePrecisionRoundToIt) {
-  Lanes x;
-  for (int i = 0; i < Lanes::count; ++i) x[i] = std::pow(-10.0, i) / 3.0;
-  const Lanes stored = StoredLanes(x).widened();
-  for (int i = 0; i < Lanes::count; ++i) {
-    EXPECT_EQ(stored[i], static_cast<double>(static_cast<float>(x[i]))) << i;
-    EXPECT_NE(stored[i], x[i]) << i;
-  }
-  const Lanes denormal = lanes_from(1e-39, 1e-40);
-  for (int i = 0; i < Lanes::count; ++i) EXPECT_EQ(StoredLanes(denormal).widened()[i], 0.0) << i;
-}
-
 TEST(SineCosine, IsExactToRounding) {
   for (const double largest : {0.05, 1.5, 3.0}) {
     const Lanes angle = lanes_from(-largest, largest / 4.0);

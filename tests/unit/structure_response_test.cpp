@@ -293,7 +293,7 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
     EXPECT_FALSE(whole.in_sections());
     const Eigen::VectorXd expected = whole.increment(motion, load);
     EXPECT_LT((in_sections.increment(motion, load) - expected).cwiseAbs().maxCoeff(),
-              (range.count == n ? 1e-6 : 1e-11) * expected.cwiseAbs().maxCoeff());  // sections: in single precision
+              1e-11 * expected.cwiseAbs().maxCoeff());
   }
 }
 
