@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "railtab/runtime/algebra/step_end.hpp"
@@ -138,11 +139,16 @@ struct SectionLayout {
     int section, row, column;
   };
   [[nodiscard]] EntryPlace place_entry(Eigen::Index i, Eigen::Index j) const noexcept;
-  /// Calls visitor(EntryPlace, value) for the entries of a matrix in the range.
+  /// Calls visitor(EntryPlace, value) for the entries of a symmetric matrix in the range, each pair of equal ones once:
+  /// with row >= column.
   template <class Visitor>
   void visit_places(const Eigen::SparseMatrix<double>& matrix, Visitor&& visitor) const {
-    visit_entries(matrix, range,
-                  [&](Eigen::Index i, Eigen::Index j, double value) { visitor(place_entry(i, j), value); });
+    visit_entries(matrix, range, [&](Eigen::Index i, Eigen::Index j, double value) {
+      if (i < j) return;
+      EntryPlace at = place_entry(i, j);
+      if (at.row < at.column) std::swap(at.row, at.column);
+      visitor(at, value);
+    });
   }
 };
 

@@ -38,9 +38,11 @@ void backward_columns(const int* slot, int rows, const Lanes* value, const Lanes
                       Lanes* x) noexcept {
   Lanes own[n];
   for (int j = 0; j < n; ++j) own[j] = y[slot[j]] * inverse_D[j];
-  const Lanes* below = value + n * (n - 1) / 2;
-  for (const int* row = slot + n; row < slot + n + rows; ++row) {
-    for (int k = 0; k < n; ++k) own[k] -= *below++ * x[*row];
+  // The last row first: what is known longest.
+  const Lanes* below = value + n * (n - 1) / 2 + n * rows;
+  for (const int* row = slot + n + rows; row-- > slot + n;) {
+    below -= n;
+    for (int k = 0; k < n; ++k) own[k] -= below[k] * x[*row];
   }
   for (int j = n; j-- > 1;) {
     for (int k = 0; k < j; ++k) own[k] -= value[j * (j - 1) / 2 + k] * own[j];
@@ -106,13 +108,17 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
   std::vector<Eigen::Triplet<double>> pairs;  // of slots
   pairs.reserve(static_cast<std::size_t>(matrix.nonZeros() * l.range.count / matrix.rows()));
   entries.reserve(pairs.capacity() / 2);
+  const auto add = [](std::vector<Eigen::Triplet<double>>& to, const SectionLayout::EntryPlace& p, double value) {
+    to.emplace_back(p.row, p.column, value);
+    if (p.row != p.column) to.emplace_back(p.column, p.row, value);
+  };
   l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double value) {
     if (p.section < 0) {
-      numbers.of_interfaces.emplace_back(p.row, p.column, value);
+      add(numbers.of_interfaces, p, value);
       return;
     }
-    pairs.emplace_back(p.row, p.column, 1.0);
-    if (p.row >= p.column) entries.push_back({p.section, p.row, p.column, value});
+    add(pairs, p, 1.0);
+    entries.push_back({p.section, p.row, p.column, value});
   });
   const EliminationTree tree = tree_of(l.slots, l.borders, std::move(pairs));
   set_strips(tree);

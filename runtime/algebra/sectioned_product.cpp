@@ -52,8 +52,8 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   for (int which = 0; which < 2; ++which) {
     l.visit_places(*matrices[index(which)], [&](const SectionLayout::EntryPlace& p, double value) {
       if (p.section < 0) {
-        between[{p.row, p.column}][index(which)] += value;
-      } else if (p.row >= p.column) {
+        between[{p.row, p.column}][index(which)] = between[{p.column, p.row}][index(which)] = value;
+      } else {
         columns[index(p.column)].push_back({p.row, p.section, which, value});
       }
     });

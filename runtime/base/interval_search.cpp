@@ -12,8 +12,18 @@ size_t interval_at(std::span<const double> nodes, double x) noexcept {
   const double share = (x - nodes.front()) / (nodes.back() - nodes.front());
   const size_t guess = std::min(static_cast<size_t>(share * static_cast<double>(intervals)), intervals - 1);
   if (nodes[guess] <= x && x <= nodes[guess + 1]) return guess;
-  const size_t above = static_cast<size_t>(std::upper_bound(nodes.begin(), nodes.end(), x) - nodes.begin());
-  return std::min(above - 1, intervals - 1);
+  // else near it: nodes from `low` to `high` around x, twice as far apart from try to try
+  size_t low = guess, high = guess + 1;
+  for (size_t reach = 1; nodes[low] > x; reach *= 2) {
+    high = low;
+    low -= std::min(reach, low);
+  }
+  for (size_t reach = 1; high < intervals && nodes[high] <= x; reach *= 2) {
+    low = high;
+    high += std::min(reach, intervals - high);
+  }
+  const auto above = std::upper_bound(nodes.data() + low, nodes.data() + high, x);
+  return std::min(static_cast<size_t>(above - nodes.data()) - 1, intervals - 1);
 }
 
 }  // namespace railtab

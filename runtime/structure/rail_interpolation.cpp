@@ -40,18 +40,13 @@ TorsionElement torsion_of(const RailLine& rail, std::size_t e) noexcept {
   return {rail.stiffness.GJ, rail.stiffness.warping_length, rail.x[e + 1] - rail.x[e]};
 }
 
-/// Shapes of roll at s from the node e; linear where the rail's twist is.
-TorsionShape torsion_shape(const RailLine& rail, std::size_t e, double s) noexcept {
-  if (!rail.twist_rate.empty()) return torsion_shape(torsion_of(rail, e), s);
-  const double length = rail.x[e + 1] - rail.x[e];
+/// Shapes of roll at s of an element of this length whose roll is linear.
+TorsionShape linear_roll(double length, double s) noexcept {
   return {{1.0 - s / length, 0.0, s / length, 0.0}, {-1.0 / length, 0.0, 1.0 / length, 0.0}};
 }
 
-}  // namespace
-
-RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
-  assert(contains(rail, x));
-  const size_t e = interval_at(rail.x, x);
+/// In the element after the node e.
+RailInterpolation interpolation(const RailLine& rail, std::size_t e, double x, const TorsionShape& torsion) noexcept {
   const double length = rail.x[e + 1] - rail.x[e], h = rail.head_height;
   const BeamShape N = beam_shape(length, x - rail.x[e]);
   RailInterpolation rows;
@@ -63,7 +58,6 @@ RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
     rows.pitch[k] = N(4, k);
   }
   rows.roll = {};
-  const TorsionShape torsion = torsion_shape(rail, e, x - rail.x[e]);
   constexpr std::array<std::size_t, 4> place{3, 0, 9, 6};  // roll and twist rate of either node
   for (std::size_t i = 0; i < 4; ++i) {
     rows.roll[place[i]] = torsion.twist[static_cast<Eigen::Index>(i)];
@@ -78,8 +72,6 @@ RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
   rows.bend[10] = -(6 * t - 2) / length;
   return rows;
 }
-
-namespace {
 
 /// From compliances of the axis in y, z and roll to those of the head, which stands h above it.
 Eigen::Matrix3d of_head(double y, double z, double roll, double h) {
@@ -104,16 +96,28 @@ Eigen::Matrix3d element_compliance(const RailLine& rail, double x, double loaded
   return of_head(bending / of.EIz, bending / of.EIy, torsion_compliance(torsion_of(rail, e), s, a), rail.head_height);
 }
 
-OwnCompliance own_element_compliance(const RailLine& rail, double x) noexcept {
+RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept {
   assert(contains(rail, x));
-  if (rail.twist_rate.empty()) return {};
   const size_t e = interval_at(rail.x, x);
+  const double s = x - rail.x[e];
+  const bool linear = rail.twist_rate.empty();
+  return interpolation(rail, e, x,
+                       linear ? linear_roll(rail.x[e + 1] - rail.x[e], s) : torsion_shape(torsion_of(rail, e), s));
+}
+
+RailPlace rail_place(const RailLine& rail, double x) noexcept {
+  assert(contains(rail, x));
+  const size_t e = interval_at(rail.x, x);
+  const double L = rail.x[e + 1] - rail.x[e], a = x - rail.x[e];
+  if (rail.twist_rate.empty()) return {e, interpolation(rail, e, x, linear_roll(L, a)), {}};
   const RailStiffness& of = rail.stiffness;
-  const double L = rail.x[e + 1] - rail.x[e], a = x - rail.x[e], b = L - a, ab = a * b / L;
+  const double b = L - a, ab = a * b / L;
   const double bending = ab * ab * ab / 3.0, slope = ab * ab * (b - a) / L;
-  const OwnTwist torsion = own_torsion_compliance(torsion_of(rail, e), a);
-  return {of_head(bending / of.EIz, bending / of.EIy, torsion.compliance, rail.head_height),
-          of_head(slope / of.EIz, slope / of.EIy, torsion.slope, rail.head_height)};
+  const TorsionPlace torsion = torsion_place(torsion_of(rail, e), a);
+  return {e,
+          interpolation(rail, e, x, torsion.shape),
+          {of_head(bending / of.EIz, bending / of.EIy, torsion.compliance, rail.head_height),
+           of_head(slope / of.EIz, slope / of.EIy, torsion.slope, rail.head_height)}};
 }
 
 }  // namespace railtab

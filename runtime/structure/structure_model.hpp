@@ -53,7 +53,7 @@ struct RailInterpolation {
 };
 /// The rail head stands head_height above the axis, r = (0, 0, -h), so that u_head = u + θ × r gives y_head = y +
 /// h·roll; the transpose of row y therefore carries a lateral force at the head into the axis with its torsional moment
-/// h·F_y. Constant time on evenly spaced nodes, O(log n) else; allocation-free.
+/// h·F_y. Time as interval_at(); allocation-free.
 /// @pre x lies on the rail (contains(rail, x)).
 [[nodiscard]] RailInterpolation rail_interpolation(const RailLine& rail, double x) noexcept;
 [[nodiscard]] bool contains(const RailLine& rail, double x) noexcept;
@@ -69,8 +69,14 @@ struct OwnCompliance {
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();  ///< element_compliance(rail, x, x)
   Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();       ///< its derivative along x
 };
+/// A place on a rail, and all that a load there needs of its element.
+struct RailPlace {
+  std::size_t element;     ///< its left node
+  RailInterpolation rows;  ///< rail_interpolation(rail, x)
+  OwnCompliance own;
+};
 /// @pre x lies on the rail
-[[nodiscard]] OwnCompliance own_element_compliance(const RailLine& rail, double x) noexcept;
+[[nodiscard]] RailPlace rail_place(const RailLine& rail, double x) noexcept;
 
 /// A node whose motion is asked for by name ("deck-midspan").
 struct StructureNode {

@@ -69,11 +69,7 @@ double twist_under(const TorsionElement& element, const Solutions& solutions, co
          0.5 * x.odd.value * a.odd.value / solutions.bimoment_of_odd();
 }
 
-}  // namespace
-
-TorsionShape torsion_shape(const TorsionElement& element, double s) noexcept {
-  assert(element.length > 0 && s >= 0 && s <= element.length);
-  const Solutions::At x = Solutions(element).at(s);
+TorsionShape shape_at(const Solutions::At& x) noexcept {
   const auto shapes = [](double twisted, double even, double odd, double one) {
     return Eigen::Vector4d(0.5 * (one - twisted), 0.5 * (odd - even), 0.5 * (one + twisted), 0.5 * (odd + even));
   };
@@ -81,7 +77,15 @@ TorsionShape torsion_shape(const TorsionElement& element, double s) noexcept {
           shapes(x.twisted.slope, x.even.slope, x.odd.slope, 0.0)};
 }
 
-OwnTwist own_torsion_compliance(const TorsionElement& element, double s) noexcept {
+}  // namespace
+
+TorsionShape torsion_shape(const TorsionElement& element, double s) noexcept {
+  assert(element.length > 0 && s >= 0 && s <= element.length);
+  return shape_at(Solutions(element).at(s));
+}
+
+TorsionPlace torsion_place(const TorsionElement& element, double s) noexcept {
+  assert(element.length > 0 && s >= 0 && s <= element.length);
   const Solutions solutions(element);
   const Solutions::At x = solutions.at(s);
   const double between_forks =
@@ -89,7 +93,7 @@ OwnTwist own_torsion_compliance(const TorsionElement& element, double s) noexcep
       (sinh_over_half_exp(x.last) - sinh_over_half_exp(x.first)) / solutions.sinh_of_length_over_half_exp();
   const double held_back = x.even.value * x.even.slope / solutions.bimoment_of_even() +
                            x.odd.value * x.odd.slope / solutions.bimoment_of_odd();
-  return {twist_under(element, solutions, x, x) / element.GJ, (between_forks - held_back) / element.GJ};
+  return {shape_at(x), twist_under(element, solutions, x, x) / element.GJ, (between_forks - held_back) / element.GJ};
 }
 
 Eigen::Matrix4d torsion_stiffness(const TorsionElement& element) noexcept {

@@ -30,12 +30,13 @@ struct TorsionShape {
 /// warp [rad/(N m)]. @pre both within 0..length
 [[nodiscard]] double torsion_compliance(const TorsionElement& element, double x, double loaded) noexcept;
 
-/// Of a moment at the place itself.
-struct OwnTwist {
-  double compliance;  ///< torsion_compliance(element, s, s)
-  double slope;       ///< its derivative along s [rad/(N m²)]
+/// Of one place, what exponential functions of its distances from the nodes give.
+struct TorsionPlace {
+  TorsionShape shape;  ///< torsion_shape(element, s)
+  double compliance;   ///< torsion_compliance(element, s, s)
+  double slope;        ///< derivative of the compliance along s [rad/(N m²)]
 };
 /// @pre 0 <= s <= length
-[[nodiscard]] OwnTwist own_torsion_compliance(const TorsionElement& element, double s) noexcept;
+[[nodiscard]] TorsionPlace torsion_place(const TorsionElement& element, double s) noexcept;
 
 }  // namespace railtab

@@ -11,7 +11,6 @@
 #include "railtab/runtime/algebra/section_layout.hpp"
 #include "railtab/runtime/algebra/sectioned_ldlt.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/base/pack.hpp"
 
 namespace railtab {
@@ -49,12 +48,12 @@ RailContact rail_contact(const StructureModel& structure, RailSide side, double 
   const RailLine& rail = structure.rail[static_cast<std::size_t>(side)];
   contact.on_rail = contains(rail, x);
   if (!contact.on_rail) return contact;
-  // The very element of the interpolation: at a node, rounding must not choose twice.
-  contact.element = static_cast<int>(interval_at(rail.x, x));
+  const RailPlace place = rail_place(rail, x);
+  contact.element = static_cast<int>(place.element);
   contact.x = x;
-  contact.rows = rail_interpolation(rail, x);
+  contact.rows = place.rows;
   contact.rail = &rail;
-  contact.own = own_element_compliance(rail, x);
+  contact.own = place.own;
   return contact;
 }
 

@@ -74,9 +74,9 @@ TEST(ElementCompliance, TwoElementsPerBayAreExactToo) {
 TEST(ElementCompliance, HasNoSlopeAtNodes) {
   const StructureModel structure = short_track(1);
   const RailLine& rail = structure.rail[0];
-  const double largest = own_element_compliance(rail, 0.1).slope.cwiseAbs().maxCoeff();
+  const double largest = rail_place(rail, 0.1).own.slope.cwiseAbs().maxCoeff();
   for (const double x : {0.6 - 1e-9, 0.6, 0.6 + 1e-9}) {
-    EXPECT_LT(own_element_compliance(rail, x).slope.cwiseAbs().maxCoeff(), 1e-6 * largest);
+    EXPECT_LT(rail_place(rail, x).own.slope.cwiseAbs().maxCoeff(), 1e-6 * largest);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(ElementCompliance, HasItsSlope) {
     constexpr double h = 1e-5;
     const Eigen::Matrix3d difference =
         (element_compliance(rail, x + h, x + h) - element_compliance(rail, x - h, x - h)) / (2.0 * h);
-    const Eigen::Matrix3d slope = own_element_compliance(rail, x).slope;
+    const Eigen::Matrix3d slope = rail_place(rail, x).own.slope;
     EXPECT_LT((slope - difference).cwiseAbs().maxCoeff(), 1e-9 * element_compliance(rail, 0.3, 0.3).maxCoeff() / h);
     // half of it is the slope of the line under a load that stands
     const Eigen::Matrix3d line = (element_compliance(rail, x + h, x) - element_compliance(rail, x - h, x)) / (2.0 * h);
