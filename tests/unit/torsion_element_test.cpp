@@ -111,8 +111,7 @@ TEST(TorsionElement, ComplianceHasItsSlope) {
       const double difference =
           (torsion_compliance(element, x + h, x + h) - torsion_compliance(element, x - h, x - h)) / (2.0 * h);
       const double scale = torsion_compliance(element, 0.3, 0.3) / element.length;
-      EXPECT_NEAR(torsion_place(element, x).slope, difference, 1e-5 * scale)
-          << element.warping_length << ", " << x;
+      EXPECT_NEAR(torsion_place(element, x).slope, difference, 1e-5 * scale) << element.warping_length << ", " << x;
     }
   }
 }
