@@ -303,13 +303,11 @@ void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
   active_ = dofs;
   factor_.reset();  // not two at a time
-  factored_in_sections_ = false;
   product_.reset();
   if (divisible_) {
     if (auto layout = divide(divisible_->effective, divisible_->places, divisible_->pairs, dofs)) {
       const auto shared = std::make_shared<const SectionLayout>(std::move(*layout));
       factor_ = std::make_unique<SectionedLdlt>(divisible_->effective, shared, not_positive_definite);
-      factored_in_sections_ = true;
       product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
       return;
     }
@@ -327,7 +325,7 @@ EliminationOrder StructureResponse::order_of(const DofRange& dofs) const noexcep
 }
 
 bool StructureResponse::factor_is_whole() const noexcept {
-  return factor_ && !factored_in_sections_ && active_.count == dofs_;
+  return factor_ && !product_ && active_.count == dofs_;
 }
 
 const SubstitutionFactor& StructureResponse::whole_factor() {
@@ -357,7 +355,7 @@ StructureResponse::Memory StructureResponse::memory() const {
   }
   memory.low += static_cast<double>(whole.stored);
   memory.low_setup = static_cast<double>(whole.made);
-  if (factored_in_sections_) {
+  if (product_) {
     // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's
     // beside the factor.
     const double ordering = 3.5 * entry * nonzeros;

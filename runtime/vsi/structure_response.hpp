@@ -85,7 +85,7 @@ class StructureResponse {
 
   [[nodiscard]] const SubstitutionFactor& factor() const noexcept { return *factor_; }
   /// Whether the active unknowns are factored in sections.
-  [[nodiscard]] bool in_sections() const noexcept { return factored_in_sections_; }
+  [[nodiscard]] bool in_sections() const noexcept { return product_ != nullptr; }
   /// Whether a symmetric structure carries both rails, as far as its lines tell: only the left one's compliances are
   /// tabulated then.
   [[nodiscard]] bool rails_mirror() const noexcept { return rails_mirror_; }
@@ -185,7 +185,7 @@ class StructureResponse {
   std::unique_ptr<SubstitutionFactor> whole_;  ///< made when first needed
   struct FewEntries;
   std::unique_ptr<FewEntries> few_;
-  bool factored_in_sections_ = false, at_rest_ = false;
+  bool at_rest_ = false;
   std::vector<int> node_;  ///< of every unknown, for the order of elimination
   Eigen::Index dofs_ = 0;
   /// Per rail and node. Where the rails mirror each other: of the left one only.
