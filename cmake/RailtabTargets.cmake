@@ -7,7 +7,7 @@ target_compile_options(railtab_options INTERFACE
   $<$<BOOL:${RAILTAB_WARNINGS_AS_ERRORS}>:-Werror>
   # GCC 12 takes its own AVX-512 intrinsics for uninitialised values (GCC bug 105593).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized -Wno-maybe-uninitialized>
-  # Numbers side by side pass between railtab's own objects only, all of one instruction set.
+  # GCC notes that vectors wider than a register pass in another way since its version 4.6.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>
   # Contracted multiply-adds are wanted in the kernels, value-changing shortcuts are not: never -ffast-math.
   $<$<AND:$<BOOL:${RAILTAB_NATIVE}>,$<CONFIG:Release,RelWithDebInfo>>:-march=native>)

@@ -139,8 +139,8 @@ struct SectionLayout {
     int section, row, column;
   };
   [[nodiscard]] EntryPlace place_entry(Eigen::Index i, Eigen::Index j) const noexcept;
-  /// Calls visitor(EntryPlace, value) for the entries of a symmetric matrix in the range, each pair of equal ones once:
-  /// with row >= column.
+  /// Reads the lower triangle of a symmetric matrix in the range: calls visitor(EntryPlace, value) once for each pair
+  /// of equal entries, with row >= column by numbers of slots or interface unknowns.
   template <class Visitor>
   void visit_places(const Eigen::SparseMatrix<double>& matrix, Visitor&& visitor) const {
     visit_entries(matrix, range, [&](Eigen::Index i, Eigen::Index j, double value) {

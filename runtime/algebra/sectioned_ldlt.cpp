@@ -38,7 +38,7 @@ void backward_columns(const int* slot, int rows, const Lanes* value, const Lanes
                       Lanes* x) noexcept {
   Lanes own[n];
   for (int j = 0; j < n; ++j) own[j] = y[slot[j]] * inverse_D[j];
-  // The last row first: what is known longest.
+  // From the last row on, which was solved first: x of the first rows may just have been stored.
   const Lanes* below = value + n * (n - 1) / 2 + n * rows;
   for (const int* row = slot + n + rows; row-- > slot + n;) {
     below -= n;

@@ -12,9 +12,9 @@ size_t interval_at(std::span<const double> nodes, double x) noexcept {
   const double share = (x - nodes.front()) / (nodes.back() - nodes.front());
   const size_t guess = std::min(static_cast<size_t>(share * static_cast<double>(intervals)), intervals - 1);
   if (nodes[guess] <= x && x <= nodes[guess + 1]) return guess;
-  // else near it: nodes from `low` to `high` around x, twice as far apart from try to try
+  // Otherwise low..high is widened from there, by twice as much each time, until it holds x.
   size_t low = guess, high = guess + 1;
-  for (size_t reach = 1; nodes[low] > x; reach *= 2) {
+  for (size_t reach = 1; low > 0 && nodes[low] > x; reach *= 2) {
     high = low;
     low -= std::min(reach, low);
   }

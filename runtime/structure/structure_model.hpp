@@ -71,9 +71,9 @@ struct OwnCompliance {
 };
 /// A place on a rail, and all that a load there needs of its element.
 struct RailPlace {
-  std::size_t element;     ///< its left node
+  std::size_t element;     ///< number of its left node
   RailInterpolation rows;  ///< rail_interpolation(rail, x)
-  OwnCompliance own;
+  OwnCompliance own;       ///< zero where the stiffness is not known
 };
 /// @pre x lies on the rail
 [[nodiscard]] RailPlace rail_place(const RailLine& rail, double x) noexcept;

@@ -30,7 +30,7 @@ struct TorsionShape {
 /// warp [rad/(N m)]. @pre both within 0..length
 [[nodiscard]] double torsion_compliance(const TorsionElement& element, double x, double loaded) noexcept;
 
-/// Of one place, what exponential functions of its distances from the nodes give.
+/// Shapes and compliance at one place, which share their exponential functions.
 struct TorsionPlace {
   TorsionShape shape;  ///< torsion_shape(element, s)
   double compliance;   ///< torsion_compliance(element, s, s)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
 #include "railtab/runtime/algebra/sectioned_ldlt.hpp"
@@ -307,8 +308,9 @@ void StructureResponse::activate(const DofRange& dofs) {
   if (divisible_) {
     if (auto layout = divide(divisible_->effective, divisible_->places, divisible_->pairs, dofs)) {
       const auto shared = std::make_shared<const SectionLayout>(std::move(*layout));
-      factor_ = std::make_unique<SectionedLdlt>(divisible_->effective, shared, not_positive_definite);
+      auto factor = std::make_unique<SectionedLdlt>(divisible_->effective, shared, not_positive_definite);
       product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
+      factor_ = std::move(factor);
       return;
     }
     if (entry_begin_.empty()) {

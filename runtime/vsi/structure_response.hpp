@@ -170,7 +170,7 @@ class StructureResponse {
   Eigen::SparseMatrix<double> effective_;  ///< K̄
   std::unique_ptr<Divisible> divisible_;   ///< null where the unknowns have no lines
   std::unique_ptr<SubstitutionFactor> factor_;
-  std::unique_ptr<SectionedProduct> product_;  ///< of sections
+  std::unique_ptr<SectionedProduct> product_;  ///< null: not in sections
   DofRange active_;
   /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
   struct Entry {

@@ -80,6 +80,25 @@ TEST(ElementCompliance, HasNoSlopeAtNodes) {
   }
 }
 
+TEST(ElementCompliance, APlaceHasTheInterpolationThere) {
+  const StructureModel structure = short_track(1);
+  RailLine rail = structure.rail[0];
+  for (const bool smooth : {true, false}) {
+    if (!smooth) rail.twist_rate.clear();
+    for (const double x : {0.0, 0.2, 0.6, 0.75}) {
+      const RailPlace place = rail_place(rail, x);
+      const RailInterpolation rows = rail_interpolation(rail, x);
+      EXPECT_LE(rail.x[place.element], x);
+      EXPECT_LE(x, rail.x[place.element + 1]);
+      EXPECT_EQ(place.rows.dof, rows.dof);
+      EXPECT_EQ(place.rows.y, rows.y);
+      EXPECT_EQ(place.rows.roll, rows.roll);
+      EXPECT_EQ(place.rows.yaw, rows.yaw);
+      EXPECT_EQ(place.own.compliance, element_compliance(rail, x, x));
+    }
+  }
+}
+
 TEST(ElementCompliance, HasItsSlope) {
   const StructureModel structure = short_track(1);
   const RailLine& rail = structure.rail[1];

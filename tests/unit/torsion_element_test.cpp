@@ -96,7 +96,10 @@ TEST(TorsionElement, ComplianceIsThatWithANodeUnderTheLoad) {
       const Eigen::Vector2d twist =
           twist_of_two(element.GJ, element.warping_length, loaded, element.length - loaded, beyond);
       const double own = torsion_compliance(element, loaded, loaded);
-      EXPECT_EQ(torsion_place(element, loaded).compliance, own);
+      const TorsionPlace place = torsion_place(element, loaded);
+      EXPECT_EQ(place.compliance, own);
+      EXPECT_EQ(place.shape.twist, torsion_shape(element, loaded).twist);
+      EXPECT_EQ(place.shape.rate, torsion_shape(element, loaded).rate);
       EXPECT_NEAR(own, twist[0], 1e-7 * twist[0]) << element.warping_length << ", " << loaded;
       EXPECT_NEAR(torsion_compliance(element, loaded + beyond, loaded), twist[1], 1e-7 * twist[0]);
       EXPECT_NEAR(torsion_compliance(element, loaded, loaded + beyond), twist[1], 1e-7 * twist[0]);
