@@ -326,9 +326,7 @@ EliminationOrder StructureResponse::order_of(const DofRange& dofs) const noexcep
   return dofs.count == dofs_ && !at_rest_ ? EliminationOrder::nested_dissection : EliminationOrder::minimum_degree;
 }
 
-bool StructureResponse::factor_is_whole() const noexcept {
-  return factor_ && !product_ && active_.count == dofs_;
-}
+bool StructureResponse::factor_is_whole() const noexcept { return factor_ && !product_ && active_.count == dofs_; }
 
 const SubstitutionFactor& StructureResponse::whole_factor() {
   if (factor_is_whole()) return *factor_;
