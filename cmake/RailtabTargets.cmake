@@ -5,11 +5,11 @@ target_compile_features(railtab_options INTERFACE cxx_std_20)
 target_compile_options(railtab_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   $<$<BOOL:${RAILTAB_WARNINGS_AS_ERRORS}>:-Werror>
-  # GCC 12 takes its own AVX-512 intrinsics for uninitialised values (GCC bug 105593), and texts put together for copies
-  # onto themselves (GCC bug 105651).
+  # GCC 12 takes its own AVX-512 intrinsics for uninitialised values (GCC bug 105593), and joined strings for copies that
+  # overlap (GCC bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized -Wno-maybe-uninitialized
     -Wno-restrict>
-  # GCC notes that vectors wider than a register pass in another way since its version 4.6.
+  # How vectors are passed depends on the instruction set: GCC warns of those that are wider than its registers.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>
   # Contracted multiply-adds are wanted in the kernels, value-changing shortcuts are not: never -ffast-math.
   $<$<AND:$<BOOL:${RAILTAB_NATIVE}>,$<CONFIG:Release,RelWithDebInfo>>:-march=native>)
