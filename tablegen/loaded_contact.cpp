@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -42,6 +43,61 @@ Eigen::VectorXd first_guess(NormalInfluence& influence, const Eigen::VectorXd& o
   return pressure * (pressure.dot(overlap) / pressure.dot(displacement));
 }
 
+/// The pressure of the contact's elements.
+/// @param start pressures to begin with; none: first_guess()
+void solve_pressure(const LoadedContactOptions& options, std::optional<Eigen::VectorXd> start, LoadedContact& contact) {
+  const ContactElements& e = contact.elements;
+  std::vector<double> angle;
+  for (const SurfaceLine& line : e.line) angle.push_back(line.angle);
+  NormalInfluence influence({e.nx, e.ns, e.dx, e.ds}, angle, options.contact_modulus());
+  NormalPressure found = normal_pressure(
+      influence, e.overlap, start ? std::move(*start) : first_guess(influence, e.overlap), options.tolerance);
+  contact.pressure = std::move(found.pressure);
+  contact.residual = found.residual;
+  contact.iterations += found.iterations;
+  contact.converged = found.converged;
+}
+
+/// Rows across a Hertzian pressure that is curved as much along s, for its height, as this one is at its largest:
+/// p = p_0 √(1 − (2s/w)²) has the second difference −(2 ds/w)² p_0.
+double rows_across_peak(const ContactElements& e, const Eigen::VectorXd& pressure) {
+  Eigen::Index k = 0;
+  const double largest = pressure.maxCoeff(&k);
+  if (largest <= 0.0) return std::numeric_limits<double>::infinity();
+  const double below = k >= e.nx ? pressure[k - e.nx] : 0.0, above = k + e.nx < e.count() ? pressure[k + e.nx] : 0.0;
+  const double second = (2.0 * largest - below - above) / largest;
+  return second > 0.0 ? 2.0 / std::sqrt(second) : std::numeric_limits<double>::infinity();
+}
+
+/// More rows until the largest pressure is resolved. A ridge of pressure over a strongly curved strip of the surfaces
+/// is no part of the overlap by itself, so that elements may be too wide for it, and rows beside it may miss its
+/// height.
+void refine_peak(const UndeformedDistance& distance, const LoadedContactOptions& options, LoadedContact& contact) {
+  constexpr double smooth = 12.0;   // rows across the peak of a pressure without a ridge
+  constexpr double enough = 8.0;    // rows across a ridge
+  constexpr double settled = 0.01;  // change of the largest pressure by the last rows
+  constexpr double growth = 1.5;
+  constexpr int finest = 8;  // times the rows that the overlap asks for: an edge has no largest pressure
+  const int most_rows = std::min(finest * contact.elements.ns, options.elements.most / contact.elements.nx);
+  contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
+  if (contact.rows_across_peak >= smooth) return;
+  while (contact.converged && contact.elements.ns < most_rows) {
+    const ContactElements& e = contact.elements;
+    const int rows = std::min(static_cast<int>(std::ceil(growth * e.ns)), most_rows);
+    ContactElements finer = contact_elements(distance, contact.regions, e.nx, rows);
+    Eigen::VectorXd start(finer.count());
+    for (int j = 0; j < rows; ++j) {
+      start.segment(j * e.nx, e.nx) = contact.pressure.segment((2 * j + 1) * e.ns / (2 * rows) * e.nx, e.nx);
+    }
+    const double before = contact.pressure.maxCoeff();
+    contact.elements = std::move(finer);
+    solve_pressure(options, std::move(start), contact);
+    contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
+    const double change = std::abs(contact.pressure.maxCoeff() / before - 1.0);
+    if (contact.rows_across_peak >= enough && change < settled) return;
+  }
+}
+
 /// Numbers of elements and pressure of a solution near by.
 struct Neighbour {
   int nx, ns;
@@ -58,16 +114,13 @@ LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, co
   if (contact.regions.empty()) return contact;
   contact.elements = neighbour ? contact_elements(distance, contact.regions, neighbour->nx, neighbour->ns)
                                : contact_elements(distance, contact.regions, options.elements);
+  solve_pressure(options, neighbour ? std::optional(neighbour->pressure) : std::nullopt, contact);
+  if (neighbour) {
+    contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
+  } else {
+    refine_peak(distance, options, contact);
+  }
   const ContactElements& e = contact.elements;
-  std::vector<double> angle;
-  for (const SurfaceLine& line : e.line) angle.push_back(line.angle);
-  NormalInfluence influence({e.nx, e.ns, e.dx, e.ds}, angle, options.contact_modulus());
-  NormalPressure found = normal_pressure(
-      influence, e.overlap, neighbour ? neighbour->pressure : first_guess(influence, e.overlap), options.tolerance);
-  contact.pressure = std::move(found.pressure);
-  contact.residual = found.residual;
-  contact.iterations = found.iterations;
-  contact.converged = found.converged;
   contact.bands = contact_bands(search.pair(), e, contact.pressure, contact.band);
   for (int k = 0; k < e.count(); ++k) {
     if (contact.pressure[k] <= 0.0) continue;

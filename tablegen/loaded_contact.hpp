@@ -47,8 +47,11 @@ struct LoadedContact {
   double normal_force = 0.0;      ///< ∫ p dA [N]
   double elastic_energy = 0.0;    ///< ½ ∫ p h dA [J]
   double largest_pressure = 0.0;  ///< [Pa]
-  double area = 0.0;              ///< of the elements with pressure [m²]
-  double residual = 0.0;          ///< NormalPressure::residual
+  /// Of elements, across the ellipse of a Hertzian contact whose pressure is curved along s as this one's is at its
+  /// largest. Fewer than eight: an edge, whose pressure grows with the number of rows.
+  double rows_across_peak = 0.0;
+  double area = 0.0;      ///< of the elements with pressure [m²]
+  double residual = 0.0;  ///< NormalPressure::residual
   int iterations = 0;
   bool converged = false;
 };

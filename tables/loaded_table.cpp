@@ -449,10 +449,12 @@ void LoadedTable::fetch_parts(std::size_t node, int level, double roll, double y
   }
 }
 
-/// Of one part every quantity but the share weighted with it; the sums and their derivatives along the coordinates.
+/// Of one part the share, every other quantity but the pressure weighted with it, and the pressure's square; the sums
+/// and their derivatives along the coordinates. The square is nearly linear also where a part begins: there the
+/// pressure grows with the cube root of its force, on a strip between others with the square root or faster.
 struct LoadedTable::PartSums {
   enum Along : std::size_t { value, by_lateral, by_level, by_roll_node, by_yaw_node, count };
-  static constexpr std::size_t packs = LoadedPart::quantities / 4;
+  static constexpr std::size_t packs = LoadedPart::quantities / 4, pressure = LoadedPart::quantities - 1;
   Pack sum[count][packs];
 };
 
@@ -481,7 +483,7 @@ bool LoadedTable::sum_part(const PartPlace& place, std::size_t part, PartSums& s
         for (std::size_t q = 0; q < packs; ++q) {
           Pack values;
           widen(v + 4 * q, values);
-          values *= q == 0 ? Pack{1.0, share, share, share} : Pack{share, share, share, share};
+          values *= Pack{q == 0 ? 1.0 : share, share, share, q == PartSums::pressure / 4 ? values[3] : share};
           here_[q] += fr[i] * fs[j] * values;
           if constexpr (slopes) {
             along_roll[q] += r_rate[i] * fs[j] * values;
@@ -829,6 +831,8 @@ class LoadedTable::LookUp {
     std::array<V, count> mean;
     for (std::size_t q = 1; q < count; ++q) mean[q] = inverse * sums[q];
     mean[0] = share;
+    using std::sqrt;
+    mean[PartSums::pressure] = sqrt(sums[PartSums::pressure]);
     std::array<V, count> value;
     for (std::size_t q = 0; q < count; ++q) value[q] = scale[q] * mean[q];
     result_.part[p] = LoadedPartOf<V>::of(value);
@@ -836,6 +840,7 @@ class LoadedTable::LookUp {
       const std::array<V, count> scale_w{zero, zero, zero, zero, zero, one, one, 2.0 * w, 2.0 * w, zero, zero, one};
       const auto along = [&](PartSums::Along d, std::size_t q) {
         const V& of_share = sums[d * count];
+        if (q == PartSums::pressure) return 0.5 / mean[q] * sums[d * count + q];
         return q == 0 ? of_share : inverse * (sums[d * count + q] - of_share * mean[q]);
       };
       std::array<std::array<V, 4>, count> slope;

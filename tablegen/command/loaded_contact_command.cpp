@@ -202,7 +202,12 @@ nlohmann::ordered_json description(const Case& c) {
       {"largest_pressure", k.largest_pressure},
       {"area", k.area},
       {"overlap_regions", k.regions.size()},
-      {"elements", {{"nx", k.elements.nx}, {"ns", k.elements.ns}, {"dx", k.elements.dx}, {"ds", k.elements.ds}}},
+      {"elements",
+       {{"nx", k.elements.nx},
+        {"ns", k.elements.ns},
+        {"dx", k.elements.dx},
+        {"ds", k.elements.ds},
+        {"rows_across_peak", k.rows_across_peak}}},
       {"residual", k.residual},
       {"iterations", k.iterations},
       {"evaluations", c.found.evaluations}};

@@ -133,6 +133,27 @@ TEST(LoadedContact, IsHertzsWhereCurvaturesAreConstant) {
   EXPECT_LT(std::abs(fine.normal_force / force - 1.0), std::abs(contact.normal_force / force - 1.0));
 }
 
+// In the flange root a contact 14 mm wide presses most on a strip of 1 mm, which is no part of the overlap by itself.
+TEST(LoadedContact, ResolvesARidgeOfPressure) {
+  const WheelsetPose pose = lowered(7.857e-3, 2.509e-3, 3.678e-3, 2.379e-4);
+  LoadedContactOptions options;
+  options.elements.across_narrowest = 28;
+  const LoadedContact c = loaded_contact(s1002_on_60e1(), pose, options);
+  ASSERT_TRUE(c.converged);
+  ASSERT_EQ(c.regions.size(), 1u);
+  ASSERT_EQ(c.regions[0].parts.size(), 1u);
+  EXPECT_GE(c.rows_across_peak, 8.0);
+  options.elements.across_narrowest = 224;
+  const LoadedContact fine = loaded_contact(s1002_on_60e1(), pose, options);
+  EXPECT_NEAR(c.largest_pressure / fine.largest_pressure, 1.0, 0.01);
+  EXPECT_NEAR(c.normal_force / fine.normal_force, 1.0, 1e-3);
+  options.elements.across_narrowest = 28;
+  options.elements.most = 1200;
+  const LoadedContact coarse = loaded_contact(s1002_on_60e1(), pose, options);
+  EXPECT_LE(coarse.elements.count(), 1200);
+  EXPECT_LT(coarse.rows_across_peak, 8.0) << "what is not resolved is said";
+}
+
 // p ≥ 0, gap ≥ 0, p gap = 0: from the direct sum.
 TEST(LoadedContact, PressureAndGapExcludeEachOther) {
   LoadedContactOptions options;
