@@ -191,26 +191,25 @@ nlohmann::ordered_json description(const Case& c) {
   const double touch = c.search.touch_height(k.pose.y, k.pose.roll, k.pose.yaw);
   const Eigen::Vector3d total = k.on_rail.force + c.friction.on_rail.force;
   const Eigen::Vector3d moment = k.on_rail.moment + c.friction.on_rail.moment;
-  nlohmann::ordered_json j{
-      {"kind", "loaded contact"},
-      {"pose", {{"y", k.pose.y}, {"z", k.pose.z}, {"yaw", k.pose.yaw}, {"roll", k.pose.roll}}},
-      {"dz", k.pose.z - touch},
-      {"force_on_rail", vector_json(total)},
-      {"moment_on_rail", vector_json(moment)},
-      {"normal_force", k.normal_force},
-      {"elastic_energy", k.elastic_energy},
-      {"largest_pressure", k.largest_pressure},
-      {"area", k.area},
-      {"overlap_regions", k.regions.size()},
-      {"elements",
-       {{"nx", k.elements.nx},
-        {"ns", k.elements.ns},
-        {"dx", k.elements.dx},
-        {"ds", k.elements.ds},
-        {"rows_across_peak", k.rows_across_peak}}},
-      {"residual", k.residual},
-      {"iterations", k.iterations},
-      {"evaluations", c.found.evaluations}};
+  nlohmann::ordered_json j{{"kind", "loaded contact"},
+                           {"pose", {{"y", k.pose.y}, {"z", k.pose.z}, {"yaw", k.pose.yaw}, {"roll", k.pose.roll}}},
+                           {"dz", k.pose.z - touch},
+                           {"force_on_rail", vector_json(total)},
+                           {"moment_on_rail", vector_json(moment)},
+                           {"normal_force", k.normal_force},
+                           {"elastic_energy", k.elastic_energy},
+                           {"largest_pressure", k.largest_pressure},
+                           {"area", k.area},
+                           {"overlap_regions", k.regions.size()},
+                           {"elements",
+                            {{"nx", k.elements.nx},
+                             {"ns", k.elements.ns},
+                             {"dx", k.elements.dx},
+                             {"ds", k.elements.ds},
+                             {"rows_across_peak", k.rows_across_peak}}},
+                           {"residual", k.residual},
+                           {"iterations", k.iterations},
+                           {"evaluations", c.found.evaluations}};
   j["bands"] = nlohmann::ordered_json::array();
   for (std::size_t b = 0; b < k.bands.size(); ++b) {
     j["bands"].push_back(band_json(k.bands[b]));
