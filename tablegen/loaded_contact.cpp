@@ -69,32 +69,34 @@ double rows_across_peak(const ContactElements& e, const Eigen::VectorXd& pressur
   return second > 0.0 ? 2.0 / std::sqrt(second) : std::numeric_limits<double>::infinity();
 }
 
-/// More rows until the largest pressure is resolved. A ridge of pressure over a strongly curved strip of the surfaces
-/// is no part of the overlap by itself, so that elements may be too wide for it, and rows beside it may miss its
-/// height.
+/// More rows until the largest pressure is resolved, or a finer solution does not converge. A ridge of pressure over a
+/// strongly curved strip of the surfaces is no part of the overlap by itself, so that elements may be too wide for it,
+/// and rows beside it may miss its height.
 void refine_peak(const UndeformedDistance& distance, const LoadedContactOptions& options, LoadedContact& contact) {
-  constexpr double smooth = 12.0;   // rows across the peak of a pressure without a ridge
-  constexpr double enough = 8.0;    // rows across a ridge
-  constexpr double settled = 0.01;  // change of the largest pressure by the last rows
+  constexpr double most_smooth_rows = 12.0, smooth_share = 0.4;  // a Hertzian contact has 0.7 of the rows asked for
+  constexpr double ridge_rows = 8.0;
+  constexpr double settled_change = 0.01;  // of the largest pressure by the last rows
   constexpr double growth = 1.5;
   constexpr int finest = 8;  // times the rows that the overlap asks for: an edge has no largest pressure
+  const double smooth_rows = std::min(most_smooth_rows, smooth_share * options.elements.across_narrowest);
   const int most_rows = std::min(finest * contact.elements.ns, options.elements.most / contact.elements.nx);
   contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
-  if (contact.rows_across_peak >= smooth) return;
-  while (contact.converged && contact.elements.ns < most_rows) {
+  if (!contact.converged || contact.rows_across_peak >= smooth_rows) return;
+  while (contact.elements.ns < most_rows) {
     const ContactElements& e = contact.elements;
     const int rows = std::min(static_cast<int>(std::ceil(growth * e.ns)), most_rows);
-    ContactElements finer = contact_elements(distance, contact.regions, e.nx, rows);
-    Eigen::VectorXd start(finer.count());
+    LoadedContact finer = contact;
+    finer.elements = contact_elements(distance, contact.regions, e.nx, rows);
+    Eigen::VectorXd start(finer.elements.count());
     for (int j = 0; j < rows; ++j) {
       start.segment(j * e.nx, e.nx) = contact.pressure.segment((2 * j + 1) * e.ns / (2 * rows) * e.nx, e.nx);
     }
-    const double before = contact.pressure.maxCoeff();
-    contact.elements = std::move(finer);
-    solve_pressure(options, std::move(start), contact);
-    contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
-    const double change = std::abs(contact.pressure.maxCoeff() / before - 1.0);
-    if (contact.rows_across_peak >= enough && change < settled) return;
+    solve_pressure(options, std::move(start), finer);
+    if (!finer.converged) return;
+    finer.rows_across_peak = rows_across_peak(finer.elements, finer.pressure);
+    const double change = std::abs(finer.pressure.maxCoeff() / contact.pressure.maxCoeff() - 1.0);
+    contact = std::move(finer);
+    if (contact.rows_across_peak >= ridge_rows && change < settled_change) return;
   }
 }
 

@@ -48,7 +48,7 @@ struct LoadedContact {
   double elastic_energy = 0.0;    ///< ½ ∫ p h dA [J]
   double largest_pressure = 0.0;  ///< [Pa]
   /// Of elements, across the ellipse of a Hertzian contact whose pressure is curved along s as this one's is at its
-  /// largest. Fewer than eight: an edge, whose pressure grows with the number of rows.
+  /// largest. Fewer than eight: the largest pressure is not resolved, as at an edge or with too few elements allowed.
   double rows_across_peak = 0.0;
   double area = 0.0;      ///< of the elements with pressure [m²]
   double residual = 0.0;  ///< NormalPressure::residual

@@ -253,8 +253,8 @@ class LoadedSweep {
     return true;
   }
 
-  /// Parts are interpolated linearly, weighted by their shares, pressures by their squares. On a ridge, rows of
-  /// elements leave pressures uncertain by 1 %: a smaller bound would halve intervals for nothing.
+  /// Parts are interpolated linearly, weighted by their shares, the squares of pressures without weights. On a ridge,
+  /// rows of elements leave each of the three pressures uncertain by 1 %: a bound of 2 % halves intervals for nothing.
   [[nodiscard]] bool parts_agree(const LoadedNode& p, const LoadedNode& m, const LoadedNode& q) const {
     constexpr double share = 0.02, place = 0.1, length = 0.03, pressure = 0.04;
     double largest = 0.0, square = 0.0;

@@ -455,6 +455,7 @@ void LoadedTable::fetch_parts(std::size_t node, int level, double roll, double y
 struct LoadedTable::PartSums {
   enum Along : std::size_t { value, by_lateral, by_level, by_roll_node, by_yaw_node, count };
   static constexpr std::size_t packs = LoadedPart::quantities / 4, pressure = LoadedPart::quantities - 1;
+  static_assert(pressure % 4 == 3, "sum_part() finds the pressure at the end of a pack");
   Pack sum[count][packs];
 };
 
@@ -832,7 +833,9 @@ class LoadedTable::LookUp {
     for (std::size_t q = 1; q < count; ++q) mean[q] = inverse * sums[q];
     mean[0] = share;
     using std::sqrt;
-    mean[PartSums::pressure] = sqrt(sums[PartSums::pressure]);
+    // At yaw 0 the weights of the two first nodes of yaw² are those of an extrapolation by a millionth.
+    const V square = sums[PartSums::pressure], least = broadcast<V>(1e-30);
+    mean[PartSums::pressure] = sqrt(select(square > least, square, least));
     std::array<V, count> value;
     for (std::size_t q = 0; q < count; ++q) value[q] = scale[q] * mean[q];
     result_.part[p] = LoadedPartOf<V>::of(value);
