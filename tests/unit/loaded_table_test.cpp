@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -101,6 +102,33 @@ TEST(LoadedTable, EnergyGrowsFromFirstTouchToTheLastLevel) {
     }
     EXPECT_GT(std::pow(energy, 0.2), 0.9 * table.data().largest_level);
     EXPECT_EQ(look(table, {pose.y, touch - 1e-6, pose.roll, pose.yaw}).energy, 0.0);
+  }
+}
+
+// Squares of pressures are interpolated with weights whose sum is one: a pressure at every other lateral node only, and
+// at those between only, add up to it everywhere.
+TEST(LoadedTable, SquaresOfPressuresAreLinear) {
+  constexpr float pressure = 536870912.0F;
+  const auto every_other = [&](std::size_t begin) {
+    LoadedTableData data = tread_table();
+    float* part = data.part.data();
+    for (std::size_t node = 0; node < data.pressed.size(); ++node) {
+      const bool has = node / static_cast<std::size_t>(data.levels) % 2 == begin;
+      const auto parts = static_cast<std::size_t>(std::popcount(data.pressed[node]));
+      for (std::size_t k = 0; k < parts * data.columns(); ++k, part += LoadedPart::quantities) {
+        part[LoadedPart::quantities - 1] = has ? pressure : 0.0F;
+      }
+    }
+    return LoadedTable(data);
+  };
+  const LoadedTable even = every_other(0), odd = every_other(1);
+  Poses poses;
+  for (int n = 0; n < 100; ++n) {
+    const WheelsetPose pose = poses.next();
+    const LoadedLookup a = look(even, pose), b = look(odd, pose);
+    ASSERT_EQ(a.parts, 1U);
+    const double w = std::pow(a.energy, 0.2);
+    EXPECT_NEAR(std::hypot(a.part[0].pressure, b.part[0].pressure) / (w * static_cast<double>(pressure)), 1.0, 1e-9);
   }
 }
 
