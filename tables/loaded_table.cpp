@@ -833,7 +833,7 @@ class LoadedTable::LookUp {
     for (std::size_t q = 1; q < count; ++q) mean[q] = inverse * sums[q];
     mean[0] = share;
     using std::sqrt;
-    // At yaw 0 the weights of the two first nodes of yaw² are those of an extrapolation by a millionth.
+    // At yaw 0 squares are extrapolated by a millionth: the sum of very small ones may be below zero.
     const V square = sums[PartSums::pressure], least = broadcast<V>(1e-30);
     mean[PartSums::pressure] = sqrt(select(square > least, square, least));
     std::array<V, count> value;
