@@ -43,6 +43,17 @@ Eigen::VectorXd first_guess(NormalInfluence& influence, const Eigen::VectorXd& o
   return pressure * (pressure.dot(overlap) / pressure.dot(displacement));
 }
 
+/// Rows across a Hertzian pressure that is curved as much along s, for its height, as this one is at its largest:
+/// p = p_0 √(1 − (2s/w)²) has the second difference −(2 ds/w)² p_0.
+double rows_across_peak(const ContactElements& e, const Eigen::VectorXd& pressure) {
+  Eigen::Index k = 0;
+  const double largest = pressure.maxCoeff(&k);
+  if (largest <= 0.0) return std::numeric_limits<double>::infinity();
+  const double below = k >= e.nx ? pressure[k - e.nx] : 0.0, above = k + e.nx < e.count() ? pressure[k + e.nx] : 0.0;
+  const double second = (2.0 * largest - below - above) / largest;
+  return second > 0.0 ? 2.0 / std::sqrt(second) : std::numeric_limits<double>::infinity();
+}
+
 /// The pressure of the contact's elements.
 /// @param start pressures to begin with; none: first_guess()
 void solve_pressure(const LoadedContactOptions& options, std::optional<Eigen::VectorXd> start, LoadedContact& contact) {
@@ -56,17 +67,7 @@ void solve_pressure(const LoadedContactOptions& options, std::optional<Eigen::Ve
   contact.residual = found.residual;
   contact.iterations += found.iterations;
   contact.converged = found.converged;
-}
-
-/// Rows across a Hertzian pressure that is curved as much along s, for its height, as this one is at its largest:
-/// p = p_0 √(1 − (2s/w)²) has the second difference −(2 ds/w)² p_0.
-double rows_across_peak(const ContactElements& e, const Eigen::VectorXd& pressure) {
-  Eigen::Index k = 0;
-  const double largest = pressure.maxCoeff(&k);
-  if (largest <= 0.0) return std::numeric_limits<double>::infinity();
-  const double below = k >= e.nx ? pressure[k - e.nx] : 0.0, above = k + e.nx < e.count() ? pressure[k + e.nx] : 0.0;
-  const double second = (2.0 * largest - below - above) / largest;
-  return second > 0.0 ? 2.0 / std::sqrt(second) : std::numeric_limits<double>::infinity();
+  contact.rows_across_peak = rows_across_peak(e, contact.pressure);
 }
 
 /// More rows until the largest pressure is resolved, or a finer solution does not converge. A ridge of pressure over a
@@ -80,7 +81,6 @@ void refine_peak(const UndeformedDistance& distance, const LoadedContactOptions&
   constexpr int finest = 8;  // times the rows that the overlap asks for: an edge has no largest pressure
   const double smooth_rows = std::min(most_smooth_rows, smooth_share * options.elements.across_narrowest);
   const int most_rows = std::min(finest * contact.elements.ns, options.elements.most / contact.elements.nx);
-  contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
   if (!contact.converged || contact.rows_across_peak >= smooth_rows) return;
   while (contact.elements.ns < most_rows) {
     const ContactElements& e = contact.elements;
@@ -93,7 +93,6 @@ void refine_peak(const UndeformedDistance& distance, const LoadedContactOptions&
     }
     solve_pressure(options, std::move(start), finer);
     if (!finer.converged) return;
-    finer.rows_across_peak = rows_across_peak(finer.elements, finer.pressure);
     const double change = std::abs(finer.pressure.maxCoeff() / contact.pressure.maxCoeff() - 1.0);
     contact = std::move(finer);
     if (contact.rows_across_peak >= ridge_rows && change < settled_change) return;
@@ -117,11 +116,7 @@ LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, co
   contact.elements = neighbour ? contact_elements(distance, contact.regions, neighbour->nx, neighbour->ns)
                                : contact_elements(distance, contact.regions, options.elements);
   solve_pressure(options, neighbour ? std::optional(neighbour->pressure) : std::nullopt, contact);
-  if (neighbour) {
-    contact.rows_across_peak = rows_across_peak(contact.elements, contact.pressure);
-  } else {
-    refine_peak(distance, options, contact);
-  }
+  if (!neighbour) refine_peak(distance, options, contact);
   const ContactElements& e = contact.elements;
   contact.bands = contact_bands(search.pair(), e, contact.pressure, contact.band);
   for (int k = 0; k < e.count(); ++k) {

@@ -186,6 +186,11 @@ nlohmann::ordered_json band_friction_json(const BandFriction& b) {
           {"force", vector_json(b.force)}};
 }
 
+nlohmann::ordered_json elements_json(const LoadedContact& k) {
+  const ContactElements& e = k.elements;
+  return {{"nx", e.nx}, {"ns", e.ns}, {"dx", e.dx}, {"ds", e.ds}, {"rows_across_peak", k.rows_across_peak}};
+}
+
 nlohmann::ordered_json description(const Case& c) {
   const LoadedContact& k = c.found.contact;
   const double touch = c.search.touch_height(k.pose.y, k.pose.roll, k.pose.yaw);
@@ -201,12 +206,7 @@ nlohmann::ordered_json description(const Case& c) {
                            {"largest_pressure", k.largest_pressure},
                            {"area", k.area},
                            {"overlap_regions", k.regions.size()},
-                           {"elements",
-                            {{"nx", k.elements.nx},
-                             {"ns", k.elements.ns},
-                             {"dx", k.elements.dx},
-                             {"ds", k.elements.ds},
-                             {"rows_across_peak", k.rows_across_peak}}},
+                           {"elements", elements_json(k)},
                            {"residual", k.residual},
                            {"iterations", k.iterations},
                            {"evaluations", c.found.evaluations}};
