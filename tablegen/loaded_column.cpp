@@ -104,10 +104,11 @@ void set_parts(const ContactSearch& search, const LoadedContact& contact, const 
 }
 
 /// With fewer elements where a narrow part asks for too many.
-LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, LoadedContactOptions options) {
+LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, LoadedContactOptions options,
+                     int refinements) {
   while (true) {
     try {
-      return loaded_contact(search, pose, options);
+      return loaded_contact(search, pose, options, refinements);
     } catch (const TooManyElements&) {
       if (options.elements.across_narrowest < 8) throw;
       options.elements.across_narrowest = options.elements.across_narrowest * 2 / 3;
@@ -116,14 +117,16 @@ LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, Load
 }
 
 /// At a height at which the energy is nearly w⁵, from one near by: U^(2/5) is nearly linear in the lowering.
+/// @param refinements of the last solution of the column; is replaced
 LoadedContact near_level(const ContactSearch& search, WheelsetPose pose, double touch, double w,
-                         const LoadedColumnOptions& options, long& solutions) {
+                         const LoadedColumnOptions& options, int& refinements, long& solutions) {
   // Of the lowering. Wider where the elements' change with the height keeps the iteration from coming nearer.
   constexpr double nearest = 1e-2, widest = 6e-2;
   double near = nearest;
   for (int iteration = 0; near < widest; ++iteration) {
     if (iteration > 5) near *= 1.5;
-    LoadedContact contact = solved(search, pose, options.contact);
+    LoadedContact contact = solved(search, pose, options.contact, std::max(refinements - 1, 0));
+    refinements = contact.refinements;
     ++solutions;
     const double energy = contact.elastic_energy, force = contact.on_rail.force.z(), lowering = pose.z - touch;
     if (!contact.converged || !(energy > 0.0) || !(force > 0.0)) {
@@ -155,13 +158,14 @@ ColumnSolutions solutions_near_levels(const ContactSearch& search, WheelsetPose 
   const auto steepness = [&](std::size_t k) {
     return found.lowering[k] / std::pow(found.contact[k - 1].elastic_energy, 0.4);
   };
+  int refinements = 0;
   for (std::size_t k = 1; k < static_cast<std::size_t>(options.levels); ++k) {
     const double w = static_cast<double>(k) * step;
     constexpr double first_guess = 5e-5;  // m/J^(2/5), ordinary for a tread
     const double guess = k == 1 ? first_guess : k == 2 ? steepness(1) : 2.0 * steepness(k - 1) - steepness(k - 2);
     pose.z = touch.z_touch + std::max(guess, 1e-7) * w * w;
     const LoadedContact& contact =
-        found.contact.emplace_back(near_level(search, pose, touch.z_touch, w, options, count));
+        found.contact.emplace_back(near_level(search, pose, touch.z_touch, w, options, refinements, count));
     found.lowering.push_back(contact.pose.z - touch.z_touch);
     found.force.push_back(contact.on_rail.force.z());
     found.slope.push_back(contact.on_rail.force.y() / contact.on_rail.force.z());

@@ -70,22 +70,34 @@ void solve_pressure(const LoadedContactOptions& options, std::optional<Eigen::Ve
   contact.rows_across_peak = rows_across_peak(e, contact.pressure);
 }
 
+constexpr double row_growth = 1.5;
+constexpr int finest_rows = 8;  // times those that the overlap asks for: an edge has no largest pressure
+
+/// Rows of elements after some refinements of those that the overlap asks for.
+int refined_rows(const ContactElements& coarse, int refinements, const ContactElementOptions& options) {
+  const int most = std::min(finest_rows * coarse.ns, options.most / coarse.nx);
+  double rows = coarse.ns;
+  for (int k = 0; k < refinements && rows < most; ++k) rows = std::ceil(row_growth * rows);
+  return std::min(static_cast<int>(rows), most);
+}
+
 /// More rows until the largest pressure is resolved, or a finer solution does not converge. A ridge of pressure over a
 /// strongly curved strip of the surfaces is no part of the overlap by itself, so that elements may be too wide for it,
 /// and rows beside it may miss its height.
-void refine_peak(const UndeformedDistance& distance, const LoadedContactOptions& options, LoadedContact& contact) {
+/// @param coarse the elements that the overlap asks for
+void refine_peak(const UndeformedDistance& distance, const ContactElements& coarse, const LoadedContactOptions& options,
+                 LoadedContact& contact) {
   constexpr double most_smooth_rows = 12.0, smooth_share = 0.4;  // a Hertzian contact has 0.7 of the rows asked for
   constexpr double ridge_rows = 8.0;
   constexpr double settled_change = 0.01;  // of the largest pressure by the last rows
-  constexpr double growth = 1.5;
-  constexpr int finest = 8;  // times the rows that the overlap asks for: an edge has no largest pressure
   const double smooth_rows = std::min(most_smooth_rows, smooth_share * options.elements.across_narrowest);
-  const int most_rows = std::min(finest * contact.elements.ns, options.elements.most / contact.elements.nx);
   if (!contact.converged || contact.rows_across_peak >= smooth_rows) return;
-  while (contact.elements.ns < most_rows) {
+  while (true) {
     const ContactElements& e = contact.elements;
-    const int rows = std::min(static_cast<int>(std::ceil(growth * e.ns)), most_rows);
+    const int rows = refined_rows(coarse, contact.refinements + 1, options.elements);
+    if (rows <= e.ns) return;
     LoadedContact finer = contact;
+    ++finer.refinements;
     finer.elements = contact_elements(distance, contact.regions, e.nx, rows);
     Eigen::VectorXd start(finer.elements.count());
     for (int j = 0; j < rows; ++j) {
@@ -105,18 +117,28 @@ struct Neighbour {
   Eigen::VectorXd pressure;
 };
 
+/// @param refinements to begin with; those beyond the first that settle the largest pressure are added
 LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, const LoadedContactOptions& options,
-                       const std::optional<Neighbour>& neighbour) {
+                       const std::optional<Neighbour>& neighbour, int refinements = 0) {
   LoadedContact contact;
   contact.pose = pose;
   const UndeformedDistance distance(search.pair(), pose);
   contact.regions = surface_overlaps(search, pose, distance);
   contact.converged = contact.regions.empty();
   if (contact.regions.empty()) return contact;
-  contact.elements = neighbour ? contact_elements(distance, contact.regions, neighbour->nx, neighbour->ns)
-                               : contact_elements(distance, contact.regions, options.elements);
-  solve_pressure(options, neighbour ? std::optional(neighbour->pressure) : std::nullopt, contact);
-  if (!neighbour) refine_peak(distance, options, contact);
+  if (neighbour) {
+    contact.elements = contact_elements(distance, contact.regions, neighbour->nx, neighbour->ns);
+    solve_pressure(options, neighbour->pressure, contact);
+  } else {
+    const ContactElements coarse = contact_elements(distance, contact.regions, options.elements);
+    for (contact.refinements = refinements;; contact.refinements = 0) {
+      const int rows = refined_rows(coarse, contact.refinements, options.elements);
+      contact.elements = rows == coarse.ns ? coarse : contact_elements(distance, contact.regions, coarse.nx, rows);
+      solve_pressure(options, std::nullopt, contact);
+      if (contact.converged || contact.refinements == 0) break;
+    }
+    refine_peak(distance, coarse, options, contact);
+  }
   const ContactElements& e = contact.elements;
   contact.bands = contact_bands(search.pair(), e, contact.pressure, contact.band);
   for (int k = 0; k < e.count(); ++k) {
@@ -135,10 +157,10 @@ LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, co
 
 }  // namespace
 
-LoadedContact loaded_contact(const ContactSearch& search, const WheelsetPose& pose,
-                             const LoadedContactOptions& options) {
+LoadedContact loaded_contact(const ContactSearch& search, const WheelsetPose& pose, const LoadedContactOptions& options,
+                             int refinements) {
   options.validate();
-  return solution(search, pose, options, std::nullopt);
+  return solution(search, pose, options, std::nullopt, refinements);
 }
 
 namespace {

@@ -321,7 +321,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
       motion.displacement = next;
     }
     if (structure) {
-      scatter_rail_forces(contacts, state.contact.force, state.structure.contact_load);
+      set_rail_forces(contacts, state.contact.force, state.structure);
       report.change =
           std::max(report.change, structure->respond(state.structure.contact_load, state.structure.displacement));
     }

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <vector>
 
 #include "railtab/runtime/algebra/step_end.hpp"
@@ -21,6 +23,9 @@ struct LinearMotion {
   Eigen::VectorXd displacement, velocity, acceleration;
   Eigen::VectorXd contact_load;  ///< contact forces at the end of the step
   Eigen::VectorXd step_load;     ///< the contacts' part of Eq. 12 in the step; for ContactForceRule::energy
+  /// Where either load may be other than zero, some unknowns perhaps twice; none: not known. Who writes loads elsewhere
+  /// resets it.
+  std::optional<std::vector<int>> loaded;
 
   explicit LinearMotion(Eigen::Index dofs = 0)
       : displacement(Eigen::VectorXd::Zero(dofs)),
@@ -92,9 +97,14 @@ inline void update(const HhtScheme& scheme, const Eigen::VectorXd& increment, Li
 }
 
 /// The degrees of freedom in `range` that the contacts loaded at the end of a step or in its mean: few of a
-/// structure's.
+/// structure's. Some perhaps twice.
 inline void find_loaded(const LinearMotion& motion, const DofRange& range, std::vector<int>& dofs) {
   dofs.clear();
+  if (motion.loaded) {
+    std::copy_if(motion.loaded->begin(), motion.loaded->end(), std::back_inserter(dofs),
+                 [&](int dof) { return dof >= range.begin && dof < range.end(); });
+    return;
+  }
   constexpr Eigen::Index together = 32, width = 8;  // to pass over what is not loaded
   for (Eigen::Index first = range.begin; first < range.end(); first += together) {
     if (first + together <= range.end()) {

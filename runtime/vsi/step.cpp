@@ -29,7 +29,13 @@ void close_structure_load(const StepContext& step, const StepWorkspace& ws, Line
       close_load(step.hht, *dofs, ws.structure_load, motion.contact_load, motion.step_load);
     }
     for (int dof : ws.past_rail_dofs) motion.contact_load[dof] = 0.0;
+    std::vector<int>& loaded = motion.loaded ? *motion.loaded : motion.loaded.emplace();
+    loaded = ws.rail_dofs;
+    for (int dof : ws.past_rail_dofs) {
+      if (motion.step_load[dof] != 0.0 && ws.structure_load[dof] == 0.0) loaded.push_back(dof);
+    }
   } else {
+    motion.loaded.reset();
     close_load(step.hht, active.of(ws.structure_load), active.of(motion.contact_load), active.of(motion.step_load));
     active.of(motion.contact_load).setZero();
   }
@@ -168,7 +174,7 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
     scatter_wheelset_forces(model, v, now.end_force, load);
     add_element_forces(model, state, v, load);
   }
-  if (model.structure) scatter_rail_forces(contacts, now.end_force, state.structure.contact_load);
+  if (model.structure) set_rail_forces(contacts, now.end_force, state.structure);
   state.contact.end_force = std::move(now.end_force);
   state.contact.memory = std::move(now.memory);
   state.contact.normal = std::move(now.normal);

@@ -137,6 +137,7 @@ void unpack(std::span<const double> numbers, VsiState& state) {
     std::copy_n(numbers.begin(), n, data);
     numbers = numbers.subspan(n);
   });
+  state.structure.loaded.reset();
   state.contact.end_force = state.contact.force;  // but under ContactForceRule::energy: evaluate_contact_at()
 }
 
@@ -273,10 +274,11 @@ void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorX
   }
 }
 
-void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
-                         Eigen::VectorXd& load) noexcept {
-  load.setZero();
-  add_rail_forces(contacts, force, load);
+void set_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                     LinearMotion& structure) noexcept {
+  structure.contact_load.setZero();
+  structure.loaded.reset();
+  add_rail_forces(contacts, force, structure.contact_load);
 }
 
 void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,

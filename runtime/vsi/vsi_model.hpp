@@ -158,10 +158,11 @@ void gather_wheelsets(const VsiModel& model, int vehicle, const Eigen::VectorXd&
 /// Its transpose: the contact forces of one vehicle's wheelsets as loads on the vehicle's dofs.
 void scatter_wheelset_forces(const VsiModel& model, int vehicle, const Eigen::VectorXd& force,
                              Eigen::VectorXd& load) noexcept;
-/// Restriction of the structure's dofs to the rail heads, and its transpose.
+/// Restriction of the structure's dofs to the rail heads.
 void gather_rails(const std::vector<RailContact>& contacts, const Eigen::VectorXd& dofs, Eigen::VectorXd& q) noexcept;
-void scatter_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
-                         Eigen::VectorXd& load) noexcept;
+/// Its transpose, as the contact loads of the structure.
+void set_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
+                     LinearMotion& structure) noexcept;
 /// The transpose added to loads that are there.
 void add_rail_forces(const std::vector<RailContact>& contacts, const Eigen::VectorXd& force,
                      Eigen::VectorXd& load) noexcept;
