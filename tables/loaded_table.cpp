@@ -63,7 +63,6 @@ std::vector<double> inverse_distances(const std::vector<double>& node) {
 }
 
 constexpr std::size_t buckets = 2048;
-constexpr std::size_t most_columns = LoadedTable::rolls_read * LoadedTable::most_yaws;
 
 // Derivatives along roll and yaw.
 enum Direction : std::size_t { here, by_roll, by_yaw, by_roll_roll, by_roll_yaw, by_yaw_yaw, directions };
@@ -146,59 +145,82 @@ struct LoadedTable::Weights {
 template <bool slopes>
 struct LoadedTable::NodeSums {
   static constexpr std::size_t wanted = slopes ? directions : by_yaw + 1, orders = slopes ? 3 : 2;
-
-  std::size_t rolls, yaws;
-  double roll[orders][rolls_read], yaw[orders][most_yaws];
-
-  template <class V>
-  NodeSums(const Weights<V>& weights, int place) noexcept : rolls(weights.rolls), yaws(weights.yaws) {
-    for (std::size_t order = 0; order < orders; ++order) {
-      for (std::size_t i = 0; i < rolls; ++i) roll[order][i] = lane(weights.roll[order][i], place);
-      for (std::size_t j = 0; j < yaws; ++j) yaw[order][j] = lane(weights.yaw[order][j], place);
-    }
-  }
-
-  /// @param of the numbers of a node, by its place among those that are read
+  static constexpr std::size_t most_pairs = (most_yaws + 1) / 2;
   template <class Numbers>
-  void add(auto&& of, std::array<Numbers, wanted>& sum) const noexcept {
-    for (std::size_t i = 0, k = 0; i < rolls; ++i) {
-      Numbers over_yaw[orders]{};
-      for (std::size_t j = 0; j < yaws; ++j, ++k) {
-        const Numbers numbers = of(k);
-        for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw[order][j] * numbers;
-      }
-      sum[here] += roll[0][i] * over_yaw[0];
-      sum[by_roll] += roll[1][i] * over_yaw[0];
-      sum[by_yaw] += roll[0][i] * over_yaw[1];
-      if constexpr (slopes) {
-        sum[by_roll_roll] += roll[2][i] * over_yaw[0];
-        sum[by_roll_yaw] += roll[1][i] * over_yaw[1];
-        sum[by_yaw_yaw] += roll[0][i] * over_yaw[2];
-      }
-    }
-  }
-};
+  using Sums = std::array<Numbers, wanted>;
 
-/// The weights of one pose in the value.
-struct LoadedTable::ColumnWeights {
-  std::size_t columns, first;                  ///< those that are read, and the first of them
-  std::size_t yaws;                            ///< columns per node of roll
-  std::array<double, 2 * most_columns> twice;  ///< of the columns, each twice: for a quantity and its slope
-  std::array<double, rolls_read> roll;         ///< of the nodes of roll
+  std::size_t first, rolls, yaws;  ///< columns that are read
+  double roll[orders][rolls_read], yaw[orders][most_yaws];
+  Lanes yaw_pair[orders][most_pairs];  ///< of two neighbouring nodes, each four times; zero where there is no second
 
   template <class V>
   void set(const Weights<V>& weights, int place) noexcept {
-    columns = weights.rolls * weights.yaws;
+    rolls = weights.rolls;
     yaws = weights.yaws;
     first = weights.first_roll[static_cast<std::size_t>(place)] * yaws;
-    for (std::size_t i = 0, k = 0; i < weights.rolls; ++i) {
-      roll[i] = lane(weights.roll[0][i], place);
-      for (std::size_t j = 0; j < weights.yaws; ++j, ++k) {
-        twice[2 * k] = twice[2 * k + 1] = lane(weights.roll[0][i], place) * lane(weights.yaw[0][j], place);
+    for (std::size_t order = 0; order < orders; ++order) {
+      for (std::size_t i = 0; i < rolls; ++i) roll[order][i] = lane(weights.roll[order][i], place);
+      for (std::size_t j = 0; j < yaws; ++j) yaw[order][j] = lane(weights.yaw[order][j], place);
+      for (std::size_t p = 0; 2 * p < yaws; ++p) {
+        const double next = 2 * p + 1 < yaws ? yaw[order][2 * p + 1] : 0.0;
+        for (int q = 0; q < 4; ++q) {
+          yaw_pair[order][p][q] = yaw[order][2 * p];
+          yaw_pair[order][p][4 + q] = next;
+        }
       }
     }
   }
-  [[nodiscard]] double value(std::size_t k) const noexcept { return twice[2 * k]; }
+
+  /// Of eight numbers per column. @param numbers of the first column
+  void of_eight(const double* numbers, Sums<Lanes>& sum) const noexcept {
+    sum = {};
+    for (std::size_t i = 0; i < rolls; ++i) {
+      Lanes over_yaw[orders]{};
+      for (std::size_t j = 0; j < yaws; ++j, numbers += Lanes::count) {
+        Lanes stored;
+        std::memcpy(&stored, numbers, sizeof stored);
+        for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw[order][j] * stored;
+      }
+      add_over_roll(i, over_yaw, sum);
+    }
+  }
+
+  /// Of four numbers per column, two columns at a time. @param numbers of the first column
+  void of_four(const float* numbers, Sums<Pack>& sum) const noexcept {
+    Sums<Lanes> pair{};
+    for (std::size_t i = 0; i < rolls; ++i, numbers += 4 * yaws) {
+      Lanes over_yaw[orders]{};
+      for (std::size_t p = 0; 2 * p < yaws; ++p) {
+        Lanes stored{};
+        if (2 * p + 1 < yaws) {
+          widen(numbers + 8 * p, stored);
+        } else {
+          Pack last;
+          widen(numbers + 8 * p, last);
+          std::memcpy(&stored, &last, sizeof last);
+        }
+        for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw_pair[order][p] * stored;
+      }
+      add_over_roll(i, over_yaw, pair);
+    }
+    for (std::size_t d = 0; d < wanted; ++d) {
+      Pack half[2];
+      std::memcpy(half, &pair[d], sizeof half);
+      sum[d] = half[0] + half[1];
+    }
+  }
+
+ private:
+  void add_over_roll(std::size_t i, const Lanes* over_yaw, Sums<Lanes>& sum) const noexcept {
+    sum[here] += roll[0][i] * over_yaw[0];
+    sum[by_roll] += roll[1][i] * over_yaw[0];
+    sum[by_yaw] += roll[0][i] * over_yaw[1];
+    if constexpr (slopes) {
+      sum[by_roll_roll] += roll[2][i] * over_yaw[0];
+      sum[by_roll_yaw] += roll[1][i] * over_yaw[1];
+      sum[by_yaw_yaw] += roll[0][i] * over_yaw[2];
+    }
+  }
 };
 
 double LoadedTableData::certified_force_error() const noexcept {
@@ -253,77 +275,57 @@ LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
     while (node + 2 < data_.lateral.size() && data_.lateral[node + 1] <= y0) ++node;
     bucket_.push_back(static_cast<std::uint32_t>(node));
   }
+  for (std::size_t cell = 0; cell + 1 < data_.lateral.size(); ++cell) {
+    for (std::size_t c = cell * columns; c < (cell + 1) * columns; ++c) {
+      const double* const low = &data_.shift[2 * c];
+      const double* const high = low + 2 * columns;
+      ends_.insert(ends_.end(), {low[0], low[1], high[0], high[1], data_.touch[c], data_.touch[c + columns], 0.0, 0.0});
+    }
+  }
+  for (std::size_t i = 0; i < data_.lateral.size() * columns; i += data_.yaw_squared.size()) {
+    displaced_.push_back(data_.shift[2 * i] - data_.lateral[i / columns]);
+  }
   const std::size_t middle = data_.roll.size() / 2 * data_.yaw_squared.size();
   for (std::size_t i = 0; i < nodes; ++i) rise_.push_back(data_.height[4 * (i * columns + middle)]);
+  weight_parts();
 }
 
 std::size_t LoadedTable::bytes() const noexcept {
-  return sizeof(double) * (data_.shift.size() + data_.touch.size() + data_.lateral.size()) +
-         sizeof(float) * (data_.height.size() + data_.pressed.size() + data_.part.size() + rise_.size()) +
+  return sizeof(double) * (ends_.size() + data_.lateral.size()) +
+         sizeof(float) * (data_.height.size() + data_.pressed.size() + weighted_part_.size() + rise_.size()) +
          sizeof(std::size_t) * part_at_.size();
 }
 
-bool LoadedTable::find_lateral(double y, const ColumnWeights& weight, std::size_t& node,
-                               std::array<double, 4>& corner) const noexcept {
-  // y and its derivative at a node.
-  const auto place = [&](std::size_t at, double& derivative) {
-    const double* const shift = &data_.shift[2 * (at * data_.columns() + weight.first)];
-    Pack even{}, odd{}, a, b;
-    std::size_t k = 0;
-    for (; k + 4 <= weight.columns; k += 4) {
-      const double *const from = shift + 2 * k, *const twice = &weight.twice[2 * k];
-      std::memcpy(&a, from, sizeof a);
-      std::memcpy(&b, twice, sizeof b);
-      even += a * b;
-      std::memcpy(&a, from + 4, sizeof a);
-      std::memcpy(&b, twice + 4, sizeof b);
-      odd += a * b;
-    }
-    even += odd;
-    double value = even[0] + even[2], slope = even[1] + even[3];
-    for (; k < weight.columns; ++k) {
-      value += weight.value(k) * shift[2 * k];
-      slope += weight.value(k) * shift[2 * k + 1];
-    }
-    derivative = slope;
-    return value;
-  };
-  const std::size_t last = data_.lateral.size() - 1;
-  const double first_y0 = data_.lateral.front(), range = data_.lateral.back() - first_y0;
-  const auto node_of = [&](double y0) {
-    const double at = std::clamp((y0 - first_y0) / range, 0.0, 1.0) * static_cast<double>(buckets);
+template <bool slopes>
+std::size_t LoadedTable::guess_cell(double y, const NodeSums<slopes>& sums) const noexcept {
+  const double first = data_.lateral.front(), range = data_.lateral.back() - first;
+  const auto cell_of = [&](double y0) {
+    const double at = std::clamp((y0 - first) / range, 0.0, 1.0) * static_cast<double>(buckets);
     return static_cast<std::size_t>(bucket_[std::min(static_cast<std::size_t>(at), buckets - 1)]);
   };
-  // The displacement changes little along y0 and with yaw: from the node at y to that at y less its displacement at the
-  // first node of yaw, and on from there.
-  const std::size_t near = node_of(y);
-  const double* const shift = &data_.shift[2 * (near * data_.columns() + weight.first)];
-  double displaced = -data_.lateral[near];
-  for (std::size_t i = 0; i * weight.yaws < weight.columns; ++i)
-    displaced += weight.roll[i] * shift[2 * i * weight.yaws];
-  std::size_t low = node_of(y - displaced);
-  corner[0] = place(low, corner[1]);
-  while (low > 0 && corner[0] > y) corner[0] = place(--low, corner[1]);
-  corner[2] = place(low + 1, corner[3]);
-  while (low + 1 < last && corner[2] <= y) {
-    corner[0] = corner[2];
-    corner[1] = corner[3];
-    corner[2] = place(++low + 1, corner[3]);
-  }
-  node = low;
-  return y >= corner[0] && y <= corner[2];
+  // The displacement changes little along y0 and with yaw: from the cell at y to that at y less its displacement at the
+  // first node of yaw.
+  const double* const displaced = &displaced_[cell_of(y) * data_.roll.size() + sums.first / sums.yaws];
+  double by = 0.0;
+  for (std::size_t i = 0; i < sums.rolls; ++i) by += sums.roll[0][i] * displaced[i];
+  return cell_of(y - by);
 }
 
-int LoadedTable::guess_level(double z, std::size_t node, double t, const ColumnWeights& weight) const noexcept {
-  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
-  const double* const touch = &data_.touch[node * columns + weight.first];
-  double touch_low = 0.0, touch_high = 0.0;
-  for (std::size_t k = 0; k < weight.columns; ++k) {
-    touch_low += weight.value(k) * touch[k];
-    touch_high += weight.value(k) * touch[columns + k];
-  }
+template <bool slopes>
+bool LoadedTable::find_cell(double y, const NodeSums<slopes>& sums, std::size_t& cell,
+                            CellEnds<slopes>& ends) const noexcept {
+  const std::size_t last = data_.lateral.size() - 2;
+  const auto low = [&] { return ends[here][0]; };
+  const auto high = [&] { return ends[here][2]; };
+  sums.of_eight(ends_of(cell, sums.first), ends);
+  while (cell > 0 && low() > y) sums.of_eight(ends_of(--cell, sums.first), ends);
+  while (cell < last && high() <= y) sums.of_eight(ends_of(++cell, sums.first), ends);
+  return y >= low() && y <= high();
+}
+
+int LoadedTable::guess_level(double above, std::size_t node, double t) const noexcept {
+  const std::size_t levels = static_cast<std::size_t>(data_.levels);
   // By the rise of the middle column.
-  const double above = z - ((1.0 - t) * touch_low + t * touch_high);
   if (!(above > 0.0)) return 0;
   const float *const rise_low = &rise_[node * levels], *const rise_high = rise_low + levels;
   const auto rise = [&](int level) {
@@ -352,27 +354,16 @@ struct LoadedTable::Corners {
 
 /// The corners in the directions that are wanted.
 template <bool slopes>
-void LoadedTable::add_corners(std::size_t node, int level, std::size_t first, const NodeSums<slopes>& sums,
+void LoadedTable::add_corners(std::size_t node, int level, const NodeSums<slopes>& sums, const CellEnds<slopes>& ends,
                               Corners& corners) const noexcept {
-  constexpr std::size_t wanted = NodeSums<slopes>::wanted;
   const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
   for (std::size_t lateral = 0; lateral < 2; ++lateral) {
-    const double* const touch = &data_.touch[(node + lateral) * columns + first];
-    std::array<double, wanted> touches{};
-    sums.add([&](std::size_t k) { return touch[k]; }, touches);
     for (std::size_t above = 0; above < 2; ++above) {
       const std::size_t at = (node + lateral) * levels + static_cast<std::size_t>(level) + above;
-      const float* const height = &data_.height[4 * (at * columns + first)];
-      std::array<Pack, wanted> sum{};
-      sums.add(
-          [&](std::size_t k) {
-            Pack stored;
-            widen(height + 4 * k, stored);
-            return stored;
-          },
-          sum);
-      for (std::size_t d = 0; d < wanted; ++d) {
-        sum[d][0] += touches[d];
+      typename NodeSums<slopes>::template Sums<Pack> sum;
+      sums.of_four(&data_.height[4 * (at * columns + sums.first)], sum);
+      for (std::size_t d = 0; d < sum.size(); ++d) {
+        sum[d][0] += ends[d][static_cast<int>(4 + lateral)];
         corners.of[2 * lateral + above][d] = sum[d];
       }
     }
@@ -386,6 +377,7 @@ struct LoadedTable::PartPlace {
     std::size_t low = 0, high = 0;
     double part = 0.0, rate = 0.0;
 
+    Linear() = default;
     Linear(const std::vector<double>& node, double x) noexcept {
       if (node.size() == 1) return;
       const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
@@ -403,8 +395,21 @@ struct LoadedTable::PartPlace {
     const std::size_t first = lateral * count + static_cast<std::size_t>(level);
     return {first, first + count, first + 1, first + count + 1};
   }
-  double t, u, width;
+  double t, u, width;  ///< between the lateral nodes, between the levels; of the lateral cell [m]
   Linear r, s;
+  /// Two neighbouring nodes of yaw² as they are stored, quantity fastest, and along yaw².
+  std::array<Lanes, 3> both, along_yaw;
+
+  void set_yaw(const Linear& yaw_squared) noexcept {
+    s = yaw_squared;
+    const auto spread = [](double first, double second, std::array<Lanes, 3>& to) {
+      const Pack a = first - Pack{}, b = second - Pack{};
+      const std::array<Pack, 6> numbers{a, a, a, b, b, b};
+      std::memcpy(to.data(), numbers.data(), sizeof to);
+    };
+    spread(1.0 - s.part, s.part, both);
+    spread(-s.rate, s.rate, along_yaw);
+  }
 };
 
 namespace {
@@ -417,29 +422,30 @@ void fetch(const void* from, std::size_t bytes) {
 
 }  // namespace
 
-void LoadedTable::fetch_corners(std::size_t node, int level, const ColumnWeights& weight) const noexcept {
+void LoadedTable::fetch_ends(std::size_t cell, std::size_t first, std::size_t count) const noexcept {
+  fetch(ends_of(cell, first), count * sizeof(Lanes));
+}
+
+void LoadedTable::fetch_rise(std::size_t node) const noexcept {
+  const auto levels = static_cast<std::size_t>(data_.levels);
+  fetch(&rise_[node * levels], 2 * levels * sizeof(float));
+}
+
+void LoadedTable::fetch_corners(std::size_t node, int level, std::size_t first, std::size_t count) const noexcept {
   const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
   for (const std::size_t lateral : {node, node + 1}) {
     const std::size_t at = lateral * levels + static_cast<std::size_t>(level);
-    const float* const height = &data_.height[4 * (at * columns + weight.first)];
-    fetch(height, 4 * weight.columns * sizeof(float));
-    fetch(height + 4 * columns, 4 * weight.columns * sizeof(float));
+    const float* const height = &data_.height[4 * (at * columns + first)];
+    fetch(height, 4 * count * sizeof(float));
+    fetch(height + 4 * columns, 4 * count * sizeof(float));
   }
 }
 
-void LoadedTable::fetch_touch(std::size_t node, const ColumnWeights& weight) const noexcept {
-  const std::size_t columns = data_.columns(), levels = static_cast<std::size_t>(data_.levels);
-  for (const std::size_t lateral : {node, node + 1}) {
-    fetch(&rise_[lateral * levels], levels * sizeof(float));
-    fetch(&data_.touch[lateral * columns + weight.first], weight.columns * sizeof(double));
-  }
-}
-
-void LoadedTable::fetch_parts(std::size_t node, int level, double roll, double yaw) const noexcept {
+void LoadedTable::fetch_parts(const PartPlace& place) const noexcept {
   const std::size_t columns = data_.columns(), yaws = data_.yaw_squared.size();
-  const PartPlace::Linear r(data_.roll, roll), s(data_.yaw_squared, yaw * yaw);
-  for (const std::size_t corner : PartPlace::nodes(node, level, data_.levels)) {
-    const float* part = &data_.part[part_at_[corner]] + (r.low * yaws + s.low) * LoadedPart::quantities;
+  const PartPlace::Linear &r = place.r, &s = place.s;
+  for (const std::size_t corner : place.node) {
+    const float* part = &weighted_part_[part_at_[corner]] + (r.low * yaws + s.low) * LoadedPart::quantities;
     for (std::uint32_t pressed = data_.pressed[corner]; pressed != 0; pressed &= pressed - 1) {
       for (std::size_t i = 0; i <= r.high - r.low; ++i) {
         fetch(part + i * yaws * LoadedPart::quantities, 2 * LoadedPart::quantities * sizeof(float));
@@ -455,56 +461,63 @@ void LoadedTable::fetch_parts(std::size_t node, int level, double roll, double y
 struct LoadedTable::PartSums {
   enum Along : std::size_t { value, by_lateral, by_level, by_roll_node, by_yaw_node, count };
   static constexpr std::size_t packs = LoadedPart::quantities / 4, pressure = LoadedPart::quantities - 1;
-  static_assert(pressure % 4 == 3, "sum_part() finds the pressure at the end of a pack");
+  static constexpr std::size_t arm_y = 2, arm_z = 3;
   Pack sum[count][packs];
 };
 
+void LoadedTable::weight_parts() noexcept {
+  if (!data_.part.empty()) {
+    for (const std::size_t q : {PartSums::arm_y, PartSums::arm_z}) reference_[q] = double{data_.part[q]};
+  }
+  for (std::size_t i = 0; i < data_.part.size(); i += LoadedPart::quantities) {
+    float* const quantity = &data_.part[i];
+    for (std::size_t q = 1; q < PartSums::pressure; ++q) {
+      quantity[q] = static_cast<float>(double{quantity[0]} * (double{quantity[q]} - reference_[q]));
+    }
+    quantity[PartSums::pressure] *= quantity[PartSums::pressure];
+  }
+  weighted_part_ = std::move(data_.part);
+  // Two nodes of yaw² are read also where there is one.
+  if (data_.yaw_squared.size() == 1) weighted_part_.resize(weighted_part_.size() + LoadedPart::quantities);
+}
+
 template <bool slopes>
 bool LoadedTable::sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept {
-  constexpr std::size_t packs = PartSums::packs;
+  constexpr std::size_t kinds = slopes ? std::size_t{PartSums::count} : 1, lanes = 3;
   const std::size_t columns = data_.columns(), yaws = data_.yaw_squared.size();
-  const PartPlace::Linear &r = place.r, &s = place.s;
-  const std::array<double, 2> ft{1.0 - place.t, place.t}, fu{1.0 - place.u, place.u};
-  const std::array<double, 2> fr{1.0 - r.part, r.part}, fs{1.0 - s.part, s.part};
+  const PartPlace::Linear& r = place.r;
+  const std::array<double, 2> ft{1.0 - place.t, place.t}, fu{1.0 - place.u, place.u}, fr{1.0 - r.part, r.part};
   const std::array<double, 2> t_rate{-1.0 / place.width, 1.0 / place.width},
-      u_rate{-1.0 / level_step_, 1.0 / level_step_};
-  const std::array<double, 2> r_rate{-r.rate, r.rate}, s_rate{-s.rate, s.rate};
-  auto& sum = sums.sum;
-  std::memset(&sums, 0, slopes ? sizeof sums : sizeof sum[PartSums::value]);
+      u_rate{-1.0 / level_step_, 1.0 / level_step_}, r_rate{-r.rate, r.rate};
+  Lanes sum[kinds][lanes]{};
   for (std::size_t corner = 0; corner < 4; ++corner) {
     const std::uint32_t pressed = data_.pressed[place.node[corner]];
     if ((pressed >> part & 1U) == 0) continue;
     const auto before = static_cast<std::size_t>(std::popcount(pressed & ((1U << part) - 1U)));
-    const float* const stored = &data_.part[part_at_[place.node[corner]] + before * columns * LoadedPart::quantities];
-    Pack here_[packs]{}, along_roll[packs]{}, along_yaw[packs]{};
-    for (std::size_t i = 0; i <= r.high - r.low; ++i) {
-      for (std::size_t j = 0; j <= s.high - s.low; ++j) {
-        const float* const v = stored + ((r.low + i) * yaws + s.low + j) * LoadedPart::quantities;
-        const double share = static_cast<double>(v[0]);
-        for (std::size_t q = 0; q < packs; ++q) {
-          Pack values;
-          widen(v + 4 * q, values);
-          values *= Pack{q == 0 ? 1.0 : share, share, share, q == PartSums::pressure / 4 ? values[3] : share};
-          here_[q] += fr[i] * fs[j] * values;
-          if constexpr (slopes) {
-            along_roll[q] += r_rate[i] * fs[j] * values;
-            along_yaw[q] += fr[i] * s_rate[j] * values;
-          }
+    const float* stored = &weighted_part_[part_at_[place.node[corner]] +
+                                          (before * columns + r.low * yaws + place.s.low) * LoadedPart::quantities];
+    const std::size_t t = corner & 1U, u = corner >> 1U;
+    for (std::size_t i = 0; i < 2; ++i, stored += yaws * LoadedPart::quantities) {
+      for (std::size_t m = 0; m < lanes; ++m) {
+        Lanes values;
+        widen(stored + Lanes::count * m, values);
+        const Lanes both = place.both[m] * values;
+        sum[PartSums::value][m] += (ft[t] * fu[u] * fr[i]) * both;
+        if constexpr (slopes) {
+          sum[PartSums::by_lateral][m] += (t_rate[t] * fu[u] * fr[i]) * both;
+          sum[PartSums::by_level][m] += (ft[t] * u_rate[u] * fr[i]) * both;
+          sum[PartSums::by_roll_node][m] += (ft[t] * fu[u] * r_rate[i]) * both;
+          sum[PartSums::by_yaw_node][m] += (ft[t] * fu[u] * fr[i]) * (place.along_yaw[m] * values);
         }
       }
     }
-    const std::size_t t = corner & 1U, u = corner >> 1U;
-    for (std::size_t q = 0; q < packs; ++q) {
-      sum[PartSums::value][q] += ft[t] * fu[u] * here_[q];
-      if constexpr (slopes) {
-        sum[PartSums::by_lateral][q] += t_rate[t] * fu[u] * here_[q];
-        sum[PartSums::by_level][q] += ft[t] * u_rate[u] * here_[q];
-        sum[PartSums::by_roll_node][q] += ft[t] * fu[u] * along_roll[q];
-        sum[PartSums::by_yaw_node][q] += ft[t] * fu[u] * along_yaw[q];
-      }
-    }
   }
-  return sum[PartSums::value][0][0] > 0.0;
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    Pack half[2 * lanes];
+    std::memcpy(half, sum[kind], sizeof half);
+    for (std::size_t q = 0; q < PartSums::packs; ++q) sums.sum[kind][q] = half[q] + half[q + PartSums::packs];
+  }
+  return sums.sum[PartSums::value][0][0] > 0.0;
 }
 
 namespace {
@@ -609,14 +622,18 @@ class LoadedTable::LookUp {
     width_ = one;
     each([&](int i, std::size_t k) {
       if (!(lane(inside_, i) > 0.0)) return;
-      weight_[k].set(weights_, i);
-      std::array<double, 4> ends{};
-      if (!table_.find_lateral(lane(pose_.y, i), weight_[k], lateral_[k], ends)) return;
+      sums_[k].set(weights_, i);
+      lateral_[k] = table_.guess_cell(lane(pose_.y, i), sums_[k]);
+      table_.fetch_ends(lateral_[k], sums_[k].first, sums_[k].rolls * sums_[k].yaws);
+    });
+    each([&](int i, std::size_t k) {
+      if (!(lane(inside_, i) > 0.0)) return;
+      if (!table_.find_cell(lane(pose_.y, i), sums_[k], lateral_[k], ends_[k])) return;
       lane(found_, i) = 1.0;
-      for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends[j];
+      for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends_[k][here][static_cast<int>(j)];
       lane(from, i) = data_.lateral[lateral_[k]];
       lane(width_, i) = data_.lateral[lateral_[k] + 1] - data_.lateral[lateral_[k]];
-      table_.fetch_touch(lateral_[k], weight_[k]);
+      table_.fetch_rise(lateral_[k]);
     });
     using std::abs;
     t_ = (pose_.y - corner[0]) / (corner[2] - corner[0]);
@@ -641,19 +658,19 @@ class LoadedTable::LookUp {
     found_ = V{};
     each([&](int i, std::size_t k) {
       if (!(lane(inside_, i) > 0.0)) return;
-      level_[k] = table_.guess_level(lane(pose_.z, i), lateral_[k], lane(t_, i), weight_[k]);
+      const double t = lane(t_, i), touch = (1.0 - t) * ends_[k][here][4] + t * ends_[k][here][5];
+      level_[k] = table_.guess_level(lane(pose_.z, i) - touch, lateral_[k], t);
       lane(found_, i) = 1.0;  // unless z is above first touch, which the corners say
-      table_.fetch_corners(lateral_[k], level_[k], weight_[k]);
+      table_.fetch_corners(lateral_[k], level_[k], sums_[k].first, sums_[k].rolls * sums_[k].yaws);
     });
     each([&](int i, std::size_t k) {
       if (lane(found_, i) == 0.0) return;
       const std::array<double, 4> value = at(across_.value, i);
-      const double z = lane(pose_.z, i);
-      const NodeSums<slopes> sums(weights_, i);
+      const double z = lane(pose_.z, i), yaw = lane(pose_.yaw, i);
       Corners corners;
       std::array<double, 4> line;
       for (int moved = 0;;) {
-        table_.add_corners(lateral_[k], level_[k], weight_[k].first, sums, corners);
+        table_.add_corners(lateral_[k], level_[k], sums_[k], ends_[k], corners);
         line = corners.across(value, here);
         if (z <= line[0] && level_[k] == 0) {
           lane(found_, i) = 0.0;
@@ -673,11 +690,18 @@ class LoadedTable::LookUp {
           break;
         }
       }
-      table_.fetch_parts(lateral_[k], level_[k], lane(pose_.roll, i), lane(pose_.yaw, i));
+      PartPlace& place = part_place_[k];
+      place.node = PartPlace::nodes(lateral_[k], level_[k], data_.levels);
+      place.t = lane(t_, i);
+      place.width = lane(width_, i);
+      place.r = PartPlace::Linear(data_.roll, lane(pose_.roll, i));
+      place.set_yaw(PartPlace::Linear(data_.yaw_squared, yaw * yaw));
+      table_.fetch_parts(place);
       lane(touches_, i) = 1.0;
       lane(level_number_, i) = level_[k];
       set_lines(i, corners, line);
-      set_shift(i, lateral_[k], weight_[k].first, sums);
+      for (std::size_t d = 0; d < ends_[k].size(); ++d)
+        for (int j = 0; j < 4; ++j) lane(y_[d][static_cast<std::size_t>(j)], i) = ends_[k][d][j];
     });
   }
 
@@ -697,15 +721,6 @@ class LoadedTable::LookUp {
     set(over_yaw_yaw, corners.across(value, by_yaw_yaw));
     set(over_y0_roll, corners.across(first, by_roll));
     set(over_y0_yaw, corners.across(first, by_yaw));
-  }
-
-  void set_shift(int i, std::size_t lateral, std::size_t first, const NodeSums<slopes>& sums) {
-    const double *const low = &data_.shift[2 * (lateral * data_.columns() + first)], *const high =
-                                                                                         low + 2 * data_.columns();
-    std::array<Pack, NodeSums<slopes>::wanted> place{};
-    sums.add([&](std::size_t c) { return Pack{low[2 * c], low[2 * c + 1], high[2 * c], high[2 * c + 1]}; }, place);
-    for (std::size_t d = 0; d < place.size(); ++d)
-      for (int j = 0; j < 4; ++j) lane(y_[d][static_cast<std::size_t>(j)], i) = place[d][j];
   }
 
   // The place u between the levels: the root of a cubic that grows from z or less to z or more.
@@ -788,13 +803,8 @@ class LoadedTable::LookUp {
     std::array<std::size_t, places> count{};
     each([&](int i, std::size_t k) {
       if (lane(found_, i) == 0.0) return;
-      const double yaw = lane(pose_.yaw, i);
-      const PartPlace at{PartPlace::nodes(lateral_[k], level_[k], data_.levels),
-                         lane(t_, i),
-                         lane(u_, i),
-                         lane(width_, i),
-                         PartPlace::Linear(data_.roll, lane(pose_.roll, i)),
-                         PartPlace::Linear(data_.yaw_squared, yaw * yaw)};
+      PartPlace& at = part_place_[k];
+      at.u = lane(u_, i);
       std::uint32_t loaded = 0;
       for (const std::size_t node : at.node) loaded |= data_.pressed[node];
       for (; loaded != 0; loaded &= loaded - 1) {
@@ -837,7 +847,7 @@ class LoadedTable::LookUp {
     const V square = sums[PartSums::pressure], least = broadcast<V>(1e-30);
     mean[PartSums::pressure] = sqrt(select(square > least, square, least));
     std::array<V, count> value;
-    for (std::size_t q = 0; q < count; ++q) value[q] = scale[q] * mean[q];
+    for (std::size_t q = 0; q < count; ++q) value[q] = scale[q] * mean[q] + table_.reference_[q];
     result_.part[p] = LoadedPartOf<V>::of(value);
     if constexpr (slopes) {
       const std::array<V, count> scale_w{zero, zero, zero, zero, zero, one, one, 2.0 * w, 2.0 * w, zero, zero, one};
@@ -871,7 +881,9 @@ class LoadedTable::LookUp {
   LoadedLookupOf<V>& result_;
   LoadedSlopesOf<V>* derivatives_;
   Weights<V> weights_;
-  std::array<ColumnWeights, places> weight_;
+  std::array<NodeSums<slopes>, places> sums_;
+  std::array<CellEnds<slopes>, places> ends_;
+  std::array<PartPlace, places> part_place_;
   V inside_;
   V found_{}, touches_{};  ///< 1 where the search goes on; where there is contact
   std::array<std::size_t, places> lateral_{};

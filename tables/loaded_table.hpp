@@ -170,6 +170,7 @@ class LoadedTable {
   template <bool slopes, class V>
   void find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result, LoadedSlopesOf<V>* derivatives) const noexcept;
 
+  /// Without the parts, which are kept in another form.
   [[nodiscard]] const LoadedTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -179,9 +180,11 @@ class LoadedTable {
   struct Weights;
   template <bool slopes>
   struct NodeSums;
+  /// By Direction: y and ∂y/∂y0 at both ends of a lateral cell, then both heights of first touch; two idle.
+  template <bool slopes>
+  using CellEnds = std::array<Lanes, slopes ? 6 : 3>;
   template <bool slopes, class V>
   class LookUp;
-  struct ColumnWeights;
   /// Cubic interpolation over roll between two nodes: value and slope are continuous at the nodes, where the slope is
   /// that of the parabola through the three nearest.
   struct RollCubic {
@@ -195,26 +198,42 @@ class LoadedTable {
   struct Corners;
   struct PartPlace;
   struct PartSums;
+  void weight_parts() noexcept;
   template <class V>
   [[nodiscard]] V margin_share(const V& roll, const V& yaw) const noexcept;
-  /// The node below y0, and y and ∂y/∂y0 there and at the next. False where y is outside.
-  [[nodiscard]] bool find_lateral(double y, const ColumnWeights& weight, std::size_t& node,
-                                  std::array<double, 4>& corner) const noexcept;
-  /// The level below z, or one near it; 0 also above first touch. @param t place between the lateral nodes
-  [[nodiscard]] int guess_level(double z, std::size_t node, double t, const ColumnWeights& weight) const noexcept;
+  [[nodiscard]] const double* ends_of(std::size_t cell, std::size_t column) const noexcept {
+    return &ends_[Lanes::count * (cell * data_.columns() + column)];
+  }
+  /// The lateral cell of a pose, or one near it.
   template <bool slopes>
-  void add_corners(std::size_t node, int level, std::size_t first, const NodeSums<slopes>& sums,
+  [[nodiscard]] std::size_t guess_cell(double y, const NodeSums<slopes>& sums) const noexcept;
+  /// The lateral cell of a pose, from one near it, and what its ends have. False where y is outside.
+  template <bool slopes>
+  [[nodiscard]] bool find_cell(double y, const NodeSums<slopes>& sums, std::size_t& cell,
+                               CellEnds<slopes>& ends) const noexcept;
+  /// The level below a height above first touch, or one near it; 0 also below. @param t place in the lateral cell
+  [[nodiscard]] int guess_level(double above, std::size_t node, double t) const noexcept;
+  template <bool slopes>
+  void add_corners(std::size_t node, int level, const NodeSums<slopes>& sums, const CellEnds<slopes>& ends,
                    Corners& corners) const noexcept;
-  /// Ask the memory for what the next steps of a look-up will read: to guess the level, of its corners, of the parts.
-  void fetch_touch(std::size_t node, const ColumnWeights& weight) const noexcept;
-  void fetch_corners(std::size_t node, int level, const ColumnWeights& weight) const noexcept;
-  void fetch_parts(std::size_t node, int level, double roll, double yaw) const noexcept;
+  /// Ask the memory for what the next steps of a look-up will read: of the lateral cell, to guess the
+  /// level, of the corners, of the parts.
+  void fetch_ends(std::size_t cell, std::size_t first, std::size_t count) const noexcept;
+  void fetch_rise(std::size_t node) const noexcept;
+  void fetch_corners(std::size_t node, int level, std::size_t first, std::size_t count) const noexcept;
+  void fetch_parts(const PartPlace& place) const noexcept;
   template <bool slopes>
   [[nodiscard]] bool sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept;
 
   LoadedTableData data_;
-  std::vector<float> rise_;            ///< of each (lateral, level), z − z_touch in the middle of roll at yaw 0
-  std::vector<std::size_t> part_at_;   ///< of each (lateral, level), where its parts begin
+  std::vector<double> ends_;  ///< CellEnds of each lateral cell and column, numbers fastest
+  /// As LoadedTableData::part, of each the share, the others weighted with it, and the square of the pressure. Arms
+  /// before that less those of the table's first part, of which floats then keep a thousand times more.
+  std::vector<float> weighted_part_;
+  std::array<double, LoadedPart::quantities> reference_{};
+  std::vector<double> displaced_;     ///< y − y0 of each lateral node and node of roll at the first node of yaw² [m]
+  std::vector<float> rise_;           ///< of each (lateral, level), z − z_touch in the middle of roll at yaw 0
+  std::vector<std::size_t> part_at_;  ///< of each (lateral, level), where its parts begin
   std::vector<std::uint32_t> bucket_;  ///< of equal stretches of y0, the node at or below their beginning
   std::vector<RollCubic> roll_cubic_;  ///< between nodes of roll
   std::vector<double> inverse_yaw_;    ///< inverse distances between nodes of yaw²

@@ -70,6 +70,21 @@ struct alignas(sizeof(double) * n) SideBySide {
 };
 using Lanes = SideBySide<8>;
 
+/// Neighbouring floats as doubles (see widen() of a Pack).
+template <int n>
+void widen(const float* from, SideBySide<n>& to) noexcept {
+  constexpr int width = SideBySide<n>::width;
+  for (int r = 0; r < SideBySide<n>::registers; ++r, from += width) {
+#if defined(__AVX512F__)
+    if constexpr (width == 8) to.part[r] = _mm512_cvtps_pd(_mm256_loadu_ps(from));
+#endif
+#if defined(__AVX__)
+    if constexpr (width == 4) to.part[r] = _mm256_cvtps_pd(_mm_loadu_ps(from));
+#endif
+    if constexpr (width == 2) to.part[r] = typename SideBySide<n>::Register{double{from[0]}, double{from[1]}};
+  }
+}
+
 // Operations that a number and numbers side by side have in common, so that one formula serves a single wheel and
 // several of them.
 
