@@ -345,10 +345,10 @@ struct LoadedTable::Corners {
   Pack of[4][directions];
 
   /// Along w, of one direction's corners contracted across: value and slope at the lower level, then at the upper one.
-  [[nodiscard]] std::array<double, 4> across(const std::array<double, 4>& basis, Direction d) const noexcept {
+  void across(const std::array<double, 4>& basis, Direction d, Pack& result) const noexcept {
     const Pack below{basis[0], basis[0], basis[1], basis[1]}, above{basis[2], basis[2], basis[3], basis[3]};
     const Pack low = below * of[0][d] + above * of[2][d], high = below * of[1][d] + above * of[3][d];
-    return {low[0] + low[2], low[1] + low[3], high[0] + high[2], high[1] + high[3]};
+    result = __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7);
   }
 };
 
@@ -602,6 +602,7 @@ class LoadedTable::LookUp {
     over_y0_yaw,
     lines
   };
+  static constexpr std::size_t lines_used = slopes ? lines : over_yaw + 1;
 
   static void each(auto&& visit) {
     for (int i = 0; i < places; ++i) visit(i, static_cast<std::size_t>(i));
@@ -610,6 +611,19 @@ class LoadedTable::LookUp {
   static std::array<double, 4> at(const Four& of, int i) {
     return {lane(of[0], i), lane(of[1], i), lane(of[2], i), lane(of[3], i)};
   }
+  /// Four numbers of every pose.
+  using OfPoses = std::array<Pack, places>;
+  static void side_by_side(const OfPoses& of, V* to) {
+    if constexpr (places == 1) {
+      for (int q = 0; q < 4; ++q) to[q] = of[0][q];
+    } else {
+      for (std::size_t k = 0; k < of.size(); k += 4) {
+        Pack rows[4];
+        transpose(of[k], of[k + 1], of[k + 2], of[k + 3], rows);
+        for (int q = 0; q < 4; ++q) std::memcpy(&lane(to[q], static_cast<int>(k)), &rows[q], sizeof rows[q]);
+      }
+    }
+  }
   /// y and its derivatives, and z, at the places found.
   [[nodiscard]] V Y(const Four& basis, Direction d) const { return sum(basis, y_[d]); }
   [[nodiscard]] V Z(const Four& basis, std::size_t line) const { return sum(basis, z_[line]); }
@@ -617,7 +631,8 @@ class LoadedTable::LookUp {
   // The lateral node below, and the place t between it and the next: y(y0) is nearly linear.
   void find_laterals() {
     const V zero{}, one = broadcast<V>(1.0);
-    Four corner{zero, one, one, one};
+    OfPoses ends;
+    ends.fill(Pack{0.0, 1.0, 1.0, 1.0});
     V from{};
     width_ = one;
     each([&](int i, std::size_t k) {
@@ -630,11 +645,13 @@ class LoadedTable::LookUp {
       if (!(lane(inside_, i) > 0.0)) return;
       if (!table_.find_cell(lane(pose_.y, i), sums_[k], lateral_[k], ends_[k])) return;
       lane(found_, i) = 1.0;
-      for (std::size_t j = 0; j < 4; ++j) lane(corner[j], i) = ends_[k][here][static_cast<int>(j)];
+      std::memcpy(&ends[k], &ends_[k][here], sizeof ends[k]);
       lane(from, i) = data_.lateral[lateral_[k]];
       lane(width_, i) = data_.lateral[lateral_[k] + 1] - data_.lateral[lateral_[k]];
       table_.fetch_rise(lateral_[k]);
     });
+    Four corner;
+    side_by_side(ends, corner.data());
     using std::abs;
     t_ = (pose_.y - corner[0]) / (corner[2] - corner[0]);
     for (int iteration = 0; iteration < 20; ++iteration) {  // two suffice
@@ -668,10 +685,10 @@ class LoadedTable::LookUp {
       const std::array<double, 4> value = at(across_.value, i);
       const double z = lane(pose_.z, i), yaw = lane(pose_.yaw, i);
       Corners corners;
-      std::array<double, 4> line;
+      Pack& line = line_[height][k];
       for (int moved = 0;;) {
         table_.add_corners(lateral_[k], level_[k], sums_[k], ends_[k], corners);
-        line = corners.across(value, here);
+        corners.across(value, here, line);
         if (z <= line[0] && level_[k] == 0) {
           lane(found_, i) = 0.0;
           return;
@@ -699,28 +716,27 @@ class LoadedTable::LookUp {
       table_.fetch_parts(place);
       lane(touches_, i) = 1.0;
       lane(level_number_, i) = level_[k];
-      set_lines(i, corners, line);
-      for (std::size_t d = 0; d < ends_[k].size(); ++d)
-        for (int j = 0; j < 4; ++j) lane(y_[d][static_cast<std::size_t>(j)], i) = ends_[k][d][j];
+      const std::array<double, 4> first = at(across_.first, i);
+      corners.across(first, here, line_[over_y0][k]);
+      corners.across(value, by_roll, line_[over_roll][k]);
+      corners.across(value, by_yaw, line_[over_yaw][k]);
+      if constexpr (slopes) {
+        corners.across(at(across_.second, i), here, line_[over_y0_y0][k]);
+        corners.across(value, by_roll_roll, line_[over_roll_roll][k]);
+        corners.across(value, by_roll_yaw, line_[over_roll_yaw][k]);
+        corners.across(value, by_yaw_yaw, line_[over_yaw_yaw][k]);
+        corners.across(first, by_roll, line_[over_y0_roll][k]);
+        corners.across(first, by_yaw, line_[over_y0_yaw][k]);
+      }
     });
-  }
-
-  void set_lines(int i, const Corners& corners, const std::array<double, 4>& line) {
-    const std::array<double, 4> value = at(across_.value, i), first = at(across_.first, i);
-    const auto set = [&](std::size_t which, const std::array<double, 4>& numbers) {
-      for (std::size_t j = 0; j < 4; ++j) lane(z_[which][j], i) = numbers[j];
-    };
-    set(height, line);
-    set(over_y0, corners.across(first, here));
-    set(over_roll, corners.across(value, by_roll));
-    set(over_yaw, corners.across(value, by_yaw));
-    if constexpr (!slopes) return;
-    set(over_y0_y0, corners.across(at(across_.second, i), here));
-    set(over_roll_roll, corners.across(value, by_roll_roll));
-    set(over_roll_yaw, corners.across(value, by_roll_yaw));
-    set(over_yaw_yaw, corners.across(value, by_yaw_yaw));
-    set(over_y0_roll, corners.across(first, by_roll));
-    set(over_y0_yaw, corners.across(first, by_yaw));
+    for (std::size_t which = 0; which < lines_used; ++which) side_by_side(line_[which], z_[which].data());
+    for (std::size_t d = 0; d < NodeSums<slopes>::wanted; ++d) {
+      OfPoses y{};
+      each([&](int i, std::size_t k) {
+        if (lane(found_, i) > 0.0) std::memcpy(&y[k], &ends_[k][d], sizeof y[k]);
+      });
+      side_by_side(y, y_[d].data());
+    }
   }
 
   // The place u between the levels: the root of a cubic that grows from z or less to z or more.
@@ -813,21 +829,21 @@ class LoadedTable::LookUp {
       }
       result_.parts = std::max(result_.parts, count[k]);
     });
-    constexpr std::size_t used = (slopes ? std::size_t{PartSums::count} : 1) * LoadedPart::quantities;
+    constexpr std::size_t kinds = slopes ? std::size_t{PartSums::count} : 1;
     for (std::size_t p = 0; p < result_.parts; ++p) {
       std::array<V, PartSums::count * LoadedPart::quantities> numbers;
       V has{};
-      each([&](int i, std::size_t k) {
-        std::array<double, used> of;
-        if (p < count[k]) {
-          std::memcpy(of.data(), &sums[k][p], sizeof of);
-          lane(has, i) = 1.0;
-        } else {
-          of.fill(0.0);
-          std::fill_n(of.begin(), LoadedPart::quantities, 1.0);
+      each([&](int i, std::size_t k) { lane(has, i) = p < count[k] ? 1.0 : 0.0; });
+      for (std::size_t kind = 0; kind < kinds; ++kind) {
+        for (std::size_t q = 0; q < PartSums::packs; ++q) {
+          OfPoses of;
+          of.fill(kind == PartSums::value ? 1.0 - Pack{} : Pack{});
+          each([&](int, std::size_t k) {
+            if (p < count[k]) of[k] = sums[k][p].sum[kind][q];
+          });
+          side_by_side(of, &numbers[kind * LoadedPart::quantities + 4 * q]);
         }
-        for (std::size_t q = 0; q < used; ++q) lane(numbers[q], i) = of[q];
-      });
+      }
       set_part(numbers, p);
       result_.part[p].share = select(has > 0.5, result_.part[p].share, V{});
     }
@@ -890,9 +906,10 @@ class LoadedTable::LookUp {
   std::array<int, places> level_{};
   V level_number_{}, width_, t_, u_;
   HermiteBasisOf<V> across_{V{}, broadcast<V>(1.0)}, along_{V{}, broadcast<V>(1.0)};
-  std::array<Four, lines> z_{};
-  std::array<Four, directions> y_{};  ///< y(y0): value and slope at the lower node, then at the upper one
-  V by_Y_, by_Z_;                     ///< 1/Y_y0, 1/Z_w
+  std::array<OfPoses, lines_used> line_{};
+  std::array<Four, lines_used> z_;
+  std::array<Four, NodeSums<slopes>::wanted> y_;  ///< y(y0): value and slope at the lower node, then at the upper one
+  V by_Y_, by_Z_;                                 ///< 1/Y_y0, 1/Z_w
 };
 
 template <bool slopes, class V>
