@@ -397,19 +397,6 @@ struct LoadedTable::PartPlace {
   }
   double t, u, width;  ///< between the lateral nodes, between the levels; of the lateral cell [m]
   Linear r, s;
-  /// Two neighbouring nodes of yaw² as they are stored, quantity fastest, and along yaw².
-  std::array<Lanes, 3> both, along_yaw;
-
-  void set_yaw(const Linear& yaw_squared) noexcept {
-    s = yaw_squared;
-    const auto spread = [](double first, double second, std::array<Lanes, 3>& to) {
-      const Pack a = first - Pack{}, b = second - Pack{};
-      const std::array<Pack, 6> numbers{a, a, a, b, b, b};
-      std::memcpy(to.data(), numbers.data(), sizeof to);
-    };
-    spread(1.0 - s.part, s.part, both);
-    spread(-s.rate, s.rate, along_yaw);
-  }
 };
 
 namespace {
@@ -483,39 +470,42 @@ void LoadedTable::weight_parts() noexcept {
 
 template <bool slopes>
 bool LoadedTable::sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept {
-  constexpr std::size_t kinds = slopes ? std::size_t{PartSums::count} : 1, lanes = 3;
+  constexpr std::size_t kinds = slopes ? std::size_t{PartSums::by_yaw_node} : 1, lanes = 3;
   const std::size_t columns = data_.columns(), yaws = data_.yaw_squared.size();
-  const PartPlace::Linear& r = place.r;
+  const PartPlace::Linear &r = place.r, &s = place.s;
   const std::array<double, 2> ft{1.0 - place.t, place.t}, fu{1.0 - place.u, place.u}, fr{1.0 - r.part, r.part};
   const std::array<double, 2> t_rate{-1.0 / place.width, 1.0 / place.width},
       u_rate{-1.0 / level_step_, 1.0 / level_step_}, r_rate{-r.rate, r.rate};
-  Lanes sum[kinds][lanes]{};
+  Lanes sum[kinds][lanes]{};  // of the lower node of yaw², then of the upper one
   for (std::size_t corner = 0; corner < 4; ++corner) {
     const std::uint32_t pressed = data_.pressed[place.node[corner]];
     if ((pressed >> part & 1U) == 0) continue;
     const auto before = static_cast<std::size_t>(std::popcount(pressed & ((1U << part) - 1U)));
     const float* stored = &weighted_part_[part_at_[place.node[corner]] +
-                                          (before * columns + r.low * yaws + place.s.low) * LoadedPart::quantities];
+                                          (before * columns + r.low * yaws + s.low) * LoadedPart::quantities];
     const std::size_t t = corner & 1U, u = corner >> 1U;
     for (std::size_t i = 0; i < 2; ++i, stored += yaws * LoadedPart::quantities) {
       for (std::size_t m = 0; m < lanes; ++m) {
         Lanes values;
         widen(stored + Lanes::count * m, values);
-        const Lanes both = place.both[m] * values;
-        sum[PartSums::value][m] += (ft[t] * fu[u] * fr[i]) * both;
+        sum[PartSums::value][m] += (ft[t] * fu[u] * fr[i]) * values;
         if constexpr (slopes) {
-          sum[PartSums::by_lateral][m] += (t_rate[t] * fu[u] * fr[i]) * both;
-          sum[PartSums::by_level][m] += (ft[t] * u_rate[u] * fr[i]) * both;
-          sum[PartSums::by_roll_node][m] += (ft[t] * fu[u] * r_rate[i]) * both;
-          sum[PartSums::by_yaw_node][m] += (ft[t] * fu[u] * fr[i]) * (place.along_yaw[m] * values);
+          sum[PartSums::by_lateral][m] += (t_rate[t] * fu[u] * fr[i]) * values;
+          sum[PartSums::by_level][m] += (ft[t] * u_rate[u] * fr[i]) * values;
+          sum[PartSums::by_roll_node][m] += (ft[t] * fu[u] * r_rate[i]) * values;
         }
       }
     }
   }
   for (std::size_t kind = 0; kind < kinds; ++kind) {
-    Pack half[2 * lanes];
-    std::memcpy(half, sum[kind], sizeof half);
-    for (std::size_t q = 0; q < PartSums::packs; ++q) sums.sum[kind][q] = half[q] + half[q + PartSums::packs];
+    Pack node[2][PartSums::packs];
+    std::memcpy(node, sum[kind], sizeof node);
+    for (std::size_t q = 0; q < PartSums::packs; ++q) {
+      sums.sum[kind][q] = (1.0 - s.part) * node[0][q] + s.part * node[1][q];
+      if constexpr (slopes) {
+        if (kind == PartSums::value) sums.sum[PartSums::by_yaw_node][q] = s.rate * (node[1][q] - node[0][q]);
+      }
+    }
   }
   return sums.sum[PartSums::value][0][0] > 0.0;
 }
@@ -712,7 +702,7 @@ class LoadedTable::LookUp {
       place.t = lane(t_, i);
       place.width = lane(width_, i);
       place.r = PartPlace::Linear(data_.roll, lane(pose_.roll, i));
-      place.set_yaw(PartPlace::Linear(data_.yaw_squared, yaw * yaw));
+      place.s = PartPlace::Linear(data_.yaw_squared, yaw * yaw);
       table_.fetch_parts(place);
       lane(touches_, i) = 1.0;
       lane(level_number_, i) = level_[k];
