@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/runtime/base/lane_transpose.hpp"
 #include "railtab/runtime/base/pack.hpp"
 #include "railtab/runtime/base/smooth_step.hpp"
 #include "railtab/tables/hermite_basis.hpp"
@@ -603,17 +603,6 @@ class LoadedTable::LookUp {
   }
   /// Four numbers of every pose.
   using OfPoses = std::array<Pack, places>;
-  static void side_by_side(const OfPoses& of, V* to) {
-    if constexpr (places == 1) {
-      for (int q = 0; q < 4; ++q) to[q] = of[0][q];
-    } else {
-      for (std::size_t k = 0; k < of.size(); k += 4) {
-        Pack rows[4];
-        transpose(of[k], of[k + 1], of[k + 2], of[k + 3], rows);
-        for (int q = 0; q < 4; ++q) std::memcpy(&lane(to[q], static_cast<int>(k)), &rows[q], sizeof rows[q]);
-      }
-    }
-  }
   /// y and its derivatives, and z, at the places found.
   [[nodiscard]] V Y(const Four& basis, Direction d) const { return sum(basis, y_[d]); }
   [[nodiscard]] V Z(const Four& basis, std::size_t line) const { return sum(basis, z_[line]); }
@@ -641,7 +630,7 @@ class LoadedTable::LookUp {
       table_.fetch_rise(lateral_[k]);
     });
     Four corner;
-    side_by_side(ends, corner.data());
+    set_side_by_side(ends, corner.data());
     using std::abs;
     t_ = (pose_.y - corner[0]) / (corner[2] - corner[0]);
     for (int iteration = 0; iteration < 20; ++iteration) {  // two suffice
@@ -719,13 +708,13 @@ class LoadedTable::LookUp {
         corners.across(first, by_yaw, line_[over_y0_yaw][k]);
       }
     });
-    for (std::size_t which = 0; which < lines_used; ++which) side_by_side(line_[which], z_[which].data());
+    for (std::size_t which = 0; which < lines_used; ++which) set_side_by_side(line_[which], z_[which].data());
     for (std::size_t d = 0; d < NodeSums<slopes>::wanted; ++d) {
       OfPoses y{};
       each([&](int i, std::size_t k) {
         if (lane(found_, i) > 0.0) std::memcpy(&y[k], &ends_[k][d], sizeof y[k]);
       });
-      side_by_side(y, y_[d].data());
+      set_side_by_side(y, y_[d].data());
     }
   }
 
@@ -831,7 +820,7 @@ class LoadedTable::LookUp {
           each([&](int, std::size_t k) {
             if (p < count[k]) of[k] = sums[k][p].sum[kind][q];
           });
-          side_by_side(of, &numbers[kind * LoadedPart::quantities + 4 * q]);
+          set_side_by_side(of, &numbers[kind * LoadedPart::quantities + 4 * q]);
         }
       }
       set_part(numbers, p);

@@ -114,20 +114,17 @@ void wheel_responses(const WheelContactModel& model, std::span<const WheelState>
     const auto some = wheels.subspan(first, std::min(most, wheels.size() - first));
     const auto to = responses.subspan(first, some.size());
     std::array<LoadedAnswer, most> answer;
-    std::array<Matrix9, most> tangent;
-    const std::uint32_t answered =
-        side_by_side && some.size() > 1 ? loaded_wheel_responses(model, some, rates, answer, tangent) : 0;
     for (std::size_t i = 0; i < some.size(); ++i) {
-      if ((answered >> i & 1U) == 0) {
+      answer[i] = {&to[i].contact.pose, &to[i].contact.loaded, &to[i].force, &to[i].tangent};
+    }
+    const std::uint32_t answered =
+        side_by_side && some.size() > 1 ? loaded_wheel_responses(model, some, rates, answer) : 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if ((answered >> i & 1U) != 0) {
+        to[i].contact.patches.clear();
+      } else {
         to[i] = wheel_response(model, some[i].side, some[i].wheelset, some[i].rail, rates);
-        continue;
       }
-      WheelResponse& of = to[i];
-      of.contact.pose = answer[i].pose;
-      of.contact.loaded = answer[i].lookup;
-      of.contact.patches.clear();
-      of.force = answer[i].force;
-      of.tangent = tangent[i];
     }
   }
 }

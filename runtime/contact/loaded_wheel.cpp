@@ -1,6 +1,7 @@
 #include "railtab/runtime/contact/loaded_wheel.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <type_traits>
 
 #include "railtab/runtime/base/dual.hpp"
+#include "railtab/runtime/base/lane_transpose.hpp"
 #include "railtab/runtime/base/smooth_step.hpp"
 #include "railtab/runtime/contact/contact_pair.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
@@ -581,6 +583,8 @@ Vector9 in_track(WheelSide side, const Generalised<double>& of_right) {
   return side == WheelSide::left ? reflected(force) : force;
 }
 
+WheelsetPose pose_of(const WheelKinematics<double>& wheel) { return {wheel.y, wheel.z, wheel.roll, wheel.yaw}; }
+
 /// Mean force over a step, of the right wheel: what depends on the end of the step, and the share of the creep forces
 /// at its start.
 template <class T>
@@ -666,48 +670,65 @@ class DisplacementSlopes {
   const StepRates& rates_;
 };
 
-/// Forces of right wheels, of which one is taken.
+/// Generalised forces that change their sign in a mirror (reflection.hpp).
+constexpr std::array<bool, 9> mirrored{false, true, false, true, false, true, true, false, true};
+
+template <class V>
+V mirror_of(std::span<const WheelState> wheels) {
+  V mirror = broadcast<V>(1.0);
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    if (wheels[i].side == WheelSide::left) lane(mirror, static_cast<int>(i)) = -1.0;
+  }
+  return mirror;
+}
+
+/// Forces of wheels, each of which takes its own.
 template <class T>
 class WheelForces {
  public:
   using V = Number<T>;
-  WheelForces(const LoadedContactForce<T>& force, const WheelKinematics<V>& wheel, const LoadedLookupOf<V>& lookup)
-      : force_(force),
-        wheel_(wheel),
-        total_(force.generalised(numbers(force.total()))),
-        rest_(force.generalised(numbers(force.rest()))),
-        pressure_(lookup.largest_pressure()) {}
-
-  /// @param table of the same wheel, its look-up
-  void give(int place, WheelSide side, const LoadedLookup& table, LoadedWheelForce& result) const {
-    const auto at = [place](const V& of) { return lane(of, place); };
-    Generalised<double> total, rest;
-    for (std::size_t i = 0; i < 9; ++i) {
-      total[i] = at(total_[i]);
-      rest[i] = at(rest_[i]);
+  /// @param mirror −1 of a left wheel
+  WheelForces(const LoadedContactForce<T>& force, const V& mirror, const LoadedLookupOf<V>& lookup) : force_(force) {
+    Generalised<V> total = force.generalised(numbers(force.total()));
+    for (std::size_t i = 0; i < total.size(); ++i)
+      if (mirrored[i]) total[i] = mirror * total[i];
+    const Generalised<V> rest = force.generalised(numbers(force.rest()));
+    const std::array<V, 2> others{force.creep_power(), lookup.largest_pressure()};
+    std::array<double*, lanes_of<V>> to_total, to_rest, to_others;
+    for (std::size_t i = 0; i < to_total.size(); ++i) {
+      to_total[i] = total_[i].data();
+      to_rest[i] = rest_[i].data();
+      to_others[i] = others_[i].data();
     }
-    const Vector9 in = in_track(side, total);
-    result.wheelset = in.head<6>();
-    result.rail = in.tail<3>();
+    set_apart(total.data(), total.size(), to_total);
+    set_apart(rest.data(), rest.size(), to_rest);
+    set_apart(others.data(), others.size(), to_others);
+  }
+
+  /// @param pose, table of the same wheel
+  void give(int place, const WheelsetPose& pose, const LoadedLookup& table, LoadedWheelForce& result) const {
+    const auto at = static_cast<std::size_t>(place);
+    const Vector9 total = Vector9::Map(total_[at].data());
+    result.wheelset = total.head<6>();
+    result.rail = total.tail<3>();
     result.rail_x = -result.wheelset[0];
     result.normal.fill(0.0);
-    for (std::size_t p = 0; p < table.parts; ++p) result.normal[p] = at(force_.part_normal()[p]);
+    for (std::size_t p = 0; p < table.parts; ++p) result.normal[p] = lane(force_.part_normal()[p], place);
     result.outside_creep_table = force_.outside_creep_table(place);
-    result.creep_power = at(force_.creep_power());
-    result.pressure = at(pressure_);
+    result.creep_power = others_[at][0];
+    result.pressure = others_[at][1];
     result.memory = {.weight = table.table_share,
-                     .pose = {at(wheel_.y), at(wheel_.z), at(wheel_.roll), at(wheel_.yaw)},
+                     .pose = pose,
                      .energy = table.energy,
                      .force = table.force,
-                     .rest = table.table_share * Eigen::Map<const Vector9>(rest.data()),
-                     .total = table.table_share * in};
+                     .rest = table.table_share * Vector9::Map(rest_[at].data()),
+                     .total = table.table_share * total};
   }
 
  private:
   const LoadedContactForce<T>& force_;
-  const WheelKinematics<V>& wheel_;
-  Generalised<V> total_, rest_;
-  V pressure_;
+  std::array<Generalised<double>, lanes_of<V>> total_, rest_;  ///< total: in track axes
+  std::array<std::array<double, 2>, lanes_of<V>> others_;      ///< creep power, largest pressure
 };
 
 /// Of right wheels, by columns.
@@ -744,18 +765,13 @@ std::array<Generalised<Number<T>>, 9> tangent_of(const LoadedContactForce<T>& fo
   return DisplacementSlopes<V>(wheel, rates).of(pose, motion, turned);
 }
 
+/// Tangents of wheels in track axes. @param of_right by columns @param to of each wheel, room for a Matrix9
 template <class V>
-Matrix9 tangent_in_track(const std::array<Generalised<V>, 9>& of_right, int place, WheelSide side) {
-  Matrix9 tangent;
+void set_tangents(std::array<Generalised<V>, 9> of_right, const V& mirror, const std::array<double*, lanes_of<V>>& to) {
   for (std::size_t j = 0; j < 9; ++j)
-    for (std::size_t i = 0; i < 9; ++i) {
-      tangent(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = lane(of_right[j][i], place);
-    }
-  if (side == WheelSide::left) {
-    const Vector9 sign = reflected(Vector9(Vector9::Ones()));
-    tangent = sign.asDiagonal() * tangent * sign.asDiagonal();
-  }
-  return tangent;
+    for (std::size_t i = 0; i < 9; ++i)
+      if (mirrored[i] != mirrored[j]) of_right[j][i] = mirror * of_right[j][i];
+  set_apart(of_right[0].data(), 81, to);
 }
 
 template <class T>
@@ -773,8 +789,9 @@ LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelC
     of_motion = lookup.table_share * number(mean.of_start);
   }
   LoadedWheelResponse response;
-  WheelForces<T>(force, wheel, lookup).give(0, side, lookup, response.force);
-  response.tangent = tangent_in_track(tangent_of(force, wheel, rates, total, sum, of_motion), 0, side);
+  const double mirror = side == WheelSide::left ? -1.0 : 1.0;
+  WheelForces<T>(force, mirror, lookup).give(0, pose_of(wheel), lookup, response.force);
+  set_tangents(tangent_of(force, wheel, rates, total, sum, of_motion), mirror, {response.tangent.data()});
   return response;
 }
 
@@ -785,7 +802,7 @@ LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide si
   const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
   const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
   LoadedWheelForce result;
-  WheelForces<double>(force, wheel, lookup).give(0, side, lookup, result);
+  WheelForces<double>(force, side == WheelSide::left ? -1.0 : 1.0, lookup).give(0, pose_of(wheel), lookup, result);
   return result;
 }
 
@@ -834,17 +851,17 @@ LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelS
 
 namespace {
 
-void set_lookup(const LoadedLookupOf<Lanes>& of, int place, LoadedLookup& result) {
-  result.table_share = of.table_share[place];
-  result.energy = of.energy[place];
-  for (std::size_t j = 0; j < 4; ++j) result.force[static_cast<Eigen::Index>(j)] = of.force[j][place];
-  for (result.parts = 0; result.parts < of.parts && of.part[result.parts].share[place] > 0.0; ++result.parts) {
-    const std::array<Lanes, LoadedPart::quantities> from = of.part[result.parts].values();
-    std::array<double, LoadedPart::quantities> values;
-    for (std::size_t q = 0; q < values.size(); ++q) values[q] = from[q][place];
-    result.part[result.parts] = LoadedPart::of(values);
+/// Numbers of every wheel one after the other.
+template <std::size_t count>
+struct Apart {
+  std::array<std::array<double, count>, Lanes::count> of;
+
+  explicit Apart(const std::array<Lanes, count>& numbers) {
+    std::array<double*, Lanes::count> to;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = of[i].data();
+    set_apart(numbers.data(), count, to);
   }
-}
+};
 
 /// Wheels side by side at their loaded contacts.
 template <bool slopes>
@@ -874,14 +891,32 @@ struct WheelsSideBySide {
 
   /// Poses, look-ups and forces of the wheels that are answered.
   template <class T>
-  void give(const LoadedContactForce<T>& force, std::span<const WheelState> wheels, std::span<LoadedAnswer> to) const {
-    const WheelForces<T> forces(force, *wheel, lookup);
-    for (std::size_t i = 0; i < wheels.size(); ++i) {
-      if ((answered >> i & 1U) == 0) continue;
-      const auto at = static_cast<int>(i);
-      to[i].pose = {wheel->y[at], wheel->z[at], wheel->roll[at], wheel->yaw[at]};
-      set_lookup(lookup, at, to[i].lookup);
-      forces.give(at, wheels[i].side, to[i].lookup, to[i].force);
+  void give(const LoadedContactForce<T>& force, const Lanes& mirror, std::span<const LoadedAnswer> to) const {
+    const WheelForces<T> forces(force, mirror, lookup);
+    const auto& f = lookup.force;
+    const Apart<10> numbers(
+        {wheel->y, wheel->z, wheel->roll, wheel->yaw, lookup.table_share, lookup.energy, f[0], f[1], f[2], f[3]});
+    visit_answered([&](std::size_t i) {
+      const std::array<double, 10>& of = numbers.of[i];
+      *to[i].pose = {of[0], of[1], of[2], of[3]};
+      to[i].lookup->table_share = of[4];
+      to[i].lookup->energy = of[5];
+      to[i].lookup->force = {of[6], of[7], of[8], of[9]};
+      to[i].lookup->parts = 0;
+    });
+    for (std::size_t p = 0; p < lookup.parts; ++p) {
+      const Apart<LoadedPart::quantities> part(lookup.part[p].values());
+      visit_answered([&](std::size_t i) {
+        LoadedLookup& result = *to[i].lookup;
+        if (result.parts == p && part.of[i][0] > 0.0) result.part[result.parts++] = LoadedPart::of(part.of[i]);
+      });
+    }
+    visit_answered([&](std::size_t i) { forces.give(static_cast<int>(i), *to[i].pose, *to[i].lookup, *to[i].force); });
+  }
+
+  void visit_answered(auto&& visit) const {
+    for (std::uint32_t left = answered; left != 0; left &= left - 1) {
+      visit(static_cast<std::size_t>(std::countr_zero(left)));
     }
   }
 };
@@ -893,18 +928,17 @@ bool computes_side_by_side(const WheelContactModel& model) noexcept {
 }
 
 std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
-                                  std::span<LoadedAnswer> to) noexcept {
+                                  std::span<const LoadedAnswer> to) noexcept {
   const WheelsSideBySide<false> side_by_side(model, wheels);
   if (side_by_side.answered == 0) return 0;
   const LoadedContactForce<Lanes> force(model, side_by_side.motion.friction, *side_by_side.wheel, side_by_side.lookup,
                                         nullptr);
-  side_by_side.give(force, wheels, to);
+  side_by_side.give(force, mirror_of<Lanes>(wheels), to);
   return side_by_side.answered;
 }
 
 std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels,
-                                     const StepRates& rates, std::span<LoadedAnswer> to,
-                                     std::span<Matrix9> tangent) noexcept {
+                                     const StepRates& rates, std::span<const LoadedAnswer> to) noexcept {
   assert(!rates.start);
   const WheelsSideBySide<true> side_by_side(model, wheels);
   if (side_by_side.answered == 0) return 0;
@@ -913,13 +947,13 @@ std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<c
   const LoadedContactForce<T> force(model, side_by_side.motion.friction, wheel, side_by_side.lookup,
                                     &side_by_side.derivatives);
   const Wrench<T> sum = force.total();
-  const auto of_right = tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<Lanes>(1.0));
-  side_by_side.give(force, wheels, to);
-  for (std::size_t i = 0; i < wheels.size(); ++i) {
-    if ((side_by_side.answered >> i & 1U) != 0) {
-      tangent[i] = tangent_in_track(of_right, static_cast<int>(i), wheels[i].side);
-    }
-  }
+  const Lanes mirror = mirror_of<Lanes>(wheels);
+  side_by_side.give(force, mirror, to);
+  std::array<double, 81> unanswered;
+  std::array<double*, Lanes::count> tangent;
+  tangent.fill(unanswered.data());
+  side_by_side.visit_answered([&](std::size_t i) { tangent[i] = to[i].tangent->data(); });
+  set_tangents(tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<Lanes>(1.0)), mirror, tangent);
   return side_by_side.answered;
 }
 

@@ -69,11 +69,12 @@ struct WheelState {
 /// Whether wheels can be computed side by side: by a loaded table, without damping, with friction that does not fall.
 [[nodiscard]] bool computes_side_by_side(const WheelContactModel& model) noexcept;
 
-/// One of several wheels at its loaded contact.
+/// Where the answer about one of several wheels goes.
 struct LoadedAnswer {
-  WheelsetPose pose;  ///< of a right wheel
-  LoadedLookup lookup;
-  LoadedWheelForce force;
+  WheelsetPose* pose = nullptr;  ///< of a right wheel
+  LoadedLookup* lookup = nullptr;
+  LoadedWheelForce* force = nullptr;
+  Matrix9* tangent = nullptr;  ///< of loaded_wheel_responses() alone
 };
 
 /// Forces of up to eight wheels side by side, look-ups included. Only wheels that touch, by the table alone, and where
@@ -81,10 +82,9 @@ struct LoadedAnswer {
 /// @pre computes_side_by_side()
 /// @return whether each wheel is answered, bit by bit from the first
 [[nodiscard]] std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
-                                                std::span<LoadedAnswer> to) noexcept;
+                                                std::span<const LoadedAnswer> to) noexcept;
 /// The same with derivatives. @pre no start of a mean force
 [[nodiscard]] std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels,
-                                                   const StepRates& rates, std::span<LoadedAnswer> to,
-                                                   std::span<Matrix9> tangent) noexcept;
+                                                   const StepRates& rates, std::span<const LoadedAnswer> to) noexcept;
 
 }  // namespace railtab

@@ -97,6 +97,7 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
   ContactCounts counts;
   std::array<WheelState, 2 * most> wheel;
   std::array<LoadedAnswer, 2 * most> answer;
+  std::array<LoadedWheelForce, 2 * most> of_wheel;
   for (std::size_t first = 0, count = 0; first < wheelsets.size(); first += count) {
     // neighbours on the same profiles
     const WheelContactModel& model = train[wheelsets[first]];
@@ -105,8 +106,10 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
       if (train[w].geometry != model.geometry) break;
       const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
       for (int side = 0; side < 2; ++side) {
-        wheel[2 * count + index(side)] = {wheel_sides[index(side)], motion,
-                                          rail_motion(problem, s.displacement, w, side)};
+        const std::size_t i = 2 * count + index(side);
+        WheelContact& contact = s.contact[index(2 * w + side)];
+        wheel[i] = {wheel_sides[index(side)], motion, rail_motion(problem, s.displacement, w, side)};
+        answer[i] = {&contact.pose, &contact.loaded, &of_wheel[i]};
       }
     }
     const std::uint32_t answered = loaded_wheel_forces(model, {wheel.data(), 2 * count}, answer);
@@ -119,17 +122,15 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
       force.setZero();
       for (int side = 0; side < 2; ++side) {
         const std::size_t number = index(2 * w + side);
-        const LoadedAnswer& of = answer[2 * i + index(side)];
-        force.head<6>() += of.force.wheelset;
-        force.segment<3>(6 + 3 * side) = of.force.rail;
-        keep_numbers(of.force, number, s, counts);
-        s.contact[number].pose = of.pose;
-        s.contact[number].loaded = of.lookup;
+        const LoadedWheelForce& of = of_wheel[2 * i + index(side)];
+        force.head<6>() += of.wheelset;
+        force.segment<3>(6 + 3 * side) = of.rail;
+        keep_numbers(of, number, s, counts);
         s.contact[number].patches.clear();
         ContactMemory& memory = s.memory[number];
-        memory.pose = of.pose;
+        memory.pose = s.contact[number].pose;
         memory.count = 0;
-        memory.loaded = of.force.memory;
+        memory.loaded = of.memory;
       }
       s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w) = force;
       counts.queries += 2;

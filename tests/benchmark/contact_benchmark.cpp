@@ -112,12 +112,19 @@ void measure(const char* name, const std::vector<Query>& queries, const WheelCon
       return r.force.wheelset[2] + r.tangent(2, 2);
     };
   };
-  std::vector<LoadedAnswer> answers(Lanes::count);
+  struct Answer {
+    WheelsetPose pose;
+    LoadedLookup lookup;
+    LoadedWheelForce force;
+  };
+  std::vector<Answer> answers(Lanes::count);
+  std::vector<LoadedAnswer> to;
+  for (Answer& a : answers) to.push_back({&a.pose, &a.lookup, &a.force});
   const auto eight_forces = [&] {
     double sum = 0.0;
     for (std::size_t first = 0; first < queries.size(); first += Lanes::count) {
-      static_cast<void>(loaded_wheel_forces(loaded, {&queries[first], Lanes::count}, answers));
-      for (const LoadedAnswer& a : answers) sum += a.force.wheelset[2];
+      static_cast<void>(loaded_wheel_forces(loaded, {&queries[first], Lanes::count}, to));
+      for (const Answer& a : answers) sum += a.force.wheelset[2];
     }
     return sum;
   };

@@ -204,8 +204,10 @@ TEST(LoadedWheel, EightSideBySideAreThoseOfSingleWheels) {
         several_parts += one.contact.loaded.parts > 1;
         expect_same(responses[i], one);
       }
-      std::vector<LoadedAnswer> forces(8);
-      const std::uint32_t answered = loaded_wheel_forces(model, {wheels.data(), 8}, forces);
+      std::vector<WheelResponse> forces(8);
+      std::vector<LoadedAnswer> to;
+      for (WheelResponse& of : forces) to.push_back({&of.contact.pose, &of.contact.loaded, &of.force});
+      const std::uint32_t answered = loaded_wheel_forces(model, {wheels.data(), 8}, to);
       EXPECT_EQ(answered, 0xdfU);  // the sixth is in the air
       for (std::size_t i = 0; i < 8; ++i) {
         if ((answered >> i & 1U) == 0) continue;
