@@ -296,7 +296,10 @@ struct SineCosineOf {
       }
     } else {
       constexpr double series_limit = 1.6;  // contact angles; the first terms left out are below 1e-18
-      if (!all(abs(angle) < series_limit)) {
+      constexpr double small_limit = 0.1;   // roll and yaw; below 1e-20
+      constexpr int terms = 24, small_terms = 10;
+      const V size = abs(angle);
+      if (!all(size < series_limit)) {
         for (int i = 0; i < lanes_of<V>; ++i) {
           lane(sine, i) = std::sin(lane(angle, i));
           lane(cosine, i) = std::cos(lane(angle, i));
@@ -305,10 +308,14 @@ struct SineCosineOf {
       }
       const V x = angle * angle;
       sine = cosine = broadcast<V>(1.0);
-      for (int k = 24; k > 0; k -= 2) {
-        sine = 1.0 - x * sine * (1.0 / (k * (k + 1)));
-        cosine = 1.0 - x * cosine * (1.0 / (k * (k - 1)));
+      const auto add = [&](int k) {
+        sine = 1.0 - (1.0 / (k * (k + 1))) * x * sine;
+        cosine = 1.0 - (1.0 / (k * (k - 1))) * x * cosine;
+      };
+      if (!all(size < small_limit)) {
+        for (int k = terms; k > small_terms; k -= 2) add(k);
       }
+      for (int k = small_terms; k > 0; k -= 2) add(k);
       sine = sine * angle;
     }
   }
