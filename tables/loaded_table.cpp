@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/lane_transpose.hpp"
@@ -174,35 +175,39 @@ struct LoadedTable::NodeSums {
   /// Of eight numbers per column. @param numbers of the first column
   void of_eight(const double* numbers, Sums<Lanes>& sum) const noexcept {
     sum = {};
-    for (std::size_t i = 0; i < rolls; ++i) {
-      Lanes over_yaw[orders]{};
-      for (std::size_t j = 0; j < yaws; ++j, numbers += Lanes::count) {
-        Lanes stored;
-        std::memcpy(&stored, numbers, sizeof stored);
-        for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw[order][j] * stored;
+    with_counts([&](auto rolls_here, auto yaws_here) {
+      for (std::size_t i = 0; i < rolls_here; ++i) {
+        Lanes over_yaw[orders]{};
+        for (std::size_t j = 0; j < yaws_here; ++j, numbers += Lanes::count) {
+          Lanes stored;
+          std::memcpy(&stored, numbers, sizeof stored);
+          for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw[order][j] * stored;
+        }
+        add_over_roll(i, over_yaw, sum);
       }
-      add_over_roll(i, over_yaw, sum);
-    }
+    });
   }
 
   /// Of four numbers per column, two columns at a time. @param numbers of the first column
   void of_four(const float* numbers, Sums<Pack>& sum) const noexcept {
     Sums<Lanes> pair{};
-    for (std::size_t i = 0; i < rolls; ++i, numbers += 4 * yaws) {
-      Lanes over_yaw[orders]{};
-      for (std::size_t p = 0; 2 * p < yaws; ++p) {
-        Lanes stored{};
-        if (2 * p + 1 < yaws) {
-          widen(numbers + 8 * p, stored);
-        } else {
-          Pack last;
-          widen(numbers + 8 * p, last);
-          std::memcpy(&stored, &last, sizeof last);
+    with_counts([&](auto rolls_here, auto yaws_here) {
+      for (std::size_t i = 0; i < rolls_here; ++i, numbers += 4 * yaws_here) {
+        Lanes over_yaw[orders]{};
+        for (std::size_t p = 0; 2 * p < yaws_here; ++p) {
+          Lanes stored{};
+          if (2 * p + 1 < yaws_here) {
+            widen(numbers + 8 * p, stored);
+          } else {
+            Pack last;
+            widen(numbers + 8 * p, last);
+            std::memcpy(&stored, &last, sizeof last);
+          }
+          for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw_pair[order][p] * stored;
         }
-        for (std::size_t order = 0; order < orders; ++order) over_yaw[order] += yaw_pair[order][p] * stored;
+        add_over_roll(i, over_yaw, pair);
       }
-      add_over_roll(i, over_yaw, pair);
-    }
+    });
     for (std::size_t d = 0; d < wanted; ++d) {
       Pack half[2];
       std::memcpy(half, &pair[d], sizeof half);
@@ -211,6 +216,15 @@ struct LoadedTable::NodeSums {
   }
 
  private:
+  /// Calls sum(rolls, yaws), which for the numbers that tables usually have are known to the compiler.
+  void with_counts(auto&& sum) const noexcept {
+    constexpr std::size_t usual_yaws = 4;
+    if (rolls == rolls_read && yaws == usual_yaws) {
+      sum(std::integral_constant<std::size_t, rolls_read>{}, std::integral_constant<std::size_t, usual_yaws>{});
+    } else {
+      sum(rolls, yaws);
+    }
+  }
   void add_over_roll(std::size_t i, const Lanes* over_yaw, Sums<Lanes>& sum) const noexcept {
     sum[here] += roll[0][i] * over_yaw[0];
     sum[by_roll] += roll[1][i] * over_yaw[0];
