@@ -143,6 +143,12 @@ TEST(LoadedContact, ResolvesARidgeOfPressure) {
   ASSERT_EQ(c.regions.size(), 1u);
   ASSERT_EQ(c.regions[0].parts.size(), 1u);
   EXPECT_GE(c.rows_across_peak, 8.0);
+  ASSERT_GE(c.refinements, 2);
+  const LoadedContact begun = loaded_contact(s1002_on_60e1(), pose, options, c.refinements - 1);
+  EXPECT_EQ(begun.refinements, c.refinements) << "a last one shows whether those before suffice";
+  EXPECT_EQ(begun.elements.ns, c.elements.ns);
+  EXPECT_LT(begun.iterations, c.iterations);
+  EXPECT_NEAR(begun.largest_pressure / c.largest_pressure, 1.0, 1e-4);
   options.elements.across_narrowest = 224;
   const LoadedContact fine = loaded_contact(s1002_on_60e1(), pose, options);
   EXPECT_NEAR(c.largest_pressure / fine.largest_pressure, 1.0, 0.01);

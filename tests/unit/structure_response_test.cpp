@@ -120,6 +120,9 @@ TEST(LinearMotion, FindsItsLoads) {
   EXPECT_EQ(loaded, (std::vector<int>{17, 32, 40, 55}));
   find_loaded(motion, {0, 100}, loaded);
   EXPECT_EQ(loaded, (std::vector<int>{3, 17, 32, 40, 55, 78}));
+  motion.loaded = {78, 3, 17, 99};  // where that is known
+  find_loaded(motion, {5, 94}, loaded);
+  EXPECT_EQ(loaded, (std::vector<int>{78, 17}));
 }
 
 // Of few unknowns as of all of them.

@@ -231,6 +231,43 @@ TEST(Impact, AHitWithoutFlightHasItsPeakInLongSteps) {
   }
 }
 
+// The state says where contacts load the structure, without whole steps that look for it: through flights, divided
+// steps and both rules, on a track longer than what is loaded.
+TEST(Impact, TheStateKnowsWhereContactsLoadTheStructure) {
+  SceneParameters scene;
+  scene.contact.mode = ContactMode::online;
+  scene.contact.creep_law = "polach";
+  scene.train.speed = 300.0 / 3.6;
+  scene.track.length_before = 36.0;
+  scene.track.length_after = 40.0;
+  scene.integration.duration = 0.08;
+  VsiModel model = build_model(scene);
+  model.irregularity = hump();
+  VsiState state(model);
+  ASSERT_TRUE(static_equilibrium(model, state).converged);
+  int known = 0, looked_for = 0;
+  std::size_t most = 0;
+  RunObserver observer;
+  observer.state = [&](const VsiState& now) {
+    const LinearMotion& motion = now.structure;
+    LinearMotion unknown = motion;
+    unknown.loaded.reset();
+    const DofRange all{0, motion.displacement.size()};
+    std::vector<int> loaded, said;
+    find_loaded(unknown, all, loaded);
+    find_loaded(motion, all, said);
+    ++(motion.loaded ? known : looked_for);
+    most = std::max(most, said.size());
+    std::sort(said.begin(), said.end());
+    EXPECT_TRUE(std::includes(said.begin(), said.end(), loaded.begin(), loaded.end())) << now.time;
+  };
+  ASSERT_TRUE(simulate(model, scene.integration, scene.integration.duration, 1, state, observer).complete);
+  std::printf("loads of the structure: known after %d steps, looked for after %d\n", known, looked_for);
+  EXPECT_GT(known, 40);
+  EXPECT_GT(looked_for, 2) << "contacts that keep their energy load what they have left";
+  EXPECT_LT(most, static_cast<std::size_t>(24 * 2 * model.wheelsets()));
+}
+
 // Checkpoints in flight, in an impact, and while its forces still keep their energy: from each the run goes on to the
 // last bit.
 TEST(Impact, ARunResumedFromAnImpactIsTheUninterruptedOne) {
