@@ -117,7 +117,7 @@ struct Neighbour {
   Eigen::VectorXd pressure;
 };
 
-/// @param refinements to begin with; those beyond the first that settle the largest pressure are added
+/// @param refinements to begin with; more follow until the largest pressure has settled
 LoadedContact solution(const ContactSearch& search, const WheelsetPose& pose, const LoadedContactOptions& options,
                        const std::optional<Neighbour>& neighbour, int refinements = 0) {
   LoadedContact contact;

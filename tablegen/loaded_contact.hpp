@@ -50,7 +50,7 @@ struct LoadedContact {
   /// Of elements, across the ellipse of a Hertzian contact whose pressure is curved along s as this one's is at its
   /// largest. Fewer than eight: the largest pressure is not resolved, as at an edge or with too few elements allowed.
   double rows_across_peak = 0.0;
-  int refinements = 0;    ///< how often rows were added for it
+  int refinements = 0;    ///< of the rows that the overlap asks for, to half as many more each
   double area = 0.0;      ///< of the elements with pressure [m²]
   double residual = 0.0;  ///< NormalPressure::residual
   int iterations = 0;
@@ -60,7 +60,8 @@ struct LoadedContact {
 /// Pressure at a pose of the right wheel. Rail: a cylinder along x with the profile; wheel: a surface of revolution.
 /// The undeformed distance is that along the rail's local normals, the influence that of a half-space over the
 /// developed rail surface, times the cosine of the angle between the normals (docs/theory/loaded_contact.md).
-/// @param refinements to begin with, one less than a contact near by has: the last one shows whether they suffice
+/// @param refinements to begin with, such as one less than a contact near by has; more follow until the largest
+/// pressure has settled, and it begins anew without any where they do not converge
 /// @throws InputError of the options, TooManyElements
 [[nodiscard]] LoadedContact loaded_contact(const ContactSearch& search, const WheelsetPose& pose,
                                            const LoadedContactOptions& options = {}, int refinements = 0);

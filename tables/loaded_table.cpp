@@ -305,7 +305,8 @@ LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
 }
 
 std::size_t LoadedTable::bytes() const noexcept {
-  return sizeof(double) * (ends_.size() + data_.lateral.size()) +
+  return sizeof(double) * (ends_.size() + displaced_.size() + data_.lateral.size()) +
+         sizeof(RollCubic) * roll_cubic_.size() + sizeof(std::uint32_t) * bucket_.size() +
          sizeof(float) * (data_.height.size() + data_.pressed.size() + weighted_part_.size() + rise_.size()) +
          sizeof(std::size_t) * part_at_.size();
 }
@@ -339,8 +340,8 @@ bool LoadedTable::find_cell(double y, const NodeSums<slopes>& sums, std::size_t&
 
 int LoadedTable::guess_level(double above, std::size_t node, double t) const noexcept {
   const std::size_t levels = static_cast<std::size_t>(data_.levels);
-  // By the rise of the middle column.
   if (!(above > 0.0)) return 0;
+  // By the rise of the middle column.
   const float *const rise_low = &rise_[node * levels], *const rise_high = rise_low + levels;
   const auto rise = [&](int level) {
     const auto k = static_cast<std::size_t>(level);
@@ -388,14 +389,14 @@ void LoadedTable::add_corners(std::size_t node, int level, const NodeSums<slopes
 struct LoadedTable::PartPlace {
   /// Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
   struct Linear {
-    std::size_t low = 0, high = 0;
+    std::size_t low = 0;
     double part = 0.0, rate = 0.0;
 
     Linear() = default;
     Linear(const std::vector<double>& node, double x) noexcept {
       if (node.size() == 1) return;
       const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
-      high = static_cast<std::size_t>(above - node.begin());
+      const auto high = static_cast<std::size_t>(above - node.begin());
       low = high - 1;
       rate = 1.0 / (node[high] - node[low]);
       part = (x - node[low]) * rate;
@@ -446,9 +447,9 @@ void LoadedTable::fetch_parts(const PartPlace& place) const noexcept {
   const std::size_t columns = data_.columns(), yaws = data_.yaw_squared.size();
   const PartPlace::Linear &r = place.r, &s = place.s;
   for (const std::size_t corner : place.node) {
-    const float* part = &weighted_part_[part_at_[corner]] + (r.low * yaws + s.low) * LoadedPart::quantities;
+    const float* part = weighted_part_.data() + part_at_[corner] + (r.low * yaws + s.low) * LoadedPart::quantities;
     for (std::uint32_t pressed = data_.pressed[corner]; pressed != 0; pressed &= pressed - 1) {
-      for (std::size_t i = 0; i <= r.high - r.low; ++i) {
+      for (std::size_t i = 0; i < 2; ++i) {
         fetch(part + i * yaws * LoadedPart::quantities, 2 * LoadedPart::quantities * sizeof(float));
       }
       part += columns * LoadedPart::quantities;
@@ -466,9 +467,12 @@ struct LoadedTable::PartSums {
   Pack sum[count][packs];
 };
 
-void LoadedTable::weight_parts() noexcept {
-  if (!data_.part.empty()) {
-    for (const std::size_t q : {PartSums::arm_y, PartSums::arm_z}) reference_[q] = double{data_.part[q]};
+void LoadedTable::weight_parts() {
+  const auto presses = [&](std::size_t i) { return data_.part[i] > 0.0F; };
+  std::size_t first = 0;
+  while (first < data_.part.size() && !presses(first)) first += LoadedPart::quantities;
+  if (first < data_.part.size()) {
+    for (const std::size_t q : {PartSums::arm_y, PartSums::arm_z}) reference_[q] = double{data_.part[first + q]};
   }
   for (std::size_t i = 0; i < data_.part.size(); i += LoadedPart::quantities) {
     float* const quantity = &data_.part[i];

@@ -198,7 +198,7 @@ class LoadedTable {
   struct Corners;
   struct PartPlace;
   struct PartSums;
-  void weight_parts() noexcept;
+  void weight_parts();
   template <class V>
   [[nodiscard]] V margin_share(const V& roll, const V& yaw) const noexcept;
   [[nodiscard]] const double* ends_of(std::size_t cell, std::size_t column) const noexcept {
@@ -216,8 +216,8 @@ class LoadedTable {
   template <bool slopes>
   void add_corners(std::size_t node, int level, const NodeSums<slopes>& sums, const CellEnds<slopes>& ends,
                    Corners& corners) const noexcept;
-  /// Ask the memory for what the next steps of a look-up will read: of the lateral cell, to guess the
-  /// level, of the corners, of the parts.
+  /// Ask the memory for what the next steps of a look-up will read: of the lateral cell, to guess the level, of the
+  /// corners, of the parts.
   void fetch_ends(std::size_t cell, std::size_t first, std::size_t count) const noexcept;
   void fetch_rise(std::size_t node) const noexcept;
   void fetch_corners(std::size_t node, int level, std::size_t first, std::size_t count) const noexcept;
@@ -226,9 +226,9 @@ class LoadedTable {
   [[nodiscard]] bool sum_part(const PartPlace& place, std::size_t part, PartSums& sums) const noexcept;
 
   LoadedTableData data_;
-  std::vector<double> ends_;  ///< CellEnds of each lateral cell and column, numbers fastest
-  /// As LoadedTableData::part, of each the share, the others weighted with it, and the square of the pressure. Arms
-  /// before that less those of the table's first part, of which floats then keep a thousand times more.
+  std::vector<double> ends_;  ///< of each lateral cell and column the eight numbers that CellEnds sums up
+  /// As LoadedTableData::part, of each the share, the others weighted with it, and the square of the pressure. arm_y
+  /// and arm_z less `reference_`, so that they are not rounded a second time.
   std::vector<float> weighted_part_;
   std::array<double, LoadedPart::quantities> reference_{};
   std::vector<double> displaced_;     ///< y − y0 of each lateral node and node of roll at the first node of yaw² [m]

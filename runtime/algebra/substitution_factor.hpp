@@ -33,7 +33,8 @@ class SubstitutionFactor {
   /// Whether a path that this factor found contains the paths of these unknowns. @pre they are the factor's
   [[nodiscard]] virtual bool covers(const Path& path, std::span<const int> unknowns) const = 0;
   virtual void into(const Vector& natural, Vector& ordered) const = 0;
-  /// The same of a vector, times a weight. @pre it is zero at all unknowns but the few
+  /// The same of a vector, times a weight. @pre it is zero at all unknowns but the few, of which repeated ones are
+  /// welcome
   virtual void into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const = 0;
   virtual void out_of(const Vector& ordered, Vector& natural) const = 0;
   /// A load times a weight; sets the entries on the path. @pre it is zero at all unknowns but the few, which are on it

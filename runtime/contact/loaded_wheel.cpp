@@ -670,9 +670,6 @@ class DisplacementSlopes {
   const StepRates& rates_;
 };
 
-/// Generalised forces that change their sign in a mirror (reflection.hpp).
-constexpr std::array<bool, 9> mirrored{false, true, false, true, false, true, true, false, true};
-
 template <class V>
 V mirror_of(std::span<const WheelState> wheels) {
   V mirror = broadcast<V>(1.0);
@@ -682,53 +679,60 @@ V mirror_of(std::span<const WheelState> wheels) {
   return mirror;
 }
 
+/// Numbers of every wheel one after the other.
+template <class V, std::size_t count>
+struct Apart {
+  std::array<std::array<double, count>, lanes_of<V>> of;
+
+  explicit Apart(const std::array<V, count>& numbers) {
+    std::array<double*, lanes_of<V>> to;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = of[i].data();
+    set_apart(numbers.data(), count, to);
+  }
+};
+
 /// Forces of wheels, each of which takes its own.
 template <class T>
 class WheelForces {
  public:
   using V = Number<T>;
   /// @param mirror −1 of a left wheel
-  WheelForces(const LoadedContactForce<T>& force, const V& mirror, const LoadedLookupOf<V>& lookup) : force_(force) {
-    Generalised<V> total = force.generalised(numbers(force.total()));
-    for (std::size_t i = 0; i < total.size(); ++i)
-      if (mirrored[i]) total[i] = mirror * total[i];
-    const Generalised<V> rest = force.generalised(numbers(force.rest()));
-    const std::array<V, 2> others{force.creep_power(), lookup.largest_pressure()};
-    std::array<double*, lanes_of<V>> to_total, to_rest, to_others;
-    for (std::size_t i = 0; i < to_total.size(); ++i) {
-      to_total[i] = total_[i].data();
-      to_rest[i] = rest_[i].data();
-      to_others[i] = others_[i].data();
-    }
-    set_apart(total.data(), total.size(), to_total);
-    set_apart(rest.data(), rest.size(), to_rest);
-    set_apart(others.data(), others.size(), to_others);
-  }
+  WheelForces(const LoadedContactForce<T>& force, const V& mirror, const LoadedLookupOf<V>& lookup)
+      : force_(force),
+        total_(in_track(force.generalised(numbers(force.total())), mirror)),
+        rest_(force.generalised(numbers(force.rest()))),
+        others_({force.creep_power(), lookup.largest_pressure()}) {}
 
   /// @param pose, table of the same wheel
   void give(int place, const WheelsetPose& pose, const LoadedLookup& table, LoadedWheelForce& result) const {
     const auto at = static_cast<std::size_t>(place);
-    const Vector9 total = Vector9::Map(total_[at].data());
+    const Vector9 total = Vector9::Map(total_.of[at].data());
     result.wheelset = total.head<6>();
     result.rail = total.tail<3>();
     result.rail_x = -result.wheelset[0];
     result.normal.fill(0.0);
     for (std::size_t p = 0; p < table.parts; ++p) result.normal[p] = lane(force_.part_normal()[p], place);
     result.outside_creep_table = force_.outside_creep_table(place);
-    result.creep_power = others_[at][0];
-    result.pressure = others_[at][1];
+    result.creep_power = others_.of[at][0];
+    result.pressure = others_.of[at][1];
     result.memory = {.weight = table.table_share,
                      .pose = pose,
                      .energy = table.energy,
                      .force = table.force,
-                     .rest = table.table_share * Vector9::Map(rest_[at].data()),
+                     .rest = table.table_share * Vector9::Map(rest_.of[at].data()),
                      .total = table.table_share * total};
   }
 
  private:
+  static Generalised<V> in_track(Generalised<V> force, const V& mirror) {
+    for (std::size_t i = 0; i < force.size(); ++i)
+      if (changes_sign[i]) force[i] = mirror * force[i];
+    return force;
+  }
+
   const LoadedContactForce<T>& force_;
-  std::array<Generalised<double>, lanes_of<V>> total_, rest_;  ///< total: in track axes
-  std::array<std::array<double, 2>, lanes_of<V>> others_;      ///< creep power, largest pressure
+  Apart<V, 9> total_, rest_;  ///< total: in track axes
+  Apart<V, 2> others_;        ///< creep power, largest pressure
 };
 
 /// Of right wheels, by columns.
@@ -770,7 +774,7 @@ template <class V>
 void set_tangents(std::array<Generalised<V>, 9> of_right, const V& mirror, const std::array<double*, lanes_of<V>>& to) {
   for (std::size_t j = 0; j < 9; ++j)
     for (std::size_t i = 0; i < 9; ++i)
-      if (mirrored[i] != mirrored[j]) of_right[j][i] = mirror * of_right[j][i];
+      if (changes_sign[i] != changes_sign[j]) of_right[j][i] = mirror * of_right[j][i];
   set_apart(of_right[0].data(), 81, to);
 }
 
@@ -851,18 +855,6 @@ LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelS
 
 namespace {
 
-/// Numbers of every wheel one after the other.
-template <std::size_t count>
-struct Apart {
-  std::array<std::array<double, count>, Lanes::count> of;
-
-  explicit Apart(const std::array<Lanes, count>& numbers) {
-    std::array<double*, Lanes::count> to;
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] = of[i].data();
-    set_apart(numbers.data(), count, to);
-  }
-};
-
 /// Wheels side by side at their loaded contacts.
 template <bool slopes>
 struct WheelsSideBySide {
@@ -894,7 +886,7 @@ struct WheelsSideBySide {
   void give(const LoadedContactForce<T>& force, const Lanes& mirror, std::span<const LoadedAnswer> to) const {
     const WheelForces<T> forces(force, mirror, lookup);
     const auto& f = lookup.force;
-    const Apart<10> numbers(
+    const Apart<Lanes, 10> numbers(
         {wheel->y, wheel->z, wheel->roll, wheel->yaw, lookup.table_share, lookup.energy, f[0], f[1], f[2], f[3]});
     visit_answered([&](std::size_t i) {
       const std::array<double, 10>& of = numbers.of[i];
@@ -905,7 +897,7 @@ struct WheelsSideBySide {
       to[i].lookup->parts = 0;
     });
     for (std::size_t p = 0; p < lookup.parts; ++p) {
-      const Apart<LoadedPart::quantities> part(lookup.part[p].values());
+      const Apart<Lanes, LoadedPart::quantities> part(lookup.part[p].values());
       visit_answered([&](std::size_t i) {
         LoadedLookup& result = *to[i].lookup;
         if (result.parts == p && part.of[i][0] > 0.0) result.part[result.parts++] = LoadedPart::of(part.of[i]);

@@ -69,7 +69,7 @@ struct WheelState {
 /// Whether wheels can be computed side by side: by a loaded table, without damping, with friction that does not fall.
 [[nodiscard]] bool computes_side_by_side(const WheelContactModel& model) noexcept;
 
-/// Where the answer about one of several wheels goes.
+/// Where the answer about one of several wheels goes; nothing is written for a wheel that is not answered.
 struct LoadedAnswer {
   WheelsetPose* pose = nullptr;  ///< of a right wheel
   LoadedLookup* lookup = nullptr;
@@ -79,7 +79,7 @@ struct LoadedAnswer {
 
 /// Forces of up to eight wheels side by side, look-ups included. Only wheels that touch, by the table alone, and where
 /// there is friction are answered.
-/// @pre computes_side_by_side()
+/// @param to one for each wheel; none of the three null @pre computes_side_by_side()
 /// @return whether each wheel is answered, bit by bit from the first
 [[nodiscard]] std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,
                                                 std::span<const LoadedAnswer> to) noexcept;

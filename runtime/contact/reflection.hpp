@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
 #include "railtab/runtime/contact/wheel_contact.hpp"
 
 namespace railtab {
@@ -7,15 +11,22 @@ namespace railtab {
 // Reflection in the track's plane of symmetry: polar vectors lose the sign of y, axial ones of x and z. The left wheel
 // is computed as the right wheel of the reflected world.
 
-[[nodiscard]] inline Vector6 reflected(const Vector6& v) { return {v[0], -v[1], v[2], -v[3], v[4], -v[5]}; }
-/// y, z and roll of a rail head.
-[[nodiscard]] inline Vector3 reflected_rail(const Vector3& v) { return {-v[0], v[1], -v[2]}; }
-/// Generalised forces on wheelset (6) and rail head (3).
-[[nodiscard]] inline Vector9 reflected(const Vector9& v) {
-  Vector9 r;
-  r << reflected(Vector6(v.head<6>())), reflected_rail(v.tail<3>());
-  return r;
+/// Whether motions, or generalised forces, of wheelset (6) and rail head (3) change their sign.
+inline constexpr std::array<bool, 9> changes_sign{false, true, false, true, false, true, true, false, true};
+
+/// @tparam first place of the vector among the nine
+template <std::size_t first, class Vector>
+[[nodiscard]] Vector reflected_from(Vector v) {
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    if (changes_sign[first + static_cast<std::size_t>(i)]) v[i] = -v[i];
+  }
+  return v;
 }
+[[nodiscard]] inline Vector6 reflected(const Vector6& v) { return reflected_from<0>(v); }
+/// y, z and roll of a rail head.
+[[nodiscard]] inline Vector3 reflected_rail(const Vector3& v) { return reflected_from<6>(v); }
+/// Generalised forces on wheelset (6) and rail head (3).
+[[nodiscard]] inline Vector9 reflected(const Vector9& v) { return reflected_from<0>(v); }
 
 [[nodiscard]] inline WheelsetMotion on_right(WheelSide side, const WheelsetMotion& m) {
   return side == WheelSide::right ? m : WheelsetMotion{reflected(m.displacement), reflected(m.velocity)};

@@ -24,7 +24,8 @@ ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem,
 /// Whether all wheels can be computed side by side in a time step, which must count the forces at its end.
 [[nodiscard]] bool computes_side_by_side(const TrainContact& train, const ContactProblem& problem) noexcept;
 
-/// evaluate() of those wheelsets of some whose wheels the loaded table answers alone.
+/// evaluate() of those wheelsets of some whose wheels the loaded table answers alone. Contacts of the others are not
+/// set until evaluate() does.
 /// @param evaluated per wheelset of the train, set for these
 /// @pre computes_side_by_side()
 ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,

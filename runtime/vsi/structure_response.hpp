@@ -58,9 +58,10 @@ void append_dofs_ahead(const RailContact& contact, std::vector<int>& dofs);
 
 /// A load on the structure; refers to the vector, and is not kept.
 struct KnownLoad {
-  const Eigen::VectorXd& vector;                          ///< of all unknowns
-  std::optional<std::span<const int>> at = std::nullopt;  ///< active unknowns but for which it is zero; none: any
-  double weight = 1.0;                                    ///< of the vector, where `at` is given
+  const Eigen::VectorXd& vector;  ///< of all unknowns
+  /// Active unknowns but for which it is zero, some perhaps twice; none: any.
+  std::optional<std::span<const int>> at = std::nullopt;
+  double weight = 1.0;  ///< of the vector, where `at` is given
 };
 
 /// Buffers of the structure's solution of one step, reused.

@@ -36,6 +36,7 @@ void advance_structure(const StructureResponse& response, std::span<const RailLo
   ws.solution.substitution.respond(response.factor(), scheme.load_weight(), ws.load, ws.response);
   response.finish_step(ws.solution, motion);
   motion.contact_load.swap(ws.load);
+  motion.loaded.reset();
 }
 
 }  // namespace railtab

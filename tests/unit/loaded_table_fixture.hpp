@@ -30,6 +30,17 @@ inline LoadedSweepOptions tread_options() {
   return options;
 }
 
+/// Coarse, with other numbers of nodes.
+inline LoadedTableData tread_table_of(int yaw_nodes, double roll_spacing) {
+  LoadedSweepOptions options = tread_options();
+  options.yaw_nodes = yaw_nodes;
+  options.roll_spacing = roll_spacing;
+  options.levels = 9;
+  options.force_error = options.light_error = 0.1;
+  options.contact.elements.across_narrowest = 8;
+  return sweep_loaded(s1002_on_60e1(), options);
+}
+
 /// Made once in a process.
 inline const LoadedTableData& tread_table() {
   static const LoadedTableData data = sweep_loaded(s1002_on_60e1(), tread_options());

@@ -48,8 +48,7 @@ WheelsetPose moved(const WheelsetPose& p, int coordinate, double by) {
           p.yaw + (coordinate == 3 ? by : 0.0)};
 }
 
-TEST(LoadedTable, ForcesStiffnessAndPartsHaveTheDerivativesOfTheEnergy) {
-  const LoadedTable table(tread_table());
+void expect_derivatives_of_the_energy(const LoadedTable& table) {
   Poses poses;
   int compared = 0;
   for (int n = 0; n < 200; ++n) {
@@ -76,6 +75,20 @@ TEST(LoadedTable, ForcesStiffnessAndPartsHaveTheDerivativesOfTheEnergy) {
     }
   }
   EXPECT_GT(compared, 790);  // of 800
+}
+
+TEST(LoadedTable, ForcesStiffnessAndPartsHaveTheDerivativesOfTheEnergy) {
+  expect_derivatives_of_the_energy(LoadedTable(tread_table()));
+}
+
+// Columns of Z are summed in pairs, and those of four nodes of roll and of yaw by code of their own.
+TEST(LoadedTable, DerivativesAreRightWhateverTheNumberOfNodes) {
+  for (const int yaw_nodes : {3, 4}) {
+    for (const double roll_spacing : {5e-4, 1e-3}) {
+      SCOPED_TRACE(fmt::format("{} nodes of yaw, roll every {} rad", yaw_nodes, roll_spacing));
+      expect_derivatives_of_the_energy(LoadedTable(tread_table_of(yaw_nodes, roll_spacing)));
+    }
+  }
 }
 
 // From first touch, which the level is guessed from, down to the last level.
