@@ -152,7 +152,7 @@ struct LoadedTable::NodeSums {
 
   std::size_t first, rolls, yaws;  ///< columns that are read
   double roll[orders][rolls_read], yaw[orders][most_yaws];
-  Lanes yaw_pair[orders][most_pairs];  ///< of two neighbouring nodes, each four times; zero where there is no second
+  Lanes yaw_pair[orders][most_pairs];  ///< weights of two neighbouring nodes, each four times; 0: there is no second
 
   template <class V>
   void set(const Weights<V>& weights, int place) noexcept {
@@ -216,7 +216,7 @@ struct LoadedTable::NodeSums {
   }
 
  private:
-  /// Calls sum(rolls, yaws), which for the numbers that tables usually have are known to the compiler.
+  /// Calls sum(rolls, yaws), with constants where they are those of ordinary tables: loops over them are unrolled.
   void with_counts(auto&& sum) const noexcept {
     constexpr std::size_t usual_yaws = 4;
     if (rolls == rolls_read && yaws == usual_yaws) {
