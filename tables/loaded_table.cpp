@@ -468,9 +468,8 @@ struct LoadedTable::PartSums {
 };
 
 void LoadedTable::weight_parts() {
-  const auto presses = [&](std::size_t i) { return data_.part[i] > 0.0F; };
-  std::size_t first = 0;
-  while (first < data_.part.size() && !presses(first)) first += LoadedPart::quantities;
+  std::size_t first = 0;  // that presses
+  while (first < data_.part.size() && !(data_.part[first] > 0.0F)) first += LoadedPart::quantities;
   if (first < data_.part.size()) {
     for (const std::size_t q : {PartSums::arm_y, PartSums::arm_z}) reference_[q] = double{data_.part[first + q]};
   }

@@ -578,9 +578,15 @@ WheelKinematics<double> right_wheel(const WheelContactModel& model, WheelSide si
   return {model.geometry->pair(), motion, model.speed};
 }
 
-Vector9 in_track(WheelSide side, const Generalised<double>& of_right) {
-  const Vector9 force = Eigen::Map<const Vector9>(of_right.data());
-  return side == WheelSide::left ? reflected(force) : force;
+/// −1 of a left wheel, which is computed as a right one.
+double mirror_of(WheelSide side) { return side == WheelSide::left ? -1.0 : 1.0; }
+
+/// Of right wheels to the wheels as they are. @param mirror mirror_of() them
+template <class V>
+Generalised<V> in_track(Generalised<V> force, const V& mirror) {
+  for (std::size_t i = 0; i < force.size(); ++i)
+    if (changes_sign[i]) force[i] = mirror * force[i];
+  return force;
 }
 
 WheelsetPose pose_of(const WheelKinematics<double>& wheel) { return {wheel.y, wheel.z, wheel.roll, wheel.yaw}; }
@@ -670,15 +676,6 @@ class DisplacementSlopes {
   const StepRates& rates_;
 };
 
-template <class V>
-V mirror_of(std::span<const WheelState> wheels) {
-  V mirror = broadcast<V>(1.0);
-  for (std::size_t i = 0; i < wheels.size(); ++i) {
-    if (wheels[i].side == WheelSide::left) lane(mirror, static_cast<int>(i)) = -1.0;
-  }
-  return mirror;
-}
-
 /// Numbers of every wheel one after the other.
 template <class V, std::size_t count>
 struct Apart {
@@ -696,7 +693,7 @@ template <class T>
 class WheelForces {
  public:
   using V = Number<T>;
-  /// @param mirror −1 of a left wheel
+  /// @param mirror mirror_of() the wheels
   WheelForces(const LoadedContactForce<T>& force, const V& mirror, const LoadedLookupOf<V>& lookup)
       : force_(force),
         total_(in_track(force.generalised(numbers(force.total())), mirror)),
@@ -724,12 +721,6 @@ class WheelForces {
   }
 
  private:
-  static Generalised<V> in_track(Generalised<V> force, const V& mirror) {
-    for (std::size_t i = 0; i < force.size(); ++i)
-      if (changes_sign[i]) force[i] = mirror * force[i];
-    return force;
-  }
-
   const LoadedContactForce<T>& force_;
   Apart<V, 9> total_, rest_;  ///< total: in track axes
   Apart<V, 2> others_;        ///< creep power, largest pressure
@@ -793,7 +784,7 @@ LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelC
     of_motion = lookup.table_share * number(mean.of_start);
   }
   LoadedWheelResponse response;
-  const double mirror = side == WheelSide::left ? -1.0 : 1.0;
+  const double mirror = mirror_of(side);
   WheelForces<T>(force, mirror, lookup).give(0, pose_of(wheel), lookup, response.force);
   set_tangents(tangent_of(force, wheel, rates, total, sum, of_motion), mirror, {response.tangent.data()});
   return response;
@@ -806,7 +797,7 @@ LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide si
   const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
   const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
   LoadedWheelForce result;
-  WheelForces<double>(force, side == WheelSide::left ? -1.0 : 1.0, lookup).give(0, pose_of(wheel), lookup, result);
+  WheelForces<double>(force, mirror_of(side), lookup).give(0, pose_of(wheel), lookup, result);
   return result;
 }
 
@@ -837,7 +828,7 @@ Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const 
   const MeanForce<double> mean = mean_over_step(model.geometry->pair(), start, end, lookup.table_share);
   Generalised<double> force = end.generalised(mean.end);
   for (std::size_t i = 0; i < 9; ++i) force[i] += mean.of_start * start.rest[static_cast<Eigen::Index>(i)];
-  return in_track(side, force);
+  return Vector9::Map(in_track(force, mirror_of(side)).data());
 }
 
 LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelSide side,
@@ -854,6 +845,12 @@ LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelS
 }
 
 namespace {
+
+Lanes mirror_of(std::span<const WheelState> wheels) {
+  Lanes mirror = broadcast<Lanes>(1.0);
+  for (std::size_t i = 0; i < wheels.size(); ++i) mirror[static_cast<int>(i)] = mirror_of(wheels[i].side);
+  return mirror;
+}
 
 /// Wheels side by side at their loaded contacts.
 template <bool slopes>
@@ -925,7 +922,7 @@ std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<cons
   if (side_by_side.answered == 0) return 0;
   const LoadedContactForce<Lanes> force(model, side_by_side.motion.friction, *side_by_side.wheel, side_by_side.lookup,
                                         nullptr);
-  side_by_side.give(force, mirror_of<Lanes>(wheels), to);
+  side_by_side.give(force, mirror_of(wheels), to);
   return side_by_side.answered;
 }
 
@@ -939,7 +936,7 @@ std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<c
   const LoadedContactForce<T> force(model, side_by_side.motion.friction, wheel, side_by_side.lookup,
                                     &side_by_side.derivatives);
   const Wrench<T> sum = force.total();
-  const Lanes mirror = mirror_of<Lanes>(wheels);
+  const Lanes mirror = mirror_of(wheels);
   side_by_side.give(force, mirror, to);
   std::array<double, 81> unanswered;
   std::array<double*, Lanes::count> tangent;

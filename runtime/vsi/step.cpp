@@ -31,6 +31,7 @@ void close_structure_load(const StepContext& step, const StepWorkspace& ws, Line
     for (int dof : ws.past_rail_dofs) motion.contact_load[dof] = 0.0;
     std::vector<int>& loaded = motion.loaded ? *motion.loaded : motion.loaded.emplace();
     loaded = ws.rail_dofs;
+    // and those that wheels have left, where step_load is still to be cleared
     for (int dof : ws.past_rail_dofs) {
       if (motion.step_load[dof] != 0.0 && ws.structure_load[dof] == 0.0) loaded.push_back(dof);
     }

@@ -231,8 +231,8 @@ TEST(Impact, AHitWithoutFlightHasItsPeakInLongSteps) {
   }
 }
 
-// The state says where contacts load the structure, without whole steps that look for it: through flights, divided
-// steps and both rules, on a track longer than what is loaded.
+// Where the state says which unknowns of the structure contacts load, no other one has a load: through flights, divided
+// steps and both rules of contact forces.
 TEST(Impact, TheStateKnowsWhereContactsLoadTheStructure) {
   SceneParameters scene;
   scene.contact.mode = ContactMode::online;
