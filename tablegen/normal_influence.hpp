@@ -44,10 +44,11 @@ class NormalInfluence {
 
   Size size_;
   int padded_x_, padded_s_;
+  int stride_;  ///< of rows of spectra: not a power of two, whose rows would share a few lines of the cache
   std::vector<std::complex<double>> direction_;  ///< e^{iδ} of each row
-  std::vector<double> kernel_, inverse_;         ///< with the wave number along x first, divided by the grid's size
+  std::vector<double> kernel_, inverse_;         ///< rows of wave numbers along x, divided by the grid's size
   double self_ = 0.0;
-  std::complex<double>*rows_, *spectrum_;  ///< rows_: ns × padded along x; the other transposed
+  std::complex<double>*rows_, *spectrum_, *displaced_;  ///< rows along x: ns of the first, padded_s_ of the others
   fftw_plan along_, across_, across_back_, along_back_;
 };
 
