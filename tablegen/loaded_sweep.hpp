@@ -17,8 +17,10 @@ struct LoadedSweepOptions {
   double yaw = 0.010;               ///< largest, 0..0.2 [rad]; 0: without yaw
   double largest_load = 300e3;      ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
   int levels = 33;                  ///< of energy, 5..1000
-  double roll_spacing = 1e-3;       ///< of nodes of roll at most, 3 nodes at least, 1e-5..0.1 [rad]
-  int yaw_nodes = 4;                ///< 2..LoadedTable::most_yaws where not fixed
+  /// Of nodes of roll at most, 3 nodes at least, 1e-5..0.1 [rad]. Halved where pressures of 10 kN half-way between them
+  /// are off by more than 4 %.
+  double roll_spacing = 1e-3;
+  int yaw_nodes = 4;            ///< 2..LoadedTable::most_yaws where not fixed
   double force_error = 2.5e-3;  ///< of the vertical force above 5 kN, at which an interval of y0 is halved, 1e-5..0.1
   double light_error = 8e-3;    ///< the same from 1 to 5 kN
   double least_interval =

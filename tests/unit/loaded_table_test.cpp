@@ -405,6 +405,25 @@ TEST(LoadedSweep, FollowsAJumpThatSplitsWithRoll) {
   }
 }
 
+// An LMA-type wheel reaches a strip of greater curvature at shifts that move with the roll by half as much again as the
+// nodes do; no contact of the tread of S1002 does.
+TEST(LoadedSweep, HalvesIntervalsOfRollWherePressuresBeginToRise) {
+  const ContactSearch lma(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "LMA-type", 0.0)),
+                                        ProfileCurve(standard_profile(ProfileKind::rail, "CHN60", 1.0 / 40.0)),
+                                        PairDimensions{.flange_back = 1.353, .nominal_radius = 0.4575}));
+  LoadedSweepOptions options;
+  options.roll = {-1e-3, 1e-3};
+  options.yaw = 0.0;
+  options.roll_spacing = 1e-3;
+  options.levels = 5;
+  options.force_error = options.light_error = 0.1;
+  options.contact.elements.across_narrowest = 14;
+  options.lateral = {4.9e-3, 5.2e-3};
+  EXPECT_EQ(sweep_loaded(lma, options).roll, (std::vector{-1e-3, -5e-4, 0.0, 5e-4, 1e-3}));
+  options.lateral = {-3e-3, -2.7e-3};
+  EXPECT_EQ(sweep_loaded(s1002_on_60e1(), options).roll, (std::vector{-1e-3, 0.0, 1e-3}));
+}
+
 // A table that its own generation has found to be wrong is read only where it is asked for.
 TEST(LoadedTable, IsNotUsedUnaskedWhereItsCertifiedErrorIsLarge) {
   GeometrySweepOptions options;
