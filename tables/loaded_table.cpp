@@ -389,11 +389,11 @@ void LoadedTable::add_corners(std::size_t node, int level, const NodeSums<slopes
 struct LoadedTable::PartPlace {
   /// Linear interpolation between the two nodes around a place: the lower one, the place between them, and its rate.
   struct Linear {
-    std::size_t low = 0;
-    double part = 0.0, rate = 0.0;
+    std::size_t low;
+    double part, rate;
 
-    Linear() = default;
-    Linear(const std::vector<double>& node, double x) noexcept {
+    Linear() = default;  // sets nothing
+    Linear(const std::vector<double>& node, double x) noexcept : low(0), part(0.0), rate(0.0) {
       if (node.size() == 1) return;
       const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
       const auto high = static_cast<std::size_t>(above - node.begin());
@@ -677,7 +677,7 @@ class LoadedTable::LookUp {
       table_.fetch_corners(lateral_[k], level_[k], sums_[k].first, sums_[k].rolls * sums_[k].yaws);
     });
     each([&](int i, std::size_t k) {
-      if (lane(found_, i) == 0.0) return;
+      if (lane(found_, i) == 0.0) return set_no_lines(k);
       const std::array<double, 4> value = at(across_.value, i);
       const double z = lane(pose_.z, i), yaw = lane(pose_.yaw, i);
       Corners corners;
@@ -687,7 +687,7 @@ class LoadedTable::LookUp {
         corners.across(value, here, line);
         if (z <= line[0] && level_[k] == 0) {
           lane(found_, i) = 0.0;
-          return;
+          return set_no_lines(k);
         }
         if (z < line[0] && moved <= 0) {
           moved = -1;
@@ -695,7 +695,7 @@ class LoadedTable::LookUp {
         } else if (z >= line[2] && moved >= 0) {
           if (level_[k] == data_.levels - 2) {
             lane(inside_, i) = lane(found_, i) = 0.0;
-            return;
+            return set_no_lines(k);
           }
           moved = 1;
           ++level_[k];
@@ -733,6 +733,10 @@ class LoadedTable::LookUp {
       });
       set_side_by_side(y, y_[d].data());
     }
+  }
+
+  void set_no_lines(std::size_t k) {
+    for (OfPoses& line : line_) line[k] = Pack{};
   }
 
   // The place u between the levels: the root of a cubic that grows from z or less to z or more.
@@ -848,8 +852,11 @@ class LoadedTable::LookUp {
   // A part from its sums: from reduced quantities to lengths, densities and pressure.
   void set_part(const std::array<V, PartSums::count * LoadedPart::quantities>& sums, std::size_t p) noexcept {
     constexpr std::size_t count = LoadedPart::quantities;
-    const V one = broadcast<V>(1.0), &w = place_.w, ww = w * w, zero{};
-    const std::array<V, count> scale{one, pose_.yaw, one, one, one, w, w, ww, ww, one, one, w};
+    enum Scale : std::size_t { none, of_yaw, of_w, of_ww };
+    constexpr std::array<Scale, count> scale_of{none, of_yaw, none,  none, none, of_w,
+                                                of_w, of_ww,  of_ww, none, none, of_w};
+    const V one = broadcast<V>(1.0), &w = place_.w, zero{};
+    const std::array<V, 4> scale{one, pose_.yaw, w, w * w};
     const V share = sums[0], inverse = 1.0 / share;
     std::array<V, count> mean;
     for (std::size_t q = 1; q < count; ++q) mean[q] = inverse * sums[q];
@@ -858,26 +865,26 @@ class LoadedTable::LookUp {
     // At yaw 0 squares are extrapolated by a millionth: the sum of very small ones may be below zero.
     const V square = sums[PartSums::pressure], least = broadcast<V>(1e-30);
     mean[PartSums::pressure] = sqrt(select(square > least, square, least));
-    std::array<V, count> value;
-    for (std::size_t q = 0; q < count; ++q) value[q] = scale[q] * mean[q] + table_.reference_[q];
-    result_.part[p] = LoadedPartOf<V>::of(value);
+    LoadedPartOf<V>& part = result_.part[p];
+    for (std::size_t q = 0; q < count; ++q) part[q] = scale[scale_of[q]] * mean[q] + table_.reference_[q];
     if constexpr (slopes) {
-      const std::array<V, count> scale_w{zero, zero, zero, zero, zero, one, one, 2.0 * w, 2.0 * w, zero, zero, one};
+      const std::array<V, 4> scale_w{zero, zero, one, 2.0 * w};
       const auto along = [&](PartSums::Along d, std::size_t q) {
         const V& of_share = sums[d * count];
         if (q == PartSums::pressure) return 0.5 / mean[q] * sums[d * count + q];
         return q == 0 ? of_share : inverse * (sums[d * count + q] - of_share * mean[q]);
       };
-      std::array<std::array<V, 4>, count> slope;
+      LoadedPartOf<std::array<V, 4>>& part_1 = derivatives_->part[p];
       for (std::size_t q = 0; q < count; ++q) {
-        const V by_y0 = scale[q] * along(PartSums::by_lateral, q),
-                by_w = scale[q] * along(PartSums::by_level, q) + scale_w[q] * mean[q];
-        for (std::size_t j = 0; j < 4; ++j) slope[q][j] = by_y0 * place_.y0_1[j] + by_w * place_.w_1[j];
-        slope[q][2] = slope[q][2] + scale[q] * along(PartSums::by_roll_node, q);
-        slope[q][3] = slope[q][3] + 2.0 * pose_.yaw * scale[q] * along(PartSums::by_yaw_node, q);
+        const V &by_scale = scale[scale_of[q]], &by_scale_w = scale_w[scale_of[q]];
+        const V by_y0 = by_scale * along(PartSums::by_lateral, q),
+                by_w = by_scale * along(PartSums::by_level, q) + by_scale_w * mean[q];
+        std::array<V, 4>& slope = part_1[q];
+        for (std::size_t j = 0; j < 4; ++j) slope[j] = by_y0 * place_.y0_1[j] + by_w * place_.w_1[j];
+        slope[2] = slope[2] + by_scale * along(PartSums::by_roll_node, q);
+        slope[3] = slope[3] + 2.0 * pose_.yaw * by_scale * along(PartSums::by_yaw_node, q);
       }
-      slope[1][3] = slope[1][3] + mean[1];
-      derivatives_->part[p] = LoadedPartOf<std::array<V, 4>>::of(slope);
+      part_1.arm_x[3] = part_1.arm_x[3] + mean[1];
     }
   }
 
@@ -902,7 +909,7 @@ class LoadedTable::LookUp {
   std::array<int, places> level_{};
   V level_number_{}, width_, t_, u_;
   HermiteBasisOf<V> across_{V{}, broadcast<V>(1.0)}, along_{V{}, broadcast<V>(1.0)};
-  std::array<OfPoses, lines_used> line_{};
+  std::array<OfPoses, lines_used> line_;
   std::array<Four, lines_used> z_;
   std::array<Four, NodeSums<slopes>::wanted> y_;  ///< y(y0): value and slope at the lower node, then at the upper one
   V by_Y_, by_Z_;                                 ///< 1/Y_y0, 1/Z_w

@@ -485,17 +485,42 @@ void SectionLayout::fold_borders(Eigen::VectorXd& ordered) const {
   }
 }
 
-SectionLayout::EntryPlace SectionLayout::place_entry(Eigen::Index i, Eigen::Index j) const noexcept {
-  const Place& p = place[static_cast<std::size_t>(i - range.begin)];
-  const Place& q = place[static_cast<std::size_t>(j - range.begin)];
-  const int section = std::max(p.section, q.section);
-  if (section < 0) return {-1, p.number, q.number};
-  const auto number = [&](const Place& at) {
-    if (at.section >= 0) return at.number;
-    const Interface& f = interfaces[static_cast<std::size_t>(at.number)];
-    return slots + f.slot[f.cut == section ? 1 : 0];
+SectionLayout::Entries SectionLayout::entries(std::initializer_list<const Sparse*> matrices) const {
+  struct OfColumn {
+    int column;
+    Entries::OfSection entry;
   };
-  return {section, number(p), number(q)};
+  std::vector<OfColumn> found;
+  Entries result;
+  result.begin.assign(index(slots + 1), 0);
+  int number = 0;
+  for (const Sparse* matrix : matrices) {
+    visit_entries(*matrix, range, [&](Eigen::Index i, Eigen::Index j, double value) {
+      if (i < j) return;
+      const Place& p = place[static_cast<std::size_t>(i - range.begin)];
+      const Place& q = place[static_cast<std::size_t>(j - range.begin)];
+      const int section = std::max(p.section, q.section);
+      if (section < 0) {
+        const auto [column, row] = std::minmax(p.number, q.number);
+        result.interfaces.push_back({row, column, number, value});
+        return;
+      }
+      const auto slot = [&](const Place& at) {
+        if (at.section >= 0) return at.number;
+        const Interface& f = interfaces[index(at.number)];
+        return slots + f.slot[f.cut == section ? 1 : 0];
+      };
+      const auto [column, row] = std::minmax({slot(p), slot(q)});
+      found.push_back({column, {row, section, number, value}});
+      ++result.begin[index(column + 1)];
+    });
+    ++number;
+  }
+  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+  result.section.resize(found.size());
+  std::vector<int> next(result.begin.begin(), result.begin.end() - 1);
+  for (const OfColumn& of : found) result.section[index(next[index(of.column)]++)] = of.entry;
+  return result;
 }
 
 std::optional<SectionLayout> divide(const Sparse& matrix, const UnknownPlaces& places, const MirrorPairs& pairs,

@@ -2,9 +2,9 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "railtab/runtime/algebra/step_end.hpp"
@@ -133,23 +133,22 @@ struct SectionLayout {
   /// Adds what stands at the borders to the interface unknowns.
   void fold_borders(Eigen::VectorXd& ordered) const;
 
-  /// Where an entry (i, j) of a matrix stands: between two slots of a section, border slots counted on from the others,
-  /// or between two interface unknowns (section -1).
-  struct EntryPlace {
-    int section, row, column;
+  /// Lower triangles of symmetric matrices of the unknowns in the range, by slots.
+  struct Entries {
+    struct OfSection {
+      int row, section, matrix;  ///< row: a slot, border slots counted on from the others
+      double value;
+    };
+    struct OfInterfaces {
+      int row, column, matrix;  ///< of interface unknowns, row >= column
+      double value;
+    };
+    std::vector<int> begin;          ///< of each column, a slot, and the end; every row >= its column
+    std::vector<OfSection> section;  ///< in the order of the matrices in each column
+    std::vector<OfInterfaces> interfaces;
   };
-  [[nodiscard]] EntryPlace place_entry(Eigen::Index i, Eigen::Index j) const noexcept;
-  /// Reads the lower triangle of a symmetric matrix in the range: calls visitor(EntryPlace, value) once for each pair
-  /// of equal entries, with row >= column by numbers of slots or interface unknowns.
-  template <class Visitor>
-  void visit_places(const Eigen::SparseMatrix<double>& matrix, Visitor&& visitor) const {
-    visit_entries(matrix, range, [&](Eigen::Index i, Eigen::Index j, double value) {
-      if (i < j) return;
-      EntryPlace at = place_entry(i, j);
-      if (at.row < at.column) std::swap(at.row, at.column);
-      visitor(at, value);
-    });
-  }
+  /// @param matrices whole pattern, by_sums_and_differences() of the layout's pairs
+  [[nodiscard]] Entries entries(std::initializer_list<const Eigen::SparseMatrix<double>*> matrices) const;
 };
 
 /// Cuts the unknowns in a range into sections, slots numbered along x. Cuts stand at nodes of the sparsest line that

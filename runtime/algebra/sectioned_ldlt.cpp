@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <string>
+#include <utility>
 
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/elimination_tree.hpp"
@@ -60,12 +61,6 @@ bool vanishes(Lanes& y) noexcept {
 
 }  // namespace
 
-/// Between two slots, the border's counted on from the others.
-struct SectionedLdlt::Entry {
-  int section, row, column;
-  double value;
-};
-
 /// Columns of L by ranks in the order of elimination, the border's slots last.
 struct SectionedLdlt::Numbers {
   std::vector<int> begin{0}, row;
@@ -103,25 +98,20 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
                              std::string_view message)
     : layout_(std::move(layout)) {
   const SectionLayout& l = *layout_;
-  Numbers numbers;
-  std::vector<Entry> entries;
-  std::vector<Eigen::Triplet<double>> pairs;  // of slots
-  pairs.reserve(static_cast<std::size_t>(matrix.nonZeros() * l.range.count / matrix.rows()));
-  entries.reserve(pairs.capacity() / 2);
-  const auto add = [](std::vector<Eigen::Triplet<double>>& to, const SectionLayout::EntryPlace& p, double value) {
-    to.emplace_back(p.row, p.column, value);
-    if (p.row != p.column) to.emplace_back(p.column, p.row, value);
-  };
-  l.visit_places(matrix, [&](const SectionLayout::EntryPlace& p, double value) {
-    if (p.section < 0) {
-      add(numbers.of_interfaces, p, value);
-      return;
+  const SectionLayout::Entries entries = l.entries({&matrix});
+  std::vector<Eigen::Triplet<double>> pairs;                   // of slots that some section couples
+  std::vector<int> column_of(index(l.slots + l.borders), -1);  // that has last had an entry in this row
+  for (int j = 0; j < l.slots; ++j) {
+    for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
+      const int row = entries.section[index(k)].row;
+      if (std::exchange(column_of[index(row)], j) == j) continue;
+      pairs.emplace_back(row, j, 1.0);
+      if (row != j) pairs.emplace_back(j, row, 1.0);
     }
-    add(pairs, p, 1.0);
-    entries.push_back({p.section, p.row, p.column, value});
-  });
+  }
   const EliminationTree tree = tree_of(l.slots, l.borders, std::move(pairs));
   set_strips(tree);
+  Numbers numbers;
   for (const Strip& strip : strip_) {
     const int* const slot = &slot_[index(strip.slot)];
     for (int j = 0; j < strip.columns; ++j) {
@@ -132,9 +122,22 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
   numbers.value.assign(numbers.row.size(), Lanes{});
   numbers.diagonal.assign(index(l.slots), broadcast<Lanes>(1.0));  // of a section that lacks the unknown
   numbers.border.assign(index(l.borders * l.borders), Lanes{});
-  for (const Entry& e : entries) {
-    const auto [column, row] = std::minmax(tree.position[index(e.row)], tree.position[index(e.column)]);
-    (row == column ? numbers.diagonal[index(column)] : numbers.value[numbers.at(row, column)])[e.section] = e.value;
+  std::vector<Lanes*> of_row(column_of.size());
+  std::fill(column_of.begin(), column_of.end(), -1);
+  for (int j = 0; j < l.slots; ++j) {
+    for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
+      const SectionLayout::Entries::OfSection& e = entries.section[index(k)];
+      Lanes*& lanes_of_entry = of_row[index(e.row)];
+      if (std::exchange(column_of[index(e.row)], j) != j) {
+        const auto [column, row] = std::minmax(tree.position[index(e.row)], tree.position[index(j)]);
+        lanes_of_entry = row == column ? &numbers.diagonal[index(column)] : &numbers.value[numbers.at(row, column)];
+      }
+      (*lanes_of_entry)[e.section] = e.value;
+    }
+  }
+  for (const auto& e : entries.interfaces) {
+    numbers.of_interfaces.emplace_back(e.row, e.column, e.value);
+    if (e.row != e.column) numbers.of_interfaces.emplace_back(e.column, e.row, e.value);
   }
   eliminate(numbers, message);
   factor_interfaces(numbers, message);

@@ -49,7 +49,6 @@ class SectionedLdlt final : public SubstitutionFactor {
     int first;          ///< column, in the order of elimination
     int slot, value;    ///< where its slots and its numbers begin
   };
-  struct Entry;    // of the matrix, in a section
   struct Numbers;  // while the factor is made
   void set_strips(const EliminationTree& tree);
   void eliminate(Numbers& numbers, std::string_view message) const;

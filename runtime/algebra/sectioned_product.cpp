@@ -42,21 +42,10 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
                                    std::shared_ptr<const SectionLayout> layout)
     : layout_(std::move(layout)) {
   const SectionLayout& l = *layout_;
-  struct Entry {
-    int row, section, which;  // 0: stiffness, 1: damping
-    double value;
-  };
-  std::vector<std::vector<Entry>> columns(index(l.slots));
+  const SectionLayout::Entries entries = l.entries({&stiffness, &damping});
   std::map<std::pair<int, int>, std::array<double, 2>> between;
-  const std::array matrices{&stiffness, &damping};
-  for (int which = 0; which < 2; ++which) {
-    l.visit_places(*matrices[index(which)], [&](const SectionLayout::EntryPlace& p, double value) {
-      if (p.section < 0) {
-        between[{p.row, p.column}][index(which)] = between[{p.column, p.row}][index(which)] = value;
-      } else {
-        columns[index(p.column)].push_back({p.row, p.section, which, value});
-      }
-    });
+  for (const auto& e : entries.interfaces) {
+    between[{e.row, e.column}][index(e.matrix)] = between[{e.column, e.row}][index(e.matrix)] = e.value;
   }
   for (const auto& [place, value] : between) {
     interface_.push_back({place.first, place.second, value[0], value[1]});
@@ -68,7 +57,8 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   for (int j = 0; j < l.slots; ++j) {
     rows.clear();
     pairs.clear();
-    for (const Entry& e : columns[index(j)]) {
+    for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
+      const SectionLayout::Entries::OfSection& e = entries.section[index(k)];
       int& of_row = number[index(e.row)];
       if (of_row < 0) {
         of_row = static_cast<int>(rows.size());
@@ -76,7 +66,7 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
         pairs.emplace_back();
       }
       Pair& pair = pairs[index(of_row)];
-      (e.which == 0 ? pair.stiffness : pair.damping)[e.section] = e.value;
+      (e.matrix == 0 ? pair.stiffness : pair.damping)[e.section] = e.value;
     }
     std::sort(rows.begin(), rows.end());
     for (const int row : rows) {

@@ -760,9 +760,11 @@ std::array<Generalised<Number<T>>, 9> tangent_of(const LoadedContactForce<T>& fo
   return DisplacementSlopes<V>(wheel, rates).of(pose, motion, turned);
 }
 
-/// Tangents of wheels in track axes. @param of_right by columns @param to of each wheel, room for a Matrix9
+/// Tangents of wheels in track axes. @param of_right by columns, is overwritten @param to of each wheel, room for a
+/// Matrix9
 template <class V>
-void set_tangents(std::array<Generalised<V>, 9> of_right, const V& mirror, const std::array<double*, lanes_of<V>>& to) {
+void set_tangents(std::array<Generalised<V>, 9>&& of_right, const V& mirror,
+                  const std::array<double*, lanes_of<V>>& to) {
   for (std::size_t j = 0; j < 9; ++j)
     for (std::size_t i = 0; i < 9; ++i)
       if (changes_sign[i] != changes_sign[j]) of_right[j][i] = mirror * of_right[j][i];

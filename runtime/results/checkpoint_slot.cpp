@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "railtab/tables/files/array_file.hpp"
+#include "railtab/runtime/base/file_checksum.hpp"
 
 namespace railtab {
 namespace {
@@ -13,7 +13,7 @@ constexpr double most_exact = 9007199254740992.0;  // 2^53: whole numbers are ex
 constexpr double half_range = 4294967296.0;        // 2^32: each half of the checksum is exact in a double
 
 std::uint64_t slot_checksum(std::span<const double> counts, std::span<const double> state) {
-  return checksum(state, checksum(counts));
+  return word_checksum(std::as_bytes(state), word_checksum(std::as_bytes(counts)));
 }
 
 }  // namespace

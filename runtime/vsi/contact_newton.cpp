@@ -1,12 +1,15 @@
 #include "railtab/runtime/vsi/contact_newton.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <span>
 
 #include "railtab/runtime/algebra/inverse_side_by_side.hpp"
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/index.hpp"
+#include "railtab/runtime/base/lane_transpose.hpp"
 #include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/element_forces.hpp"
 
@@ -97,35 +100,44 @@ void invert_group(const ContactProblem& problem, int group, NewtonWorkspace& ws)
   ws.inverse[index(group)] = dense_inverse(jacobian);
 }
 
-// (I − C T)⁻¹ of up to eight wheelsets side by side. C couples the motions of the wheelset with each other, and those
-// of its rails.
+using SideBySide12 = MatricesSideBySide<wheelset_unknowns>;
+
+// The transposes of matrices that stand by columns.
+SideBySide12 transposed_side_by_side(const std::array<const double*, SideBySide12::count>& matrix) {
+  SideBySide12 result;
+  for (std::size_t q = 0; q < result.entry.size(); q += 4) {
+    std::array<Pack, SideBySide12::count> part;
+    for (std::size_t s = 0; s < part.size(); ++s) std::memcpy(&part[s], matrix[s] + q, sizeof part[s]);
+    set_side_by_side<Lanes>(part, &result.entry[q]);
+  }
+  return result;
+}
+
+// (I − C T)⁻¹ of up to eight wheelsets side by side, transposed meanwhile. C couples the motions of the wheelset with
+// each other, and those of its rails.
 void invert_wheelsets(std::span<const int> wheelsets, NewtonWorkspace& ws) {
   constexpr int n = wheelset_unknowns, half = 6;
-  MatricesSideBySide<n> compliance{}, tangent, jacobian;  // rows of C: their six columns that are not zero
-  const auto wheelset = [&](int s) { return index(wheelsets[std::min(index(s), wheelsets.size() - 1)]); };
-  for (int s = 0; s < MatricesSideBySide<n>::count; ++s) {
-    const Eigen::Map<const Matrix12> C(ws.compliance[wheelset(s)].data());
-    const Matrix12& T = ws.tangent[wheelset(s)];
-    for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < half; ++k) compliance.at(i, k)[s] = C(i, i < half ? k : half + k);
-      for (int j = 0; j < n; ++j) tangent.at(i, j)[s] = T(i, j);
-    }
+  std::array<const double*, SideBySide12::count> of_compliance, of_tangent;
+  std::array<double*, SideBySide12::count> of_inverse;
+  Matrix12 unused;
+  for (std::size_t s = 0; s < of_tangent.size(); ++s) {
+    const std::size_t w = index(wheelsets[std::min(s, wheelsets.size() - 1)]);
+    of_compliance[s] = ws.compliance[w].data();
+    of_tangent[s] = ws.tangent[w].data();
+    ws.inverse[w].resize(n, n);
+    of_inverse[s] = s < wheelsets.size() ? ws.inverse[w].data() : unused.data();
   }
+  const SideBySide12 C = transposed_side_by_side(of_compliance), T = transposed_side_by_side(of_tangent);
+  SideBySide12 jacobian;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       Lanes sum = Lanes{} + (i == j ? 1.0 : 0.0);
-      for (int k = 0; k < half; ++k) sum -= compliance.at(i, k) * tangent.at(i < half ? k : half + k, j);
-      jacobian.at(i, j) = sum;
+      for (int k = i < half ? 0 : half, end = k + half; k < end; ++k) sum -= C.at(k, i) * T.at(j, k);
+      jacobian.at(j, i) = sum;
     }
   }
   invert_side_by_side(jacobian);
-  for (int s = 0; s < static_cast<int>(wheelsets.size()); ++s) {
-    Eigen::MatrixXd& inverse = ws.inverse[wheelset(s)];
-    inverse.resize(n, n);
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) inverse(i, j) = jacobian.at(i, j)[s];
-    }
-  }
+  set_apart(jacobian.entry.data(), jacobian.entry.size(), of_inverse);
 }
 
 // (I − C T)⁻¹ of groups.
@@ -134,7 +146,7 @@ void invert(const ContactProblem& problem, std::span<const int> groups, NewtonWo
     for (int g : groups) invert_group(problem, g, ws);
     return;
   }
-  constexpr std::size_t count = MatricesSideBySide<wheelset_unknowns>::count;
+  constexpr std::size_t count = SideBySide12::count;
   for (std::size_t first = 0; first < groups.size(); first += count) {
     invert_wheelsets(groups.subspan(first, std::min(count, groups.size() - first)), ws);
   }
@@ -152,12 +164,12 @@ void limit_moves(const ContactProblem& problem, Eigen::Ref<Eigen::VectorXd> corr
   }
 }
 
-// What a correction changes the contact forces of some wheelsets by, to first order: the largest [N, N m].
-double force_change(const NewtonWorkspace& ws, Wheelsets wheelsets) {
+// What a correction changes the contact forces of some wheelsets by, to first order; returns the largest [N, N m].
+double find_force_change(Wheelsets wheelsets, NewtonWorkspace& ws) {
   double largest = 0.0;
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
-    const Eigen::Matrix<double, wheelset_unknowns, 1> change =
-        times(ws.tangent[index(w)], ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w));
+    auto change = ws.force_change.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    change = times(ws.tangent[index(w)], ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w));
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
   }
   return largest;
@@ -184,6 +196,7 @@ class TrainNewton {
     ws.start.resize(s_.displacement.size());
     ws.start_force.resize(s_.displacement.size());
     ws.correction.resize(s_.displacement.size());
+    ws.force_change.resize(s_.displacement.size());
     ws.found.resize(train.shared().geometry->is_paper() ? 2 * ws.tangent.size() : 0);
     ws.found_at.resize(ws.found.size());
     // The tangents of the step before serve as long as they are good enough, with the compliance of this one. A group
@@ -361,7 +374,7 @@ class TrainNewton {
     set_correction(g);
     const double change = correction.cwiseAbs().maxCoeff();
     report_.correction = std::max(report_.correction, change);
-    const double of_forces = force_change(ws_, wheelsets(g));
+    const double of_forces = find_force_change(wheelsets(g), ws_);
     if (change < first_order_ && of_forces < limits_.force_tolerance) return true;
     if (corrects_by_tangent(g, of_forces)) return false;
     // A correction so small ends the iteration, and is made: the forces then are those of a far smaller one.
@@ -392,11 +405,9 @@ class TrainNewton {
     }
     if (n.extrapolated == 0.0) error *= growth;
     n.extrapolated = sum;
-    const Vector12 change =
-        times(ws_.tangent[index(g)], ws_.correction.segment<wheelset_unknowns>(wheelset_unknowns * g));
     part_of(s_.displacement, g) += part_of(ws_.correction, g);
-    part_of(s_.force, g) += change;
-    part_of(s_.end_force, g) += change;
+    part_of(s_.force, g) += part_of(ws_.force_change, g);
+    part_of(s_.end_force, g) += part_of(ws_.force_change, g);
     return true;
   }
 

@@ -579,7 +579,15 @@ struct NodeMotion {
     first += weight * other.first;
     last += weight * other.last;
   }
-  [[nodiscard]] double operator[](HeadDof k) const noexcept { return k <= roll ? first[k] : last[k - 2]; }
+};
+
+// Of a node's motion in that of a rail head, whose y, z and roll are sums of two each.
+struct HeadWeights {
+  Pack first, last;
+
+  HeadWeights(const RailInterpolation& r, std::size_t node) noexcept
+      : first{r.roll[node + twist], r.y[node + y], r.z[node + z], r.roll[node + roll]},
+        last{0.0, 0.0, r.z[node + pitch], r.y[node + yaw]} {}
 };
 
 }  // namespace
@@ -598,19 +606,17 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
     of_roll.add(c.roll[q + roll], column(roll));
     of_roll.add(c.roll[q + twist], column(twist));
   });
-  const RailInterpolation& r = i.rows;
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-  for (std::size_t p = 0; p < 2; ++p) {
-    const std::size_t first = of_node * p;
-    node[p][0].add(j.rail->head_height, node[p][2]);
-    for (Eigen::Index load = 0; load < 3; ++load) {
-      const NodeMotion& m = node[p][load];
-      result(0, load) += r.y[first + y] * m[y] + r.y[first + yaw] * m[yaw];
-      result(1, load) += r.z[first + z] * m[z] + r.z[first + pitch] * m[pitch];
-      result(2, load) += r.roll[first + roll] * m[roll] + r.roll[first + twist] * m[twist];
-    }
+  const HeadWeights left(i.rows, 0), right(i.rows, of_node);
+  Eigen::Matrix3d result;
+  for (std::size_t p = 0; p < 2; ++p) node[p][0].add(j.rail->head_height, node[p][2]);
+  for (Eigen::Index load = 0; load < 3; ++load) {
+    const NodeMotion &of_left = node[0][load], &of_right = node[1][load];
+    const Pack first = left.first * of_left.first + right.first * of_right.first;
+    const Pack last = left.last * of_left.last + right.last * of_right.last;
+    const Pack moved =
+        __builtin_shufflevector(first, first, 1, 2, 0, 0) + __builtin_shufflevector(first, last, 7, 6, 3, 3);
+    result.col(load) << moved[0] + i.rail->head_height * moved[2], moved[1], moved[2];
   }
-  result.row(0) += i.rail->head_height * result.row(2);
   return by_mirror(j) ? mirrored(result) : result;
 }
 

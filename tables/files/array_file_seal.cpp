@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/file_signatures.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
@@ -22,16 +23,20 @@ namespace {
 constexpr std::string_view mark = sealed_file_signature;
 static_assert(mark.size() == hdf5_signature.size());
 
+// Which checksum a seal holds. That of bytes, 64-bit FNV-1a, is read only: seals had it when tables were small.
+constexpr std::string_view of_words = "word checksum", of_bytes = "FNV-1a";
+
 /// The whole block, so that damage to any of its bytes shows: mark, length of the rest, checksum of the rest, zeros.
-std::string seal_of(std::uint64_t length, std::uint64_t sum) {
+std::string seal_of(std::uint64_t length, std::string_view kind, std::uint64_t sum) {
   std::string block =
-      fmt::format("{}{} bytes follow this block of {}, FNV-1a {:016x}\n", mark, length, seal_bytes, sum);
+      fmt::format("{}{} bytes follow this block of {}, {} {:016x}\n", mark, length, seal_bytes, kind, sum);
   block.resize(seal_bytes, '\0');
   return block;
 }
 
 /// Of everything after the block; the last bytes are filled up with zeros to a whole number.
-std::string expected_seal(std::istream& stream) {
+std::string expected_seal(std::istream& stream, std::string_view kind) {
+  const auto continued = kind == of_words ? word_checksum : checksum_of_bytes;
   stream.seekg(seal_bytes);
   std::vector<char> buffer(std::size_t{1} << 16U);
   std::uint64_t sum = checksum_seed, length = 0;
@@ -42,9 +47,9 @@ std::string expected_seal(std::istream& stream) {
     const std::size_t whole = (bytes + sizeof(double) - 1) / sizeof(double) * sizeof(double);
     std::fill(buffer.begin() + static_cast<std::ptrdiff_t>(bytes), buffer.begin() + static_cast<std::ptrdiff_t>(whole),
               '\0');
-    sum = checksum_of_bytes(std::as_bytes(std::span(buffer)).first(whole), sum);
+    sum = continued(std::as_bytes(std::span(buffer)).first(whole), sum);
   }
-  return seal_of(length, sum);
+  return seal_of(length, kind, sum);
 }
 
 std::string first_bytes(std::istream& stream, std::size_t count) {
@@ -56,12 +61,16 @@ std::string first_bytes(std::istream& stream, std::size_t count) {
 
 void check_seal(const std::filesystem::path& file, std::istream& stream, std::uint64_t bytes) {
   const std::string found = first_bytes(stream, seal_bytes);
-  if (found == expected_seal(stream)) return;
+  const std::string_view kind = found.find(of_bytes) == std::string::npos ? of_words : of_bytes;
+  if (found == expected_seal(stream, kind)) return;
   // Of a seal that is as it was written, the length tells what happened.
   unsigned long long length = 0, sum = 0;
-  if (std::sscanf(found.c_str() + mark.size(), "%llu bytes follow this block of %*u, FNV-1a %llx", &length, &sum) !=
-          2 ||
-      found != seal_of(length, sum)) {
+  const int numbers =
+      kind == of_bytes
+          ? std::sscanf(found.c_str() + mark.size(), "%llu bytes follow this block of %*u, FNV-1a %llx", &length, &sum)
+          : std::sscanf(found.c_str() + mark.size(), "%llu bytes follow this block of %*u, word checksum %llx", &length,
+                        &sum);
+  if (numbers != 2 || found != seal_of(length, kind, sum)) {
     throw input_error(file.string(), fmt::format("damage in the first {} bytes", seal_bytes),
                       "the seal with which railtab writes tables");
   }
@@ -84,7 +93,7 @@ std::uint64_t checksum_of_bytes(std::span<const std::byte> bytes, std::uint64_t 
 
 void seal_file(const std::filesystem::path& file) {
   std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
-  const std::string block = expected_seal(stream);
+  const std::string block = expected_seal(stream, of_words);
   stream.clear();
   stream.seekp(0);
   stream.write(block.data(), static_cast<std::streamsize>(block.size()));

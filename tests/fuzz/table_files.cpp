@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../unit/small_geometry_table.hpp"
+#include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/table_contact.hpp"
 #include "railtab/runtime/results/checkpoint_slot.hpp"
@@ -187,7 +188,8 @@ void change_checkpoint_numbers(const Path& file) {
   if (slot.size() >= head && slot[counters - 1] >= 0.0 &&
       slot[counters - 1] <= static_cast<double>(slot.size() - head)) {
     const std::span<const double> state = std::span(slot).subspan(head, static_cast<std::size_t>(slot[counters - 1]));
-    const std::uint64_t sum = checksum(state, checksum(std::span(slot).first(counters)));
+    const std::span<const double> counts = std::span(slot).first(counters);
+    const std::uint64_t sum = word_checksum(std::as_bytes(state), word_checksum(std::as_bytes(counts)));
     slot[counters] = static_cast<double>(sum >> 32U);
     slot[counters + 1] = static_cast<double>(sum & 0xffffffffU);
   }

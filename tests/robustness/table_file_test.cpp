@@ -1,5 +1,6 @@
 // Damaged geometry tables: every one is rejected with a message that names the file, or read as it was written.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "../unit/small_geometry_table.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -76,6 +78,28 @@ TEST_F(TableFile, CutAnywhereIsRejected) {
   EXPECT_NE(outcome().find("damage in the first 512 bytes"), std::string::npos) << outcome();
   write_bytes(bytes_);
   EXPECT_EQ(outcome(), "") << "the whole file is still a good one";
+}
+
+TEST_F(TableFile, SealsOfEarlierVersionsHold) {
+  constexpr std::size_t block_bytes = 512, mark_bytes = 8;
+  const std::string contents = bytes_.substr(block_bytes);
+  std::string padded = contents;
+  padded.resize((contents.size() + 7) / 8 * 8, '\0');
+  const std::uint64_t sum = checksum_of_bytes(std::as_bytes(std::span(padded)), checksum_seed);
+  std::string seal = bytes_.substr(0, mark_bytes) +
+                     fmt::format("{} bytes follow this block of 512, FNV-1a {:016x}\n", contents.size(), sum);
+  seal.resize(block_bytes, '\0');
+  write_bytes(seal + contents);
+  EXPECT_EQ(outcome(), "");
+  write_bytes(seal + contents.substr(1));
+  EXPECT_NE(outcome().find("the file is cut short"), std::string::npos) << outcome();
+  std::string damaged = contents;
+  damaged[contents.size() / 2] ^= 1;
+  write_bytes(seal + damaged);
+  EXPECT_NE(outcome().find("the file is damaged"), std::string::npos) << outcome();
+  seal[20] ^= 1;
+  write_bytes(seal + contents);
+  EXPECT_NE(outcome().find("damage in the first 512 bytes"), std::string::npos) << outcome();
 }
 
 TEST_F(TableFile, EveryFlippedByteIsRejected) {
