@@ -35,8 +35,7 @@ void DividedSubstitution::respond(const SubstitutionFactor& factor, Eigen::Vecto
 void DividedSubstitution::respond(const SubstitutionFactor& factor, double weight, const Eigen::VectorXd& extra,
                                   Eigen::VectorXd& solution) {
   factor.load(path_, few_, weight, extra, work_);
-  factor.forward(work_, path_);
-  factor.add(path_, known_, work_);
+  factor.forward(work_, path_, known_);
   factor.backward(work_, solved_, path_);
   factor.read(few_, solved_, solution);
 }

@@ -265,6 +265,18 @@ class Division {
     if (layout_.unknown[entry] >= 0) layout_.single.push_back({static_cast<int>(entry), layout_.unknown[entry]});
   }
 
+  void set_standing() {
+    const auto position = [&](int u) { return static_cast<int>(layout_.position(u)); };
+    for (int i = 0; i < static_cast<int>(layout_.range.count); ++i) {
+      const int u = static_cast<int>(layout_.range.begin) + i, other = layout_.mirrored[index(i)];
+      if (other < 0) {
+        layout_.standing.push_back({position(u), -1, -1});
+      } else {
+        layout_.standing.push_back({position(std::min(u, other)), position(std::max(u, other)), other});
+      }
+    }
+  }
+
   // False where pairs stand in slots that differ from section to section.
   bool pair_slots(const MirrorPairs& pairs) {
     layout_.mirrored.assign(section_.size(), -1);
@@ -292,6 +304,7 @@ class Division {
       layout_.unknown[static_cast<std::size_t>(sections * p.number + p.section)] = static_cast<int>(i);
     }
     find_consecutive();
+    set_standing();
     return true;
   }
 

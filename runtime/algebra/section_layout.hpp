@@ -80,7 +80,14 @@ struct SectionLayout {
   std::vector<Interface> interfaces;  ///< interface unknowns
   std::vector<int> border_of;         ///< of every border slot and section the interface unknown, -1: none
   std::vector<int> mirrored;          ///< of the unknowns in the range the other one of the pair; -1: none
-  std::vector<int> unknown;           ///< of every slot and section; -1: none
+  /// Where what an unknown takes part by stands in a vector of this layout: itself, or the sum and the difference of
+  /// its pair.
+  struct Standing {
+    int sum, difference;  ///< difference: -1 without a pair
+    int other;            ///< of the pair; -1: there is none
+  };
+  std::vector<Standing> standing;  ///< of the unknowns in the range
+  std::vector<int> unknown;        ///< of every slot and section; -1: none
   /// The other slot of a pair, alike in all sections.
   struct Partner {
     int slot = -1;           ///< -1: there is none

@@ -245,7 +245,7 @@ std::size_t SectionedLdlt::bytes() const noexcept {
 }
 
 std::size_t SectionedLdlt::stored_bytes() const noexcept {
-  return bytes() + layout_->place.size() * sizeof(SectionLayout::Place) +
+  return bytes() + layout_->place.size() * (sizeof(SectionLayout::Place) + sizeof(SectionLayout::Standing)) +
          (layout_->border_of.size() + strip_of_.size()) * sizeof(int) +
          (interfaces_ ? interfaces_->stored_bytes() - interfaces_->bytes() : 0);
 }
@@ -297,17 +297,16 @@ void SectionedLdlt::into(std::span<const int> few, double weight, const Vector& 
 void SectionedLdlt::set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
   const double of_pair = root_half * weight;
   for (int unknown : few) {
-    const int other = layout_->mirrored[index(unknown - range_begin())];
+    const auto [sum, difference, other] = layout_->standing[index(unknown - range_begin())];
     const double value = natural[unknown];
     if (other < 0) {
-      ordered[layout_->position(unknown)] = weight * value;
+      ordered[sum] = weight * value;
       continue;
     }
     const double of_other = natural[other];
     if (other < unknown && of_other != 0.0) continue;  // not zero, so one of the few: it sets both
-    const auto [first, second] = std::minmax(unknown, other);
-    ordered[layout_->position(first)] = of_pair * (value + of_other);
-    ordered[layout_->position(second)] = of_pair * (unknown < other ? value - of_other : of_other - value);
+    ordered[sum] = of_pair * (value + of_other);
+    ordered[difference] = of_pair * (unknown < other ? value - of_other : of_other - value);
   }
 }
 
@@ -324,17 +323,14 @@ void SectionedLdlt::load(const Path& path, std::span<const int> few, double weig
   set(few, weight, natural, ordered);
 }
 
-void SectionedLdlt::add(const Path& path, const Vector& known, Vector& y) const {
-  Lanes* const to = lanes(y);
-  const Lanes* const from = lanes(known);
-  visit_slots(path, [&](int slot) { to[slot] += from[slot]; });
-  const Eigen::Index count = room() - factor_begin();
-  y.tail(count) += known.tail(count);
-}
-
 void SectionedLdlt::read(std::span<const int> few, const Vector& ordered, Vector& natural) const {
   for (int unknown : few) {
-    natural[unknown] = layout_->combined(unknown, [&](Eigen::Index k) { return ordered[layout_->position(k)]; });
+    const auto [sum, difference, other] = layout_->standing[index(unknown - range_begin())];
+    if (other < 0) {
+      natural[unknown] = ordered[sum];
+    } else {
+      natural[unknown] = root_half * (ordered[sum] + (unknown < other ? ordered[difference] : -ordered[difference]));
+    }
   }
 }
 
@@ -393,15 +389,20 @@ void SectionedLdlt::forward(Vector& y) const {
   forward_interfaces(y);
 }
 
-void SectionedLdlt::forward(Vector& y, const Path& path) const {
+void SectionedLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
   Lanes* const numbers = lanes(y);
+  const Lanes* const more = lanes(known);
   for (int s : path.nodes()) {
     const Strip& strip = strip_[index(s)];
+    const std::span slots = std::span(slot_).subspan(index(strip.slot), index(strip.columns));
     bool nothing = true;
-    for (int j = 0; j < strip.columns; ++j) nothing &= vanishes(numbers[slot_[index(strip.slot + j)]]);
+    for (int slot : slots) nothing &= vanishes(numbers[slot]);
     if (!nothing) forward_strip(strip, numbers);
+    for (int slot : slots) numbers[slot] += more[slot];  // no strip after this one reads them
   }
   forward_interfaces(y);
+  const Eigen::Index count = room() - factor_begin();
+  y.tail(count) += known.tail(count);
 }
 
 void SectionedLdlt::backward(const Vector& y, Vector& x, const Path& path) const {

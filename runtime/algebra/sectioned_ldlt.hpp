@@ -33,11 +33,10 @@ class SectionedLdlt final : public SubstitutionFactor {
   void out_of(const Vector& ordered, Vector& natural) const override;
   void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
             Vector& ordered) const override;
-  void add(const Path& path, const Vector& known, Vector& y) const override;
   void read(std::span<const int> few, const Vector& ordered, Vector& natural) const override;
 
   void forward(Vector& y) const override;
-  void forward(Vector& y, const Path& path) const override;
+  void forward(Vector& y, const Path& path, const Vector& known) const override;
   void backward(const Vector& y, Vector& x, const Path& path) const override;
   void backward_off(const Path& path, const Vector& y, Vector& x) const override;
 

@@ -253,10 +253,6 @@ void SparseLdlt::load(const Path& path, std::span<const int> few, double weight,
   for (int unknown : few) ordered[position(unknown)] = weight * natural[unknown];
 }
 
-void SparseLdlt::add(const Path& path, const Vector& known, Vector& y) const {
-  visit(path, [&](int first, int columns) { y.segment(first, columns) += known.segment(first, columns); });
-}
-
 void SparseLdlt::read(std::span<const int> few, const Vector& ordered, Vector& natural) const {
   for (int unknown : few) natural[unknown] = ordered[position(unknown)];
 }
@@ -315,7 +311,7 @@ void SparseLdlt::backward(double* x) const {
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, scratch.data());
 }
 
-void SparseLdlt::forward(Vector& y, const Path& path) const {
+void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
   // Far from its load a solution decays until it is a denormal number, on which a processor is a hundred times slower.
   constexpr double nothing = 1e-40;
   Vector scratch(most_height_);
@@ -327,6 +323,7 @@ void SparseLdlt::forward(Vector& y, const Path& path) const {
     } else {
       forward(y.data(), block, scratch.data());
     }
+    own += known.segment(block.first, block.columns);  // no block after this one reads them
   }
 }
 

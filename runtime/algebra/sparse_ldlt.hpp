@@ -55,7 +55,6 @@ class SparseLdlt final : public SubstitutionFactor {
   void out_of(const Vector& ordered, Vector& natural) const override;
   void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
             Vector& ordered) const override;
-  void add(const Path& path, const Vector& known, Vector& y) const override;
   void read(std::span<const int> few, const Vector& ordered, Vector& natural) const override;
 
   /// Full solutions under every column of loads, some at a time: the factor is read once for all of them.
@@ -66,7 +65,7 @@ class SparseLdlt final : public SubstitutionFactor {
   void forward(double* y) const;
   /// x <- L⁻ᵀ D⁻¹ x, of room() numbers.
   void backward(double* x) const;
-  void forward(Vector& y, const Path& path) const override;
+  void forward(Vector& y, const Path& path, const Vector& known) const override;
   void backward(const Vector& y, Vector& x, const Path& path) const override;
   void backward_off(const Path& path, const Vector& y, Vector& x) const override;
 

@@ -40,15 +40,13 @@ class SubstitutionFactor {
   /// A load times a weight; sets the entries on the path. @pre it is zero at all unknowns but the few, which are on it
   virtual void load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
                     Vector& ordered) const = 0;
-  /// y <- y + known on the path.
-  virtual void add(const Path& path, const Vector& known, Vector& y) const = 0;
   /// Of a solution, few unknowns of the path.
   virtual void read(std::span<const int> few, const Vector& ordered, Vector& natural) const = 0;
 
   /// y <- L⁻¹ y.
   virtual void forward(Vector& y) const = 0;
-  /// y <- L⁻¹ y for a y that is zero off the path.
-  virtual void forward(Vector& y, const Path& path) const = 0;
+  /// y <- L⁻¹ y + known on the path, for a y that is zero off it.
+  virtual void forward(Vector& y, const Path& path, const Vector& known) const = 0;
   /// The entries of L⁻ᵀ D⁻¹ y on the path; those of x elsewhere stay as they are.
   virtual void backward(const Vector& y, Vector& x, const Path& path) const = 0;
   /// The entries of L⁻ᵀ D⁻¹ y off the path, for an x that has those on it.
