@@ -40,25 +40,16 @@ void LoadedSweepOptions::validate() const {
 
 namespace {
 
-/// Equal distances, at most `spacing`, and the places half-way between.
-std::vector<double> halved_roll_nodes(const Interval& roll, double spacing) {
+/// Equal distances, at most `spacing`, each divided into `parts`.
+std::vector<double> roll_nodes(const Interval& roll, double spacing, int parts) {
   constexpr double rounding = 1e-9;
-  const int intervals = 2 * std::max(2, static_cast<int>(std::ceil((roll.high - roll.low) / spacing - rounding)));
+  const int intervals = parts * std::max(2, static_cast<int>(std::ceil((roll.high - roll.low) / spacing - rounding)));
   std::vector<double> nodes;
   for (int i = 0; i <= intervals; ++i) {
     const double share = static_cast<double>(i) / intervals;
     nodes.push_back((1.0 - share) * roll.low + share * roll.high);
   }
   return nodes;
-}
-
-template <class Value>
-void keep_even(std::vector<Value>& values, std::size_t together) {
-  std::vector<Value> kept;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i / together % 2 == 0) kept.push_back(std::move(values[i]));
-  }
-  values = std::move(kept);
 }
 
 constexpr double pressure_error = 0.04;  // of the interpolation
@@ -103,17 +94,13 @@ class LoadedSweep {
       const ColumnPlace place{column.y0, column.roll, column.yaw};
       solved_.emplace(place, std::move(column));
     }
-    roll_ = halved_roll_nodes(options.roll, options.roll_spacing);
     yaw_squared_ = yaw_squared_nodes(options.yaw, options.yaw_nodes);
     column_.contact = options.contact;
     column_.levels = options.levels;
     column_.largest_level =
         std::pow(contact_at_load(search, {}, options.largest_load, options.contact).contact.elastic_energy, 0.2);
-    set_warps();
-    if (pressures_agree_over_roll()) {
-      keep_even(roll_, 1);
-      keep_even(warp_, yaw_squared_.size());
-    }
+    set_roll(2);
+    if (pressures_agree_over_roll()) set_roll(1);
   }
 
   LoadedTableData table() {
@@ -129,6 +116,14 @@ class LoadedSweep {
  private:
   [[nodiscard]] double reference_roll() const {
     return 0.0 >= roll_.front() && 0.0 <= roll_.back() ? 0.0 : roll_.front();
+  }
+
+  void set_roll(int parts) {
+    roll_ = roll_nodes(options_.roll, options_.roll_spacing, parts);
+    warp_.clear();
+    jumps_.clear();
+    column_.cut.clear();
+    set_warps();
   }
 
   void set_warps() {
@@ -163,7 +158,8 @@ class LoadedSweep {
   }
 
   /// Where a contact reaches a strip of greater curvature its largest pressure begins to rise, at a lateral shift that
-  /// moves with the roll otherwise than the nodes do.
+  /// moves with the roll otherwise than the nodes do. Between every other node of roll, the largest pressure under one
+  /// load is interpolated as the table does that of a part at one energy.
   [[nodiscard]] bool pressures_agree_over_roll() const {
     constexpr double load = 10e3;  // N; under greater ones the pressure rises less steeply
     constexpr double spacing = 2e-4;
@@ -174,29 +170,32 @@ class LoadedSweep {
     std::atomic<bool> agree = true;
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < places; ++i) {
-      const double y0 = options_.lateral.low + (i + 0.5) / places * (options_.lateral.high - options_.lateral.low);
-      std::vector<double> pressure;
-      for (std::size_t r = 0; r < roll_.size() && agree; ++r) {
-        failure.guard([&] { pressure.push_back(largest_pressure(y0, r, load, contact)); });
-        if (r > 0 && r % 2 == 0 && pressure.size() == r + 1) {
-          const double low = pressure[r - 2], high = pressure[r], middle = pressure[r - 1];
+      failure.guard([&] {
+        const double y0 = options_.lateral.low + (i + 0.5) / places * (options_.lateral.high - options_.lateral.low);
+        std::vector<double> pressure;
+        for (std::size_t r = 0; r < roll_.size(); ++r) pressure.push_back(largest_pressure(y0, r, load, contact));
+        for (std::size_t r = 1; r < roll_.size(); r += 2) {
+          const double low = pressure[r - 1], middle = pressure[r], high = pressure[r + 1];
           const bool known = std::isfinite(low + middle + high);
           if (known && !pressure_agrees(0.5 * (low * low + high * high), middle)) agree = false;
         }
-      }
+      });
     }
     failure.rethrow();
     return agree;
   }
 
-  /// Without yaw; not a number where too many elements are needed.
+  /// Without yaw; not a number where no solution is found.
   [[nodiscard]] double largest_pressure(double y0, std::size_t roll, double load,
                                         const LoadedContactOptions& options) const {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const WheelsetPose pose{.y = warp_[roll * yaw_squared_.size()].at(y0).y, .roll = roll_[roll]};
+    if (!std::isfinite(search_.first_touch(pose.y, pose.roll, pose.yaw).z_touch)) return unknown;
     try {
-      return contact_at_load(search_, pose, load, options).contact.largest_pressure;
+      const ContactAtLoad found = contact_at_load(search_, pose, load, options);
+      return found.converged ? found.contact.largest_pressure : unknown;
     } catch (const TooManyElements&) {
-      return std::numeric_limits<double>::quiet_NaN();
+      return unknown;
     }
   }
 

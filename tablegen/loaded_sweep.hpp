@@ -17,8 +17,8 @@ struct LoadedSweepOptions {
   double yaw = 0.010;               ///< largest, 0..0.2 [rad]; 0: without yaw
   double largest_load = 300e3;      ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
   int levels = 33;                  ///< of energy, 5..1000
-  /// Of nodes of roll at most, 3 nodes at least, 1e-5..0.1 [rad]. Halved where pressures of 10 kN half-way between them
-  /// are off by more than 4 %.
+  /// Of nodes of roll at most, 3 nodes at least, 1e-5..0.1 [rad]. Halved once where the largest pressure under 10 kN,
+  /// half-way between two of them and without yaw, is off by more than 4 %.
   double roll_spacing = 1e-3;
   int yaw_nodes = 4;            ///< 2..LoadedTable::most_yaws where not fixed
   double force_error = 2.5e-3;  ///< of the vertical force above 5 kN, at which an interval of y0 is halved, 1e-5..0.1
@@ -47,8 +47,9 @@ struct LoadedColumnStore {
   std::function<void(const LoadedSweepColumn&)> keep;
 };
 
-/// Solves the loaded contact at the nodes of a table. Intervals of y0 are halved until the interpolation agrees with
-/// the solution in their middle, without roll and yaw and at two corners of their range (OpenMP over columns).
+/// Solves the loaded contact at the nodes of a table. All intervals of roll are halved where roll_spacing says.
+/// Intervals of y0 are halved until the interpolation agrees with the solution in their middle, without roll and yaw
+/// and at two corners of their range (OpenMP over columns).
 /// @throws InputError, ComputationError of loaded_column()
 [[nodiscard]] LoadedTableData sweep_loaded(const ContactSearch& search, const LoadedSweepOptions& options,
                                            LoadedColumnStore store = {}, const Progress& progress = {});

@@ -22,8 +22,8 @@ double corner(double x, double s) {
   return (x != 0.0 ? x * std::asinh(s / std::abs(x)) : 0.0) + (s != 0.0 ? s * std::asinh(x / std::abs(s)) : 0.0);
 }
 
-/// Of plans without timing, at least `low`: other sizes with the factors 3 and 5 take up to three times as long for
-/// each number.
+/// The least size from `low` on for which FFTW 3.3 finds fast plans without timing them. With its plans for other sizes
+/// with the factors 2, 3 and 5 a transform takes up to three times as long as with these.
 int padded_size(int low) {
   constexpr std::array sizes{16, 20, 32, 40, 64, 80, 96, 128, 160, 200, 256, 320, 400, 512, 640, 800, 1024};
   const auto* const found = std::lower_bound(sizes.begin(), sizes.end(), low);

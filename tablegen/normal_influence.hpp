@@ -44,7 +44,7 @@ class NormalInfluence {
 
   Size size_;
   int padded_x_, padded_s_;
-  int stride_;  ///< of rows of spectra: not a power of two, whose rows would share a few lines of the cache
+  int stride_;  ///< of rows of spectra, padded_x_ + 2: rows a power of two apart would share few lines of the cache
   std::vector<std::complex<double>> direction_;  ///< e^{iδ} of each row
   std::vector<double> kernel_, inverse_;         ///< rows of wave numbers along x, divided by the grid's size
   double self_ = 0.0;

@@ -392,7 +392,7 @@ struct LoadedTable::PartPlace {
     std::size_t low;
     double part, rate;
 
-    Linear() = default;  // sets nothing
+    Linear() = default;  // not set: a look-up sets those of the poses in contact before it reads them
     Linear(const std::vector<double>& node, double x) noexcept : low(0), part(0.0), rate(0.0) {
       if (node.size() == 1) return;
       const auto above = std::upper_bound(node.begin() + 1, node.end() - 1, x);
@@ -909,7 +909,7 @@ class LoadedTable::LookUp {
   std::array<int, places> level_{};
   V level_number_{}, width_, t_, u_;
   HermiteBasisOf<V> across_{V{}, broadcast<V>(1.0)}, along_{V{}, broadcast<V>(1.0)};
-  std::array<OfPoses, lines_used> line_;
+  std::array<OfPoses, lines_used> line_;  ///< find_levels() sets those of every pose
   std::array<Four, lines_used> z_;
   std::array<Four, NodeSums<slopes>::wanted> y_;  ///< y(y0): value and slope at the lower node, then at the upper one
   V by_Y_, by_Z_;                                 ///< 1/Y_y0, 1/Z_w

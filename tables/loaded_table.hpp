@@ -75,7 +75,7 @@ struct LoadedPartOf {
   [[nodiscard]] static LoadedPartOf of(const std::array<T, quantities>& v) noexcept {
     return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11]};
   }
-  /// In that order.
+  /// values()[quantity] @pre quantity < quantities
   [[nodiscard]] T& operator[](std::size_t quantity) noexcept {
     constexpr std::array members{&LoadedPartOf::share,  &LoadedPartOf::arm_x,   &LoadedPartOf::arm_y,
                                  &LoadedPartOf::arm_z,  &LoadedPartOf::angle,   &LoadedPartOf::a,

@@ -268,7 +268,7 @@ class Division {
   void set_standing() {
     const auto position = [&](int u) { return static_cast<int>(layout_.position(u)); };
     for (int i = 0; i < static_cast<int>(layout_.range.count); ++i) {
-      const int u = static_cast<int>(layout_.range.begin) + i, other = layout_.mirrored[index(i)];
+      const int u = static_cast<int>(layout_.range.begin) + i, other = mirrored_[index(i)];
       if (other < 0) {
         layout_.standing.push_back({position(u), -1, -1});
       } else {
@@ -279,12 +279,12 @@ class Division {
 
   // False where pairs stand in slots that differ from section to section.
   bool pair_slots(const MirrorPairs& pairs) {
-    layout_.mirrored.assign(section_.size(), -1);
+    mirrored_.assign(section_.size(), -1);
     layout_.partner.assign(static_cast<std::size_t>(layout_.slots), {});
     for (const auto& [u, v] : pairs) {
       if (u < layout_.range.begin || v >= layout_.range.end()) continue;
-      layout_.mirrored[static_cast<std::size_t>(u - layout_.range.begin)] = v;
-      layout_.mirrored[static_cast<std::size_t>(v - layout_.range.begin)] = u;
+      mirrored_[static_cast<std::size_t>(u - layout_.range.begin)] = v;
+      mirrored_[static_cast<std::size_t>(v - layout_.range.begin)] = u;
       const SectionLayout::Place &p = place(u), &q = place(v);
       if (p.section != q.section) return false;
       if (p.section < 0) continue;
@@ -300,7 +300,7 @@ class Division {
       const SectionLayout::Place& p = place(i);
       if (p.section < 0) continue;
       const int paired = layout_.partner[static_cast<std::size_t>(p.number)].slot;
-      if ((paired >= 0) != (layout_.mirrored[static_cast<std::size_t>(i - layout_.range.begin)] >= 0)) return false;
+      if ((paired >= 0) != (mirrored_[static_cast<std::size_t>(i - layout_.range.begin)] >= 0)) return false;
       layout_.unknown[static_cast<std::size_t>(sections * p.number + p.section)] = static_cast<int>(i);
     }
     find_consecutive();
@@ -312,7 +312,8 @@ class Division {
   const UnknownPlaces& places_;
   const Cuts& cuts_;
   SectionLayout layout_;
-  std::vector<int> section_;  // of the unknowns in the range
+  std::vector<int> section_;   // of the unknowns in the range
+  std::vector<int> mirrored_;  ///< of the unknowns in the range the other one of the pair; -1: none
 };
 
 }  // namespace
@@ -534,6 +535,12 @@ SectionLayout::Entries SectionLayout::entries(std::initializer_list<const Sparse
   std::vector<int> next(result.begin.begin(), result.begin.end() - 1);
   for (const OfColumn& of : found) result.section[index(next[index(of.column)]++)] = of.entry;
   return result;
+}
+
+std::size_t SectionLayout::bytes() const noexcept {
+  const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
+  return of(place) + of(interfaces) + of(border_of) + of(standing) + of(unknown) + of(partner) + of(consecutive) +
+         of(single);
 }
 
 std::optional<SectionLayout> divide(const Sparse& matrix, const UnknownPlaces& places, const MirrorPairs& pairs,

@@ -79,11 +79,9 @@ struct SectionLayout {
   std::vector<Place> place;           ///< of the unknowns in the range
   std::vector<Interface> interfaces;  ///< interface unknowns
   std::vector<int> border_of;         ///< of every border slot and section the interface unknown, -1: none
-  std::vector<int> mirrored;          ///< of the unknowns in the range the other one of the pair; -1: none
-  /// Where what an unknown takes part by stands in a vector of this layout: itself, or the sum and the difference of
-  /// its pair.
+  /// Where an unknown stands in a vector of this layout: by itself, or as the sum and the difference of its pair.
   struct Standing {
-    int sum, difference;  ///< difference: -1 without a pair
+    int sum, difference;  ///< sum: itself, difference: -1 without a pair
     int other;            ///< of the pair; -1: there is none
   };
   std::vector<Standing> standing;  ///< of the unknowns in the range
@@ -112,6 +110,8 @@ struct SectionLayout {
   [[nodiscard]] Eigen::Index interface_begin() const noexcept {
     return border_begin() + Eigen::Index{sections} * borders;
   }
+  /// Of its lists [bytes].
+  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Position of an unknown in a vector of this layout.
   [[nodiscard]] Eigen::Index position(Eigen::Index u) const noexcept {
     const Place& p = place[static_cast<std::size_t>(u - range.begin)];
@@ -122,7 +122,7 @@ struct SectionLayout {
   /// or the difference of its pair. Its inverse is itself.
   template <class Value>
   [[nodiscard]] double combined(Eigen::Index u, Value&& value) const {
-    const int other = mirrored[static_cast<std::size_t>(u - range.begin)];
+    const int other = standing[static_cast<std::size_t>(u - range.begin)].other;
     if (other < 0) return value(u);
     return other > u ? root_half * (value(u) + value(other)) : root_half * (value(other) - value(u));
   }

@@ -100,7 +100,7 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
   const SectionLayout& l = *layout_;
   const SectionLayout::Entries entries = l.entries({&matrix});
   std::vector<Eigen::Triplet<double>> pairs;                   // of slots that some section couples
-  std::vector<int> column_of(index(l.slots + l.borders), -1);  // that has last had an entry in this row
+  std::vector<int> column_of(index(l.slots + l.borders), -1);  // the last column that had an entry in a row
   for (int j = 0; j < l.slots; ++j) {
     for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
       const int row = entries.section[index(k)].row;
@@ -245,15 +245,14 @@ std::size_t SectionedLdlt::bytes() const noexcept {
 }
 
 std::size_t SectionedLdlt::stored_bytes() const noexcept {
-  return bytes() + layout_->place.size() * (sizeof(SectionLayout::Place) + sizeof(SectionLayout::Standing)) +
-         (layout_->border_of.size() + strip_of_.size()) * sizeof(int) +
+  return bytes() + layout_->bytes() + strip_of_.size() * sizeof(int) +
          (interfaces_ ? interfaces_->stored_bytes() - interfaces_->bytes() : 0);
 }
 
 void SectionedLdlt::find_path(std::span<const int> unknowns, Path& path) const {
   path.clear(strip_.size());
   for (int unknown : unknowns) {
-    for (const int part : {unknown, layout_->mirrored[index(unknown - range_begin())]}) {
+    for (const int part : {unknown, layout_->standing[index(unknown - range_begin())].other}) {
       if (part < 0) continue;
       const SectionLayout::Place& p = layout_->place[index(part - range_begin())];
       if (p.section < 0) continue;
@@ -270,7 +269,7 @@ bool SectionedLdlt::covers(const Path& path, std::span<const int> unknowns) cons
     return p.section < 0 || path.contains(strip_of_[index(p.number)]);
   };
   return std::all_of(unknowns.begin(), unknowns.end(), [&](int unknown) {
-    const int other = layout_->mirrored[index(unknown - range_begin())];
+    const int other = layout_->standing[index(unknown - range_begin())].other;
     return covered(unknown) && (other < 0 || covered(other));
   });
 }
@@ -297,7 +296,7 @@ void SectionedLdlt::into(std::span<const int> few, double weight, const Vector& 
 void SectionedLdlt::set(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {
   const double of_pair = root_half * weight;
   for (int unknown : few) {
-    const auto [sum, difference, other] = layout_->standing[index(unknown - range_begin())];
+    const auto& [sum, difference, other] = layout_->standing[index(unknown - range_begin())];
     const double value = natural[unknown];
     if (other < 0) {
       ordered[sum] = weight * value;

@@ -45,7 +45,7 @@ class SubstitutionFactor {
 
   /// y <- L⁻¹ y.
   virtual void forward(Vector& y) const = 0;
-  /// y <- L⁻¹ y + known on the path, for a y that is zero off it.
+  /// y <- (L⁻¹ y) + known on the path. @pre y is zero off it; known has been through forward()
   virtual void forward(Vector& y, const Path& path, const Vector& known) const = 0;
   /// The entries of L⁻ᵀ D⁻¹ y on the path; those of x elsewhere stay as they are.
   virtual void backward(const Vector& y, Vector& x, const Path& path) const = 0;

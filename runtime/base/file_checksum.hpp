@@ -8,7 +8,7 @@
 
 namespace railtab {
 
-/// 64-bit checksum that takes eight bytes at a time, for what is written while a run goes on: h := (h XOR word)·p,
+/// 64-bit checksum that takes eight bytes at a time: h := (h XOR word)·p,
 /// then h := h XOR h >> 32, with the prime p of FNV. Each step is a bijection of h, so that a change within one word
 /// always shows; the shift keeps changes of the highest bits of two words from cancelling. The last bytes are filled up
 /// with zeros to a word: add the length where it may vary.

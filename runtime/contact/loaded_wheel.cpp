@@ -763,7 +763,7 @@ std::array<Generalised<Number<T>>, 9> tangent_of(const LoadedContactForce<T>& fo
 /// Tangents of wheels in track axes. @param of_right by columns, is overwritten @param to of each wheel, room for a
 /// Matrix9
 template <class V>
-void set_tangents(std::array<Generalised<V>, 9>&& of_right, const V& mirror,
+void set_tangents(std::array<Generalised<V>, 9>& of_right, const V& mirror,
                   const std::array<double*, lanes_of<V>>& to) {
   for (std::size_t j = 0; j < 9; ++j)
     for (std::size_t i = 0; i < 9; ++i)
@@ -788,7 +788,8 @@ LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelC
   LoadedWheelResponse response;
   const double mirror = mirror_of(side);
   WheelForces<T>(force, mirror, lookup).give(0, pose_of(wheel), lookup, response.force);
-  set_tangents(tangent_of(force, wheel, rates, total, sum, of_motion), mirror, {response.tangent.data()});
+  std::array<Generalised<Number<T>>, 9> of_right = tangent_of(force, wheel, rates, total, sum, of_motion);
+  set_tangents(of_right, mirror, {response.tangent.data()});
   return response;
 }
 
@@ -944,7 +945,9 @@ std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<c
   std::array<double*, Lanes::count> tangent;
   tangent.fill(unanswered.data());
   side_by_side.visit_answered([&](std::size_t i) { tangent[i] = to[i].tangent->data(); });
-  set_tangents(tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<Lanes>(1.0)), mirror, tangent);
+  std::array<Generalised<Lanes>, 9> of_right =
+      tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<Lanes>(1.0));
+  set_tangents(of_right, mirror, tangent);
   return side_by_side.answered;
 }
 

@@ -10,7 +10,7 @@
 namespace railtab {
 
 /// A checkpoint as the numbers of a slot: sequence number, step, records, length of the state, upper and lower half of
-/// the checksum over these four and the state, the state.
+/// the word_checksum() over these four and the state, the state.
 struct CheckpointSlot {
   long sequence = 0;  ///< counts the checkpoints of a run from 1
   Checkpoint checkpoint;

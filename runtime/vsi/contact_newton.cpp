@@ -168,7 +168,8 @@ void limit_moves(const ContactProblem& problem, Eigen::Ref<Eigen::VectorXd> corr
 double find_force_change(Wheelsets wheelsets, NewtonWorkspace& ws) {
   double largest = 0.0;
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
-    auto change = ws.force_change.segment<wheelset_unknowns>(wheelset_unknowns * w);
+    Eigen::Ref<Eigen::Matrix<double, wheelset_unknowns, 1>> change =
+        ws.force_change.segment<wheelset_unknowns>(wheelset_unknowns * w);
     change = times(ws.tangent[index(w)], ws.correction.segment<wheelset_unknowns>(wheelset_unknowns * w));
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
   }

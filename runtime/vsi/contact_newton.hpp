@@ -159,7 +159,7 @@ struct NewtonWorkspace {
   std::vector<int> to_evaluate;  ///< wheelsets whose forces are to be computed side by side
   std::vector<char> evaluated;   ///< per wheelset, whether they were
   Eigen::VectorXd residual, correction;
-  Eigen::VectorXd force_change;        ///< by the correction, to first order
+  Eigen::VectorXd force_change;        ///< by the correction before it is limited, to first order
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
   std::vector<double> tangent_error;   ///< per group, estimate: of a change of forces by the tangent, relative
   CorrectionTrend trend;

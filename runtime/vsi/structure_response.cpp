@@ -585,6 +585,7 @@ struct NodeMotion {
 struct HeadWeights {
   Pack first, last;
 
+  /// @param node where the node's unknowns begin in the rows
   HeadWeights(const RailInterpolation& r, std::size_t node) noexcept
       : first{r.roll[node + twist], r.y[node + y], r.z[node + z], r.roll[node + roll]},
         last{0.0, 0.0, r.z[node + pitch], r.y[node + yaw]} {}
@@ -606,13 +607,14 @@ Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailCo
     of_roll.add(c.roll[q + roll], column(roll));
     of_roll.add(c.roll[q + twist], column(twist));
   });
-  const HeadWeights left(i.rows, 0), right(i.rows, of_node);
+  const HeadWeights begin(i.rows, 0), end(i.rows, of_node);
   Eigen::Matrix3d result;
   for (std::size_t p = 0; p < 2; ++p) node[p][0].add(j.rail->head_height, node[p][2]);
   for (Eigen::Index load = 0; load < 3; ++load) {
-    const NodeMotion &of_left = node[0][load], &of_right = node[1][load];
-    const Pack first = left.first * of_left.first + right.first * of_right.first;
-    const Pack last = left.last * of_left.last + right.last * of_right.last;
+    const NodeMotion &at_begin = node[0][load], &at_end = node[1][load];
+    const Pack first = begin.first * at_begin.first + end.first * at_end.first;
+    const Pack last = begin.last * at_begin.last + end.last * at_end.last;
+    // of y and yaw, z and pitch, twist rate and roll
     const Pack moved =
         __builtin_shufflevector(first, first, 1, 2, 0, 0) + __builtin_shufflevector(first, last, 7, 6, 3, 3);
     result.col(load) << moved[0] + i.rail->head_height * moved[2], moved[1], moved[2];

@@ -25,7 +25,8 @@ po::options_description loaded_options() {
       ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                               //
       ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head, LO below HI")  //
       ("roll-spacing", text_value("0.001")->value_name("RAD"),
-       "distance of the table's nodes of roll, at most; halved where pressures between them ask for it")  //
+       "distance of the table's nodes of roll, at most; halved once where pressures between them are off by more than "
+       "4 %")  //
       ("largest-load", text_value("300e3")->value_name("N"),
        "vertical force of the centred wheel at the last level of energy")  //
       ("levels", text_value("33")->value_name("N"), "levels of energy")    //

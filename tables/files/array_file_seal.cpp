@@ -23,8 +23,8 @@ namespace {
 constexpr std::string_view mark = sealed_file_signature;
 static_assert(mark.size() == hdf5_signature.size());
 
-// Which checksum a seal holds. That of bytes, 64-bit FNV-1a, is read only: seals had it when tables were small.
-constexpr std::string_view of_words = "word checksum", of_bytes = "FNV-1a";
+// Checksums of seals. 64-bit FNV-1a, of earlier versions, is only read.
+constexpr std::string_view word_sum = "word checksum", byte_sum = "FNV-1a";
 
 /// The whole block, so that damage to any of its bytes shows: mark, length of the rest, checksum of the rest, zeros.
 std::string seal_of(std::uint64_t length, std::string_view kind, std::uint64_t sum) {
@@ -36,7 +36,7 @@ std::string seal_of(std::uint64_t length, std::string_view kind, std::uint64_t s
 
 /// Of everything after the block; the last bytes are filled up with zeros to a whole number.
 std::string expected_seal(std::istream& stream, std::string_view kind) {
-  const auto continued = kind == of_words ? word_checksum : checksum_of_bytes;
+  const auto continued = kind == word_sum ? word_checksum : checksum_of_bytes;
   stream.seekg(seal_bytes);
   std::vector<char> buffer(std::size_t{1} << 16U);
   std::uint64_t sum = checksum_seed, length = 0;
@@ -61,16 +61,14 @@ std::string first_bytes(std::istream& stream, std::size_t count) {
 
 void check_seal(const std::filesystem::path& file, std::istream& stream, std::uint64_t bytes) {
   const std::string found = first_bytes(stream, seal_bytes);
-  const std::string_view kind = found.find(of_bytes) == std::string::npos ? of_words : of_bytes;
+  const std::string_view kind = found.find(byte_sum) == std::string::npos ? word_sum : byte_sum;
   if (found == expected_seal(stream, kind)) return;
   // Of a seal that is as it was written, the length tells what happened.
   unsigned long long length = 0, sum = 0;
-  const int numbers =
-      kind == of_bytes
-          ? std::sscanf(found.c_str() + mark.size(), "%llu bytes follow this block of %*u, FNV-1a %llx", &length, &sum)
-          : std::sscanf(found.c_str() + mark.size(), "%llu bytes follow this block of %*u, word checksum %llx", &length,
-                        &sum);
-  if (numbers != 2 || found != seal_of(length, kind, sum)) {
+  const std::size_t sum_at = found.find(kind) + kind.size();
+  const bool readable = std::sscanf(found.c_str() + mark.size(), "%llu bytes follow", &length) == 1 &&
+                        sum_at < found.size() && std::sscanf(found.c_str() + sum_at, "%llx", &sum) == 1;
+  if (!readable || found != seal_of(length, kind, sum)) {
     throw input_error(file.string(), fmt::format("damage in the first {} bytes", seal_bytes),
                       "the seal with which railtab writes tables");
   }
@@ -93,7 +91,7 @@ std::uint64_t checksum_of_bytes(std::span<const std::byte> bytes, std::uint64_t 
 
 void seal_file(const std::filesystem::path& file) {
   std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
-  const std::string block = expected_seal(stream, of_words);
+  const std::string block = expected_seal(stream, word_sum);
   stream.clear();
   stream.seekp(0);
   stream.write(block.data(), static_cast<std::streamsize>(block.size()));

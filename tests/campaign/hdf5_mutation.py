@@ -23,7 +23,7 @@ def fnv(content, sum=seed):
 
 
 def word_checksum(content, sum=seed):
-    """That of results: eight bytes at a time."""
+    """That of results and seals: eight bytes at a time."""
     content = content + bytes(-len(content) % 8)
     for word in numpy.frombuffer(content, "<u8").tolist():
         sum = ((sum ^ word) * prime) & mask

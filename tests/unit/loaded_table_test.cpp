@@ -405,23 +405,42 @@ TEST(LoadedSweep, FollowsAJumpThatSplitsWithRoll) {
   }
 }
 
-// An LMA-type wheel reaches a strip of greater curvature at shifts that move with the roll by half as much again as the
-// nodes do; no contact of the tread of S1002 does.
+// From a shift of 5.1 mm on, at roll 0, the contact of an LMA-type wheel reaches a strip of greater curvature; on the
+// tread it does not, nor does that of S1002.
 TEST(LoadedSweep, HalvesIntervalsOfRollWherePressuresBeginToRise) {
   const ContactSearch lma(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "LMA-type", 0.0)),
                                         ProfileCurve(standard_profile(ProfileKind::rail, "CHN60", 1.0 / 40.0)),
                                         PairDimensions{.flange_back = 1.353, .nominal_radius = 0.4575}));
   LoadedSweepOptions options;
   options.roll = {-1e-3, 1e-3};
-  options.yaw = 0.0;
-  options.roll_spacing = 1e-3;
-  options.levels = 5;
+  options.yaw = 2e-3;
+  options.yaw_nodes = 2;
+  options.levels = 9;
+  options.largest_load = 50e3;
   options.force_error = options.light_error = 0.1;
   options.contact.elements.across_narrowest = 14;
+  const std::vector<double> whole{-1e-3, 0.0, 1e-3}, halved{-1e-3, -5e-4, 0.0, 5e-4, 1e-3};
+  const Interval tread{-3e-3, -2.7e-3};
+  options.lateral = tread;
+  EXPECT_EQ(sweep_loaded(s1002_on_60e1(), options).roll, whole);
+  EXPECT_EQ(sweep_loaded(lma, options).roll, whole);
   options.lateral = {4.9e-3, 5.2e-3};
-  EXPECT_EQ(sweep_loaded(lma, options).roll, (std::vector{-1e-3, -5e-4, 0.0, 5e-4, 1e-3}));
-  options.lateral = {-3e-3, -2.7e-3};
-  EXPECT_EQ(sweep_loaded(s1002_on_60e1(), options).roll, (std::vector{-1e-3, 0.0, 1e-3}));
+  std::vector<LoadedSweepColumn> kept;
+  const LoadedTableData data = sweep_loaded(
+      lma, options, {.known = {}, .keep = [&](const LoadedSweepColumn& column) { kept.push_back(column); }});
+  EXPECT_EQ(data.roll, halved);
+  kept.resize(kept.size() / 2);
+  EXPECT_EQ(sweep_loaded(lma, options, {.known = kept, .keep = {}}).height, data.height);
+
+  const LoadedTable table(data);
+  for (const double y0 : {4.95e-3, 5.05e-3, 5.15e-3}) {
+    for (const double roll : {-2.5e-4, 2.5e-4}) {
+      const double y = y0 + 0.4575 * roll;
+      const LoadedContact exact = contact_at_load(lma, {.y = y, .roll = roll}, 10e3, options.contact).contact;
+      const LoadedLookup found = table.lookup(y, exact.pose.z, roll, 0.0);
+      EXPECT_NEAR(found.largest_pressure() / exact.largest_pressure, 1.0, 0.05) << "y0 " << y0 << ", roll " << roll;
+    }
+  }
 }
 
 // A table that its own generation has found to be wrong is read only where it is asked for.
