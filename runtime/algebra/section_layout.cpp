@@ -534,6 +534,10 @@ SectionLayout::Entries SectionLayout::entries(std::initializer_list<const Sparse
   result.section.resize(found.size());
   std::vector<int> next(result.begin.begin(), result.begin.end() - 1);
   for (const OfColumn& of : found) result.section[index(next[index(of.column)]++)] = of.entry;
+  for (std::size_t j = 0; j + 1 < result.begin.size(); ++j) {
+    std::stable_sort(result.section.begin() + result.begin[j], result.section.begin() + result.begin[j + 1],
+                     [](const Entries::OfSection& a, const Entries::OfSection& b) { return a.row < b.row; });
+  }
   return result;
 }
 

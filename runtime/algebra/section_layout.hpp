@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <optional>
@@ -151,8 +152,20 @@ struct SectionLayout {
       double value;
     };
     std::vector<int> begin;          ///< of each column, a slot, and the end; every row >= its column
-    std::vector<OfSection> section;  ///< in the order of the matrices in each column
+    std::vector<OfSection> section;  ///< by columns, in each by rows
     std::vector<OfInterfaces> interfaces;
+
+    /// Calls visitor(row, entries) for the rows of a column: what its matrices have there in all sections.
+    template <class Visitor>
+    void visit_rows(int column, Visitor&& visitor) const {
+      const auto at = static_cast<std::size_t>(column);
+      const auto end = section.begin() + begin[at + 1];
+      for (auto first = section.begin() + begin[at]; first != end;) {
+        const auto next = std::find_if(first, end, [row = first->row](const OfSection& e) { return e.row != row; });
+        visitor(first->row, std::span(first, next));
+        first = next;
+      }
+    }
   };
   /// @param matrices whole pattern, by_sums_and_differences() of the layout's pairs
   [[nodiscard]] Entries entries(std::initializer_list<const Eigen::SparseMatrix<double>*> matrices) const;

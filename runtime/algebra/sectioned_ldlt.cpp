@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <span>
 #include <string>
-#include <utility>
 
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/elimination_tree.hpp"
@@ -99,15 +99,12 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
     : layout_(std::move(layout)) {
   const SectionLayout& l = *layout_;
   const SectionLayout::Entries entries = l.entries({&matrix});
-  std::vector<Eigen::Triplet<double>> pairs;                   // of slots that some section couples
-  std::vector<int> column_of(index(l.slots + l.borders), -1);  // the last column that had an entry in a row
+  std::vector<Eigen::Triplet<double>> pairs;  // of slots that some section couples
   for (int j = 0; j < l.slots; ++j) {
-    for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
-      const int row = entries.section[index(k)].row;
-      if (std::exchange(column_of[index(row)], j) == j) continue;
+    entries.visit_rows(j, [&](int row, auto) {
       pairs.emplace_back(row, j, 1.0);
       if (row != j) pairs.emplace_back(j, row, 1.0);
-    }
+    });
   }
   const EliminationTree tree = tree_of(l.slots, l.borders, std::move(pairs));
   set_strips(tree);
@@ -122,18 +119,12 @@ SectionedLdlt::SectionedLdlt(const Sparse& matrix, std::shared_ptr<const Section
   numbers.value.assign(numbers.row.size(), Lanes{});
   numbers.diagonal.assign(index(l.slots), broadcast<Lanes>(1.0));  // of a section that lacks the unknown
   numbers.border.assign(index(l.borders * l.borders), Lanes{});
-  std::vector<Lanes*> of_row(column_of.size());
-  std::fill(column_of.begin(), column_of.end(), -1);
   for (int j = 0; j < l.slots; ++j) {
-    for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
-      const SectionLayout::Entries::OfSection& e = entries.section[index(k)];
-      Lanes*& lanes_of_entry = of_row[index(e.row)];
-      if (std::exchange(column_of[index(e.row)], j) != j) {
-        const auto [column, row] = std::minmax(tree.position[index(e.row)], tree.position[index(j)]);
-        lanes_of_entry = row == column ? &numbers.diagonal[index(column)] : &numbers.value[numbers.at(row, column)];
-      }
-      (*lanes_of_entry)[e.section] = e.value;
-    }
+    entries.visit_rows(j, [&](int i, std::span<const SectionLayout::Entries::OfSection> of_sections) {
+      const auto [column, row] = std::minmax(tree.position[index(i)], tree.position[index(j)]);
+      Lanes& value = row == column ? numbers.diagonal[index(column)] : numbers.value[numbers.at(row, column)];
+      for (const SectionLayout::Entries::OfSection& e : of_sections) value[e.section] = e.value;
+    });
   }
   for (const auto& e : entries.interfaces) {
     numbers.of_interfaces.emplace_back(e.row, e.column, e.value);

@@ -52,25 +52,12 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   }
   alike_.begin.assign(1, 0);
   other_.begin.assign(1, 0);
-  std::vector<int> number(index(l.slots + l.borders), -1), rows;
-  std::vector<Pair> pairs;
   for (int j = 0; j < l.slots; ++j) {
-    rows.clear();
-    pairs.clear();
-    for (int k = entries.begin[index(j)]; k < entries.begin[index(j + 1)]; ++k) {
-      const SectionLayout::Entries::OfSection& e = entries.section[index(k)];
-      int& of_row = number[index(e.row)];
-      if (of_row < 0) {
-        of_row = static_cast<int>(rows.size());
-        rows.push_back(e.row);
-        pairs.emplace_back();
+    entries.visit_rows(j, [&](int row, std::span<const SectionLayout::Entries::OfSection> of_sections) {
+      Pair pair;
+      for (const SectionLayout::Entries::OfSection& e : of_sections) {
+        (e.matrix == 0 ? pair.stiffness : pair.damping)[e.section] = e.value;
       }
-      Pair& pair = pairs[index(of_row)];
-      (e.matrix == 0 ? pair.stiffness : pair.damping)[e.section] = e.value;
-    }
-    std::sort(rows.begin(), rows.end());
-    for (const int row : rows) {
-      const Pair& pair = pairs[index(std::exchange(number[index(row)], -1))];
       if (const auto common = common_value(l, row, j, pair.stiffness, pair.damping)) {
         alike_.row.push_back(row);
         alike_.value.push_back(*common);
@@ -78,7 +65,7 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
         other_.row.push_back(row);
         other_.value.push_back(pair);
       }
-    }
+    });
     alike_.begin.push_back(static_cast<int>(alike_.row.size()));
     other_.begin.push_back(static_cast<int>(other_.row.size()));
   }
