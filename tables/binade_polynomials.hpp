@@ -13,10 +13,10 @@
 
 namespace railtab {
 
-/// Smooth functions of one positive argument over many powers of two: 2^kBits polynomial pieces per binade, chosen by
+/// Smooth functions of one positive argument over many powers of two: eight polynomial pieces per binade, chosen by
 /// the floating-point bits of the argument, so that a logarithmic table needs no logarithm. `lanes` functions share a
 /// piece and are evaluated side by side. Constant after construction. Covers [2^first, 2^(last+1)).
-template <int lanes, int degree, int first, int last, int kBits = 3>
+template <int lanes, int degree, int first, int last>
 class BinadePolynomials {
  public:
   /// Interpolates f at Chebyshev nodes on every piece. @param f double -> std::array<double, lanes>
@@ -73,7 +73,7 @@ class BinadePolynomials {
       t = 2.0 * std::bit_cast<double>(rest | 0x3ff0000000000000ULL) - 3.0;
     }
   };
-  static constexpr int kPieces = 1 << kBits;
+  static constexpr int kBits = 3, kPieces = 1 << kBits;
   static_assert(std::has_single_bit(unsigned{lanes}));
   using Lanes = SideBySide<lanes>;
   using Coefficients =

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <type_traits>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/runtime/base/lane_transpose.hpp"
 #include "railtab/runtime/base/pack.hpp"
 #include "railtab/tables/creep_coordinates.hpp"
 #include "railtab/tables/cubic_spline_axis.hpp"
@@ -72,32 +74,44 @@ template <class V>
 struct Jet {
   Components<V> value, t, alpha, beta, alpha_beta, ratio;
 
+  /// @param jets of the queries; what is not wanted is not set
   template <CreepWanted wanted>
-  void set(int place, const CreepSplineJet& jet) noexcept {
-    const auto put = [place](const Pack& from, Components<V>& to) {
-      if constexpr (std::is_same_v<V, double>) {
-        to = from;
-      } else {
-        for (int i = 0; i < 3; ++i) to.of[i][place] = from[i];
-      }
-    };
-    put(jet.value, value);
+  void set(const std::array<CreepSplineJet, lanes_of<V>>& jets) noexcept {
+    value = gathered(jets, &CreepSplineJet::value);
     if constexpr (wanted == CreepWanted::force) return;
-    put(jet.t, t);
-    put(jet.alpha, alpha);
-    put(jet.beta, beta);
-    put(jet.alpha_beta, alpha_beta);
-    if constexpr (wanted == CreepWanted::by_ratio_too) put(jet.ratio, ratio);
+    t = gathered(jets, &CreepSplineJet::t);
+    alpha = gathered(jets, &CreepSplineJet::alpha);
+    beta = gathered(jets, &CreepSplineJet::beta);
+    alpha_beta = gathered(jets, &CreepSplineJet::alpha_beta);
+    if constexpr (wanted == CreepWanted::by_ratio_too) ratio = gathered(jets, &CreepSplineJet::ratio);
+  }
+
+ private:
+  static Components<V> gathered(const std::array<CreepSplineJet, lanes_of<V>>& jets,
+                                Pack CreepSplineJet::*member) noexcept {
+    if constexpr (std::is_same_v<V, double>) {
+      return jets[0].*member;
+    } else {
+      std::array<Pack, lanes_of<V>> of_query;
+      for (std::size_t i = 0; i < jets.size(); ++i) of_query[i] = jets[i].*member;
+      std::array<V, 4> numbers;
+      set_side_by_side(of_query, numbers.data());
+      return {numbers[0], numbers[1], numbers[2]};
+    }
   }
 };
 
 template <class V>
 std::array<V, 8> side_by_side(const V& x, const auto& functions) noexcept {
-  std::array<V, 8> result;
+  std::array<Pack, lanes_of<V>> first, second;
   for (int i = 0; i < lanes_of<V>; ++i) {
     const std::array<double, 8> of = functions(lane(x, i));
-    for (std::size_t k = 0; k < 8; ++k) lane(result[k], i) = of[k];
+    std::memcpy(&first[static_cast<std::size_t>(i)], of.data(), sizeof(Pack));
+    std::memcpy(&second[static_cast<std::size_t>(i)], of.data() + 4, sizeof(Pack));
   }
+  std::array<V, 8> result;
+  set_side_by_side(first, result.data());
+  set_side_by_side(second, result.data() + 4);
   return result;
 }
 
@@ -138,14 +152,6 @@ struct CreepSpline::Direction {
   }
 };
 
-double CreepSpline::angle(double y, double x) const noexcept {
-  const double width = std::abs(x), larger = std::max(width, y);
-  const double tangent = larger > 0.0 ? std::min(width, y) / larger : 0.0;
-  const double first = arc_tangent_(1.0 + tangent)[0];
-  const double folded = y > width ? 0.5 * pi - first : first;
-  return x < 0.0 ? pi - folded : folded;
-}
-
 CreepSpline::CreepSpline(const CreepTableData& data)
     : ratio_first_(data.nodes[0].front()),
       ratio_last_(data.nodes[0].back()),
@@ -157,8 +163,7 @@ CreepSpline::CreepSpline(const CreepTableData& data)
                              static_cast<double>(data.nodes[0].size() - 1);
         const CreepScale s = creep_scale(ratio);
         return {steps, s.x, s.y, s.spin, s.moment, s.alpha, s.beta, 0.0};
-      }),
-      arc_tangent_([](double v) -> std::array<double, 1> { return {std::atan(v - 1.0)}; }) {
+      }) {
   std::array<int, 4> n;
   for (std::size_t i = 0; i < 4; ++i) n[i] = static_cast<int>(data.nodes[i].size());
   last_cell_ = {n[0] - 2, n[1] - 2, n[2] - 2, n[3] - 1};
@@ -217,15 +222,16 @@ CreepLookupOf<V> CreepSpline::found(const V& ratio, const std::array<V, 3>& cree
   const V h = 1.0 / (d.rho + radius_unit_);  // t/ρ
   const V t = d.rho * h, zero{};
   const V spread_x = alpha_spread * d.x, spread_y = beta_spread * d.y;
-  Jet<V> v;
+  const std::array<V, 4> steps{ratio_steps, inverse_step_[0] * t,
+                               inverse_step_[1] * arc_tangent_.angle(d.across, spread_x),
+                               inverse_step_[2] * arc_tangent_.angle(d.spin, spread_y)};
+  std::array<CreepSplineJet, lanes_of<V>> jets;
   for (int i = 0; i < lanes_of<V>; ++i) {
-    CreepSplineJet jet;
-    evaluate<wanted>({lane(ratio_steps, i), inverse_step_[0] * lane(t, i),
-                      inverse_step_[1] * angle(lane(d.across, i), lane(spread_x, i)),
-                      inverse_step_[2] * angle(lane(d.spin, i), lane(spread_y, i))},
-                     jet);
-    v.template set<wanted>(i, jet);
+    evaluate<wanted>({lane(steps[0], i), lane(steps[1], i), lane(steps[2], i), lane(steps[3], i)},
+                     jets[static_cast<std::size_t>(i)]);
   }
+  Jet<V> v;
+  v.template set<wanted>(jets);
 
   const Components<V> unit{d.turn_x, d.turn, d.turn * moment};
   const Components<V> force = unit * t * v.value;

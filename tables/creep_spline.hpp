@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "railtab/tables/arc_tangent.hpp"
 #include "railtab/tables/binade_polynomials.hpp"
 #include "railtab/tables/creep_spline_jet.hpp"
 #include "railtab/tables/creep_table.hpp"
@@ -30,8 +31,6 @@ class CreepSpline {
   template <class V>
   struct Direction;
 
-  /// Of (x, y), y >= 0, to (1, 0), 0..π: a division and a polynomial. 0 at (0, 0).
-  [[nodiscard]] double angle(double y, double x) const noexcept;
   void set_coefficients(const CreepTableData& data);
   /// @param steps from the first nodes of the axes
   template <CreepWanted wanted>
@@ -51,7 +50,7 @@ class CreepSpline {
   double ratio_first_, ratio_last_, radius_unit_;
   /// Of a/b, without logarithm and roots: steps from the first node, and the numbers of CreepScale in their order.
   BinadePolynomials<8, 7, -10, 9> ratio_functions_;
-  BinadePolynomials<1, 5, 0, 1, 6> arc_tangent_;  ///< arctan(v - 1), v in 1..2
+  ArcTangent arc_tangent_;
 };
 
 }  // namespace railtab

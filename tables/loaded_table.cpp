@@ -829,6 +829,17 @@ class LoadedTable::LookUp {
       }
       result_.parts = std::max(result_.parts, count[k]);
     });
+    if (result_.parts > 1) {
+      give_parts<LoadedPart::quantities>(sums, count);
+    } else {
+      give_parts<LoadedPart::of_one>(sums, count);
+    }
+  }
+
+  // @param sloped quantities whose slopes are set
+  template <std::size_t sloped>
+  void give_parts(const std::array<std::array<PartSums, LoadedLookup::capacity>, places>& sums,
+                  const std::array<std::size_t, places>& count) noexcept {
     constexpr std::size_t kinds = slopes ? std::size_t{PartSums::count} : 1;
     for (std::size_t p = 0; p < result_.parts; ++p) {
       std::array<V, PartSums::count * LoadedPart::quantities> numbers;
@@ -836,6 +847,7 @@ class LoadedTable::LookUp {
       each([&](int i, std::size_t k) { lane(has, i) = p < count[k] ? 1.0 : 0.0; });
       for (std::size_t kind = 0; kind < kinds; ++kind) {
         for (std::size_t q = 0; q < PartSums::packs; ++q) {
+          if (kind != PartSums::value && 4 * q >= sloped) break;
           OfPoses of;
           of.fill(kind == PartSums::value ? 1.0 - Pack{} : Pack{});
           each([&](int, std::size_t k) {
@@ -844,12 +856,13 @@ class LoadedTable::LookUp {
           set_side_by_side(of, &numbers[kind * LoadedPart::quantities + 4 * q]);
         }
       }
-      set_part(numbers, p);
+      set_part<sloped>(numbers, p);
       result_.part[p].share = select(has > 0.5, result_.part[p].share, V{});
     }
   }
 
   // A part from its sums: from reduced quantities to lengths, densities and pressure.
+  template <std::size_t sloped>
   void set_part(const std::array<V, PartSums::count * LoadedPart::quantities>& sums, std::size_t p) noexcept {
     constexpr std::size_t count = LoadedPart::quantities;
     enum Scale : std::size_t { none, of_yaw, of_w, of_ww };
@@ -875,7 +888,7 @@ class LoadedTable::LookUp {
         return q == 0 ? of_share : inverse * (sums[d * count + q] - of_share * mean[q]);
       };
       LoadedPartOf<std::array<V, 4>>& part_1 = derivatives_->part[p];
-      for (std::size_t q = 0; q < count; ++q) {
+      for (std::size_t q = 0; q < sloped; ++q) {
         const V &by_scale = scale[scale_of[q]], &by_scale_w = scale_w[scale_of[q]];
         const V by_y0 = by_scale * along(PartSums::by_lateral, q),
                 by_w = by_scale * along(PartSums::by_level, q) + by_scale_w * mean[q];

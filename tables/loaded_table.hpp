@@ -69,6 +69,7 @@ struct LoadedPartOf {
   T pressure;             ///< largest [Pa]
 
   static constexpr std::size_t quantities = 12;
+  static constexpr std::size_t of_one = 7;  ///< of these, what the force of a part by itself follows from
   [[nodiscard]] std::array<T, quantities> values() const noexcept {
     return {share, arm_x, arm_y, arm_z, angle, a, b, peak, saddle, s_rail, s_wheel, pressure};
   }
@@ -133,7 +134,8 @@ using LoadedLookup = LoadedLookupOf<double>;
 template <class V>
 struct LoadedSlopesOf {
   typename LoadedNumbers<V>::Matrix stiffness;  ///< of the forces; zero without contact
-  /// Of the parts, as many as these, along y, z, roll, yaw.
+  /// Of the parts, as many as these, along y, z, roll, yaw. Where no pose has several parts the first
+  /// LoadedPartOf::of_one quantities, else all.
   std::array<LoadedPartOf<std::array<V, 4>>, LoadedLookup::capacity> part;
 };
 using LoadedSlopes = LoadedSlopesOf<double>;

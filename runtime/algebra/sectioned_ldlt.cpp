@@ -18,37 +18,50 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr int side_by_side = SectionLayout::sections;
 constexpr int widest = 4;  // columns of a strip: their parts of the vector stay in registers
 
+// The entry of L that stands at a place, of all sections.
+Lanes entry(const float* value, int place) noexcept {
+  Lanes of_sections;
+  widen(value + place * side_by_side, of_sections);
+  return of_sections;
+}
+
 template <int n>
-void forward_columns(const int* slot, int rows, const Lanes* value, Lanes* y) noexcept {
+void forward_columns(const int* slot, int rows, const float* value, Lanes* y) noexcept {
   Lanes own[n];
   own[0] = y[slot[0]];
   for (int j = 1; j < n; ++j) {
     own[j] = y[slot[j]];
-    for (int k = 0; k < j; ++k) own[j] -= *value++ * own[k];
+    for (int k = 0; k < j; ++k) own[j] -= entry(value, j * (j - 1) / 2 + k) * own[k];
     y[slot[j]] = own[j];
   }
-  for (const int* row = slot + n; row < slot + n + rows; ++row) {
+  value += n * (n - 1) / 2 * side_by_side;
+  for (const int* row = slot + n; row < slot + n + rows; ++row, value += n * side_by_side) {
     Lanes sum = y[*row];
-    for (int k = 0; k < n; ++k) sum -= *value++ * own[k];
+    for (int k = 0; k < n; ++k) sum -= entry(value, k) * own[k];
     y[*row] = sum;
   }
 }
 
 template <int n>
-void backward_columns(const int* slot, int rows, const Lanes* value, const Lanes* inverse_D, const Lanes* y,
+void backward_columns(const int* slot, int rows, const float* value, const Lanes* inverse_D, const Lanes* y,
                       Lanes* x) noexcept {
   Lanes own[n];
   for (int j = 0; j < n; ++j) own[j] = y[slot[j]] * inverse_D[j];
   // From the last row on, which was solved first: x of the first rows may just have been stored.
-  const Lanes* below = value + n * (n - 1) / 2 + n * rows;
+  const float* below = value + (n * (n - 1) / 2 + n * rows) * side_by_side;
   for (const int* row = slot + n + rows; row-- > slot + n;) {
-    below -= n;
-    for (int k = 0; k < n; ++k) own[k] -= below[k] * x[*row];
+    below -= n * side_by_side;
+    for (int k = 0; k < n; ++k) own[k] -= entry(below, k) * x[*row];
   }
   for (int j = n; j-- > 1;) {
-    for (int k = 0; k < j; ++k) own[k] -= value[j * (j - 1) / 2 + k] * own[j];
+    for (int k = 0; k < j; ++k) own[k] -= entry(value, j * (j - 1) / 2 + k) * own[j];
   }
   for (int j = 0; j < n; ++j) x[slot[j]] = own[j];
+}
+
+Lanes rounded(Lanes numbers) noexcept {
+  for (int s = 0; s < side_by_side; ++s) numbers[s] = static_cast<double>(static_cast<float>(numbers[s]));
+  return numbers;
 }
 
 // Far from its load a solution decays until it is a denormal number, on which a processor is a hundred times slower.
@@ -161,20 +174,22 @@ void SectionedLdlt::set_strips(const EliminationTree& tree) {
     strip.value = values;
     values += strip.columns * (strip.columns - 1) / 2 + strip.columns * strip.rows;
   }
-  value_.resize(index(values));
+  value_.resize(index(values * side_by_side));
 }
 
-// Right-looking: a finished column changes the columns of its rows, whose rows include the further ones of its own.
+// Right-looking: a finished column changes the columns of its rows, whose rows include the further ones of its own. Its
+// entries are rounded to floats before they do: the factor then is that of a matrix whose diagonal is the given one.
 void SectionedLdlt::eliminate(Numbers& n, std::string_view message) const {
   const int slots = layout_->slots, borders = layout_->borders;
   for (int j = 0; j < slots; ++j) {
-    Lanes& d = n.diagonal[index(j)];
+    const Lanes d = n.diagonal[index(j)], inverse = 1.0 / d;
     for (int s = 0; s < side_by_side; ++s) {
       if (!(d[s] > 0.0)) throw ComputationError(std::string(message));
     }
-    d = 1.0 / d;
-    const int end = n.begin[index(j + 1)];
-    for (int p = n.begin[index(j)]; p < end; ++p) {
+    n.diagonal[index(j)] = inverse;
+    const int begin = n.begin[index(j)], end = n.begin[index(j + 1)];
+    for (int p = begin; p < end; ++p) n.value[index(p)] = rounded(n.value[index(p)] * inverse);
+    for (int p = begin; p < end; ++p) {
       const int k = n.row[index(p)];
       const Lanes factor = n.value[index(p)] * d;
       if (k >= slots) {
@@ -190,16 +205,16 @@ void SectionedLdlt::eliminate(Numbers& n, std::string_view message) const {
         n.value[index(place)] -= factor * n.value[index(q)];
       }
     }
-    for (int p = n.begin[index(j)]; p < end; ++p) n.value[index(p)] *= d;
   }
 }
 
 void SectionedLdlt::store(const Numbers& numbers) {
   for (const Strip& strip : strip_) {
-    Lanes* value = &value_[index(strip.value)];
+    float* value = &value_[index(strip.value * side_by_side)];
     for (int row = 1; row < strip.columns + strip.rows; ++row) {
       for (int j = 0; j < std::min(row, strip.columns); ++j) {
-        *value++ = numbers.value[index(numbers.begin[index(strip.first + j)] + row - j - 1)];
+        const Lanes& of = numbers.value[index(numbers.begin[index(strip.first + j)] + row - j - 1)];
+        for (int k = 0; k < side_by_side; ++k) *value++ = static_cast<float>(of[k]);
       }
     }
   }
@@ -231,7 +246,7 @@ void SectionedLdlt::factor_interfaces(const Numbers& numbers, std::string_view m
 Eigen::Index SectionedLdlt::room() const noexcept { return factor_begin() + (interfaces_ ? interfaces_->room() : 0); }
 
 std::size_t SectionedLdlt::bytes() const noexcept {
-  return (value_.size() + inverse_D_.size()) * sizeof(Lanes) + slot_.size() * sizeof(int) +
+  return value_.size() * sizeof(float) + inverse_D_.size() * sizeof(Lanes) + slot_.size() * sizeof(int) +
          strip_.size() * sizeof(Strip) + (interfaces_ ? interfaces_->bytes() : 0);
 }
 
@@ -345,7 +360,7 @@ void SectionedLdlt::backward_interfaces(const Vector& y, Vector& x) const {
 
 void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
   const int* const slot = &slot_[index(strip.slot)];
-  const Lanes* const value = value_.data() + strip.value;
+  const float* const value = &value_[index(strip.value * side_by_side)];
   switch (strip.columns) {
     case 1:
       return forward_columns<1>(slot, strip.rows, value, y);
@@ -360,7 +375,7 @@ void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
 
 void SectionedLdlt::backward_strip(const Strip& strip, const Lanes* y, Lanes* x) const noexcept {
   const int* const slot = &slot_[index(strip.slot)];
-  const Lanes* const value = value_.data() + strip.value;
+  const float* const value = &value_[index(strip.value * side_by_side)];
   const Lanes* const inverse_D = &inverse_D_[index(strip.first)];
   switch (strip.columns) {
     case 1:

@@ -15,7 +15,9 @@ struct EliminationTree;
 
 /// Factor of a long structure's matrix by substructuring: the sections of its layout are eliminated side by side, one
 /// in each place of a vector register; what is left is the small system of the interface unknowns (their Schur
-/// complement), factored as a whole.
+/// complement), factored as a whole. Entries of L are floats, which halves what a substitution reads; it computes with
+/// doubles. What it solves is a symmetric matrix that differs from the given one off the diagonal, by rounding of
+/// floats.
 class SectionedLdlt final : public SubstitutionFactor {
  public:
   /// @param matrix symmetric, whole pattern @throws ComputationError with the message where it is not positive definite
@@ -71,7 +73,7 @@ class SectionedLdlt final : public SubstitutionFactor {
   std::vector<Strip> strip_;                ///< each after all that hang on it
   std::vector<int> strip_of_;               ///< of the slots
   std::vector<int> slot_;                   ///< of each strip, of its columns, then of its rows
-  std::vector<Lanes> value_;                ///< of each strip, its triangle and then what is below, row by row
+  std::vector<float> value_;                ///< of each strip, its triangle and then what is below, row by row
   std::vector<Lanes> inverse_D_;            ///< of the columns
   std::unique_ptr<SparseLdlt> interfaces_;  ///< null where there are none
 };

@@ -295,49 +295,44 @@ void SparseLdlt::backward(double* x, const Block& block, double* scratch) const 
   for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
-void SparseLdlt::backward(const Vector& y, Vector& x, const Block& block, double* scratch) const {
+void SparseLdlt::backward(const Vector& y, Vector& x, const Block& block) const {
   for (int j = block.first; j < block.first + block.columns; ++j) x[j] = y[j] * inverse_D_[j];
-  backward(x.data(), block, scratch);
+  backward(x.data(), block, work_space(x.data()));
 }
 
 void SparseLdlt::forward(double* y) const {
-  Vector scratch(most_height_);
-  for (const Block& block : blocks_) forward(y, block, scratch.data());
+  for (const Block& block : blocks_) forward(y, block, work_space(y));
 }
 
 void SparseLdlt::backward(double* x) const {
-  Vector scratch(most_height_);
   Eigen::Map<Vector>(x, size()).array() *= inverse_D_.array();
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, scratch.data());
+  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, work_space(x));
 }
 
 void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
   // Far from its load a solution decays until it is a denormal number, on which a processor is a hundred times slower.
   constexpr double nothing = 1e-40;
-  Vector scratch(most_height_);
   for (int b : path.nodes()) {
     const Block& block = blocks_[static_cast<std::size_t>(b)];
     auto own = y.segment(block.first, block.columns);
     if ((own.cwiseAbs().array() < nothing).all()) {  // false for a NaN, which must reach the solution
       own.setZero();
     } else {
-      forward(y.data(), block, scratch.data());
+      forward(y.data(), block, work_space(y.data()));
     }
     own += known.segment(block.first, block.columns);  // no block after this one reads them
   }
 }
 
 void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
-  Vector scratch(most_height_);
   for (auto b = path.nodes().rbegin(); b != path.nodes().rend(); ++b) {
-    backward(y, x, blocks_[static_cast<std::size_t>(*b)], scratch.data());
+    backward(y, x, blocks_[static_cast<std::size_t>(*b)]);
   }
 }
 
 void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
-  Vector scratch(most_height_);
   for (std::size_t b = blocks_.size(); b-- > 0;) {
-    if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b], scratch.data());
+    if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b]);
   }
 }
 
@@ -377,7 +372,7 @@ Eigen::MatrixXd SparseLdlt::solve_columns(const Eigen::MatrixXd& loads) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
   for (Eigen::Index first = 0; first < loads.cols(); first += together) {
     const Eigen::Index count = std::min(together, loads.cols() - first);
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(room(), count), scratch(most_height_, count);
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(size() + 1, count), scratch(most_height_, count);
     for (Eigen::Index i = 0; i < size(); ++i) {
       x.row(position_[static_cast<std::size_t>(i)]) = loads.row(first_ + i).segment(first, count);
     }

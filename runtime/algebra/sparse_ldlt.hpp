@@ -39,8 +39,9 @@ class SparseLdlt final : public SubstitutionFactor {
                                      EliminationOrder order, std::span<const int> node = {});
 
   [[nodiscard]] Eigen::Index size() const noexcept { return inverse_D_.size(); }
-  /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four.
-  [[nodiscard]] Eigen::Index room() const noexcept override { return size() + 1; }
+  /// Length of vectors in the factor's order: one more, a 0 that stands for rows which fill up a block's last four, and
+  /// what the substitution of a wide block works on.
+  [[nodiscard]] Eigen::Index room() const noexcept override { return size() + 1 + most_height_; }
   [[nodiscard]] std::size_t bytes() const noexcept override;
   [[nodiscard]] std::size_t stored_bytes() const noexcept override;
 
@@ -85,9 +86,10 @@ class SparseLdlt final : public SubstitutionFactor {
   }
   std::vector<int> place(const EliminationTree& tree);
   void store(const Block& block, const EliminatedBlock& from);
+  [[nodiscard]] double* work_space(double* ordered) const noexcept { return ordered + size() + 1; }
   void forward(double* y, const Block& block, double* scratch) const;
   void backward(double* x, const Block& block, double* scratch) const;
-  void backward(const Vector& y, Vector& x, const Block& block, double* scratch) const;
+  void backward(const Vector& y, Vector& x, const Block& block) const;
   /// The same for columns of y and x.
   void forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const;
   void backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const;

@@ -154,7 +154,7 @@ struct Part {
   Vector<T> arm;           ///< [m]
   T cos_angle, sin_angle;  ///< of the contact angle
   T a, b, s;               ///< ellipse and place across the rail [m]
-  T peak, saddle;          ///< LoadedPart
+  T peak, saddle;          ///< LoadedPart; as `s`, not set where the contact has one part
 };
 
 /// Derivatives of a wrench with respect to the wheel's motion: velocity (3), rotation (3), the rail's roll rate.
@@ -299,9 +299,11 @@ class LoadedContactForce {
                   of([](const auto& q) { return q.arm_z; })};
       part.a = of([](const auto& q) { return q.a; });
       part.b = of([](const auto& q) { return q.b; });
-      part.s = of([](const auto& q) { return q.s_rail; });
-      part.peak = of([](const auto& q) { return q.peak; });
-      part.saddle = of([](const auto& q) { return q.saddle; });
+      if (lookup_.parts > 1) {
+        part.s = of([](const auto& q) { return q.s_rail; });
+        part.peak = of([](const auto& q) { return q.peak; });
+        part.saddle = of([](const auto& q) { return q.saddle; });
+      }
       const T elastic = of([](const auto& q) { return q.share; }) * force_[1] / part.cos_angle;
       part.normal = elastic;
       if constexpr (single) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,17 +53,27 @@ class Random {
   std::mt19937_64 generator_;
 };
 
-// values += amplitude·cos(ω x + φ) at evenly spaced x, by turning on from one point to the next.
+constexpr std::size_t together = 8;  // points that a wave is added to at once
+
+// values += amplitude·cos(ω x + φ) at evenly spaced x, by turning on from some points to the next.
+// @param values as many as x has, filled up to whole numbers of `together`
 void add_wave(double amplitude, double omega, double phase, const std::vector<double>& x, std::vector<double>& values) {
   constexpr std::size_t stretch = 256;  // points, over which rounding stays below 1e-13
-  const double turn_cos = std::cos(omega * (x[1] - x[0])), turn_sin = std::sin(omega * (x[1] - x[0]));
+  static_assert(stretch % together == 0);
+  using Points = Eigen::Array<double, together, 1>;
+  const Points turn = Points::LinSpaced(0.0, together - 1.0) * (omega * (x[1] - x[0]));
+  const Points cosines = turn.cos(), sines = turn.sin();
+  const double next = static_cast<double>(together) * omega * (x[1] - x[0]);
+  const double next_cos = std::cos(next), next_sin = std::sin(next);
   for (std::size_t begin = 0; begin < x.size(); begin += stretch) {
-    double c = amplitude * std::cos(omega * x[begin] + phase), s = amplitude * std::sin(omega * x[begin] + phase);
-    for (std::size_t i = begin; i < std::min(x.size(), begin + stretch); ++i) {
-      values[i] += c;
-      const double next = c * turn_cos - s * turn_sin;
-      s = s * turn_cos + c * turn_sin;
-      c = next;
+    const double at = omega * x[begin] + phase, first_cos = amplitude * std::cos(at),
+                 first_sin = amplitude * std::sin(at);
+    Points c = first_cos * cosines - first_sin * sines, s = first_sin * cosines + first_cos * sines;
+    for (std::size_t i = begin; i < std::min(values.size(), begin + stretch); i += together) {
+      Points::Map(&values[i]) += c;
+      const Points turned = c * next_cos - s * next_sin;
+      s = s * next_cos + c * next_sin;
+      c = turned;
     }
   }
 }
@@ -117,7 +128,7 @@ Irregularity random_irregularity(const SpectrumParameters& parameters, double fr
   std::vector<double> x(points);
   for (std::size_t i = 0; i < points; ++i) x[i] = static_cast<double>(first + static_cast<long>(i)) * spacing;
   std::array<std::vector<double>, 4> sum;  // vertical, alignment, cross level, gauge
-  for (std::vector<double>& values : sum) values.assign(points, 0.0);
+  for (std::vector<double>& values : sum) values.assign((points + together - 1) / together * together, 0.0);
   Random random(parameters.seed);
   for (int n = 0; n < bands; ++n) {
     const double omega = low + (n + random()) * width;

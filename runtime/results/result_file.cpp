@@ -322,6 +322,7 @@ struct ResultWriter::Impl {
   int buffered = 0;
   /// Rows that wait for the next flush, by dataset.
   std::map<std::string, std::vector<double>> rows;
+  std::vector<std::vector<double>*> in_order;  ///< of rows, as append() fills them: the same for every record
   long checkpoints = 0;
   bool finished = false;
   bool has_source = true;  // else an older file that is resumed
@@ -406,23 +407,32 @@ void ResultWriter::append(const StepRecord& record) {
   assert(record.wheels.size() == impl_->header.wheel_x.size() &&
          record.bodies.size() == impl_->header.body_names.size() &&
          record.nodes.size() == impl_->header.node_names.size());
-  auto& rows = impl_->rows;
-  for (const columns::StepColumn& column : columns::step) rows[column.path].push_back(record.*column.value);
-  rows[columns::newton_iterations.path].push_back(record.newton_iterations);
+  std::vector<std::vector<double>*>& in_order = impl_->in_order;
+  std::size_t filled = 0;
+  const auto next = [&](const auto& path) -> std::vector<double>& {
+    if (filled == in_order.size()) in_order.push_back(&impl_->rows[path()]);
+    return *in_order[filled++];
+  };
+  for (const columns::StepColumn& column : columns::step) {
+    next([&] { return column.path; }).push_back(record.*column.value);
+  }
+  next([] { return columns::newton_iterations.path; }).push_back(record.newton_iterations);
   if (!record.wheels.empty()) {
     for (const columns::WheelColumn& column : columns::wheel) {
-      std::vector<double>& values = rows[column.path];
+      std::vector<double>& values = next([&] { return column.path; });
       for (const WheelRecord& wheel : record.wheels) values.push_back(wheel.*column.value);
     }
-    for (const WheelRecord& wheel : record.wheels) rows[columns::patches.path].push_back(wheel.patches);
+    std::vector<double>& patches = next([] { return columns::patches.path; });
+    for (const WheelRecord& wheel : record.wheels) patches.push_back(wheel.patches);
     if (impl_->has_source) {
-      for (const WheelRecord& wheel : record.wheels) rows[columns::from_table.path].push_back(wheel.from_table);
+      std::vector<double>& from_table = next([] { return columns::from_table.path; });
+      for (const WheelRecord& wheel : record.wheels) from_table.push_back(wheel.from_table);
     }
   }
   for (const columns::MotionGroup& group : columns::motion_groups) {
     if ((record.*group.motions).empty()) continue;
     for (const columns::MotionColumn& column : columns::motion) {
-      std::vector<double>& values = rows[field_of(group, column).path];
+      std::vector<double>& values = next([&] { return field_of(group, column).path; });
       for (const MotionRecord& motion : record.*group.motions) {
         const auto& components = motion.*column.value;
         values.insert(values.end(), std::begin(components), std::end(components));

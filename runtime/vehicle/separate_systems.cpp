@@ -91,9 +91,8 @@ SeparateMatrix::SeparateMatrix(const std::vector<SeparateSystem>& systems, const
 }
 
 Eigen::VectorXd SeparateMatrix::operator*(const Eigen::VectorXd& x) const {
-  if (is_whole(dofs_)) return matrix_.front() * x;
   Eigen::VectorXd product = Eigen::VectorXd::Zero(x.size());
-  for (std::size_t s = 0; s < dofs_.size(); ++s) product(dofs_[s]) = matrix_[s] * x(dofs_[s]);
+  add_product(1.0, x, product);
   return product;
 }
 
@@ -102,7 +101,14 @@ void SeparateMatrix::add_product(double factor, const Eigen::VectorXd& x, Eigen:
     y.noalias() += factor * matrix_.front() * x;
     return;
   }
-  for (std::size_t s = 0; s < dofs_.size(); ++s) y(dofs_[s]) += factor * matrix_[s] * x(dofs_[s]);
+  for (std::size_t s = 0; s < dofs_.size(); ++s) {
+    const std::vector<int>& dofs = dofs_[s];
+    for (std::size_t j = 0; j < dofs.size(); ++j) {
+      const auto column = matrix_[s].col(static_cast<Eigen::Index>(j));
+      const double of_column = factor * x[dofs[j]];
+      for (std::size_t i = 0; i < dofs.size(); ++i) y[dofs[i]] += of_column * column[static_cast<Eigen::Index>(i)];
+    }
+  }
 }
 
 ForceElements elements_of(const SeparateSystem& system, const ForceElements& elements) {

@@ -26,7 +26,7 @@ class SeparateMatrix {
   SeparateMatrix(const std::vector<SeparateSystem>& systems, const Eigen::MatrixXd& whole);
 
   [[nodiscard]] Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
-  /// y += factor A x
+  /// y += factor A x; allocates nothing.
   void add_product(double factor, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
 
  private:

@@ -12,9 +12,9 @@ struct StepContext {
   const VsiModel& model;
   const StepOperators& operators;
   const StepLimits& limits;
-  HhtScheme hht;                      ///< with the force rule of this step
-  double begin, end;                  ///< t, t + Δt [s]
-  std::vector<RailContact> contacts;  ///< two per wheelset; empty on rigid track
+  HhtScheme hht;                             ///< with the force rule of this step
+  double begin, end;                         ///< t, t + Δt [s]
+  const std::vector<RailContact>& contacts;  ///< two per wheelset; empty on rigid track
 };
 
 /// What a contact solution has come to.

@@ -163,7 +163,8 @@ struct NewtonWorkspace {
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
   std::vector<double> tangent_error;   ///< per group, estimate: of a change of forces by the tangent, relative
   CorrectionTrend trend;
-  std::vector<ContactPatches> found;  ///< per wheel, by the last search, and where: of the published method only
+  Eigen::VectorXd continuation_start;  ///< displacement that solve_contact_by_continuation() began with
+  std::vector<ContactPatches> found;   ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
 };
 

@@ -7,36 +7,37 @@
 
 namespace railtab {
 
-std::vector<ContactState> contact_states(const ContactSolution& contact) {
+ContactState contact_state(const ContactSolution& contact, std::size_t wheel) {
   constexpr double flange_angle = 0.2;  // rad: steeper than any tread
-  std::vector<ContactState> result;
-  result.reserve(contact.contact.size());
-  for (std::size_t wheel = 0; wheel < contact.contact.size(); ++wheel) {
-    ContactState state = ContactState::separated;
-    const auto bears = [&](std::size_t i, double angle) {
-      if (contact.normal[wheel][i] <= 0.0) return;
-      state = std::max(state, std::abs(angle) > flange_angle ? ContactState::flange : ContactState::tread);
-    };
-    const WheelContact& of_wheel = contact.contact[wheel];
-    if (of_wheel.by_patches()) {
-      for (std::size_t i = 0; i < index(of_wheel.patches.count); ++i) bears(i, of_wheel.patches.patch[i].angle);
-    } else if (of_wheel.touches()) {
-      for (std::size_t i = 0; i < of_wheel.loaded.parts; ++i) bears(i, of_wheel.loaded.part[i].angle);
-    }
-    result.push_back(state);
+  ContactState state = ContactState::separated;
+  const auto bears = [&](std::size_t i, double angle) {
+    if (contact.normal[wheel][i] <= 0.0) return;
+    state = std::max(state, std::abs(angle) > flange_angle ? ContactState::flange : ContactState::tread);
+  };
+  const WheelContact& of_wheel = contact.contact[wheel];
+  if (of_wheel.by_patches()) {
+    for (std::size_t i = 0; i < index(of_wheel.patches.count); ++i) bears(i, of_wheel.patches.patch[i].angle);
+  } else if (of_wheel.touches()) {
+    for (std::size_t i = 0; i < of_wheel.loaded.parts; ++i) bears(i, of_wheel.loaded.part[i].angle);
   }
+  return state;
+}
+
+std::vector<ContactState> contact_states(const ContactSolution& contact) {
+  std::vector<ContactState> result;
+  for (std::size_t wheel = 0; wheel < contact.contact.size(); ++wheel) result.push_back(contact_state(contact, wheel));
   return result;
 }
 
 ContactChange contact_change(const ContactSolution& before, const ContactSolution& after, double light_touch) {
-  const std::vector<ContactState> was = contact_states(before), is = contact_states(after);
   ContactChange change = ContactChange::none;
-  for (std::size_t wheel = 0; wheel < is.size(); ++wheel) {
-    const bool stays = was[wheel] != ContactState::separated && is[wheel] != ContactState::separated;
+  for (std::size_t wheel = 0; wheel < after.contact.size(); ++wheel) {
+    const ContactState was = contact_state(before, wheel), is = contact_state(after, wheel);
+    const bool stays = was != ContactState::separated && is != ContactState::separated;
     const int rail = rail_unknown(static_cast<int>(wheel));
     if (stays && (after.end_force - before.end_force).segment<2>(rail).norm() <= light_touch) continue;
-    if (is[wheel] > was[wheel]) return ContactChange::gained;
-    if (is[wheel] < was[wheel]) change = ContactChange::lost;
+    if (is > was) return ContactChange::gained;
+    if (is < was) change = ContactChange::lost;
   }
   return change;
 }

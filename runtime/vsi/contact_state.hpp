@@ -15,7 +15,9 @@ enum class ContactChange { none, lost, gained };
 /// Longest duration of an impact: 1 to 3 ms of a wheel on its tread, 6 to 7 ms of a flange [s].
 inline constexpr double longest_impact = 10e-3;
 
-/// Of every wheel, by the patches that bear load.
+/// By the patches that bear load.
+[[nodiscard]] ContactState contact_state(const ContactSolution& contact, std::size_t wheel);
+/// Of every wheel.
 [[nodiscard]] std::vector<ContactState> contact_states(const ContactSolution& contact);
 /// A flange that touches or leaves the rail counts where the wheel's force changes by more than `light_touch` [N].
 [[nodiscard]] ContactChange contact_change(const ContactSolution& before, const ContactSolution& after,

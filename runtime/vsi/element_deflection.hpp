@@ -30,7 +30,7 @@ struct ElementStep {
   explicit ElementStep(const HhtScheme& hht) noexcept
       : rate(hht.velocity_rate()), back(rate * hht.time_step - 1.0), share(1.0 / (1.0 + time_constant * rate)) {}
   /// The part of g that no force of this step changes.
-  [[nodiscard]] Eigen::VectorXd free(const ElementDeflection& begin) const {
+  [[nodiscard]] auto free(const ElementDeflection& begin) const {
     return share * time_constant * (rate * begin.force + back * begin.rate);
   }
   /// @param end g at the end of the step; is replaced

@@ -59,7 +59,10 @@ void ElementForces::elongate(const Eigen::VectorXd& displacement, Eigen::VectorX
   if (whole_) {
     elongation.noalias() = elements_.rows * displacement;
   } else {
-    elongation.noalias() = elements_.rows * displacement(system_.dofs);
+    elongation.setZero(elements_.rows.rows());
+    for (std::size_t k = 0; k < system_.dofs.size(); ++k) {
+      elongation += displacement[system_.dofs[k]] * elements_.rows.col(static_cast<Eigen::Index>(k));
+    }
   }
 }
 
@@ -67,13 +70,27 @@ void ElementForces::add_load(const Eigen::VectorXd& force, Eigen::VectorXd& load
   if (whole_) {
     load.noalias() -= elements_.rows.transpose() * force;
   } else {
-    load(system_.dofs) -= elements_.rows.transpose() * force;
+    for (std::size_t k = 0; k < system_.dofs.size(); ++k) {
+      load[system_.dofs[k]] -= elements_.rows.col(static_cast<Eigen::Index>(k)).dot(force);
+    }
+  }
+}
+
+void ElementForces::take_friction(const Eigen::VectorXd& of_vehicle) {
+  for (std::size_t i = 0; i < system_.elements.size(); ++i) {
+    friction_[static_cast<Eigen::Index>(i)] = of_vehicle[system_.elements[i]];
+  }
+}
+
+void ElementForces::store_friction(Eigen::VectorXd& friction) const {
+  for (std::size_t i = 0; i < system_.elements.size(); ++i) {
+    friction[system_.elements[i]] = friction_end_[static_cast<Eigen::Index>(i)];
   }
 }
 
 void ElementForces::begin(const Step& step, const Start& start) {
   step_ = step;
-  friction_ = start.friction(system_.elements);
+  take_friction(start.friction);
   elongate(start.motion.displacement, x0_);
   elongate(start.guess, x_);
   if (only_stops_) return;  // which do not depend on rates
@@ -84,7 +101,7 @@ void ElementForces::begin(const Step& step, const Start& start) {
 
 void ElementForces::begin_rest(const Eigen::VectorXd& displacement, const Eigen::VectorXd& friction) {
   step_ = {ElementRule::rest};
-  friction_ = friction(system_.elements);
+  take_friction(friction);
   elongate(displacement, x0_);
   x_ = x0_;
 }

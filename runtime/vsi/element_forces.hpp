@@ -82,7 +82,7 @@ class ElementForces {
   void add_share(Eigen::VectorXd& load) const { add_load(share_, load); }
   void add_end_force(Eigen::VectorXd& load) const { add_load(end_, load); }
   /// By element of the vehicle, of those of kind friction at the end of the step.
-  void store_friction(Eigen::VectorXd& friction) const { friction(system_.elements) = friction_end_; }
+  void store_friction(Eigen::VectorXd& friction) const;
   [[nodiscard]] const std::vector<int>& wheelsets() const noexcept { return system_.wheelsets; }
 
  private:
@@ -92,6 +92,7 @@ class ElementForces {
     double end_by_load_row = 0.0, mean_by_load_row = 0.0;
   };
   [[nodiscard]] Evaluated evaluated(std::size_t element) const;
+  void take_friction(const Eigen::VectorXd& of_vehicle);
   void add_load(const Eigen::VectorXd& force, Eigen::VectorXd& load) const;
   void evaluate();
   void factor(const ElementCompliance& compliance);

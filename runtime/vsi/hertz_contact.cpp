@@ -45,7 +45,6 @@ class HertzContacts : public ContactLaw {
   explicit HertzContacts(const VsiModel& model) : of_model_(model.train_contact()), contact_(of_model_) {
     const std::size_t n = model.vehicle_x.size();
     prediction_.resize(n);
-    free_.assign(n, Eigen::VectorXd::Zero(model.vehicle.dofs()));
     problem_.wheelsets_per_vehicle = model.wheelsets_per_vehicle();
     problem_.wheelsets_per_group = 1;
     if (!model.vehicle.elements.empty()) elements_.emplace(model.vehicle, n);
@@ -61,16 +60,16 @@ class HertzContacts : public ContactLaw {
       const LinearMotion& motion = state.vehicle[index(v)];
       predict(hht, motion, p);
       vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
-      free_[index(v)] = step.operators.vehicle.free_increment(hht, ws.vehicle_load, motion, p);
+      step.operators.vehicle.find_free_increment(hht, ws.vehicle_load, motion, p);
       // predictor, its velocity, and the motion without contact forces
-      const Eigen::VectorXd free = p.displacement + free_[index(v)];
+      free_ = p.displacement + p.free_increment;
       gather_wheelsets(step.model, v, p.displacement, problem_.predicted);
       gather_wheelsets(step.model, v, p.velocity, problem_.predicted_velocity);
       gather_wheelsets(step.model, v, motion.velocity, begin_velocity_);
-      gather_wheelsets(step.model, v, free, problem_.free);
+      gather_wheelsets(step.model, v, free_, problem_.free);
       if (!elements_) continue;
-      const Eigen::VectorXd start = p.displacement + motion.acceleration / hht.acceleration_rate();
-      elements_->begin(v, element_step(hht), {motion, state.friction[index(v)], p, start}, free);
+      guess_ = p.displacement + motion.acceleration / hht.acceleration_rate();
+      elements_->begin(v, element_step(hht), {motion, state.friction[index(v)], p, guess_}, free_);
     }
   }
 
@@ -104,7 +103,7 @@ class HertzContacts : public ContactLaw {
     problem_.mean_weight = energy ? 1.0 / (step.hht.gamma() * step.hht.load_weight()) : 1.0;
     // Velocities that stay what they are leave creepages and, nearly, contact forces what they are. Forces that stay
     // would be a worse start: at walking pace they leave a motion in which a wheel slides.
-    ws.solution.force = energy ? 0.5 * problem_.mean_weight * state.contact.end_force : state.contact.end_force;
+    ws.solution.force = (energy ? 0.5 * problem_.mean_weight : 1.0) * state.contact.end_force;
     ws.solution.displacement =
         problem_.predicted + (begin_velocity_ - problem_.predicted_velocity) / step.hht.velocity_rate();
   }
@@ -149,16 +148,15 @@ class HertzContacts : public ContactLaw {
       LinearMotion& motion = state.vehicle[index(v)];
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
       if (elements_) elements_->add_share(v, ws.vehicle_load);
-      Eigen::VectorXd increment = Eigen::VectorXd::Zero(ws.vehicle_load.size());
-      step.operators.vehicle.add_displacement(hht.load_weight(), ws.vehicle_load, increment);
-      increment += free_[index(v)];
+      Prediction& p = prediction_[index(v)];
+      step.operators.vehicle.add_displacement(hht.load_weight(), ws.vehicle_load, p.free_increment);
       close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
       if (elements_) {
         elements_->add_end_force(v, motion.contact_load);
         elements_->store_friction(v, state.friction[index(v)]);
       }
-      update(hht, prediction_[index(v)], increment, motion);
+      update(hht, p, p.free_increment, motion);
     }
     if (step.model.structure) close_elements(step, ws.solution, state.deflection);
     newton_.trend.learn(ws.solution.displacement);
@@ -224,7 +222,11 @@ class HertzContacts : public ContactLaw {
 
   // g at the end of the step, under the forces of the solution.
   void load_elements(const StepContext& step, const ContactSolution& solution) {
-    element_force_ = element_free_ + element_weight(step.hht) * rail_part(solution.force);
+    element_force_ = element_free_;
+    const double weight = element_weight(step.hht);
+    for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
+      element_force_.segment<3>(3 * wheel) += weight * solution.force.segment<3>(rail_unknown(wheel));
+    }
   }
 
   void close_elements(const StepContext& step, const ContactSolution& solution, ElementDeflection& deflection) {
@@ -245,7 +247,7 @@ class HertzContacts : public ContactLaw {
   ContactProblem problem_;
   std::optional<TrainElements> elements_;  // where vehicles have force elements
   std::vector<Prediction> prediction_;     // per vehicle
-  std::vector<Eigen::VectorXd> free_;      // per vehicle: increment without contact forces
+  Eigen::VectorXd free_, guess_;           // of one vehicle: ElementForces::begin()
   Eigen::VectorXd begin_velocity_;         // of wheelsets and rail heads, in the order of the unknowns
   Eigen::VectorXd predicted_nodes_;        // of rail heads, as their elements' nodes have them: 3 per wheel
   // Motion of rail heads between the nodes of their elements, per wheel: predicted, without the forces of this step,

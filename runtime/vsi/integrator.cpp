@@ -37,11 +37,14 @@ void record_stops(const VsiModel& model, const ElongationRows& rows, VsiState& s
   const ForceElements& elements = model.vehicle.elements;
   if (elements.empty()) return;
   for (std::size_t v = 0; v < state.vehicle.size(); ++v) {
-    const Eigen::VectorXd x = rows * state.vehicle[v].displacement;
     for (std::size_t i = 0; i < elements.element.size(); ++i) {
       const ForceElement& e = elements.element[i];
       if (e.kind != ForceElementKind::stop) continue;
-      const StopEvent event{state.time, std::abs(e.curve.at(x[e.row]).force),
+      double elongation = 0.0;
+      for (ElongationRows::InnerIterator of(rows, e.row); of; ++of) {
+        elongation += of.value() * state.vehicle[v].displacement[of.col()];
+      }
+      const StopEvent event{state.time, std::abs(e.curve.at(elongation).force),
                             static_cast<int>(v * elements.element.size() + i)};
       if (event.force <= 0.0) continue;
       if (!state.stops.first.found()) state.stops.first = event;
@@ -87,7 +90,8 @@ bool Integrator::step(VsiState& state) {
 // The time step as sub-steps on a binary clock: `pending` holds the levels of those still to be made, the next one
 // last.
 bool Integrator::make_steps(VsiState& state) {
-  std::vector<int> pending{0};
+  std::vector<int>& pending = pending_;
+  pending.assign(1, 0);
   const auto divide = [&](int finer) {
     const int level = pending.back();
     pending.pop_back();

@@ -71,6 +71,7 @@ class Integrator {
   ContactRetry retry_;
   std::unique_ptr<ContactLaw> contact_law_;
   StepWorkspace workspace_;
+  std::vector<int> pending_;  // of make_steps()
   OperatorLevels& operators_;
   std::optional<MovingWindow> window_;
   DofRange active_;  // degrees of freedom of the structure

@@ -57,6 +57,7 @@ struct NewmarkPredictor {
 struct Prediction {
   Eigen::VectorXd displacement, velocity;                    ///< ã, ṽ
   Eigen::VectorXd weighted_displacement, weighted_velocity;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
+  Eigen::VectorXd known, free_increment;  ///< of a vehicle: right-hand side and Δ without the contacts' forces
 };
 
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;

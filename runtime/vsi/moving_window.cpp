@@ -37,13 +37,15 @@ Sparse block(const Sparse& matrix, const DofRange& dofs) {
   return matrix.block(dofs.begin, dofs.begin, dofs.count, dofs.count);
 }
 
+// Spans of the same build at other places differ by rounding, also where an entry is zero.
 bool alike(const Sparse& a, const Sparse& b) {
-  constexpr double rounding = 1e-11;  // of the same element at another place
+  constexpr double rounding = 1e-11;  // of the geometric mean of the diagonal's entries
   if (a.rows() != b.rows() || a.nonZeros() != b.nonZeros()) return false;
+  const Eigen::ArrayXd scale = a.diagonal().cwiseAbs().cwiseSqrt();
   for (int j = 0; j < a.outerSize(); ++j) {
     Sparse::InnerIterator x(a, j), y(b, j);
     for (; x && y; ++x, ++y) {
-      if (x.row() != y.row() || std::abs(x.value() - y.value()) > rounding * std::abs(x.value())) return false;
+      if (x.row() != y.row() || std::abs(x.value() - y.value()) > rounding * scale[x.row()] * scale[j]) return false;
     }
     if (x || y) return false;
   }
@@ -137,6 +139,8 @@ MovingWindow::MovingWindow(const VsiModel& model, double time_step)
                    [&](int dof) { return dof != held && dof >= span.dofs.begin && dof < span.dofs.end(); });
     }
     add_followed(*model.structure, span, dofs);
+    followed.compliance =
+        (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array()).inverse();
     const auto count = static_cast<Eigen::Index>(dofs.size());
     followed.shape.setZero((count + together - 1) / together * together, span.shape.cols());
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -277,16 +281,16 @@ void MovingWindow::step_span(std::size_t index, Eigen::Index first, const Eigen:
   auto v = of_span(state.left_behind, first, modes, 1);
   auto a = of_span(state.left_behind, first, modes, 2);
   const double dt = scheme_.time_step, of_a = dt * dt * (0.5 - scheme_.beta());
-  for (Eigen::Index m = 0; m < modes; ++m) {
-    const double predicted = q[m] + dt * v[m] + of_a * a[m];
-    const double velocity = v[m] + dt * (1.0 - scheme_.gamma()) * a[m];
-    const double increment = ((load ? (*load)[m] : 0.0) - span.damping[m] * velocity - span.omega2[m] * predicted) /
-                             (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping[m] + span.omega2[m]);
-    q[m] = predicted + increment;
-    v[m] = velocity + scheme_.velocity_rate() * increment;
-    a[m] = scheme_.acceleration_rate() * increment;
-  }
   const Followed& followed = followed_[index];
+  using OfModes = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, span_modes, 1>;
+  const OfModes predicted = (q + dt * v + of_a * a).array();
+  const OfModes velocity = (v + dt * (1.0 - scheme_.gamma()) * a).array();
+  OfModes increment = -span.damping.array() * velocity - span.omega2.array() * predicted;
+  if (load) increment += load->array();
+  increment *= followed.compliance.array();
+  q = (predicted + increment).matrix();
+  v = (velocity + scheme_.velocity_rate() * increment).matrix();
+  a = (scheme_.acceleration_rate() * increment).matrix();
   const Eigen::Map<const Eigen::MatrixX3d> coordinates(&state.left_behind[first], modes, 3);
   for (std::size_t i = 0; i < followed.dofs.size(); i += together) {
     const auto rows = followed.shape.middleRows<together>(static_cast<Eigen::Index>(i));

@@ -64,10 +64,11 @@ class MovingWindow {
   /// @param first its place in VsiState::left_behind
   void step_span(std::size_t index, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;
 
-  /// Dofs of a span's nodes of interest, and the rows of Φ that belong to them, filled up with zeros.
+  /// Of a span: dofs of its nodes of interest, and the rows of Φ that belong to them, filled up with zeros.
   struct Followed {
     std::vector<int> dofs;
     Eigen::MatrixXd shape;
+    Eigen::VectorXd compliance;  ///< of its modes in a step
   };
 
   const VsiModel& model_;

@@ -148,7 +148,8 @@ StepReport advance(const VsiModel& model, const StepOperators& op, const StepLim
   HhtScheme hht = op.scheme;
   hht.contact_force = limits.contact_force;
   const double end = state.time + hht.time_step;
-  const StepContext step{model, op, limits, hht, state.time, end, place_wheels(model, end)};
+  place_wheels(model, end, ws.contacts);
+  const StepContext step{model, op, limits, hht, state.time, end, ws.contacts};
   StepReport report;
   ws.far_field = state.far_field;
 

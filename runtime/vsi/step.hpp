@@ -52,6 +52,7 @@ struct StepReport {
 /// Buffers of a step, reused. The next step needs nothing that is in them, but that structure_load is zero outside of
 /// rail_dofs.
 struct StepWorkspace {
+  std::vector<RailContact> contacts;  ///< StepContext
   StructureSolution structure;
   /// Unknowns of the structure that the wheels load at the end of the step, and those of the nodes ahead of them; under
   /// ContactForceRule::endpoint find_loaded() at its beginning, else not set.

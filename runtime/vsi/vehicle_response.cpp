@@ -63,12 +63,15 @@ VehicleResponse::VehicleResponse(const VehicleModel& vehicle, const std::vector<
   }
 }
 
-Eigen::VectorXd VehicleResponse::free_increment(const HhtScheme& scheme, const Eigen::VectorXd& load,
-                                                const LinearMotion& motion, const Prediction& prediction) const {
-  Eigen::VectorXd known;
+void VehicleResponse::find_free_increment(const HhtScheme& scheme, const Eigen::VectorXd& load,
+                                          const LinearMotion& motion, Prediction& prediction) const {
+  Eigen::VectorXd& known = prediction.known;
   past_contact_load(scheme, motion, {0, motion.contact_load.size()}, known);
-  known += load - damping_ * prediction.weighted_velocity - stiffness_ * prediction.weighted_displacement;
-  return displacement(known);
+  known += load;
+  known.noalias() -= damping_ * prediction.weighted_velocity;
+  known.noalias() -= stiffness_ * prediction.weighted_displacement;
+  prediction.free_increment.setZero(known.size());
+  by_systems_.add_product(1.0, known, prediction.free_increment);
 }
 
 }  // namespace railtab

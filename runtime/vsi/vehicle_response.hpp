@@ -28,10 +28,10 @@ class VehicleResponse {
   /// At rest: K̄ = K + regularisation·M.
   VehicleResponse(const VehicleModel& vehicle, const std::vector<SeparateSystem>& systems, double regularisation);
 
-  /// Increment over the predictor without contact forces at the end of the step.
+  /// Sets the prediction's increment over the predictor without contact forces at the end of the step.
   /// @param load of the step on the vehicle besides the contacts: vehicle_step_load()
-  [[nodiscard]] Eigen::VectorXd free_increment(const HhtScheme& scheme, const Eigen::VectorXd& load,
-                                               const LinearMotion& motion, const Prediction& prediction) const;
+  void find_free_increment(const HhtScheme& scheme, const Eigen::VectorXd& load, const LinearMotion& motion,
+                           Prediction& prediction) const;
   /// Displacement under a load on the dofs: inverse() · load.
   [[nodiscard]] Eigen::VectorXd displacement(const Eigen::VectorXd& load) const { return by_systems_ * load; }
   /// Adds the displacement under `factor` times a load.

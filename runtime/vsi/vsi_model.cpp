@@ -141,13 +141,18 @@ void unpack(std::span<const double> numbers, VsiState& state) {
   state.contact.end_force = state.contact.force;  // but under ContactForceRule::energy: evaluate_contact_at()
 }
 
-std::vector<RailContact> place_wheels(const VsiModel& model, double time) {
-  std::vector<RailContact> contacts;
-  if (!model.structure) return contacts;
+void place_wheels(const VsiModel& model, double time, std::vector<RailContact>& contacts) {
+  contacts.clear();
+  if (!model.structure) return;
   contacts.reserve(index(2 * model.wheelsets()));
   for (int w = 0; w < model.wheelsets(); ++w) {
     append_rail_heads(*model.structure, model.wheelset_x(w, time), contacts);
   }
+}
+
+std::vector<RailContact> place_wheels(const VsiModel& model, double time) {
+  std::vector<RailContact> contacts;
+  place_wheels(model, time, contacts);
   return contacts;
 }
 

@@ -486,7 +486,8 @@ TEST_P(ImportedSpan, HasTheSectionForcesOfTheBuiltInOneUnderACoach) {
     EXPECT_GT(largest, least);
     for (double x = first; x < 24.0; x += 4.0) {
       for (std::size_t end = 0; end < 2; ++end) {
-        EXPECT_NEAR(imported.at(x)[end], built.at(x)[end], 1e-9 * largest) << quantity << " at " << x;
+        // The built track is solved in sections, whose factor is one of floats.
+        EXPECT_NEAR(imported.at(x)[end], built.at(x)[end], 1e-5 * largest) << quantity << " at " << x;
       }
     }
   }

@@ -291,6 +291,43 @@ TEST(LoadedWheel, TangentIsTheDerivativeInATimeStep) {
   EXPECT_GT(compared, 700);  // of 720
 }
 
+// A part beside another has the slopes of all its quantities, one by itself only of those that its force follows from.
+TEST(LoadedWheel, PartsBesideOthersHaveAllTheirSlopes) {
+  const LoadedTable& table = *geometry_over_jump().loaded();
+  constexpr double step = 2e-9;
+  int compared = 0;
+  for (const WheelState& s : mixed_wheels(geometry_over_jump(), 0.2e-3)) {
+    const WheelsetPose pose = relative_pose(geometry_over_jump().pair(), s.side, s.wheelset, s.rail);
+    const std::array<double, 4> at{pose.y, pose.z, pose.roll, pose.yaw};
+    const auto look = [&](std::size_t j, double by) {
+      std::array<double, 4> moved = at;
+      moved[j] += by;
+      return table.lookup(moved[0], moved[1], moved[2], moved[3]);
+    };
+    LoadedSlopes slopes;
+    const LoadedLookup found = table.lookup(pose.y, pose.z, pose.roll, pose.yaw, slopes);
+    if (found.table_share < 1.0 || found.parts != 2) continue;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const LoadedLookup plus = look(j, step), minus = look(j, -step);
+      const Eigen::Vector4d column = (plus.force - minus.force) / (2.0 * step);
+      if (plus.parts != 2 || minus.parts != 2) continue;
+      if ((column - slopes.stiffness.col(static_cast<Eigen::Index>(j))).norm() > 1e-5 * slopes.stiffness.norm()) {
+        continue;  // the border of a cell
+      }
+      ++compared;
+      for (std::size_t p = 0; p < 2; ++p) {
+        const auto a = plus.part[p].values(), b = minus.part[p].values(), value = found.part[p].values();
+        const auto d = slopes.part[p].values();
+        for (std::size_t q = 0; q < LoadedPart::quantities; ++q) {
+          EXPECT_NEAR((a[q] - b[q]) / (2.0 * step), d[q][j], 1e-4 * std::abs(d[q][j]) + 0.1 * std::abs(value[q]))
+              << "part " << p << ", quantity " << q << ", along " << j;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 30);
+}
+
 // Two parts of a contact are two ellipses where the saddle between them is low, one where it is high.
 TEST(LoadedWheel, PartsMergeByTheSaddleBetweenThem) {
   WheelContactModel model = model_with(creep_law("table", 0.28));

@@ -137,8 +137,8 @@ double error_of_steps(double time_step, double alpha) {
   const int steps = static_cast<int>(std::lround(0.6 / time_step));
   for (int i = 1; i <= steps; ++i) {
     predict(scheme, motion, prediction);
-    const Eigen::VectorXd increment = response.free_increment(scheme, load, motion, prediction);
-    update(scheme, prediction, increment, motion);
+    response.find_free_increment(scheme, load, motion, prediction);
+    update(scheme, prediction, prediction.free_increment, motion);
     largest = std::max(largest, std::abs(motion.displacement[0] - closed_form(start, i * time_step)[0]));
   }
   return largest / start[0];

@@ -297,7 +297,8 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
     EXPECT_FALSE(whole.in_sections());
     const Eigen::VectorXd expected = whole.increment(motion, load);
     EXPECT_LT((in_sections.increment(motion, load) - expected).cwiseAbs().maxCoeff(),
-              1e-11 * expected.cwiseAbs().maxCoeff());
+              1e-7 * expected.cwiseAbs().maxCoeff())
+        << "more than rounding L's entries to floats changes";
   }
 }
 

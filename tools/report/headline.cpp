@@ -74,6 +74,13 @@ HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(heade
   constexpr double averaged = 2.0;  // m
   const std::size_t wheels = header.static_wheel_load.size();
   for (std::size_t i = 0; i < wheels; ++i) wheel_names_.push_back(wheel_name(i));
+  for (std::size_t i = 0; i < wheels / 2; ++i) wheelset_names_.push_back(fmt::format("wheelset {}", i + 1));
+  for (std::size_t i = 0; i < header.body_names.size(); ++i) {
+    if (is_car_body(header.body_names[i])) car_bodies_.push_back({i, vehicle_of(header.body_names[i])});
+  }
+  for (std::size_t i = 0; i < header.node_names.size(); ++i) {
+    if (is_deck(header.node_names[i])) deck_.push_back({i, header.node_names[i]});
+  }
   quotient_.assign(wheels, SlidingMean(averaged));
   shift_.assign(wheels / 2, SlidingMean(averaged));
 }
@@ -88,7 +95,7 @@ void HeadlineCollector::add_sliding_means(const StepRecord& step) {
     }
     if (i % 2 == 0) continue;
     const auto mean = shift_[i / 2].add(step.position, step.wheels[i - 1].Y + wheel.Y);
-    if (mean) raise(headline_.track_shift_2m, std::abs(*mean), step.time, fmt::format("wheelset {}", i / 2 + 1));
+    if (mean) raise(headline_.track_shift_2m, std::abs(*mean), step.time, wheelset_names_[i / 2]);
   }
 }
 
@@ -105,17 +112,16 @@ void HeadlineCollector::add(const StepRecord& step) {
     recorded_.add(step.time, static_cast<int>(i), wheel.Y, wheel.Q, header_.static_wheel_load[i]);
   }
   add_sliding_means(step);
-  for (std::size_t i = 0; i < step.bodies.size(); ++i) {
-    if (!is_car_body(header_.body_names[i])) continue;
+  for (const auto& [i, vehicle] : car_bodies_) {
     if (!is_judged(header_.judged, step.position + offset(header_.body_x, i))) continue;
-    const std::string vehicle = vehicle_of(header_.body_names[i]);
-    raise(headline_.car_body_vertical, std::abs(step.bodies[i].acceleration[z_dof]), step.time, vehicle);
-    raise(headline_.car_body_lateral, std::abs(step.bodies[i].acceleration[y_dof]), step.time, vehicle);
+    const MotionRecord& body = step.bodies[i];
+    raise(headline_.car_body_vertical, std::abs(body.acceleration[z_dof]), step.time, vehicle);
+    raise(headline_.car_body_lateral, std::abs(body.acceleration[y_dof]), step.time, vehicle);
   }
-  for (std::size_t i = 0; i < step.nodes.size(); ++i) {
-    if (!is_deck(header_.node_names[i])) continue;
-    raise(headline_.deck_acceleration, std::abs(step.nodes[i].acceleration[z_dof]), step.time, header_.node_names[i]);
-    raise(headline_.deck_displacement, std::abs(step.nodes[i].displacement[z_dof]), step.time, header_.node_names[i]);
+  for (const auto& [i, name] : deck_) {
+    const MotionRecord& node = step.nodes[i];
+    raise(headline_.deck_acceleration, std::abs(node.acceleration[z_dof]), step.time, name);
+    raise(headline_.deck_displacement, std::abs(node.displacement[z_dof]), step.time, name);
   }
 }
 

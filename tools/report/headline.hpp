@@ -52,7 +52,14 @@ class HeadlineCollector {
   ResultHeader header_;
   void add_sliding_means(const StepRecord& step);
 
-  std::vector<std::string> wheel_names_;
+  struct Followed {
+    std::size_t index;  // in a step's record
+    std::string name;
+  };
+
+  std::vector<std::string> wheel_names_, wheelset_names_;
+  std::vector<Followed> car_bodies_;   // by the names of their vehicles
+  std::vector<Followed> deck_;         // nodes
   std::vector<SlidingMean> quotient_;  // per wheel
   std::vector<SlidingMean> shift_;     // per wheelset
   WheelExtremes recorded_;             // of the recorded steps
