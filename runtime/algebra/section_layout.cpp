@@ -262,7 +262,28 @@ class Division {
   }
 
   void append_single(std::size_t entry) {
-    if (layout_.unknown[entry] >= 0) layout_.single.push_back({static_cast<int>(entry), layout_.unknown[entry]});
+    const int u = layout_.unknown[entry];
+    if (u >= 0) append_single(static_cast<int>(entry), u);
+  }
+
+  void append_single(int entry, int u) {
+    const int other = mirrored_[index(u - static_cast<int>(layout_.range.begin))];
+    if (other < 0) {
+      layout_.single.push_back({entry, u, entry});
+    } else {
+      (u < other ? layout_.single_first : layout_.single_second)
+          .push_back({entry, u, static_cast<int>(layout_.position(other))});
+    }
+  }
+
+  void append_interfaces() {
+    const auto first = static_cast<int>(layout_.interface_begin());
+    for (int k = 0; k < static_cast<int>(layout_.interfaces.size()); ++k) {
+      append_single(first + k, layout_.interfaces[index(k)].unknown);
+    }
+    for (const SectionLayout::Single& of : layout_.single_first) {
+      if (of.entry >= first) layout_.interface_pair.push_back({of.entry, of.paired});
+    }
   }
 
   void set_standing() {
@@ -304,6 +325,7 @@ class Division {
       layout_.unknown[static_cast<std::size_t>(sections * p.number + p.section)] = static_cast<int>(i);
     }
     find_consecutive();
+    append_interfaces();
     set_standing();
     return true;
   }
@@ -374,10 +396,14 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
                          const std::array<Eigen::VectorXd*, sums>& ordered) const {
   std::array<double*, sums> to;
   for (std::size_t m = 0; m < sums; ++m) to[m] = ordered[m]->data();
-  const auto value = [&](std::size_t m, Eigen::Index i) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < vectors; ++k) sum += natural.weight[m][k] * natural.vector[k][i];
-    return sum;
+  const auto values = [&](int u) {
+    std::array<double, vectors> part;
+    for (std::size_t k = 0; k < vectors; ++k) part[k] = natural.vector[k][u];
+    std::array<double, sums> value{};
+    for (std::size_t m = 0; m < sums; ++m) {
+      for (std::size_t k = 0; k < vectors; ++k) value[m] += natural.weight[m][k] * part[k];
+    }
+    return value;
   };
   for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
     const std::size_t first = column_begin(c);
@@ -398,9 +424,14 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
       }
     }
   }
+  for (std::size_t m = 0; m < sums; ++m) std::fill(to[m] + 4 * consecutive.size(), to[m] + unknown.size(), 0.0);
+  for (const std::vector<Single>* singles : {&single, &single_first, &single_second}) {
+    for (const Single& of : *singles) {
+      const std::array<double, sums> value = values(of.unknown);
+      for (std::size_t m = 0; m < sums; ++m) to[m][of.entry] = value[m];
+    }
+  }
   for (std::size_t m = 0; m < sums; ++m) {
-    std::fill(to[m] + 4 * consecutive.size(), to[m] + unknown.size(), 0.0);
-    for (const Single& of : single) to[m][of.entry] = value(m, of.unknown);
     Lanes* const slot = lanes(*ordered[m]);
     for (std::size_t first = 0; first < partner.size(); ++first) {
       const auto& [second, is_second] = partner[first];
@@ -409,9 +440,10 @@ void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
       slot[first] = root_half * (u + v);
       slot[second] = root_half * (u - v);
     }
-    for (std::size_t k = 0; k < interfaces.size(); ++k) {
-      to[m][interface_begin() + static_cast<Eigen::Index>(k)] =
-          combined(interfaces[k].unknown, [&](Eigen::Index i) { return value(m, i); });
+    for (const auto& [first, second] : interface_pair) {
+      const double u = to[m][first], v = to[m][second];
+      to[m][first] = root_half * (u + v);
+      to[m][second] = root_half * (u - v);
     }
   }
 }
@@ -446,17 +478,12 @@ void visit_natural(const SectionLayout& l, const Eigen::VectorXd& ordered, Four&
       if (l.consecutive[c + s] >= 0) four(l.consecutive[c + s], of_section[s]);
     }
   }
-  for (const SectionLayout::Single& of : l.single) {
-    const auto& [other, is_second] = l.partner[index(of.entry / sections)];
-    double value = ordered[of.entry];
-    if (other >= 0) {
-      const double paired = ordered[sections * other + of.entry % sections];
-      value = root_half * (is_second ? paired - value : value + paired);
-    }
-    one(of.unknown, value);
+  for (const SectionLayout::Single& of : l.single) one(of.unknown, ordered[of.entry]);
+  for (const SectionLayout::Single& of : l.single_first) {
+    one(of.unknown, root_half * (ordered[of.entry] + ordered[of.paired]));
   }
-  for (const SectionLayout::Interface& f : l.interfaces) {
-    one(f.unknown, l.combined(f.unknown, [&](Eigen::Index k) { return ordered[l.position(k)]; }));
+  for (const SectionLayout::Single& of : l.single_second) {
+    one(of.unknown, root_half * (ordered[of.paired] - ordered[of.entry]));
   }
 }
 
@@ -544,7 +571,7 @@ SectionLayout::Entries SectionLayout::entries(std::initializer_list<const Sparse
 std::size_t SectionLayout::bytes() const noexcept {
   const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
   return of(place) + of(interfaces) + of(border_of) + of(standing) + of(unknown) + of(partner) + of(consecutive) +
-         of(single);
+         of(single) + of(single_first) + of(single_second) + of(interface_pair);
 }
 
 std::optional<SectionLayout> divide(const Sparse& matrix, const UnknownPlaces& places, const MirrorPairs& pairs,

@@ -97,11 +97,13 @@ struct SectionLayout {
   /// For each block of four slots and each section: the first of their four consecutive unknowns; -1: they are not
   /// consecutive.
   std::vector<int> consecutive;
-  /// An unknown in no such column, and where it stands in a vector of this layout.
+  /// An unknown in no such column, or of an interface, and where it and the other of its pair stand in a vector of this
+  /// layout: apart those of no pair, the first of pairs, and the second.
   struct Single {
-    int entry, unknown;
+    int entry, unknown, paired;
   };
-  std::vector<Single> single;
+  std::vector<Single> single, single_first, single_second;
+  std::vector<std::array<int, 2>> interface_pair;  ///< where interface unknowns that are a pair stand
   /// Where the first entry of such a column, the next ones `sections` further each, stands in a vector of this layout.
   [[nodiscard]] static constexpr std::size_t column_begin(std::size_t column) noexcept {
     return column / sections * 4 * sections + column % sections;
@@ -119,14 +121,6 @@ struct SectionLayout {
     return p.section < 0 ? interface_begin() + p.number : Eigen::Index{sections} * p.number + p.section;
   }
 
-  /// Of a vector of all unknowns, the entry of this layout that stands in the place of `u`: its own, or the sum
-  /// or the difference of its pair. Its inverse is itself.
-  template <class Value>
-  [[nodiscard]] double combined(Eigen::Index u, Value&& value) const {
-    const int other = standing[static_cast<std::size_t>(u - range.begin)].other;
-    if (other < 0) return value(u);
-    return other > u ? root_half * (value(u) + value(other)) : root_half * (value(other) - value(u));
-  }
   /// Sets the slots and the interface unknowns: one vector, or two sums of three vectors.
   template <std::size_t vectors, std::size_t sums>
   void into(const WeightedSums<vectors, sums>& natural, const std::array<Eigen::VectorXd*, sums>& ordered) const;
