@@ -10,7 +10,7 @@
 namespace railtab {
 
 /// arctan without branches or tables, of a number or of numbers side by side, to some units in the last place: q g(q²)
-/// with a polynomial g for |q| <= tan(π/8), after a rotation by π/4 where that is smaller.
+/// with a polynomial g for |q| <= tan(π/8), turned by −π/4 beyond.
 class ArcTangent {
  public:
   ArcTangent() {
@@ -33,7 +33,7 @@ class ArcTangent {
     for (std::size_t k = 0; k <= degree; ++k) coefficient_[k] = static_cast<double>(power[k]);
   }
 
-  /// Of (x, y) with y >= 0 to (1, 0), 0..π; 0 at (0, 0).
+  /// Of (x, y) with y >= 0 to (1, 0), 0..π; 0 at (0, 0), NaN where x or y is.
   template <class V>
   [[nodiscard]] V angle(const V& y, const V& x) const noexcept {
     using std::abs;
@@ -42,7 +42,7 @@ class ArcTangent {
     const V larger = select(steep, y, width), smaller = select(steep, width, y);
     const auto turned = smaller > largest * larger;
     const V below = select(turned, smaller + larger, larger);
-    const V q = select(turned, smaller - larger, smaller) / select(below > zero, below, one);
+    const V q = select(turned, smaller - larger, smaller) / select(larger <= zero, one, below);
     const V z = q * q, zz = z * z;
     V even = broadcast<V>(coefficient_[degree - 1]), odd = broadcast<V>(coefficient_[degree]);
     for (std::size_t k = degree - 1; k > 0; k -= 2) {
@@ -56,6 +56,7 @@ class ArcTangent {
 
  private:
   static constexpr std::size_t degree = 11;
+  static_assert(degree % 2 == 1, "even and odd powers are summed side by side, in as many steps");
   static constexpr double largest = std::numbers::sqrt2 - 1.0;  // tan(π/8)
   std::array<double, degree + 1> coefficient_;
 };

@@ -70,19 +70,27 @@ struct LoadedPartOf {
 
   static constexpr std::size_t quantities = 12;
   static constexpr std::size_t of_one = 7;  ///< of these, what the force of a part by itself follows from
+  /// @pre quantity < quantities
+  [[nodiscard]] T& operator[](std::size_t quantity) noexcept { return this->*member(quantity); }
+  [[nodiscard]] const T& operator[](std::size_t quantity) const noexcept { return this->*member(quantity); }
   [[nodiscard]] std::array<T, quantities> values() const noexcept {
-    return {share, arm_x, arm_y, arm_z, angle, a, b, peak, saddle, s_rail, s_wheel, pressure};
+    std::array<T, quantities> v;
+    for (std::size_t q = 0; q < quantities; ++q) v[q] = (*this)[q];
+    return v;
   }
   [[nodiscard]] static LoadedPartOf of(const std::array<T, quantities>& v) noexcept {
-    return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11]};
+    LoadedPartOf part;
+    for (std::size_t q = 0; q < quantities; ++q) part[q] = v[q];
+    return part;
   }
-  /// values()[quantity] @pre quantity < quantities
-  [[nodiscard]] T& operator[](std::size_t quantity) noexcept {
+
+ private:
+  static constexpr T LoadedPartOf::*member(std::size_t quantity) noexcept {
     constexpr std::array members{&LoadedPartOf::share,  &LoadedPartOf::arm_x,   &LoadedPartOf::arm_y,
                                  &LoadedPartOf::arm_z,  &LoadedPartOf::angle,   &LoadedPartOf::a,
                                  &LoadedPartOf::b,      &LoadedPartOf::peak,    &LoadedPartOf::saddle,
                                  &LoadedPartOf::s_rail, &LoadedPartOf::s_wheel, &LoadedPartOf::pressure};
-    return this->*members[quantity];
+    return members[quantity];
   }
 };
 using LoadedPart = LoadedPartOf<double>;

@@ -5,7 +5,7 @@
 namespace railtab {
 
 void DividedSubstitution::begin(const SubstitutionFactor& factor, const LoadedUnknowns& few) {
-  const bool same = path_of_ == factor.id() && std::ranges::equal(few.now, few_);
+  const bool of_another = path_of_ != factor.id(), same = !of_another && std::ranges::equal(few.now, few_);
   if (!same) {
     few_.assign(few.now.begin(), few.now.end());
     if (path_of_ != factor.id() || !factor.covers(path_, few_)) {
@@ -16,7 +16,7 @@ void DividedSubstitution::begin(const SubstitutionFactor& factor, const LoadedUn
       path_of_ = factor.id();
     }
   }
-  if (work_.size() == factor.room()) return;
+  if (!of_another && work_.size() == factor.room()) return;
   for (Eigen::VectorXd* vector : {&known_, &work_, &solved_}) vector->setZero(factor.room());
 }
 

@@ -97,12 +97,14 @@ struct SectionLayout {
   /// For each block of four slots and each section: the first of their four consecutive unknowns; -1: they are not
   /// consecutive.
   std::vector<int> consecutive;
-  /// An unknown in no such column, or of an interface, and where it and the other of its pair stand in a vector of this
-  /// layout: apart those of no pair, the first of pairs, and the second.
+  /// An unknown in no such column, or of an interface.
   struct Single {
-    int entry, unknown, paired;
+    int entry, unknown;  ///< entry: where it stands in a vector of this layout
+    int paired;          ///< where the other of its pair stands; without one itself
   };
-  std::vector<Single> single, single_first, single_second;
+  std::vector<Single> single;                      ///< of no pair
+  std::vector<Single> single_first;                ///< first of a pair
+  std::vector<Single> single_second;               ///< second of a pair
   std::vector<std::array<int, 2>> interface_pair;  ///< where interface unknowns that are a pair stand
   /// Where the first entry of such a column, the next ones `sections` further each, stands in a vector of this layout.
   [[nodiscard]] static constexpr std::size_t column_begin(std::size_t column) noexcept {

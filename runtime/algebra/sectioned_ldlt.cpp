@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -59,8 +61,12 @@ void backward_columns(const int* slot, int rows, const float* value, const Lanes
   for (int j = 0; j < n; ++j) x[slot[j]] = own[j];
 }
 
+// To floats. Those that would be denormal are zero: widening them again takes some processors a hundred times as long.
 Lanes rounded(Lanes numbers) noexcept {
-  for (int s = 0; s < side_by_side; ++s) numbers[s] = static_cast<double>(static_cast<float>(numbers[s]));
+  for (int s = 0; s < side_by_side; ++s) {
+    const auto number = static_cast<float>(numbers[s]);
+    numbers[s] = std::abs(number) < std::numeric_limits<float>::min() ? 0.0 : double{number};
+  }
   return numbers;
 }
 
@@ -174,7 +180,7 @@ void SectionedLdlt::set_strips(const EliminationTree& tree) {
     strip.value = values;
     values += strip.columns * (strip.columns - 1) / 2 + strip.columns * strip.rows;
   }
-  value_.resize(index(values * side_by_side));
+  value_.resize(index(values) * side_by_side);
 }
 
 // Right-looking: a finished column changes the columns of its rows, whose rows include the further ones of its own. Its
@@ -210,7 +216,7 @@ void SectionedLdlt::eliminate(Numbers& n, std::string_view message) const {
 
 void SectionedLdlt::store(const Numbers& numbers) {
   for (const Strip& strip : strip_) {
-    float* value = &value_[index(strip.value * side_by_side)];
+    float* value = value_.data() + index(strip.value) * side_by_side;
     for (int row = 1; row < strip.columns + strip.rows; ++row) {
       for (int j = 0; j < std::min(row, strip.columns); ++j) {
         const Lanes& of = numbers.value[index(numbers.begin[index(strip.first + j)] + row - j - 1)];
@@ -352,7 +358,7 @@ void SectionedLdlt::backward_interfaces(const Vector& y, Vector& x) const {
   if (!interfaces_) return;
   double* const natural = x.data() + layout_->interface_begin();
   double* const ordered = x.data() + factor_begin();
-  std::copy_n(y.data() + factor_begin(), interfaces_->room(), ordered);
+  std::copy_n(y.data() + factor_begin(), interfaces_->size(), ordered);
   interfaces_->backward(ordered);
   for (int k = 0; k < interfaces_->size(); ++k) natural[k] = ordered[interfaces_->position(k)];
   layout_->spread_interfaces(x);
@@ -360,7 +366,7 @@ void SectionedLdlt::backward_interfaces(const Vector& y, Vector& x) const {
 
 void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
   const int* const slot = &slot_[index(strip.slot)];
-  const float* const value = &value_[index(strip.value * side_by_side)];
+  const float* const value = value_.data() + index(strip.value) * side_by_side;
   switch (strip.columns) {
     case 1:
       return forward_columns<1>(slot, strip.rows, value, y);
@@ -375,7 +381,7 @@ void SectionedLdlt::forward_strip(const Strip& strip, Lanes* y) const noexcept {
 
 void SectionedLdlt::backward_strip(const Strip& strip, const Lanes* y, Lanes* x) const noexcept {
   const int* const slot = &slot_[index(strip.slot)];
-  const float* const value = &value_[index(strip.value * side_by_side)];
+  const float* const value = value_.data() + index(strip.value) * side_by_side;
   const Lanes* const inverse_D = &inverse_D_[index(strip.first)];
   switch (strip.columns) {
     case 1:
@@ -406,8 +412,8 @@ void SectionedLdlt::forward(Vector& y, const Path& path, const Vector& known) co
     for (int slot : slots) numbers[slot] += more[slot];  // no strip after this one reads them
   }
   forward_interfaces(y);
-  const Eigen::Index count = room() - factor_begin();
-  y.tail(count) += known.tail(count);
+  if (!interfaces_) return;
+  y.segment(factor_begin(), interfaces_->size()) += known.segment(factor_begin(), interfaces_->size());
 }
 
 void SectionedLdlt::backward(const Vector& y, Vector& x, const Path& path) const {

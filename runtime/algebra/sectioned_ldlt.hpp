@@ -15,9 +15,9 @@ struct EliminationTree;
 
 /// Factor of a long structure's matrix by substructuring: the sections of its layout are eliminated side by side, one
 /// in each place of a vector register; what is left is the small system of the interface unknowns (their Schur
-/// complement), factored as a whole. Entries of L are floats, which halves what a substitution reads; it computes with
-/// doubles. What it solves is a symmetric matrix that differs from the given one off the diagonal, by rounding of
-/// floats.
+/// complement), factored as a whole. Entries of L are floats, which halves what a substitution reads of it; it computes
+/// with doubles. The matrix that it solves with is symmetric and differs from the given one off the diagonal alone, by
+/// rounding of floats.
 class SectionedLdlt final : public SubstitutionFactor {
  public:
   /// @param matrix symmetric, whole pattern @throws ComputationError with the message where it is not positive definite

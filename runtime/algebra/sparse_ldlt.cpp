@@ -234,7 +234,7 @@ bool SparseLdlt::covers(const Path& path, std::span<const int> unknowns) const {
 void SparseLdlt::into(const Vector& natural, Vector& ordered) const {
   ordered.resize(room());
   for (Eigen::Index i = 0; i < size(); ++i) ordered[position_[static_cast<std::size_t>(i)]] = natural[first_ + i];
-  ordered[size()] = 0.0;
+  ordered.tail(room() - size()).setZero();
 }
 
 void SparseLdlt::into(std::span<const int> few, double weight, const Vector& natural, Vector& ordered) const {

@@ -439,6 +439,7 @@ void ResultWriter::append(const StepRecord& record) {
       }
     }
   }
+  assert(filled == in_order.size());
   if (++impl_->buffered >= impl_->flush_every) impl_->flush();
 }
 

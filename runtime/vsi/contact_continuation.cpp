@@ -22,8 +22,8 @@ NewtonReport solve_contact_by_continuation(const TrainContact& train, const Cont
                                            InitialForces forces) {
   constexpr std::array first_shares{1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0};
   constexpr double largest_ratio = 4.0, smallest_ratio = 1.05;
-  Eigen::VectorXd& start = ws.continuation_start;
-  start = solution.displacement;
+  ws.continuation_start = solution.displacement;
+  const Eigen::VectorXd& start = ws.continuation_start;
   NewtonReport report = solve_contact(train, problem, limits, solution, ws, forces);
   if (report.converged || train.shared().friction <= 0.0) return report;
 

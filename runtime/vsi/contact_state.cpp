@@ -25,6 +25,7 @@ ContactState contact_state(const ContactSolution& contact, std::size_t wheel) {
 
 std::vector<ContactState> contact_states(const ContactSolution& contact) {
   std::vector<ContactState> result;
+  result.reserve(contact.contact.size());
   for (std::size_t wheel = 0; wheel < contact.contact.size(); ++wheel) result.push_back(contact_state(contact, wheel));
   return result;
 }

@@ -29,7 +29,7 @@ struct ElementStep {
 
   explicit ElementStep(const HhtScheme& hht) noexcept
       : rate(hht.velocity_rate()), back(rate * hht.time_step - 1.0), share(1.0 / (1.0 + time_constant * rate)) {}
-  /// The part of g that no force of this step changes.
+  /// The part of g that no force of this step changes. Refers to `begin`.
   [[nodiscard]] auto free(const ElementDeflection& begin) const {
     return share * time_constant * (rate * begin.force + back * begin.rate);
   }

@@ -62,7 +62,7 @@ class HertzContacts : public ContactLaw {
       vehicle_step_load(step.model, hht, v, step.begin, motion, ws.vehicle_load);
       step.operators.vehicle.find_free_increment(hht, ws.vehicle_load, motion, p);
       // predictor, its velocity, and the motion without contact forces
-      free_ = p.displacement + p.free_increment;
+      free_ = p.displacement + p.increment;
       gather_wheelsets(step.model, v, p.displacement, problem_.predicted);
       gather_wheelsets(step.model, v, p.velocity, problem_.predicted_velocity);
       gather_wheelsets(step.model, v, motion.velocity, begin_velocity_);
@@ -149,14 +149,14 @@ class HertzContacts : public ContactLaw {
       scatter_wheelset_forces(step.model, v, ws.solution.force, ws.vehicle_load);
       if (elements_) elements_->add_share(v, ws.vehicle_load);
       Prediction& p = prediction_[index(v)];
-      step.operators.vehicle.add_displacement(hht.load_weight(), ws.vehicle_load, p.free_increment);
+      step.operators.vehicle.add_displacement(hht.load_weight(), ws.vehicle_load, p.increment);
       close_load(hht, ws.vehicle_load, motion.contact_load, motion.step_load);
       scatter_wheelset_forces(step.model, v, ws.solution.end_force, motion.contact_load);
       if (elements_) {
         elements_->add_end_force(v, motion.contact_load);
         elements_->store_friction(v, state.friction[index(v)]);
       }
-      update(hht, p, p.free_increment, motion);
+      update(hht, p, p.increment, motion);
     }
     if (step.model.structure) close_elements(step, ws.solution, state.deflection);
     newton_.trend.learn(ws.solution.displacement);

@@ -87,18 +87,17 @@ bool Integrator::step(VsiState& state) {
   return true;
 }
 
-// The time step as sub-steps on a binary clock: `pending` holds the levels of those still to be made, the next one
+// The time step as sub-steps on a binary clock: `pending_` holds the levels of those still to be made, the next one
 // last.
 bool Integrator::make_steps(VsiState& state) {
-  std::vector<int>& pending = pending_;
-  pending.assign(1, 0);
+  pending_.assign(1, 0);
   const auto divide = [&](int finer) {
-    const int level = pending.back();
-    pending.pop_back();
-    pending.insert(pending.end(), std::size_t{1} << (finer - level), finer);
+    const int level = pending_.back();
+    pending_.pop_back();
+    pending_.insert(pending_.end(), std::size_t{1} << (finer - level), finer);
   };
-  while (!pending.empty()) {
-    const int level = pending.back(), coarsest = division_.coarsest_level(state);
+  while (!pending_.empty()) {
+    const int level = pending_.back(), coarsest = division_.coarsest_level(state);
     if (level < coarsest) {
       if (level == 0) ++counts_.impact_steps;
       divide(coarsest);
@@ -106,7 +105,7 @@ bool Integrator::make_steps(VsiState& state) {
     }
     switch (attempt(level, state).outcome) {
       case StepOutcome::accepted:
-        pending.pop_back();
+        pending_.pop_back();
         break;
       case StepOutcome::contact_state_changed:
       case StepOutcome::force_jumped:

@@ -57,7 +57,8 @@ struct NewmarkPredictor {
 struct Prediction {
   Eigen::VectorXd displacement, velocity;                    ///< ã, ṽ
   Eigen::VectorXd weighted_displacement, weighted_velocity;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
-  Eigen::VectorXd known, free_increment;  ///< of a vehicle: right-hand side and Δ without the contacts' forces
+  /// Of a vehicle on Hertz's contacts: right-hand side, and Δ, first without the contacts' forces, at last with them.
+  Eigen::VectorXd known, increment;
 };
 
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;

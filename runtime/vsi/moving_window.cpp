@@ -139,8 +139,8 @@ MovingWindow::MovingWindow(const VsiModel& model, double time_step)
                    [&](int dof) { return dof != held && dof >= span.dofs.begin && dof < span.dofs.end(); });
     }
     add_followed(*model.structure, span, dofs);
-    followed.compliance =
-        (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array()).inverse();
+    compliance_.emplace_back(
+        (scheme_.acceleration_rate() + scheme_.velocity_rate() * span.damping.array() + span.omega2.array()).inverse());
     const auto count = static_cast<Eigen::Index>(dofs.size());
     followed.shape.setZero((count + together - 1) / together * together, span.shape.cols());
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -281,16 +281,16 @@ void MovingWindow::step_span(std::size_t index, Eigen::Index first, const Eigen:
   auto v = of_span(state.left_behind, first, modes, 1);
   auto a = of_span(state.left_behind, first, modes, 2);
   const double dt = scheme_.time_step, of_a = dt * dt * (0.5 - scheme_.beta());
-  const Followed& followed = followed_[index];
   using OfModes = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, span_modes, 1>;
   const OfModes predicted = (q + dt * v + of_a * a).array();
   const OfModes velocity = (v + dt * (1.0 - scheme_.gamma()) * a).array();
   OfModes increment = -span.damping.array() * velocity - span.omega2.array() * predicted;
   if (load) increment += load->array();
-  increment *= followed.compliance.array();
+  increment *= compliance_[index].array();
   q = (predicted + increment).matrix();
   v = (velocity + scheme_.velocity_rate() * increment).matrix();
   a = (scheme_.acceleration_rate() * increment).matrix();
+  const Followed& followed = followed_[index];
   const Eigen::Map<const Eigen::MatrixX3d> coordinates(&state.left_behind[first], modes, 3);
   for (std::size_t i = 0; i < followed.dofs.size(); i += together) {
     const auto rows = followed.shape.middleRows<together>(static_cast<Eigen::Index>(i));

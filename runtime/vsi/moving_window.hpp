@@ -64,16 +64,16 @@ class MovingWindow {
   /// @param first its place in VsiState::left_behind
   void step_span(std::size_t index, Eigen::Index first, const Eigen::VectorXd* load, VsiState& state) const;
 
-  /// Of a span: dofs of its nodes of interest, and the rows of Φ that belong to them, filled up with zeros.
+  /// Dofs of a span's nodes of interest, and the rows of Φ that belong to them, filled up with zeros.
   struct Followed {
     std::vector<int> dofs;
     Eigen::MatrixXd shape;
-    Eigen::VectorXd compliance;  ///< of its modes in a step
   };
 
   const VsiModel& model_;
   HhtScheme scheme_;
-  std::vector<Followed> followed_;  // of every span
+  std::vector<Followed> followed_;           // of every span
+  std::vector<Eigen::VectorXd> compliance_;  // of every span's modes in a step
   bool placed_ = false;
   double from_ = 0.0, to_ = 0.0, error_ = 0.0;
 };

@@ -356,10 +356,10 @@ StructureResponse::Memory StructureResponse::memory() const {
   memory.low += static_cast<double>(whole.stored);
   memory.low_setup = static_cast<double>(whole.made);
   if (product_) {
-    // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's
-    // beside the factor.
+    // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's,
+    // twice as wide until they are stored, beside the factor.
     const double ordering = 3.5 * entry * nonzeros;
-    memory.setup = std::max(ordering, entry * nonzeros + static_cast<double>(factor_->bytes()));
+    memory.setup = std::max(ordering, entry * nonzeros + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
     memory.setup = static_cast<double>(SparseLdlt::memory(effective_, active_, order_of(active_), node_).made);
   }

@@ -70,8 +70,8 @@ void VehicleResponse::find_free_increment(const HhtScheme& scheme, const Eigen::
   known += load;
   known.noalias() -= damping_ * prediction.weighted_velocity;
   known.noalias() -= stiffness_ * prediction.weighted_displacement;
-  prediction.free_increment.setZero(known.size());
-  by_systems_.add_product(1.0, known, prediction.free_increment);
+  prediction.increment.setZero(known.size());
+  by_systems_.add_product(1.0, known, prediction.increment);
 }
 
 }  // namespace railtab

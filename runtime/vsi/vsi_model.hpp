@@ -134,7 +134,7 @@ void unpack(std::span<const double> numbers, VsiState& state);
 
 /// Where the wheels stand on the structure, 2 per wheelset (left, right); empty on rigid track.
 [[nodiscard]] std::vector<RailContact> place_wheels(const VsiModel& model, double time);
-/// The same into a vector that has room for them.
+/// The same in place of what `contacts` holds.
 void place_wheels(const VsiModel& model, double time, std::vector<RailContact>& contacts);
 
 /// Irregularity under every wheel, with the slopes that the structure's displacement adds; where the rails are rigid,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace railtab {
@@ -33,6 +34,9 @@ TEST(ArcTangent, OnTheAxes) {
   EXPECT_EQ(arc_tangent.angle(0.0, 2.0), 0.0);
   EXPECT_EQ(arc_tangent.angle(0.0, -2.0), std::atan2(0.0, -2.0));
   EXPECT_EQ(arc_tangent.angle(2.0, 0.0), std::atan2(2.0, 0.0));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(arc_tangent.angle(nan, 1.0)));
+  EXPECT_TRUE(std::isnan(arc_tangent.angle(1.0, nan)));
 }
 
 }  // namespace

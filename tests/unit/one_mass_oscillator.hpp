@@ -64,7 +64,7 @@ class Oscillator {
     load_.setZero();
     load_[0] = hht_.load_weight() * after - hht_.alpha * before;
     response_.find_free_increment(hht_, load_, motion_, prediction_);
-    const Eigen::VectorXd& increment = prediction_.free_increment;
+    const Eigen::VectorXd& increment = prediction_.increment;
     const Eigen::VectorXd guess = prediction_.displacement + motion_.acceleration / hht_.acceleration_rate();
     elements_.begin({energy ? ElementRule::energy : ElementRule::endpoint, hht_.time_step, hht_.velocity_rate(),
                      energy ? 1.0 / (hht_.gamma() * hht_.load_weight()) : 1.0},

@@ -73,6 +73,29 @@ TEST(SectionedLdlt, SolvesAsTheWholeFactorDoes) {
   }
 }
 
+// Entries of L are rounded before they change others: the matrix that the factor solves with has the given diagonal,
+// and off it differs by roundings of floats.
+TEST(SectionedLdlt, KeepsTheDiagonal) {
+  const StructureModel s = track_with({});
+  const Sectioned sectioned(s, whole(s), false);
+  ASSERT_TRUE(sectioned.layout);
+  const SectionedLdlt factor = sectioned.factor();
+  const int n = s.dofs();
+  const Eigen::MatrixXd given = sectioned.effective;
+  const Eigen::VectorXd root = given.diagonal().cwiseSqrt();
+  Eigen::MatrixXd inverse(n, n);  // with a diagonal of one, for the rounding of its own inverse
+  for (int j = 0; j < n; ++j) {
+    const Eigen::VectorXd load = root[j] * Eigen::VectorXd::Unit(n, j);
+    inverse.col(j) = root.cwiseProduct(factor.solve(load));
+  }
+  const Eigen::MatrixXd scaled = root.cwiseInverse().asDiagonal() * given * root.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd change = (inverse.inverse() - scaled).cwiseAbs();
+  const double on_diagonal = change.diagonal().maxCoeff(), largest = change.maxCoeff();
+  EXPECT_LT(on_diagonal, 1e-11);
+  EXPECT_GT(largest, 1e-9) << "entries are floats";
+  EXPECT_LT(largest, 6e-8);
+}
+
 TEST(SectionedLdlt, OfARangeHoldsTheRest) {
   const StructureModel s = track_with({32.0, 32.0}, 100.0, 100.0);
   const auto begin = std::lower_bound(s.dof_x.begin(), s.dof_x.end(), -40.0) - s.dof_x.begin();

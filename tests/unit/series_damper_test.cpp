@@ -138,7 +138,7 @@ double error_of_steps(double time_step, double alpha) {
   for (int i = 1; i <= steps; ++i) {
     predict(scheme, motion, prediction);
     response.find_free_increment(scheme, load, motion, prediction);
-    update(scheme, prediction, prediction.free_increment, motion);
+    update(scheme, prediction, prediction.increment, motion);
     largest = std::max(largest, std::abs(motion.displacement[0] - closed_form(start, i * time_step)[0]));
   }
   return largest / start[0];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -100,6 +101,7 @@ void HeadlineCollector::add_sliding_means(const StepRecord& step) {
 }
 
 void HeadlineCollector::add(const StepRecord& step) {
+  assert(step.bodies.size() == header_.body_names.size() && step.nodes.size() == header_.node_names.size());
   constexpr double sparse = 0.5;  // m: fewer than five records in 2 m are no mean over them
   if (!any_) first_position_ = step.position;
   if (any_ && step.position - last_position_ > sparse) sparse_ = true;
