@@ -8,7 +8,7 @@ void DividedSubstitution::begin(const SubstitutionFactor& factor, const LoadedUn
   const bool of_another = path_of_ != factor.id(), same = !of_another && std::ranges::equal(few.now, few_);
   if (!same) {
     few_.assign(few.now.begin(), few.now.end());
-    if (path_of_ != factor.id() || !factor.covers(path_, few_)) {
+    if (of_another || !factor.covers(path_, few_)) {
       path_of_ = 0;  // of none, should the search throw
       on_path_ = few_;
       on_path_.insert(on_path_.end(), few.soon.begin(), few.soon.end());
