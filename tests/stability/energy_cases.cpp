@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "railtab/runtime/algebra/sparse_ldlt.hpp"
@@ -56,7 +58,7 @@ CaseResult closed_system(SceneParameters scene) {
     balance_accelerations(model, state);
   });
   CaseResult result = judged(run);
-  result.error = result.energy.step;
+  result.error = std::max(result.energy.step, std::abs(result.energy.total));
   if (!result.energy.kept || run.longest_flight < 0.99 * scene.integration.duration) result.outcome = Outcome::wrong;
   return result;
 }
@@ -86,10 +88,13 @@ CaseResult judged_flight(const WatchedRun& run, double least) {
 
 std::vector<StabilityCase> energy_cases() {
   Cases cases;
-  cases.push_back({"linear systems, alpha 0", "a coach in the air", "energy of a step", 1e-12, Outcome::converged, true,
+  constexpr const char* kept = "energy of a step and of the run";
+  cases.push_back({"linear systems, alpha 0", "a coach in the air", kept, 1e-12, Outcome::converged, true,
                    [](double) { return closed_system(coach_on_rigid_track()); }});
-  cases.push_back({"linear systems, alpha 0", "the same over a bridge", "energy of a step", 1e-12, Outcome::converged,
-                   true, [](double) { return closed_system(coach_on_bridge()); }});
+  // The factor of the structure is that of a mass matrix that differs by roundings of floats: it is the energy of that
+  // one which the 400 steps keep.
+  cases.push_back({"linear systems, alpha 0", "the same over a bridge", kept, 1e-6, Outcome::converged, true,
+                   [](double) { return closed_system(coach_on_bridge()); }});
   const auto add = [&](const std::string& setting, const char* measure, double allowed, bool quick,
                        const std::function<CaseResult(double)>& run) {
     cases.push_back({"lift-off and landing", setting, measure, allowed, Outcome::converged, quick, run});
