@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/tables/power_coefficients.hpp"
 
 namespace railtab {
 
@@ -14,22 +15,14 @@ namespace railtab {
 class ArcTangent {
  public:
   ArcTangent() {
-    // g(z) = arctan(√z)/√z by Newton's divided differences at Chebyshev nodes, expanded into powers.
-    std::array<long double, degree + 1> node, difference, power{};
+    // g(z) = arctan(√z)/√z at Chebyshev nodes.
+    std::array<long double, degree + 1> node, value;
     for (std::size_t i = 0; i <= degree; ++i) {
       const auto angle = std::numbers::pi_v<long double> * (static_cast<long double>(i) + 0.5L) / (degree + 1);
       node[i] = 0.5L * largest * largest * (1.0L + std::cos(angle));
-      difference[i] = std::atan(std::sqrt(node[i])) / std::sqrt(node[i]);
+      value[i] = std::atan(std::sqrt(node[i])) / std::sqrt(node[i]);
     }
-    for (std::size_t order = 1; order <= degree; ++order) {
-      for (std::size_t i = degree; i >= order; --i) {
-        difference[i] = (difference[i] - difference[i - 1]) / (node[i] - node[i - order]);
-      }
-    }
-    for (std::size_t i = degree + 1; i-- > 0;) {
-      for (std::size_t k = degree; k > 0; --k) power[k] = power[k - 1] - node[i] * power[k];
-      power[0] = difference[i] - node[i] * power[0];
-    }
+    const std::array<long double, degree + 1> power = power_coefficients(node, value);
     for (std::size_t k = 0; k <= degree; ++k) coefficient_[k] = static_cast<double>(power[k]);
   }
 

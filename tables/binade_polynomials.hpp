@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/tables/power_coefficients.hpp"
 
 namespace railtab {
 
@@ -95,30 +96,21 @@ class BinadePolynomials {
     }
   }
 
-  /// Newton's divided differences at the Chebyshev nodes, expanded into powers.
+  /// Powers of the polynomials through the Chebyshev nodes.
   template <class Function>
   static Coefficients fit(double middle, double half, const Function& f) {
-    std::array<double, degree + 1> node{};
-    Coefficients difference{};
-    for (int i = 0; i <= degree; ++i) {
-      node[i] = std::cos(std::numbers::pi * (i + 0.5) / (degree + 1));
-      difference[i] = f(middle + half * node[i]);
+    using Values = std::array<double, degree + 1>;
+    Values node;
+    std::array<Values, lanes> value;
+    for (std::size_t i = 0; i <= degree; ++i) {
+      node[i] = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.5) / (degree + 1));
+      const std::array<double, lanes> at_node = f(middle + half * node[i]);
+      for (std::size_t l = 0; l < lanes; ++l) value[l][i] = at_node[l];
     }
-    for (int order = 1; order <= degree; ++order) {
-      for (int i = degree; i >= order; --i) {
-        for (int l = 0; l < lanes; ++l) {
-          difference[i][l] = (difference[i][l] - difference[i - 1][l]) / (node[i] - node[i - order]);
-        }
-      }
-    }
-    Coefficients power{};
-    for (int i = degree; i >= 0; --i) {
-      for (int k = degree; k >= 0; --k) {
-        for (int l = 0; l < lanes; ++l) {
-          const double shifted = k > 0 ? power[k - 1][l] : difference[i][l];
-          power[k][l] = shifted - node[i] * power[k][l];
-        }
-      }
+    Coefficients power;
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const Values of_lane = power_coefficients(node, value[l]);
+      for (std::size_t k = 0; k <= degree; ++k) power[k][l] = of_lane[k];
     }
     return power;
   }

@@ -31,12 +31,15 @@ void element_motion(const std::vector<RailContact>& contacts, const Eigen::Vecto
   }
 }
 
-Eigen::VectorXd rail_part(const Eigen::VectorXd& of_wheelsets) {
-  const int wheels = 2 * static_cast<int>(of_wheelsets.size()) / wheelset_unknowns;
-  Eigen::VectorXd part(3 * wheels);
-  for (int wheel = 0; wheel < wheels; ++wheel) {
-    part.segment<3>(3 * wheel) = of_wheelsets.segment<3>(rail_unknown(wheel));
+void add_rail_part(double weight, const Eigen::VectorXd& of_wheelsets, Eigen::VectorXd& sum) {
+  for (int wheel = 0; wheel < static_cast<int>(sum.size()) / 3; ++wheel) {
+    sum.segment<3>(3 * wheel) += weight * of_wheelsets.segment<3>(rail_unknown(wheel));
   }
+}
+
+Eigen::VectorXd rail_part(const Eigen::VectorXd& of_wheelsets) {
+  Eigen::VectorXd part = Eigen::VectorXd::Zero(of_wheelsets.size() / wheelset_unknowns * 6);
+  add_rail_part(1.0, of_wheelsets, part);
   return part;
 }
 

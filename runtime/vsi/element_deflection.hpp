@@ -51,6 +51,8 @@ void element_motion(const std::vector<RailContact>& contacts, const Eigen::Vecto
 
 /// Of a vector with 12 numbers per wheelset, the three of every rail head.
 [[nodiscard]] Eigen::VectorXd rail_part(const Eigen::VectorXd& of_wheelsets);
+/// Adds them, weighted, to a vector of three per wheel.
+void add_rail_part(double weight, const Eigen::VectorXd& of_wheelsets, Eigen::VectorXd& sum);
 
 inline void add_slopes(const RailHeadMotion& motion, RailHeadMotion& head) noexcept {
   head.yaw += motion.yaw;

@@ -223,10 +223,7 @@ class HertzContacts : public ContactLaw {
   // g at the end of the step, under the forces of the solution.
   void load_elements(const StepContext& step, const ContactSolution& solution) {
     element_force_ = element_free_;
-    const double weight = element_weight(step.hht);
-    for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
-      element_force_.segment<3>(3 * wheel) += weight * solution.force.segment<3>(rail_unknown(wheel));
-    }
+    add_rail_part(element_weight(step.hht), solution.force, element_force_);
   }
 
   void close_elements(const StepContext& step, const ContactSolution& solution, ElementDeflection& deflection) {

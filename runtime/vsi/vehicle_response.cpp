@@ -71,7 +71,7 @@ void VehicleResponse::find_free_increment(const HhtScheme& scheme, const Eigen::
   known.noalias() -= damping_ * prediction.weighted_velocity;
   known.noalias() -= stiffness_ * prediction.weighted_displacement;
   prediction.increment.setZero(known.size());
-  by_systems_.add_product(1.0, known, prediction.increment);
+  add_displacement(1.0, known, prediction.increment);
 }
 
 }  // namespace railtab
