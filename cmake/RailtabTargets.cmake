@@ -1,5 +1,14 @@
 # One place for the compiler options of every railtab target.
 
+# Without AVX-512, GCC copies and clears by 16 bytes, or by `rep stos`, what kernels then read as vectors of 32: each such
+# read waits until all the stores have left the processor's buffer. Hence whole registers.
+include(CheckCXXCompilerFlag)
+set(railtab_wide_moves -mmove-max=512 -mstore-max=512
+  -mmemcpy-strategy=vector_loop:1024:noalign,libcall:-1:noalign
+  -mmemset-strategy=vector_loop:1024:noalign,libcall:-1:noalign)
+string(JOIN " " railtab_wide_moves_flags ${railtab_wide_moves})
+check_cxx_compiler_flag("${railtab_wide_moves_flags}" RAILTAB_HAS_WIDE_MOVES)
+
 add_library(railtab_options INTERFACE)
 target_compile_features(railtab_options INTERFACE cxx_std_20)
 target_compile_options(railtab_options INTERFACE
@@ -11,6 +20,7 @@ target_compile_options(railtab_options INTERFACE
     -Wno-restrict>
   # How vectors are passed depends on the instruction set: GCC warns of those that are wider than its registers.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>
+  $<$<BOOL:${RAILTAB_HAS_WIDE_MOVES}>:${railtab_wide_moves}>
   # Contracted multiply-adds are wanted in the kernels, value-changing shortcuts are not: never -ffast-math.
   $<$<AND:$<BOOL:${RAILTAB_NATIVE}>,$<CONFIG:Release,RelWithDebInfo>>:-march=native>)
 
