@@ -65,7 +65,7 @@ function(railtab_fast_build)
     if(NOT "${links}" MATCHES "GTest::|benchmark::")
       set_target_properties(${target} PROPERTIES
         UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${railtab_sources_together})
-      # Generated sources stay apart: the others can be read without them, by clang-tidy.
+      # Generated sources stay apart, so that clang-tidy can read the others before anything is built.
       get_target_property(sources ${target} SOURCES)
       list(FILTER sources INCLUDE REGEX "^${PROJECT_BINARY_DIR}/")
       set_source_files_properties(${sources} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -1,7 +1,8 @@
 # One place for the compiler options of every railtab target.
 
-# Without AVX-512, GCC copies and clears by 16 bytes, or by `rep stos`, what kernels then read as vectors of 32: each such
-# read waits until all the stores have left the processor's buffer. Hence whole registers.
+# Without AVX-512, GCC copies and clears memory in pieces of 16 bytes, or by `rep stos`. Kernels then read it as vectors of
+# 32 bytes, and each such read waits until the stores have left the processor's buffer. With these options, GCC uses the
+# widest registers.
 include(CheckCXXCompilerFlag)
 set(railtab_wide_moves -mmove-max=512 -mstore-max=512
   -mmemcpy-strategy=vector_loop:1024:noalign,libcall:-1:noalign
