@@ -42,11 +42,22 @@ void set_side_by_side(const std::array<Pack, lanes_of<V>>& of_thing, V* numbers)
   if constexpr (std::is_same_v<V, double>) {
     std::memcpy(numbers, of_thing.data(), sizeof of_thing);
   } else {
-    for (std::size_t first = 0; first < of_thing.size(); first += 4) {
-      Pack of_number[4];
-      transpose(of_thing[first], of_thing[first + 1], of_thing[first + 2], of_thing[first + 3], of_number);
-      for (int q = 0; q < 4; ++q) {
-        std::memcpy(&lane(numbers[q], static_cast<int>(first)), &of_number[q], sizeof of_number[q]);
+    constexpr std::size_t blocks = lanes_of<V> / 4;
+    Pack of_number[blocks][4];
+    for (std::size_t b = 0; b < blocks; ++b) {
+      transpose(of_thing[4 * b], of_thing[4 * b + 1], of_thing[4 * b + 2], of_thing[4 * b + 3], of_number[b]);
+    }
+    for (std::size_t q = 0; q < 4; ++q) {
+      if constexpr (V::width == 8) {
+        // As one register: two halves stored would be read as a whole before they have left the processor's buffer.
+        for (std::size_t b = 0; b < blocks; b += 2) {
+          numbers[q].part[b / 2] =
+              __builtin_shufflevector(of_number[b][q], of_number[b + 1][q], 0, 1, 2, 3, 4, 5, 6, 7);
+        }
+      } else {
+        for (std::size_t b = 0; b < blocks; ++b) {
+          std::memcpy(&lane(numbers[q], static_cast<int>(4 * b)), &of_number[b][q], sizeof(Pack));
+        }
       }
     }
   }

@@ -20,10 +20,12 @@ namespace railtab {
 /// Two threads may use two files; one object belongs to one thread at a time.
 ///
 /// An array of any rank in C order; `shape` empty means a scalar.
-struct Array {
+template <class Value>
+struct ArrayOf {
   std::vector<std::size_t> shape;
-  std::vector<double> values;
+  std::vector<Value> values;
 };
+using Array = ArrayOf<double>;
 
 /// Writes a file of named arrays.
 ///
@@ -117,6 +119,8 @@ class ArrayFileReader {
   [[nodiscard]] bool contains(std::string_view path) const;
   /// Of a growing dataset, the rows that were flushed.
   [[nodiscard]] Array read(std::string_view path) const;
+  /// The same rounded to 32 bits, where they are not stored so.
+  [[nodiscard]] ArrayOf<float> read_floats(std::string_view path) const;
   [[nodiscard]] std::vector<std::int64_t> read_integers(std::string_view path) const;
   /// Of a dataset of numbers, as read() and read_integers() return them.
   [[nodiscard]] std::vector<std::size_t> shape(std::string_view path) const;

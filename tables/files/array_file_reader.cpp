@@ -114,6 +114,13 @@ struct ArrayFileReader::Impl {
     own = static_cast<std::uint64_t>(wanted);
   }
 
+  /// Floating-point numbers.
+  template <typename Value>
+  [[nodiscard]] ArrayOf<Value> read_array(std::string_view path, hid_t memory) const {
+    const Source source = open(path, H5T_FLOAT);
+    return {{source.extent.begin(), source.extent.end()}, read<Value>(source, memory)};
+  }
+
   /// The values as `memory` has them; of text, the bytes.
   template <typename Value>
   [[nodiscard]] std::vector<Value> read(const Source& source, hid_t memory) const {
@@ -228,8 +235,12 @@ bool ArrayFileReader::contains(std::string_view path) const {
 
 Array ArrayFileReader::read(std::string_view path) const {
   const Section section;
-  const Source source = impl_->open(path, H5T_FLOAT);
-  return {{source.extent.begin(), source.extent.end()}, impl_->read<double>(source, H5T_NATIVE_DOUBLE)};
+  return impl_->read_array<double>(path, H5T_NATIVE_DOUBLE);
+}
+
+ArrayOf<float> ArrayFileReader::read_floats(std::string_view path) const {
+  const Section section;
+  return impl_->read_array<float>(path, H5T_NATIVE_FLOAT);
 }
 
 std::vector<std::int64_t> ArrayFileReader::read_integers(std::string_view path) const {

@@ -20,7 +20,8 @@ bool is_number(const std::string& dimension) {
   return std::isdigit(static_cast<unsigned char>(dimension.front())) != 0;
 }
 
-void check_values(const ArrayFileReader& file, const Field& field, const std::vector<double>& values) {
+template <class Value>
+void check_values(const ArrayFileReader& file, const Field& field, const std::vector<Value>& values) {
   if (field.values == Field::Values::any) return;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
@@ -89,16 +90,15 @@ std::vector<std::size_t> FileDimensions::shape(const Field& field, std::size_t c
   return shape;
 }
 
-std::vector<double> FieldReader::numbers(const Field& field) {
-  Array array = file_.read(field.path);
+std::vector<double> FieldReader::numbers(const Field& field) { return checked(field, file_.read(field.path)); }
+
+std::vector<float> FieldReader::floats(const Field& field) { return checked(field, file_.read_floats(field.path)); }
+
+template <class Value>
+std::vector<Value> FieldReader::checked(const Field& field, ArrayOf<Value> array) {
   dimensions_.require(file_.file(), field, array.shape);
   check_values(file_, field, array.values);
   return std::move(array.values);
-}
-
-std::vector<float> FieldReader::floats(const Field& field) {
-  const std::vector<double> values = numbers(field);
-  return {values.begin(), values.end()};
 }
 
 std::vector<std::uint32_t> FieldReader::counts(const Field& field) {

@@ -57,6 +57,9 @@ class FieldReader {
                               double high = std::numeric_limits<double>::max()) const;
 
  private:
+  template <class Value>
+  [[nodiscard]] std::vector<Value> checked(const Field& field, ArrayOf<Value> array);
+
   const ArrayFileReader& file_;
   FileDimensions dimensions_;
 };

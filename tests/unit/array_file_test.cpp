@@ -58,9 +58,11 @@ TEST_F(ArrayFile, ReturnsEveryBitOfWhatWasWritten) {
       1.0 / 3.0, -0.0, nan, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::denorm_min(), -1e308};
   const std::vector<std::int64_t> integers{std::numeric_limits<std::int64_t>::min(), -1,
                                            std::numeric_limits<std::int64_t>::max()};
+  const std::vector<float> floats{0.1F, -1e-40F, std::numeric_limits<float>::max()};
   const std::vector<std::string> names{"", "coach-1/car-body", "Fahrgestell \xC3\xBC"};
   ArrayFileWriter out(file(), "test-file", 3);
   out.write("a/b/values", values, {2, 3}, "m", "some values");
+  out.write("floats", floats, {3}, "m", "some floats");
   out.write("integers", integers, {3}, "1", "some integers");
   out.write("names", names, "some names");
   out.write("none", std::vector<std::string>{}, "no names");
@@ -78,6 +80,9 @@ TEST_F(ArrayFile, ReturnsEveryBitOfWhatWasWritten) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(read.values[i]), std::bit_cast<std::uint64_t>(values[i])) << i;
   }
+  EXPECT_EQ(in.read_floats("floats").values, floats);
+  EXPECT_EQ(in.read("floats").values, std::vector<double>(floats.begin(), floats.end()));
+  EXPECT_EQ(in.read_floats("scalar").values, std::vector<float>{2.5F});
   EXPECT_EQ(in.read_integers("integers"), integers);
   EXPECT_EQ(in.read_strings("names"), names);
   EXPECT_TRUE(in.read_strings("none").empty());
@@ -112,6 +117,7 @@ TEST_F(ArrayFile, MessagesNameFilePlaceFoundAndExpected) {
   ArrayFileWriter out(file(), "test-file", 3);
   out.write("group/values", std::vector<double>(6), {2, 3}, "m", "values");
   out.write("integers", std::vector<std::int64_t>{1}, {1}, "1", "integers");
+  out.write("large", std::vector<double>{1e39}, {1}, "m", "more than a float holds");
   out.close();
   const ArrayFileReader in(file(), "test-file", 3);
   const std::string name = file().string();
@@ -123,6 +129,8 @@ TEST_F(ArrayFile, MessagesNameFilePlaceFoundAndExpected) {
   const Field tall{"group/values", {"3", "any"}, "m", ""}, flat{"group/values", {"6"}, "m", ""};
   expect_words(message_of([&] { return FieldReader(in).numbers(tall); }), {name, "(2, 3)", "(3, any number of any)"});
   expect_words(message_of([&] { return FieldReader(in).numbers(flat); }), {name, "(2, 3)", "(6)"});
+  const Field large{"large", {"1"}, "m", ""};
+  expect_words(message_of([&] { return FieldReader(in).floats(large); }), {name, "large", "inf", "a finite number"});
   expect_words(message_of([&] { return in.number("group", "none"); }), {name, "group", "none", "no such attribute"});
   expect_words(message_of([&] { return in.number("", "filetype"); }), {name, "filetype", "no number"});
   expect_words(message_of([&] { return in.text("", "format_version"); }), {name, "format_version", "text"});
