@@ -46,7 +46,7 @@ namespace {
 
 /// F_x, F_y and M_z, or what belongs to them: of one query in a pack, of queries side by side apart.
 struct LaneComponents {
-  Lanes of[3];
+  WheelLanes of[3];
 
   friend LaneComponents operator+(LaneComponents a, const LaneComponents& b) noexcept {
     for (int i = 0; i < 3; ++i) a.of[i] += b.of[i];
@@ -60,12 +60,12 @@ struct LaneComponents {
     for (int i = 0; i < 3; ++i) a.of[i] *= b.of[i];
     return a;
   }
-  friend LaneComponents operator*(const Lanes& a, LaneComponents b) noexcept {
-    for (Lanes& of : b.of) of *= a;
+  friend LaneComponents operator*(const WheelLanes& a, LaneComponents b) noexcept {
+    for (WheelLanes& of : b.of) of *= a;
     return b;
   }
-  friend LaneComponents operator*(const LaneComponents& a, const Lanes& b) noexcept { return b * a; }
-  [[nodiscard]] const Lanes& operator[](std::size_t i) const noexcept { return of[i]; }
+  friend LaneComponents operator*(const LaneComponents& a, const WheelLanes& b) noexcept { return b * a; }
+  [[nodiscard]] const WheelLanes& operator[](std::size_t i) const noexcept { return of[i]; }
 };
 template <class V>
 using Components = std::conditional_t<std::is_same_v<V, double>, Pack, LaneComponents>;
@@ -285,7 +285,8 @@ std::array<double, 3> CreepSpline::force(double ratio, const std::array<double, 
   return found_if_inside<CreepWanted::force>(ratio, creepage).force;
 }
 
-std::array<Lanes, 3> CreepSpline::force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+std::array<WheelLanes, 3> CreepSpline::force(const WheelLanes& ratio,
+                                             const std::array<WheelLanes, 3>& creepage) const noexcept {
   return found<CreepWanted::force>(ratio, creepage).force;
 }
 
@@ -297,7 +298,8 @@ CreepLookup CreepSpline::jet(double ratio, const std::array<double, 3>& creepage
   return found_if_inside<CreepWanted::by_ratio_too>(ratio, creepage);
 }
 
-CreepLookupOf<Lanes> CreepSpline::jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+CreepLookupOf<WheelLanes> CreepSpline::jet(const WheelLanes& ratio,
+                                           const std::array<WheelLanes, 3>& creepage) const noexcept {
   return found<CreepWanted::by_ratio_too>(ratio, creepage);
 }
 

@@ -20,11 +20,13 @@ class CreepSpline {
   explicit CreepSpline(const CreepTableData& data);
 
   [[nodiscard]] std::array<double, 3> force(double ratio, const std::array<double, 3>& creepage) const noexcept;
-  [[nodiscard]] std::array<Lanes, 3> force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
+  [[nodiscard]] std::array<WheelLanes, 3> force(const WheelLanes& ratio,
+                                                const std::array<WheelLanes, 3>& creepage) const noexcept;
   [[nodiscard]] CreepLookup lookup(double ratio, const std::array<double, 3>& creepage) const noexcept;
   /// With derivatives with respect to a/b.
   [[nodiscard]] CreepLookup jet(double ratio, const std::array<double, 3>& creepage) const noexcept;
-  [[nodiscard]] CreepLookupOf<Lanes> jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
+  [[nodiscard]] CreepLookupOf<WheelLanes> jet(const WheelLanes& ratio,
+                                              const std::array<WheelLanes, 3>& creepage) const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept { return coefficient_.size() * sizeof(float); }
 
  private:

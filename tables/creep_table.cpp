@@ -149,15 +149,17 @@ std::array<double, 3> CreepTable::force(double ratio, const std::array<double, 3
   return spline_ ? spline_->force(ratio, creepage) : lookup(ratio, creepage).force;
 }
 
-std::array<Lanes, 3> CreepTable::force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+std::array<WheelLanes, 3> CreepTable::force(const WheelLanes& ratio,
+                                            const std::array<WheelLanes, 3>& creepage) const noexcept {
   return spline_ ? spline_->force(ratio, creepage) : jet(ratio, creepage).force;
 }
 
-CreepLookupOf<Lanes> CreepTable::jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept {
+CreepLookupOf<WheelLanes> CreepTable::jet(const WheelLanes& ratio,
+                                          const std::array<WheelLanes, 3>& creepage) const noexcept {
   if (spline_) return spline_->jet(ratio, creepage);
-  CreepLookupOf<Lanes> result;
+  CreepLookupOf<WheelLanes> result;
   result.inside = true;
-  for (int i = 0; i < Lanes::count; ++i) {
+  for (int i = 0; i < WheelLanes::count; ++i) {
     const CreepLookup found = jet(ratio[i], {creepage[0][i], creepage[1][i], creepage[2][i]});
     for (std::size_t k = 0; k < 3; ++k) {
       result.force[k][i] = found.force[k];

@@ -73,9 +73,11 @@ class CreepTable {
 
   /// The force of lookup() alone.
   [[nodiscard]] std::array<double, 3> force(double ratio, const std::array<double, 3>& creepage) const noexcept;
-  /// force() and jet() of eight queries. @pre inside
-  [[nodiscard]] std::array<Lanes, 3> force(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
-  [[nodiscard]] CreepLookupOf<Lanes> jet(const Lanes& ratio, const std::array<Lanes, 3>& creepage) const noexcept;
+  /// force() and jet() of queries side by side. @pre inside
+  [[nodiscard]] std::array<WheelLanes, 3> force(const WheelLanes& ratio,
+                                                const std::array<WheelLanes, 3>& creepage) const noexcept;
+  [[nodiscard]] CreepLookupOf<WheelLanes> jet(const WheelLanes& ratio,
+                                              const std::array<WheelLanes, 3>& creepage) const noexcept;
 
   [[nodiscard]] const CreepTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].

@@ -666,7 +666,7 @@ class LoadedTable::LookUp {
   }
 
   // The level below, and what the corners of the cell leave across. All levels are guessed first: the memory then has
-  // the corners of eight poses to bring.
+  // the corners of all poses to bring.
   void find_levels() {
     found_ = V{};
     each([&](int i, std::size_t k) {
@@ -942,9 +942,9 @@ void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
 template void LoadedTable::find<false, double>(const LoadedPoseOf<double>&, LoadedLookup&,
                                                LoadedSlopes*) const noexcept;
 template void LoadedTable::find<true, double>(const LoadedPoseOf<double>&, LoadedLookup&, LoadedSlopes*) const noexcept;
-template void LoadedTable::find<false, Lanes>(const LoadedPoseOf<Lanes>&, LoadedLookupOf<Lanes>&,
-                                              LoadedSlopesOf<Lanes>*) const noexcept;
-template void LoadedTable::find<true, Lanes>(const LoadedPoseOf<Lanes>&, LoadedLookupOf<Lanes>&,
-                                             LoadedSlopesOf<Lanes>*) const noexcept;
+template void LoadedTable::find<false, WheelLanes>(const LoadedPoseOf<WheelLanes>&, LoadedLookupOf<WheelLanes>&,
+                                                   LoadedSlopesOf<WheelLanes>*) const noexcept;
+template void LoadedTable::find<true, WheelLanes>(const LoadedPoseOf<WheelLanes>&, LoadedLookupOf<WheelLanes>&,
+                                                  LoadedSlopesOf<WheelLanes>*) const noexcept;
 
 }  // namespace railtab

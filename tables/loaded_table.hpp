@@ -184,7 +184,7 @@ class LoadedTable {
     find<true, double>({y, z, roll, yaw}, result, &slopes);
     return result;
   }
-  /// Of one pose, or of eight side by side (V = Lanes). @param derivatives where `slopes`
+  /// Of one pose, or of several side by side (V = WheelLanes). @param derivatives where `slopes`
   template <bool slopes, class V>
   void find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result, LoadedSlopesOf<V>* derivatives) const noexcept;
 

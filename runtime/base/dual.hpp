@@ -96,6 +96,6 @@ using Dual = DualOf<double, Pack, packs>;
 
 /// Numbers side by side, each with its derivatives in as many directions.
 template <std::size_t directions>
-using DualLanes = DualOf<Lanes, Lanes, directions>;
+using DualLanes = DualOf<WheelLanes, WheelLanes, directions>;
 
 }  // namespace railtab

@@ -69,6 +69,9 @@ struct alignas(sizeof(double) * n) SideBySide {
   }
 };
 using Lanes = SideBySide<8>;
+/// Of wheels: four where registers are narrower than eight doubles. The contact of eight would take two registers for
+/// each number, more than a processor has.
+using WheelLanes = SideBySide<(Lanes::width == 8 ? 8 : 4)>;
 
 /// Neighbouring floats as doubles (see widen() of a Pack).
 template <int n>

@@ -109,7 +109,7 @@ WheelResponse wheel_response(const WheelContactModel& model, WheelSide side, con
 void wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels, const StepRates& rates,
                      std::span<WheelResponse> responses) noexcept {
   const bool side_by_side = computes_side_by_side(model) && !rates.start;
-  constexpr std::size_t most = Lanes::count;
+  constexpr std::size_t most = WheelLanes::count;
   for (std::size_t first = 0; first < wheels.size(); first += most) {
     const auto some = wheels.subspan(first, std::min(most, wheels.size() - first));
     const auto to = responses.subspan(first, some.size());

@@ -53,7 +53,7 @@ struct WheelResponse : LoadedWheelResponse {
                                            const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                            const StepRates& rates) noexcept;
 
-/// The same of several wheels, of which those that the loaded table answers alone are computed eight side by side.
+/// The same of several wheels, of which those that the loaded table answers alone are computed side by side.
 /// @param responses one for each
 void wheel_responses(const WheelContactModel& model, std::span<const WheelState> wheels, const StepRates& rates,
                      std::span<WheelResponse> responses) noexcept;

@@ -65,7 +65,7 @@ double slope_along(const Dual<packs>& x, std::size_t direction) {
   return x.slope[direction / 4][direction % 4];
 }
 template <std::size_t directions>
-const Lanes& slope_along(const DualLanes<directions>& x, std::size_t direction) {
+const WheelLanes& slope_along(const DualLanes<directions>& x, std::size_t direction) {
   return x.slope[direction];
 }
 template <std::size_t packs>
@@ -258,11 +258,11 @@ class LoadedContactForce {
   using Parts = std::array<Part<T>, LoadedLookup::capacity>;
 
   static double element(const Eigen::Vector4d& of, std::size_t j) { return of[static_cast<Eigen::Index>(j)]; }
-  static const Lanes& element(const std::array<Lanes, 4>& of, std::size_t j) { return of[j]; }
+  static const WheelLanes& element(const std::array<WheelLanes, 4>& of, std::size_t j) { return of[j]; }
   static double element(const Eigen::Matrix4d& of, std::size_t i, std::size_t j) {
     return of(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   }
-  static const Lanes& element(const std::array<std::array<Lanes, 4>, 4>& of, std::size_t i, std::size_t j) {
+  static const WheelLanes& element(const std::array<std::array<WheelLanes, 4>, 4>& of, std::size_t i, std::size_t j) {
     return of[i][j];
   }
 
@@ -851,8 +851,8 @@ LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelS
 
 namespace {
 
-Lanes mirror_of(std::span<const WheelState> wheels) {
-  Lanes mirror = broadcast<Lanes>(1.0);
+WheelLanes mirror_of(std::span<const WheelState> wheels) {
+  WheelLanes mirror = broadcast<WheelLanes>(1.0);
   for (std::size_t i = 0; i < wheels.size(); ++i) mirror[static_cast<int>(i)] = mirror_of(wheels[i].side);
   return mirror;
 }
@@ -860,22 +860,22 @@ Lanes mirror_of(std::span<const WheelState> wheels) {
 /// Wheels side by side at their loaded contacts.
 template <bool slopes>
 struct WheelsSideBySide {
-  WheelMotion<Lanes> motion;
-  std::optional<WheelKinematics<Lanes>> wheel;
-  LoadedLookupOf<Lanes> lookup;
-  LoadedSlopesOf<Lanes> derivatives;
+  WheelMotion<WheelLanes> motion;
+  std::optional<WheelKinematics<WheelLanes>> wheel;
+  LoadedLookupOf<WheelLanes> lookup;
+  LoadedSlopesOf<WheelLanes> derivatives;
   std::uint32_t answered = 0;  ///< bit by bit, by the table alone and with friction
 
   WheelsSideBySide(const WheelContactModel& model, std::span<const WheelState> wheels) {
     assert(computes_side_by_side(model));
-    assert(!wheels.empty() && wheels.size() <= Lanes::count);
-    for (std::size_t i = 0; i < Lanes::count; ++i) {
+    assert(!wheels.empty() && wheels.size() <= WheelLanes::count);
+    for (std::size_t i = 0; i < WheelLanes::count; ++i) {
       const WheelState& of = wheels[std::min(i, wheels.size() - 1)];
       motion.set(static_cast<int>(i), on_right(of.side, of.wheelset), on_right(of.side, of.rail));
     }
     wheel.emplace(model.geometry->pair(), motion, model.speed);
-    const LoadedPoseOf<Lanes> pose{wheel->y, wheel->z, wheel->roll, wheel->yaw};
-    model.geometry->loaded()->find<slopes, Lanes>(pose, lookup, slopes ? &derivatives : nullptr);
+    const LoadedPoseOf<WheelLanes> pose{wheel->y, wheel->z, wheel->roll, wheel->yaw};
+    model.geometry->loaded()->find<slopes, WheelLanes>(pose, lookup, slopes ? &derivatives : nullptr);
     for (std::size_t i = 0; i < wheels.size(); ++i) {
       const auto at = static_cast<int>(i);
       const bool alone = lookup.table_share[at] == 1.0 && lookup.energy[at] > 0.0 && motion.friction[at] > 0.0;
@@ -885,10 +885,10 @@ struct WheelsSideBySide {
 
   /// Poses, look-ups and forces of the wheels that are answered.
   template <class T>
-  void give(const LoadedContactForce<T>& force, const Lanes& mirror, std::span<const LoadedAnswer> to) const {
+  void give(const LoadedContactForce<T>& force, const WheelLanes& mirror, std::span<const LoadedAnswer> to) const {
     const WheelForces<T> forces(force, mirror, lookup);
     const auto& f = lookup.force;
-    const Apart<Lanes, 10> numbers(
+    const Apart<WheelLanes, 10> numbers(
         {wheel->y, wheel->z, wheel->roll, wheel->yaw, lookup.table_share, lookup.energy, f[0], f[1], f[2], f[3]});
     visit_answered([&](std::size_t i) {
       const std::array<double, 10>& of = numbers.of[i];
@@ -899,7 +899,7 @@ struct WheelsSideBySide {
       to[i].lookup->parts = 0;
     });
     for (std::size_t p = 0; p < lookup.parts; ++p) {
-      const Apart<Lanes, LoadedPart::quantities> part(lookup.part[p].values());
+      const Apart<WheelLanes, LoadedPart::quantities> part(lookup.part[p].values());
       visit_answered([&](std::size_t i) {
         LoadedLookup& result = *to[i].lookup;
         if (result.parts == p && part.of[i][0] > 0.0) result.part[result.parts++] = LoadedPart::of(part.of[i]);
@@ -925,8 +925,8 @@ std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<cons
                                   std::span<const LoadedAnswer> to) noexcept {
   const WheelsSideBySide<false> side_by_side(model, wheels);
   if (side_by_side.answered == 0) return 0;
-  const LoadedContactForce<Lanes> force(model, side_by_side.motion.friction, *side_by_side.wheel, side_by_side.lookup,
-                                        nullptr);
+  const LoadedContactForce<WheelLanes> force(model, side_by_side.motion.friction, *side_by_side.wheel,
+                                             side_by_side.lookup, nullptr);
   side_by_side.give(force, mirror_of(wheels), to);
   return side_by_side.answered;
 }
@@ -937,18 +937,18 @@ std::uint32_t loaded_wheel_responses(const WheelContactModel& model, std::span<c
   const WheelsSideBySide<true> side_by_side(model, wheels);
   if (side_by_side.answered == 0) return 0;
   using T = DualLanes<pose_directions>;
-  const WheelKinematics<Lanes>& wheel = *side_by_side.wheel;
+  const WheelKinematics<WheelLanes>& wheel = *side_by_side.wheel;
   const LoadedContactForce<T> force(model, side_by_side.motion.friction, wheel, side_by_side.lookup,
                                     &side_by_side.derivatives);
   const Wrench<T> sum = force.total();
-  const Lanes mirror = mirror_of(wheels);
+  const WheelLanes mirror = mirror_of(wheels);
   side_by_side.give(force, mirror, to);
   std::array<double, 81> unanswered;
-  std::array<double*, Lanes::count> tangent;
+  std::array<double*, WheelLanes::count> tangent;
   tangent.fill(unanswered.data());
   side_by_side.visit_answered([&](std::size_t i) { tangent[i] = to[i].tangent->data(); });
-  std::array<Generalised<Lanes>, 9> of_right =
-      tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<Lanes>(1.0));
+  std::array<Generalised<WheelLanes>, 9> of_right =
+      tangent_of(force, wheel, rates, force.generalised(sum), sum, broadcast<WheelLanes>(1.0));
   set_tangents(of_right, mirror, tangent);
   return side_by_side.answered;
 }

@@ -77,8 +77,8 @@ struct LoadedAnswer {
   Matrix9* tangent = nullptr;  ///< of loaded_wheel_responses() alone
 };
 
-/// Forces of up to eight wheels side by side, look-ups included. Only wheels that touch, by the table alone, and where
-/// there is friction are answered.
+/// Forces of up to WheelLanes::count wheels side by side, look-ups included. Only wheels that touch, by the table
+/// alone, and where there is friction are answered.
 /// @param to one for each wheel; none of the three null @pre computes_side_by_side()
 /// @return whether each wheel is answered, bit by bit from the first
 [[nodiscard]] std::uint32_t loaded_wheel_forces(const WheelContactModel& model, std::span<const WheelState> wheels,

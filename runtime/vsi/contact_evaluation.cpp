@@ -93,7 +93,7 @@ bool computes_side_by_side(const TrainContact& train, const ContactProblem& prob
 
 ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,
                                     std::span<const int> wheelsets, ContactSolution& s, std::vector<char>& evaluated) {
-  constexpr std::size_t most = Lanes::count / 2;  // wheelsets
+  constexpr std::size_t most = WheelLanes::count / 2;  // wheelsets
   ContactCounts counts;
   std::array<WheelState, 2 * most> wheel;
   std::array<LoadedAnswer, 2 * most> answer;

@@ -1,6 +1,6 @@
 // The time of a wheel's contact, on the queries of a run over a viaduct and on random ones: geometry look-up and force
 // of an ellipse per patch, look-up and force of the loaded table, each without and with the derivative in a time step;
-// the latter also of eight wheels side by side.
+// the latter also of wheels side by side (WheelLanes).
 //
 //     contact_benchmark LOADED_TABLE.h5 [seconds]     the table as `tablegen loaded` leaves it
 
@@ -117,22 +117,22 @@ void measure(const char* name, const std::vector<Query>& queries, const WheelCon
     LoadedLookup lookup;
     LoadedWheelForce force;
   };
-  std::vector<Answer> answers(Lanes::count);
+  std::vector<Answer> answers(WheelLanes::count);
   std::vector<LoadedAnswer> to;
   for (Answer& a : answers) to.push_back({&a.pose, &a.lookup, &a.force});
   const auto eight_forces = [&] {
     double sum = 0.0;
-    for (std::size_t first = 0; first < queries.size(); first += Lanes::count) {
-      static_cast<void>(loaded_wheel_forces(loaded, {&queries[first], Lanes::count}, to));
+    for (std::size_t first = 0; first < queries.size(); first += WheelLanes::count) {
+      static_cast<void>(loaded_wheel_forces(loaded, {&queries[first], WheelLanes::count}, to));
       for (const Answer& a : answers) sum += a.force.wheelset[2];
     }
     return sum;
   };
-  std::vector<WheelResponse> responses(Lanes::count);
+  std::vector<WheelResponse> responses(WheelLanes::count);
   const auto eight = [&] {
     double sum = 0.0;
-    for (std::size_t first = 0; first < queries.size(); first += Lanes::count) {
-      wheel_responses(loaded, {&queries[first], Lanes::count}, rates, responses);
+    for (std::size_t first = 0; first < queries.size(); first += WheelLanes::count) {
+      wheel_responses(loaded, {&queries[first], WheelLanes::count}, rates, responses);
       for (const WheelResponse& r : responses) sum += r.force.wheelset[2] + r.tangent(2, 2);
     }
     return sum;
@@ -144,7 +144,7 @@ void measure(const char* name, const std::vector<Query>& queries, const WheelCon
   fmt::print("{}, {} queries [µs each]\n", name, queries.size());
   fmt::print("  an ellipse per patch: look-up {:.3f}, and force {:.3f}, and derivative {:.3f}\n", t[0], t[1], t[2]);
   fmt::print("  loaded table:         look-up {:.3f}, and force {:.3f}, and derivative {:.3f}\n", t[3], t[4], t[5]);
-  fmt::print("  eight side by side:   look-up and force {:.3f}; look-up, force and derivative {:.3f}\n", t[6], t[7]);
+  fmt::print("  side by side:         look-up and force {:.3f}; look-up, force and derivative {:.3f}\n", t[6], t[7]);
 }
 
 }  // namespace

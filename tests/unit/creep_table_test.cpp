@@ -153,33 +153,36 @@ TEST(CreepTable, DerivativesWithRespectToTheRatioAreThoseOfTheForce) {
   }
 }
 
-TEST(CreepTable, EightSideBySideAreThoseOfSingleQueries) {
+TEST(CreepTable, QueriesSideBySideAreThoseOfSingleOnes) {
+  constexpr int count = WheelLanes::count;
+  constexpr std::array<double, 8> x{0.1, -0.2, 0.0, 0.3, 0.0, -0.1, 0.2, 1e-9},
+      y{0.2, 0.1, -0.3, 0.0, 0.0, -0.2, 0.1, 0.0}, spin{-0.1, 0.2, 0.1, -0.2, 0.0, 0.3, 0.0, 0.2};
   for (const CreepTableLayout layout : {CreepTableLayout::smooth, CreepTableLayout::paper}) {
     const CreepTable table(small_table(layout));
-    Lanes ratio;
-    std::array<Lanes, 3> creepage;
-    const std::array<double, 8> x{0.1, -0.2, 0.0, 0.3, 0.0, -0.1, 0.2, 1e-9},
-        y{0.2, 0.1, -0.3, 0.0, 0.0, -0.2, 0.1, 0.0}, spin{-0.1, 0.2, 0.1, -0.2, 0.0, 0.3, 0.0, 0.2};
-    for (int i = 0; i < 8; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      ratio[i] = 0.6 + 0.15 * i;
-      creepage[0][i] = x[k];
-      creepage[1][i] = y[k];
-      creepage[2][i] = spin[k];
-    }
-    const CreepLookupOf<Lanes> jet = table.jet(ratio, creepage);
-    const std::array<Lanes, 3> force = table.force(ratio, creepage);
-    for (int i = 0; i < 8; ++i) {
-      const std::array<double, 3> at{creepage[0][i], creepage[1][i], creepage[2][i]};
-      const CreepLookup one = table.jet(ratio[i], at);
-      const std::array<double, 3> alone = table.force(ratio[i], at);
-      ASSERT_TRUE(one.inside);
-      for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_NEAR(jet.force[k][i], one.force[k], 1e-14);
-        EXPECT_NEAR(force[k][i], one.force[k], 1e-14);
-        EXPECT_NEAR(alone[k], one.force[k], 1e-14);
-        EXPECT_NEAR(jet.by_ratio[k][i], one.by_ratio[k], 1e-13);
-        for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(jet.derivative[k][j][i], one.derivative[k][j], 1e-12);
+    for (std::size_t first = 0; first < x.size(); first += count) {
+      WheelLanes ratio;
+      std::array<WheelLanes, 3> creepage;
+      for (int i = 0; i < count; ++i) {
+        const std::size_t k = first + static_cast<std::size_t>(i);
+        ratio[i] = 0.6 + 0.15 * static_cast<double>(k);
+        creepage[0][i] = x[k];
+        creepage[1][i] = y[k];
+        creepage[2][i] = spin[k];
+      }
+      const CreepLookupOf<WheelLanes> jet = table.jet(ratio, creepage);
+      const std::array<WheelLanes, 3> force = table.force(ratio, creepage);
+      for (int i = 0; i < count; ++i) {
+        const std::array<double, 3> at{creepage[0][i], creepage[1][i], creepage[2][i]};
+        const CreepLookup one = table.jet(ratio[i], at);
+        const std::array<double, 3> alone = table.force(ratio[i], at);
+        ASSERT_TRUE(one.inside);
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_NEAR(jet.force[k][i], one.force[k], 1e-14);
+          EXPECT_NEAR(force[k][i], one.force[k], 1e-14);
+          EXPECT_NEAR(alone[k], one.force[k], 1e-14);
+          EXPECT_NEAR(jet.by_ratio[k][i], one.by_ratio[k], 1e-13);
+          for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(jet.derivative[k][j][i], one.derivative[k][j], 1e-12);
+        }
       }
     }
   }
