@@ -358,7 +358,17 @@ TEST_F(AssessCommand, ShardsShareTheRuns) {
   EXPECT_EQ(std::filesystem::last_write_time(run), written);
   EXPECT_EQ(joined["measures"], whole["measures"]);
   EXPECT_EQ(joined["verdicts"], whole["verdicts"]);
-  expect_rejected("assess scene.toml --stage check --shard 1/2 -o out", "--shard: found stages without runs");
+}
+
+TEST_F(AssessCommand, RejectsOptionsForOtherStages) {
+  write("scene.toml", vertical + stiff_span);
+  const std::string without_runs = ": found stages without runs, expected stage contact";
+  expect_rejected("assess scene.toml --stage check --shard 1/2 -o out", "--shard" + without_runs);
+  expect_rejected("assess scene.toml --stage moving-load --speed-kmh 120:160:20 -o out", "--speed-kmh" + without_runs);
+  expect_rejected("assess scene.toml --stage moving-load --stage check --seeds 2 -o out", "--seeds" + without_runs);
+  expect_rejected("assess scene.toml --stage check --train hslm-a1 -o out", "--train: found stage check");
+  write("scene.toml", vertical + stiff_span + "[assessment]\ntrains = [\"nosuch\"]\n");
+  expect_rejected("assess scene.toml --stage check -o out", "found 'nosuch'");
 }
 
 // What vsi run would warn of stands on the terminal, on the page and in the file, also where the runs are there

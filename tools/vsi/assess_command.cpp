@@ -89,6 +89,19 @@ std::vector<AssessmentStage> stages_of(const CommandLine& line) {
   return stages;
 }
 
+/// @throws InputError where an option is for stages that are not asked for
+void require_stages_of(const CommandLine& line, const Request& request) {
+  using enum AssessmentStage;
+  for (const char* option : {"speed", "speed-kmh", "seeds", "shard"}) {
+    if (line.chosen(option) && !request.asks(contact)) {
+      throw input_error(fmt::format("--{}", option), "stages without runs", "stage contact");
+    }
+  }
+  if (line.chosen("train") && !request.asks(moving_load) && !request.asks(contact)) {
+    throw input_error("--train", "stage check, which takes no trains", "stage moving-load or contact");
+  }
+}
+
 Request request_of(const CommandLine& line) {
   Request request;
   request.scene_file = line.required("scene");
@@ -106,9 +119,7 @@ Request request_of(const CommandLine& line) {
   }
   if (line.given("train")) request.trains = line.required_many("train");
   request.shard = line.part("shard");
-  if (request.shard.count > 1 && !request.asks(AssessmentStage::contact)) {
-    throw input_error("--shard", "stages without runs", "stage contact");
-  }
+  require_stages_of(line, request);
   request.threads = line.workers();
   request.progress = !line.quiet() && !line.json();
   request.json = line.json();
@@ -356,10 +367,7 @@ int assess_scene(const SceneParameters& scene, const Request& request, const Com
   // The decks are those of every stage.
   Assessment decks = assessment;
   check_decks(scene, decks);
-  std::vector<AssessTrain> trains;
-  if (request.asks(AssessmentStage::moving_load) || request.asks(AssessmentStage::contact)) {
-    trains = trains_of(scene, request);
-  }
+  const std::vector<AssessTrain> trains = trains_of(scene, request);
   make_output_folder(request.folder);
   assessment.decks = decks.decks;
   if (request.shard.count > 1) return assess_shard(trains, scene, request, assessment);

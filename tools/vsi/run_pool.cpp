@@ -305,7 +305,8 @@ int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& s
   const int code = run_to_file(scene, options);
   if (end && fs::exists(results)) {
     write_warnings(run.name, warnings);
-    write_text_file(file(run.name, ".row"), run.row(end->first, end->second, results));
+    // another process may have been faster, with another run time in the same row
+    write_text_file(file(run.name, ".row"), run.row(end->first, end->second, results), run.name + ",");
   }
   tidy();
   return code;
