@@ -9,7 +9,9 @@ namespace {
 
 // A rail head is 72 mm wide and a wheel 135 mm: beyond, the wheel is beside its rail whatever the profiles.
 constexpr double farthest_aside = 0.15;  // m
-constexpr double farthest_off = 0.1;     // m, above or below the rails: three times a flange's height
+constexpr double deepest = 0.1;          // m, below the rails
+// m, above the rails: higher than any flight from which runs are checked to land (tests/stability)
+constexpr double highest = 1.0;
 
 bool touches(const VsiState& state, int wheel) {
   return state.contact.contact[static_cast<std::size_t>(wheel)].touches();
@@ -32,7 +34,7 @@ std::string derailment(const VsiModel& model, const VsiState& state) {
     if (touches(state, 2 * wheelset) && touches(state, 2 * wheelset + 1)) continue;
     const Eigen::Vector2d distance = against_rails(present_contact(model, state), wheelset);
     const double aside = distance[0], down = distance[1];
-    if (std::abs(aside) <= farthest_aside && std::abs(down) <= farthest_off) continue;
+    if (std::abs(aside) <= farthest_aside && -highest <= down && down <= deepest) continue;
     return fmt::format("wheelset {} has left the rails at t = {:.6g} s: it stands {:.3g} m to the {} and {:.3g} m {}",
                        wheelset + 1, state.time, std::abs(aside), aside < 0.0 ? "left" : "right", std::abs(down),
                        down < 0.0 ? "above" : "below");

@@ -30,13 +30,13 @@ VsiState standing(const VsiModel& model, double y, double z, double time = 0.0) 
 TEST(Derailment, IsBesideAboveOrBelowTheRailsWithAWheelInTheAir) {
   const VsiModel model = wheelset();
   EXPECT_EQ(derailment(model, standing(model, 0.14, 0.09)), "");
-  EXPECT_EQ(derailment(model, standing(model, 0.0, -0.09)), "");
+  EXPECT_EQ(derailment(model, standing(model, 0.0, -0.99)), "");
   EXPECT_EQ(derailment(model, standing(model, 0.16, -0.02, 1.5)),
             "wheelset 1 has left the rails at t = 1.5 s: it stands 0.16 m to the right and 0.02 m above");
   EXPECT_EQ(derailment(model, standing(model, -0.01, 0.11)),
             "wheelset 1 has left the rails at t = 0 s: it stands 0.01 m to the left and 0.11 m below");
-  EXPECT_EQ(derailment(model, standing(model, 0.0, -0.11)),
-            "wheelset 1 has left the rails at t = 0 s: it stands 0 m to the right and 0.11 m above");
+  EXPECT_EQ(derailment(model, standing(model, 0.0, -1.01)),
+            "wheelset 1 has left the rails at t = 0 s: it stands 0 m to the right and 1.01 m above");
   VsiState carried = standing(model, 0.16, 0.0);
   for (WheelContact& contact : carried.contact.contact) contact.patches.count = 1;
   EXPECT_EQ(derailment(model, carried), "");
