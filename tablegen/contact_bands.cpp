@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "railtab/tablegen/ellipse_of_pressure.hpp"
+
 namespace railtab {
 
 namespace {
@@ -25,16 +27,6 @@ std::vector<int> connected(const ContactElements& e, const Eigen::VectorXd& pres
     }
   }
   return members;
-}
-
-struct Moments {
-  double xx = 0.0, xs = 0.0, ss = 0.0;
-};
-
-void set_ellipse(const Moments& m, ContactBand& band) {
-  band.skew = m.ss > 0.0 ? m.xs / m.ss : 0.0;
-  band.a = std::sqrt(5.0 * (m.xx - band.skew * m.xs));
-  band.b = std::sqrt(5.0 * m.ss);
 }
 
 ContactBand describe(const WheelRailPair& pair, const ContactElements& e, const Eigen::VectorXd& pressure,
@@ -61,15 +53,19 @@ ContactBand describe(const WheelRailPair& pair, const ContactElements& e, const 
   }
   for (double* mean : {&band.x, &band.s_rail, &band.s_wheel}) *mean /= band.normal_force;
   // an element's own second moment: its pressure is constant
-  Moments m{e.dx * e.dx / 12.0, 0.0, e.ds * e.ds / 12.0};
+  PressureMoments m{.xx = e.dx * e.dx / 12.0, .xs = 0.0, .ss = e.ds * e.ds / 12.0, .mean_pressure = 0.0};
   for (const int k : members) {
     const double share = pressure[k] * e.area() / band.normal_force;
     const double u = x(k) - band.x, v = line(k).s - band.s_rail;
     m.xx += share * u * u;
     m.xs += share * u * v;
     m.ss += share * v * v;
+    m.mean_pressure += share * pressure[k];
   }
-  set_ellipse(m, band);
+  const EllipseOfPressure ellipse(m, band.normal_force);
+  band.a = ellipse.a;
+  band.b = ellipse.b;
+  band.skew = ellipse.skew;
   band.angle = std::atan2(-band.force.y(), band.force.z());
   const CurvePoint rail = pair.rail().at(band.s_rail), wheel = pair.wheel().at(band.s_wheel);
   band.y_rail = rail.y;

@@ -21,9 +21,8 @@ struct ContactBand {
   double s_wheel = 0.0, y_wheel = 0.0, z_wheel = 0.0;
   double rolling_radius = 0.0;  ///< nominal radius + z_wheel [m]
   double angle = 0.0;           ///< contact angle: that of the band's force [rad]
-  /// Semi-axes of the ellipse with the second moments of the pressure, those of a Hertzian pressure being a²/5 and
-  /// b²/5: b = √(5 ⟨s²⟩), a = √(5 (⟨x²⟩ − ⟨x s⟩²/⟨s²⟩)), about the centre of pressure. A yawed wheel's ellipse is
-  /// sheared, x = skew·s + ...; a is its semi-axis along x at one s, so that π a b is its area [m].
+  /// Ellipse that rolls as the area does (EllipseOfPressure). A yawed wheel's is sheared, x = skew·s + ...; a is its
+  /// semi-axis along x at one s, so that π a b is its area [m].
   double a = 0.0, b = 0.0;
   double skew = 0.0;                                            ///< ⟨x s⟩/⟨s²⟩ [-]
   double x_low = 0.0, x_high = 0.0, s_low = 0.0, s_high = 0.0;  ///< extent of its elements [m]

@@ -8,6 +8,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/creepage.hpp"
+#include "railtab/tablegen/ellipse_of_pressure.hpp"
 #include "railtab/tablegen/force_over_lowering.hpp"
 
 namespace railtab {
@@ -16,7 +17,7 @@ namespace {
 
 /// Pressure moments of one part of the rail's surface.
 struct PartSums {
-  double force = 0.0, x = 0.0, s = 0.0, xx = 0.0, xs = 0.0, ss = 0.0, s_wheel = 0.0;
+  double force = 0.0, x = 0.0, s = 0.0, xx = 0.0, xs = 0.0, ss = 0.0, pp = 0.0, s_wheel = 0.0;
   Eigen::Vector3d arm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double peak = 0.0, saddle = 0.0, pressure = 0.0;
 };
@@ -42,6 +43,7 @@ std::vector<PartSums> part_sums(const ContactSearch& search, const LoadedContact
       row.force += force;
       row.x += force * x;
       row.xx += force * x * x;
+      row.pp += force * contact.pressure[k];
       row.pressure = std::max(row.pressure, contact.pressure[k]);
       row.s_wheel += force * e.s_wheel[static_cast<std::size_t>(k)];
     }
@@ -57,6 +59,7 @@ std::vector<PartSums> part_sums(const ContactSearch& search, const LoadedContact
       sum.force += force;
       sum.x += share * row.x;
       sum.xx += share * row.xx;
+      sum.pp += share * row.pp;
       sum.s += force * s;
       sum.xs += share * row.x * s;
       sum.ss += force * (s * s + (to - from) * (to - from) / 12.0);
@@ -84,15 +87,18 @@ void set_parts(const ContactSearch& search, const LoadedContact& contact, const 
     LoadedPart part{};
     if (sum.force > 0.0) {
       const double x = sum.x / sum.force, s = sum.s / sum.force;
-      const double xx = sum.xx / sum.force - x * x + dx * dx / 12.0, xs = sum.xs / sum.force - x * s;
-      const double ss = sum.ss / sum.force - s * s;
+      const EllipseOfPressure ellipse({.xx = sum.xx / sum.force - x * x + dx * dx / 12.0,
+                                       .xs = sum.xs / sum.force - x * s,
+                                       .ss = sum.ss / sum.force - s * s,
+                                       .mean_pressure = sum.pp / sum.force},
+                                      sum.force);
       part = {.share = sum.direction.z() / contact.on_rail.force.z(),
               .arm_x = contact.pose.yaw != 0.0 ? sum.arm.x() / sum.force / contact.pose.yaw : 0.0,
               .arm_y = sum.arm.y() / sum.force,
               .arm_z = sum.arm.z() / sum.force,
               .angle = std::atan2(-sum.direction.y(), sum.direction.z()),
-              .a = std::sqrt(5.0 * std::max(xx - xs * xs / ss, dx * dx / 12.0)) / w,
-              .b = std::sqrt(5.0 * ss) / w,
+              .a = ellipse.a / w,
+              .b = ellipse.b / w,
               .peak = sum.peak / (w * w),
               .saddle = sum.saddle / (w * w),
               .s_rail = s,
@@ -110,8 +116,9 @@ LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, Load
     try {
       return loaded_contact(search, pose, options, refinements);
     } catch (const TooManyElements&) {
-      if (options.elements.across_narrowest < 8) throw;
+      constexpr int fewest = 4;  // ContactElementOptions
       options.elements.across_narrowest = options.elements.across_narrowest * 2 / 3;
+      if (options.elements.across_narrowest < fewest) throw;
     }
   }
 }

@@ -18,7 +18,7 @@ namespace railtab {
 namespace {
 
 constexpr std::string_view filetype = "railtab-loaded-partial";
-constexpr int format_version = 3;
+constexpr int format_version = 4;
 constexpr auto flush_every = std::chrono::milliseconds(500);
 constexpr std::size_t heading = 7, node_heading = 4;
 

@@ -62,7 +62,7 @@ struct LoadedPartOf {
   T share;                ///< of the vertical force on the rail, without friction [-]
   T arm_x, arm_y, arm_z;  ///< mean of the wheel's points in contact, from the wheelset centre [m]
   T angle;                ///< contact angle: that of the part's force [rad]
-  T a, b;                 ///< semi-axes of the ellipse with the second moments of the pressure [m]
+  T a, b;                 ///< semi-axes of the ellipse that rolls as the part (EllipseOfPressure in tablegen) [m]
   T peak;                 ///< largest force per length across the rail [N/m]
   T saddle;               ///< force per length at the part's upper end [N/m]
   T s_rail, s_wheel;      ///< mean arc lengths on the profiles [m]

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "railtab/runtime/base/dual.hpp"
 #include "railtab/runtime/base/lane_transpose.hpp"
@@ -153,7 +154,8 @@ struct Part {
   T normal;                ///< with damping [N]
   Vector<T> arm;           ///< [m]
   T cos_angle, sin_angle;  ///< of the contact angle
-  T a, b, s;               ///< ellipse and place across the rail [m]
+  T area;                  ///< of the ellipse, over π: a b [m²]
+  T a, b, s;               ///< of a part alone: ellipse and place across the rail [m]
   T peak, saddle;          ///< LoadedPart; as `s`, not set where the contact has one part
 };
 
@@ -299,6 +301,7 @@ class LoadedContactForce {
                   of([](const auto& q) { return q.arm_z; })};
       part.a = of([](const auto& q) { return q.a; });
       part.b = of([](const auto& q) { return q.b; });
+      part.area = part.a * part.b;
       if (lookup_.parts > 1) {
         part.s = of([](const auto& q) { return q.s_rail; });
         part.peak = of([](const auto& q) { return q.peak; });
@@ -360,9 +363,10 @@ class LoadedContactForce {
         const T weight = within * (1.0 - merged[first]) * (1.0 - merged[last + 1]);
         if (!any(number(weight) > V{})) continue;
         if (first == last) {
-          add_creep(parts[first], weight);
+          add_creep(parts[first], parts[first].a / parts[first].b, weight);
         } else {
-          add_creep(together(parts, first, last), weight);
+          const auto [part, ratio] = together(parts, first, last);
+          add_creep(part, ratio, weight);
         }
       }
     }
@@ -390,41 +394,50 @@ class LoadedContactForce {
     }
   }
 
-  static Part<T> together(const Parts& parts, std::size_t first, std::size_t last) {
+  // Several parts as one, and the ratio of its semi-axes. Its ellipse is that of one pressure (EllipseOfPressure in
+  // tablegen): second moments and mean pressure are those of the parts, each taken as Hertzian on its own ellipse. The
+  // place of its slip is a weighted mean. Where all of the contact slides, a part counts by its force; where all of it
+  // sticks, by a² b; the weight is the geometric mean of both.
+  static std::pair<Part<T>, T> together(const Parts& parts, std::size_t first, std::size_t last) {
     using std::sqrt;
+    const T none = constant<T>(0.0), one = constant<T>(1.0);
     Part<T> sum;
-    sum.normal = constant<T>(0.0);
-    sum.arm.fill(constant<T>(0.0));
-    T s = constant<T>(0.0), aa = constant<T>(0.0), bb = constant<T>(0.0), along = constant<T>(0.0),
-      across = constant<T>(0.0);
+    sum.normal = none;
+    sum.arm.fill(none);
+    T s = none, aa = none, bb = none, pressure = none, weights = none, along = none, across = none;
     for (std::size_t p = first; p <= last; ++p) {
       const T& N = parts[p].normal;
+      // Where a wheel beside has this part, and this one has not, any number serves that is no zero.
+      const auto bears = number(N) > V{};
+      const T weight = select(bears, parts[p].a * sqrt(select(bears, N * parts[p].b, one)), none);
+      for (std::size_t i = 0; i < 3; ++i) sum.arm[i] += weight * parts[p].arm[i];
+      weights += weight;
+      pressure += N * N / select(bears, parts[p].area, one);
       sum.normal += N;
-      for (std::size_t i = 0; i < 3; ++i) sum.arm[i] += N * parts[p].arm[i];
       s += N * parts[p].s;
       aa += N * parts[p].a * parts[p].a;
       along += N * parts[p].cos_angle;
       across += N * parts[p].sin_angle;
     }
-    // Where a wheel beside has these parts, and this one has not, any ellipse serves.
     const auto bears = number(sum.normal) > V{};
-    const T N = select(bears, sum.normal, constant<T>(1.0));
-    sum.s = s / N;
+    const T N = select(bears, sum.normal, one), middle = s / N;
     for (std::size_t p = first; p <= last; ++p) {
-      const T distance = parts[p].s - sum.s;
+      const T distance = parts[p].s - middle;
       bb += parts[p].normal * (parts[p].b * parts[p].b + 5.0 * distance * distance);
     }
-    for (std::size_t i = 0; i < 3; ++i) sum.arm[i] = sum.arm[i] / N;
-    sum.a = sqrt(select(bears, aa, constant<T>(1.0)) / N);
-    sum.b = sqrt(select(bears, bb, constant<T>(1.0)) / N);
-    along = select(bears, along, constant<T>(1.0));
+    const T of_weight = 1.0 / select(bears, weights, one);
+    for (std::size_t i = 0; i < 3; ++i) sum.arm[i] = sum.arm[i] * of_weight;
+    const T by_moments = sqrt(select(bears, aa * bb, one));  // N a b
+    sum.area = sqrt(by_moments * N / select(bears, pressure, one));
+    const T ratio = select(bears, aa, one) / by_moments;
+    along = select(bears, along, one);
     const T length = sqrt(along * along + across * across);
     sum.cos_angle = along / length;
     sum.sin_angle = across / length;
-    return sum;
+    return {sum, ratio};
   }
 
-  void add_creep(const Part<T>& part, const T& share) {
+  void add_creep(const Part<T>& part, const T& ratio, const T& share) {
     using std::sqrt;
     const auto bears = number(part.normal) > V{};
     if (!any(bears)) return;
@@ -439,11 +452,10 @@ class LoadedContactForce {
     if constexpr (single) {
       if (model_.friction_law.falls()) bound = falling_friction(slip[0], slip_across, friction_slope) * normal;
     }
-    const T root = sqrt(part.a * part.b);
-    const T scale = model_.normal.material.shear_modulus() / speed * (part.a * part.b) / bound;
+    const T root = sqrt(part.area);
+    const T scale = model_.normal.material.shear_modulus() / speed * part.area / bound;
     const std::array<T, 3> creepage{slip[0] * scale, slip_across * scale,
                                     (rotation[2] * part.cos_angle - rotation[1] * part.sin_angle) * scale * root};
-    const T ratio = part.a / part.b;
     const Creep<V> creep =
         creep_of(number(ratio), {number(creepage[0]), number(creepage[1]), number(creepage[2])}, number(weight), bears);
     if constexpr (derivatives) add_motion_slope(part, creep, creepage, number(weight), scale, bound, friction_slope);
@@ -509,9 +521,9 @@ class LoadedContactForce {
   // forces act on the wheel by E.
   void add_motion_slope(const Part<T>& part, const Creep<V>& creep, const std::array<T, 3>& creepage, const V& weight,
                         const T& scale, const T& bound, const std::array<V, 3>& friction_slope) {
-    const V one = broadcast<V>(1.0), zero{}, root = number(part.a) * number(part.b);
+    const V one = broadcast<V>(1.0), zero{};
     using std::sqrt;
-    const std::array<V, 3> size{one, one, sqrt(root)};
+    const std::array<V, 3> size{one, one, sqrt(number(part.area))};
     std::array<std::array<V, 3>, 3> slope;  // of the local forces with respect to the slips
     for (std::size_t i = 0; i < 3; ++i) {
       const std::array<V, 4>& d = creep.derivative[i];

@@ -14,7 +14,7 @@
 namespace railtab {
 namespace {
 
-constexpr int geometry_format_version = 5;
+constexpr int geometry_format_version = 6;
 
 /// A quantity of the table with its place and meaning in the file. One list serves writer, reader and checksum.
 struct Column {

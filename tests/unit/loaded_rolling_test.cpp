@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/tablegen/ellipse_of_pressure.hpp"
 
 namespace railtab {
 namespace {
@@ -47,6 +49,81 @@ TEST(LoadedRolling, IsThatOfTheEllipseInAHertzianContact) {
     EXPECT_NEAR(r.on_rail.force.x(), -r.bands[0].x, 1e-9 * bound);
     EXPECT_LT((r.on_rail.force + r.bands[0].force).norm(), 1e-9 * bound);
   }
+}
+
+// Second moments a²/5, b²/5 and the mean pressure 9 N/(8 π a b), sheared.
+TEST(EllipseOfPressure, IsHertzsOwn) {
+  const double a = 7e-3, b = 3e-3, skew = 0.2, force = 60e3;
+  PressureMoments m;
+  m.ss = b * b / 5.0;
+  m.xs = skew * m.ss;
+  m.xx = a * a / 5.0 + skew * m.xs;
+  m.mean_pressure = 9.0 * force / (8.0 * std::numbers::pi * a * b);
+  const EllipseOfPressure ellipse(m, force);
+  EXPECT_NEAR(ellipse.a, a, 1e-12);
+  EXPECT_NEAR(ellipse.b, b, 1e-12);
+  EXPECT_NEAR(ellipse.skew, skew, 1e-12);
+}
+
+/// Differences of two ellipses' creep forces from the half-space solution's, shares of the friction limit.
+struct EllipseErrors {
+  double as_in_runs = 0.0, by_moments = 0.0;  ///< EllipseOfPressure; second moments alone
+};
+
+/// Means over four creepages, at a pose under a load; from solutions without the elements' error.
+EllipseErrors ellipse_errors(const ContactSearch& search, const WheelsetPose& at, double load) {
+  LoadedContactOptions options;
+  const LoadedContact coarse = contact_at_load(search, at, load, options).contact;
+  options.elements.across_narrowest *= 2;
+  const LoadedContact fine = loaded_contact(search, coarse.pose, options);
+  const ContactBand& band = fine.bands.at(0);
+  double ss = 0.0, xx = 0.0;
+  for (int k = 0; k < fine.elements.count(); ++k) {
+    const double s = fine.elements.line[static_cast<std::size_t>(k / fine.elements.nx)].s - band.s_rail;
+    const double x = fine.elements.x[static_cast<std::size_t>(k % fine.elements.nx)];
+    ss += fine.pressure[k] / fine.pressure.sum() * s * s;
+    xx += fine.pressure[k] / fine.pressure.sum() * x * x;
+  }
+  EllipseErrors mean;
+  for (const auto& [pitch, lateral] : {std::pair{1.0, 0.0}, {1.001, 0.0}, {0.999, 0.02}, {1.0, -0.02}}) {
+    RelativeMotion motion = running_motion(coarse.pose, 30.0, -30.0 / 0.46 * pitch);
+    motion.velocity.y() = lateral;
+    LoadedRollingOptions rolling;
+    rolling.speed = 30.0;
+    const auto of_band = [&](const LoadedContact& c) {
+      return loaded_rolling(search.pair(), c, options, motion, rolling).bands.at(0);
+    };
+    const BandFriction of_fine = of_band(fine), of_coarse = of_band(coarse);
+    const double bound = rolling.friction * fine.normal_force;
+    const Eigen::Vector2d solution(2.0 * of_fine.x - of_coarse.x, 2.0 * of_fine.y - of_coarse.y);
+    const auto error = [&](double a, double b) {
+      const CreepForce f =
+          ExtrapolatedRollingContact(a / b, 0.28)
+              .solve(normalised_creepage(of_fine.creepage, a, b, ElasticMaterial{}.shear_modulus(), bound))
+              .force;
+      return (Eigen::Vector2d(f.x, f.y) - solution / bound).norm();
+    };
+    mean.as_in_runs += error(band.a, band.b) / 4.0;
+    mean.by_moments += error(std::sqrt(5.0 * xx), std::sqrt(5.0 * ss)) / 4.0;
+  }
+  return mean;
+}
+
+// Where two domes of pressure run into each other, the ellipse of the second moments is too wide.
+TEST(EllipseOfPressure, RollsAsAContactThatIsNoEllipse) {
+  const ContactSearch search = search_of("S1002");
+  EllipseErrors mean;
+  for (const auto& [pose, load] : {std::pair{WheelsetPose{2.26e-3, 0.0, 1.32e-3, 0.0}, 72e3},
+                                   {WheelsetPose{2.88e-3, 0.0, 2.67e-3, 0.0}, 46e3},
+                                   {WheelsetPose{0.03e-3, 0.0, -1.34e-3, 0.0}, 29e3},
+                                   {WheelsetPose{-1.12e-3, 0.0, -2.59e-3, 0.0}, 34e3}}) {
+    const EllipseErrors errors = ellipse_errors(search, pose, load);
+    EXPECT_LT(errors.as_in_runs, errors.by_moments) << pose.y;
+    mean.as_in_runs += 0.25 * errors.as_in_runs;
+    mean.by_moments += 0.25 * errors.by_moments;
+  }
+  EXPECT_LT(mean.as_in_runs, 0.036);
+  EXPECT_GT(mean.by_moments, 1.5 * mean.as_in_runs);
 }
 
 TEST(LoadedRolling, ABrakedWheelSlidesWithAllItsFriction) {

@@ -365,6 +365,40 @@ TEST(LoadedWheel, PartsMergeByTheSaddleBetweenThem) {
   EXPECT_GE(merging, 5);
 }
 
+// Both halves of a Hertzian contact, cut along the rail, have their mean point at 3/8 of its semi-axis; merged, they
+// have its creep force.
+TEST(LoadedWheel, HalvesOfAnEllipseMergeIntoIt) {
+  States states;
+  const WheelContactModel model = model_with(creep_law("table", 0.28));
+  for (int n = 0; n < 10; ++n) {
+    const State s = states.next(WheelSide::right);
+    const LoadedLookup whole =
+        wheel_contact(*model.geometry, relative_pose(model.geometry->pair(), s.side, s.wheelset, s.rail)).loaded;
+    ASSERT_EQ(whole.parts, 1U);
+    const double a = whole.part[0].a, b = whole.part[0].b;
+    LoadedPart half = whole.part[0];
+    half.share *= 0.5;
+    half.saddle = half.peak;                              // as where they are cut
+    const double second_moment = 1.0 - 5.0 * 9.0 / 64.0;  // of a half over b²/5
+    const double scale = std::pow(0.5 / std::sqrt(second_moment), 0.25);
+    half.a = scale * a;
+    half.b = scale * b * std::sqrt(second_moment);
+    LoadedLookup halves = whole;
+    halves.parts = 2;
+    halves.part[0] = halves.part[1] = half;
+    halves.part[0].s_rail -= 0.375 * b;
+    halves.part[1].s_rail += 0.375 * b;
+    const auto creep = [&](const LoadedLookup& contact) -> Vector9 {
+      WheelContactModel frictionless = model;
+      frictionless.friction = 0.0;
+      return total(loaded_wheel_force(model, s.side, s.wheelset, s.rail, contact)) -
+             total(loaded_wheel_force(frictionless, s.side, s.wheelset, s.rail, contact));
+    };
+    const Vector9 expected = creep(whole);
+    EXPECT_LT((creep(halves) - expected).head<2>().norm(), 0.01 * expected.head<2>().norm());
+  }
+}
+
 TEST(LoadedWheel, LeftIsTheMirrorImageOfRight) {
   States states;
   const WheelContactModel model = model_with(creep_law("table", 0.28), 0.02);

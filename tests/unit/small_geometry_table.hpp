@@ -8,7 +8,7 @@
 namespace railtab {
 
 /// Of the geometry table's file format; docs/file_formats/geometry_table.md.
-inline constexpr int geometry_table_version = 5;
+inline constexpr int geometry_table_version = 6;
 
 /// A geometry table with made-up numbers that use every part of the format: three axes, halved cells, a leaf without
 /// branches and one with two, limits of trust, statistics.

@@ -3,8 +3,9 @@
 //     loaded_table_study TABLE.h5 REFERENCE FOLDER
 //
 // TABLE.h5 is a geometry table with a loaded part of the profiles that CONTACT used (profiles/MBench_*), of steel with
-// G = 82 GPa; REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, of two merging
-// parts by the depth of the saddle between them, steps of the force along random lines, work on closed paths.
+// G = 82 GPa; REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, of ellipses by
+// their width, of two merging parts by the depth of the saddle between them, steps of the force along random lines,
+// work on closed paths.
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -23,6 +24,7 @@
 #include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/contact/loaded_wheel.hpp"
 #include "railtab/runtime/contact_files/creep_law_file.hpp"
+#include "railtab/tablegen/ellipse_of_pressure.hpp"
 #include "railtab/tablegen/loaded_rolling.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 
@@ -31,6 +33,34 @@ namespace {
 using namespace railtab;
 using namespace railtab::contact_reference;
 namespace fs = std::filesystem;
+
+/// Means weighted with the pressure: its moments, and the creepages of the wheel in contact.
+struct MeanOfPressure {
+  PressureMoments moments;
+  PatchCreepage creepage;
+
+  MeanOfPressure(const LoadedContact& c, const WheelRailPair& pair, const RelativeMotion& motion, double speed) {
+    const ContactElements& e = c.elements;
+    const WheelsetCentre centre = wheelset_centre(pair, c.pose);
+    const ContactBand& band = c.bands.at(0);
+    for (int k = 0; k < e.count(); ++k) {
+      const SurfaceLine& line = e.line[static_cast<std::size_t>(k / e.nx)];
+      const double share = c.pressure[k] * e.area() / c.normal_force;
+      const double x = e.x[static_cast<std::size_t>(k % e.nx)] - band.x, s = line.s - band.s_rail;
+      moments.xx += share * x * x;
+      moments.xs += share * x * s;
+      moments.ss += share * s * s;
+      moments.mean_pressure += share * c.pressure[k];
+      const ContactAxes axes(line.angle);
+      const Eigen::Vector3d arm =
+          Eigen::Vector3d(line.x, line.y - centre.y, line.z - centre.z) + line.overlap * axes.normal;
+      const PatchCreepage here = patch_creepage(motion, arm, axes, speed);
+      creepage.x += share * here.x;
+      creepage.y += share * here.y;
+      creepage.spin += share * here.spin;
+    }
+  }
+};
 
 class Study {
  public:
@@ -52,8 +82,9 @@ class Study {
   }
 
   void rolling() {
-    std::map<std::string, Row> patches;
+    std::map<std::string, Row> patches, half_size;
     for (const Row& row : read_rows(reference_ / "A_patches.csv")) patches.emplace(row.text("case"), row);
+    for (const Row& row : read_rows(reference_ / "A_half_size.csv")) half_size.emplace(row.text("case"), row);
     for (const Row& row : read_rows(reference_ / "A_cases.csv")) {
       const Row& patch = patches.at(row.text("case"));
       WheelsetMotion motion = placed(row["y"], row["roll"], row["yaw"]);
@@ -67,11 +98,17 @@ class Study {
       }
       const double bound = friction * patch["fn"];
       differences_.add("A", kind, "approach", (motion.displacement[2] - touch) / row["approach"] - 1.0);
-      differences_.add("A", kind, "total force D2",
-                       std::hypot(force.rail_x - row["fx"], force.rail[0] - row["fy"]) / bound);
-      differences_.add(
-          "A", kind, "total force of the half-space",
-          (Eigen::Vector2d(force.rail_x, force.rail[0]) - half_space(motion, row["fz_prescribed"])).norm() / bound);
+      const Eigen::Vector2d table(force.rail_x, force.rail[0]), contact(row["fx"], row["fy"]);
+      differences_.add("A", kind, "total force D2", (table - contact).norm() / bound);
+      const HalfSpaceForce solution = half_space(motion, row["fz_prescribed"]);
+      differences_.add("A", kind, "total force of the half-space", (table - solution.extrapolated).norm() / bound);
+      differences_.add("A", kind, "elements of the half-space",
+                       (solution.coarse - solution.extrapolated).norm() / bound);
+      if (const auto fine = half_size.find(row.text("case")); fine != half_size.end()) {
+        const Eigen::Vector2d extrapolated = 2.0 * Eigen::Vector2d(fine->second["fx"], fine->second["fy"]) - contact;
+        differences_.add("A", kind, "total force D2 extrapolated", (table - extrapolated).norm() / bound);
+        differences_.add("A", kind, "elements of D2", (contact - extrapolated).norm() / bound);
+      }
       differences_.add("A", kind, "largest pressure", lookup(motion).largest_pressure() / patch["pmax"] - 1.0);
     }
   }
@@ -119,7 +156,7 @@ class Study {
       if (found.table_share < 1.0 || found.parts != 2) continue;
       const double saddle = found.part[0].saddle / std::min(found.part[0].peak, found.part[1].peak);
       if (!(saddle > 0.0)) continue;
-      const Eigen::Vector2d solution = half_space(motion, load);
+      const Eigen::Vector2d solution = half_space(motion, load).extrapolated;
       const auto error = [&]() {
         const LoadedWheelForce force = loaded_wheel_force(model_, WheelSide::right, motion, {}, found);
         return (Eigen::Vector2d(force.rail_x, force.rail[0]) - solution).norm() / (friction * load);
@@ -137,13 +174,50 @@ class Study {
     }
   }
 
-  /// The largest step of the force along random lines, by bisection of their largest change.
+  /// The creep force of an ellipse in place of a contact of one band on the tread, at random poses and creepages: by
+  /// the second moments of its pressure, and by its mean pressure too (EllipseOfPressure).
+  void ellipses(int count) {
+    for (int n = 0; n < count; ++n) {
+      const WheelsetPose pose{uniform(-6e-3, 6e-3), 0.0, uniform(-3e-3, 3e-3), uniform(-6e-3, 6e-3)};
+      const double load = std::exp(uniform(std::log(20e3), std::log(150e3)));
+      RelativeMotion motion =
+          running_motion(pose, model_.speed, -model_.speed / pair().nominal_radius() * (1.0 + uniform(-3e-3, 3e-3)));
+      motion.velocity.y() = uniform(-4e-3, 4e-3) * model_.speed;
+      LoadedContactOptions options = half_space_options();
+      const LoadedContact coarse = contact_at_load(*search_, pose, load, options).contact;
+      if (coarse.bands.size() != 1 || std::abs(coarse.bands[0].angle) > 0.13) continue;
+      options.elements.across_narrowest *= 2;
+      const LoadedContact fine = loaded_contact(*search_, coarse.pose, options);
+      const auto share = [&](const LoadedContact& c) -> Eigen::Vector2d {
+        const LoadedRolling r = loaded_rolling(pair(), c, options, motion, rolling_options());
+        return Eigen::Vector2d(r.bands.at(0).x, r.bands.at(0).y) / (friction * c.normal_force);
+      };
+      const Eigen::Vector2d solution = 2.0 * share(fine) - share(coarse);
+      const MeanOfPressure mean(coarse, pair(), motion, model_.speed);
+      const EllipseOfPressure ellipse(mean.moments, coarse.normal_force);
+      const double bound = friction * coarse.normal_force;
+      const auto error = [&](double a, double b) {
+        const CreepForce f =
+            creep_force(model_.creep_law, a / b, normalised_creepage(mean.creepage, a, b, shear_modulus, bound));
+        return (Eigen::Vector2d(f.x, f.y) - solution).norm();
+      };
+      const char* const kind = ellipse.b < 6.5e-3 ? "b up to 6.5 mm" : ellipse.b < 10e-3 ? "6.5 to 10 mm" : "10 mm on";
+      differences_.add(
+          "ellipse", kind, "second moments",
+          error(std::sqrt(5.0 * (mean.moments.xx - mean.moments.xs * ellipse.skew)), std::sqrt(5.0 * mean.moments.ss)));
+      differences_.add("ellipse", kind, "as in runs", error(ellipse.a, ellipse.b));
+    }
+  }
+
+  /// The largest step of the force along random lines, weighted with the table's share in it, by bisection of their
+  /// largest change.
   void lines(int count) {
     for (int n = 0; n < count; ++n) {
       const Eigen::Vector4d from = random_pose(), to = random_pose();
       const auto force = [&](double t) {
         const Eigen::Vector4d p = from + t * (to - from);
-        return Eigen::Vector2d(geometry_->loaded()->lookup(p[0], p[1], p[2], p[3]).force.head<2>());
+        const LoadedLookup found = geometry_->loaded()->lookup(p[0], p[1], p[2], p[3]);
+        return Eigen::Vector2d(found.table_share * found.force.head<2>());
       };
       constexpr int points = 2000;
       double low = 0.0, high = 0.0, largest = 0.0;
@@ -191,7 +265,8 @@ class Study {
   [[nodiscard]] std::string summary() const {
     return "# Forces of a loaded table: absolute differences from CONTACT's loaded cases, relative to its value "
            "(forces "
-           "of\n# set A and of merging parts in mu F_n, of set B in the normal force, lateral force of set C in the "
+           "of\n# set A, of ellipses and of merging parts in mu F_n, of set B in the normal force, lateral force of "
+           "set C in the "
            "load); steps along "
            "lines, work on\n# closed paths over its amount. Made by tests/validation/loaded_table_study, " +
            fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))) +
@@ -215,23 +290,41 @@ class Study {
   [[nodiscard]] Eigen::Vector4d loaded_force(const Eigen::Vector4d& p) const {
     return loaded_->lookup(p[0], p[1], p[2], p[3]).force;
   }
-  /// Force on the rail along x and y of the half-space solution with friction, at the motion's shift, roll, yaw and
-  /// pitch rate, under the load.
-  [[nodiscard]] Eigen::Vector2d half_space(const WheelsetMotion& at, double load) const {
+  [[nodiscard]] LoadedContactOptions half_space_options() const {
     LoadedContactOptions options;
     options.wheel = options.rail = model_.normal.material;
-    options.elements.most = 400000;
-    LoadedRollingOptions rolling;
-    rolling.friction = friction;
-    rolling.speed = model_.speed;
+    options.elements.most = 1600000;
+    return options;
+  }
+  [[nodiscard]] LoadedRollingOptions rolling_options() const {
+    LoadedRollingOptions options;
+    options.friction = friction;
+    options.speed = model_.speed;
+    return options;
+  }
+  /// Force on the rail along x and y of the half-space solution with friction [N].
+  struct HalfSpaceForce {
+    Eigen::Vector2d coarse;        ///< elements of the default size
+    Eigen::Vector2d extrapolated;  ///< without their error, of first order: 2 fine − coarse, with halved elements
+  };
+  /// At the motion's shift, roll, yaw and pitch rate, under the load.
+  [[nodiscard]] HalfSpaceForce half_space(const WheelsetMotion& at, double load) const {
+    LoadedContactOptions options = half_space_options();
     const WheelsetPose pose{at.displacement[1], 0.0, at.displacement[3], at.displacement[5]};
     const RelativeMotion motion =
-        running_motion(pose, rolling.speed, at.velocity[4] - model_.speed / pair().nominal_radius());
-    const auto roll = [&](const LoadedContact& c) { return loaded_rolling(pair(), c, options, motion, rolling); };
-    const ContactAtLoad found = contact_at_load(*search_, pose, load, options,
-                                                [&](const LoadedContact& c) { return roll(c).on_rail.force.z(); });
+        running_motion(pose, model_.speed, at.velocity[4] - model_.speed / pair().nominal_radius());
+    const auto friction_of = [&](const LoadedContact& c) -> Eigen::Vector3d {
+      return loaded_rolling(pair(), c, options, motion, rolling_options()).on_rail.force;
+    };
+    const ContactAtLoad found =
+        contact_at_load(*search_, pose, load, options, [&](const LoadedContact& c) { return friction_of(c).z(); });
     if (!found.converged) throw std::runtime_error("no half-space solution at the load");
-    return (found.contact.on_rail.force + roll(found.contact).on_rail.force).head<2>();
+    const auto force = [&](const LoadedContact& c) -> Eigen::Vector2d {
+      return (c.on_rail.force + friction_of(c)).head<2>();
+    };
+    const Eigen::Vector2d coarse = force(found.contact);
+    options.elements.across_narrowest *= 2;
+    return {coarse, 2.0 * force(loaded_contact(*search_, found.contact.pose, options)) - coarse};
   }
   /// Lowers the wheel until the rail carries the load.
   WheelForce at_load(const WheelContactModel& model, WheelsetMotion& motion, double touch, double load) const {
@@ -282,6 +375,7 @@ int main(int count, char** arguments) {
     study.rolling();
     study.frictionless();
     study.wheelset();
+    study.ellipses(1000);
     study.merging(3000);
     study.lines(1000);
     study.closed_paths(200);
