@@ -148,6 +148,7 @@ RunPlan plan_run(const SceneParameters& scene, const std::function<void(std::str
   plan.wheels = 2 * model.wheelsets();
   plan.time_step = scene.integration.time_step;
   plan.steps = step_count(scene.integration, run_duration(scene, model));
+  plan.pre_roll_steps = pre_roll_steps(scene.integration, model);
   plan.duration = static_cast<double>(plan.steps) * scene.integration.time_step;
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
   plan.warnings = scene_warnings(scene, model);

@@ -21,7 +21,7 @@ struct ModelParts {
 struct RunPlan : ModelParts {
   long structure_dofs = 0, vehicle_dofs = 0;
   int wheels = 0;
-  long steps = 0;
+  long steps = 0, pre_roll_steps = 0;  ///< recorded from t = 0 on; before
   double time_step = 0, duration = 0;  ///< [s]
   PlannedMemory memory;
   std::vector<std::string> warnings;  ///< as RunObserver::warning

@@ -36,7 +36,8 @@ struct Assign {
   void operator()(const IntegerKey& key) const {
     const toml::value<std::int64_t>* whole = leaf.node->as_integer();
     if (!whole || whole->get() < key.low || whole->get() > key.high) {
-      throw error(fmt::format("an integer {} to {}", key.low, key.high));
+      throw leaf_error(file, leaf, found_not_integer(*leaf.node),
+                       fmt::format("an integer {} to {}", key.low, key.high));
     }
     key.member(draft) = static_cast<int>(whole->get());
   }

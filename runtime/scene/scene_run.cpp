@@ -22,20 +22,6 @@ namespace railtab {
 
 namespace {
 
-// Steps of the pre-roll: the train runs before its scene begins, so that the excitation by the sleepers, which the
-// steady start leaves out, is present at t = 0. The modelled track limits its length; rigid rails need none. The
-// published search has a steady state of its own to settle to.
-long pre_roll_steps(const SceneParameters& scene, const VsiModel& model) {
-  constexpr double enough = 0.2;  // s: the wheelsets' bouncing on the track has decayed to less than 1e-3
-  const auto steps = [&](double time) {
-    return time > 0.0 ? static_cast<long>(time / scene.integration.time_step) : 0L;
-  };
-  if (!model.structure) return model.geometry && model.geometry->is_paper() ? steps(enough) : 0;
-  const double rear = model.wheelset_x(model.wheelsets() - 1, 0.0);
-  const double track = rear - std::max(model.structure->rail[0].x.front(), model.structure->rail[1].x.front());
-  return steps(std::min(enough, 0.8 * track / model.speed(0.0)));
-}
-
 // The contact points of the published search jump as a wheel moves, and a static equilibrium has no inertia to hold the
 // wheel meanwhile: it is sought with the online search, and the pre-roll removes the remaining transient.
 std::optional<VsiModel> other_model_at_rest(const SceneParameters& scene, const VsiModel& model) {
@@ -68,7 +54,7 @@ std::string start(const SceneParameters& scene, OperatorLevels& operators, const
   const VsiModel& model = operators.model();
   const std::optional<VsiModel> other = other_model_at_rest(scene, model);
   const VsiModel& at_rest = other ? *other : model;
-  const long before = pre_roll_steps(scene, model);
+  const long before = pre_roll_steps(scene.integration, model);
   if (before > 0) {
     // pairs that jump have no solution to such a tolerance
     const bool jumps = model.geometry && model.geometry->is_paper();

@@ -28,10 +28,13 @@ const Warning span_with_few_sleepers{
       const double spacing = at.scene.track.sleeper_spacing;
       for (const BridgeParameters& span : at.scene.spans) {
         if (span.length >= fewest * spacing) continue;
+        const char* const effect =
+            span.length < spacing ? "a span without a sleeper between its supports is not loaded, and its values are 0"
+                                  : "its accelerations say little";
         list.push_back(fmt::format(
             "bridge.length = {:g} m is less than {:g} times track.sleeper_spacing = {:g} m: the train reaches the span "
-            "through its sleepers, and its accelerations say little",
-            span.length, fewest, spacing));
+            "through its sleepers, and {}",
+            span.length, fewest, spacing, effect));
         return;
       }
     }};

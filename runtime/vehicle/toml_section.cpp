@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "railtab/runtime/base/edit_distance.hpp"
@@ -52,6 +53,12 @@ std::string found_text(const toml::node& node) {
   std::ostringstream type;
   type << node.type();
   return "a value of type " + type.str();
+}
+
+std::string found_not_integer(const toml::node& node) {
+  const toml::value<double>* number = node.as_floating_point();
+  const bool whole = number && std::floor(number->get()) == number->get() && std::abs(number->get()) < 1e15;
+  return whole ? fmt::format("{:.1f}, a number with a decimal point", number->get()) : found_text(node);
 }
 
 TomlSection::TomlSection(const std::filesystem::path& file, std::string path, const toml::table& table,
@@ -194,7 +201,7 @@ int TomlSection::whole_number(std::string_view key, int low, int high, int absen
   if (!node) return absent;
   const toml::value<std::int64_t>* whole = node->as_integer();
   if (!whole || whole->get() < low || whole->get() > high) {
-    throw error(key, found_text(*node), fmt::format("an integer {} to {}", low, high));
+    throw error(key, found_not_integer(*node), fmt::format("an integer {} to {}", low, high));
   }
   return static_cast<int>(whole->get());
 }

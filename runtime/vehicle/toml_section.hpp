@@ -20,6 +20,8 @@ namespace railtab {
 
 /// What a message shows of a value.
 [[nodiscard]] std::string found_text(const toml::node& node);
+/// The same where an integer is expected: 1.0 is none, and says so.
+[[nodiscard]] std::string found_not_integer(const toml::node& node);
 
 /// What a key accepts.
 struct NumberKind {

@@ -122,7 +122,9 @@ TEST_F(SceneWarnings, OfStepsAndRecordsTooFarApart) {
 
 TEST_F(SceneWarnings, OfSpansThatTheTrainHardlyReaches) {
   expect(plan("[[bridge]]\nlength = 1.5\n"),
-         "bridge.length = 1.5 m is less than 3 times track.sleeper_spacing = 0.6 m");
+         "bridge.length = 1.5 m is less than 3 times track.sleeper_spacing = 0.6 m: the train reaches the span through "
+         "its sleepers, and its accelerations say little");
+  expect(plan("[[bridge]]\nlength = 0.5\n"), "is not loaded, and its values are 0");
   expect(plan("[[bridge]]\nlength = 20.0\ntrack_offset = 50.0\n"),
          "bridge.track_offset = 50 m: the track is that far from the beam axis");
 }
@@ -347,7 +349,13 @@ TEST_F(VsiCommand, AMotionThatGrowsWithoutOscillationHasNoFrequency) {
 
 TEST_F(VsiCommand, APlanCountsWholeSteps) {
   write("scene.toml", rigid_scene + "duration = 0.01034\n");
-  EXPECT_NE(vsi("run scene.toml --plan").output.find("21 steps of 0.0005 s, 0.0105 s in all"), std::string::npos);
+  EXPECT_NE(vsi("run scene.toml --plan").output.find("21 steps of 0.0005 s, 0.0105 s in all\n"), std::string::npos);
+  // and those before t = 0, here the most there are: 0.2 s of them
+  std::string text = rigid_scene + "duration = 0.01034\n";
+  const std::string kind = "kind = \"rigid\"";
+  ASSERT_NE(text.find(kind), std::string::npos);
+  write("scene.toml", text.replace(text.find(kind), kind.size(), "kind = \"flexible\"\nlength_before = 100"));
+  EXPECT_NE(vsi("run scene.toml --plan").output.find("0.0105 s in all, after 400 of pre-roll\n"), std::string::npos);
 }
 
 TEST_F(VsiCommand, APlanRejectsWhatTheRunRejects) {

@@ -118,6 +118,8 @@ TEST_F(Scene, WrongTypesSayWhatWasFoundAndExpected) {
   EXPECT_EQ(message("[train]\nspeed = \"fast\"\n"),
             "scene.toml:2: train.speed: found the text \"fast\", expected a number, 0.001 to 200 m/s");
   EXPECT_EQ(message("[train]\ncount = 2.5\n"), "scene.toml:2: train.count: found 2.5, expected an integer 1 to 100");
+  EXPECT_EQ(message("[train]\ncount = 2.0\n"),
+            "scene.toml:2: train.count: found 2.0, a number with a decimal point, expected an integer 1 to 100");
   EXPECT_EQ(message("[train]\ncount = 101\n"), "scene.toml:2: train.count: found 101, expected an integer 1 to 100");
   EXPECT_EQ(message("[contact]\nmode = true\n"),
             "scene.toml:2: contact.mode: found true, expected one of table, online, paper");

@@ -72,6 +72,7 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
                      {"vehicle_dofs", plan.vehicle_dofs},
                      {"wheels", plan.wheels},
                      {"steps", plan.steps},
+                     {"pre_roll_steps", plan.pre_roll_steps},
                      {"time_step", plan.time_step},
                      {"duration", plan.duration},
                      {"memory_bytes", plan.memory.most},
@@ -86,7 +87,9 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   }
   for (const std::string& warning : plan.warnings) print_warning(warning);
   if (options.quiet) return 0;
-  print_formatted("{}: {} steps of {} s, {:.4g} s in all\n", scene.name, plan.steps, plan.time_step, plan.duration);
+  const std::string before = plan.pre_roll_steps > 0 ? fmt::format(", after {} of pre-roll", plan.pre_roll_steps) : "";
+  print_formatted("{}: {} steps of {} s, {:.4g} s in all{}\n", scene.name, plan.steps, plan.time_step, plan.duration,
+                  before);
   print_formatted("  {} degrees of freedom of the structure, {} of the vehicles, {} wheels\n", plan.structure_dofs,
                   plan.vehicle_dofs, plan.wheels);
   print_formatted("  at most {} of memory in all, {} where no step is divided; a step reads {} of it\n",
