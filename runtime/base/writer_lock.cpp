@@ -1,6 +1,7 @@
 #include "railtab/runtime/base/writer_lock.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -45,6 +46,13 @@ WriterLock WriterLock::of_descriptor(int descriptor) noexcept {
   const int error = lock_whole(descriptor);
   if (error == EAGAIN || error == EACCES) ::close(std::exchange(lock.descriptor_, -1));
   return lock;
+}
+
+bool WriterLock::is_of(const std::filesystem::path& file) const noexcept {
+  struct stat locked {
+  }, named{};
+  if (!held() || ::fstat(descriptor_, &locked) != 0) return true;
+  return ::stat(file.c_str(), &named) == 0 && named.st_dev == locked.st_dev && named.st_ino == locked.st_ino;
 }
 
 WriterLock::WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}

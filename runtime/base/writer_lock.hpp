@@ -18,6 +18,8 @@ class WriterLock {
   /// system has no locks, there is no protection.
   [[nodiscard]] static WriterLock of_descriptor(int descriptor) noexcept;
   [[nodiscard]] bool held() const noexcept { return descriptor_ >= 0; }
+  /// Whether this is the file of the lock; true where the lock is not held.
+  [[nodiscard]] bool is_of(const std::filesystem::path& file) const noexcept;
   /// Of the file, open for writing; -1 where the lock is not held.
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
   WriterLock(WriterLock&& other) noexcept;

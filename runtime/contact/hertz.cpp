@@ -61,8 +61,8 @@ bool ElasticMaterial::has_contact_modulus(double modulus) const noexcept {
 }
 
 void ElasticMaterial::validate() const {
-  if (!(E > 0.0 && std::isfinite(E))) {
-    throw input_error("material.E", fmt::format("{} Pa", E), "Young's modulus above 0");
+  if (!(E >= 1e8 && E <= 1e15)) {
+    throw input_error("material.E", fmt::format("{} Pa", E), "Young's modulus of 1e8 to 1e15 Pa");
   }
   if (!(nu >= 0.0 && nu <= 0.5)) {
     throw input_error("material.nu", fmt::format("{}", nu), "Poisson's ratio in 0..0.5");

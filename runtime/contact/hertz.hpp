@@ -4,7 +4,7 @@ namespace railtab {
 
 /// Linear elastic material, the same for wheel and rail (the quasi-identical case of Kalker's theory).
 struct ElasticMaterial {
-  double E = 210e9;  ///< Young's modulus [Pa], > 0
+  double E = 210e9;  ///< Young's modulus, 1e8..1e15 [Pa]
   double nu = 0.28;  ///< Poisson's ratio [-], 0..0.5
 
   [[nodiscard]] constexpr double shear_modulus() const noexcept { return E / (2.0 * (1.0 + nu)); }

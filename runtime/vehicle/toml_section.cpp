@@ -181,6 +181,11 @@ std::vector<std::array<double, 2>> TomlSection::points(std::string_view key, std
     constexpr double largest = 1e12;
     const bool valid = x && y && *x >= 0.0 && *y >= 0.0 && *x < largest && *y < largest &&
                        (result.empty() ? *x > 0.0 : *x > result.back()[0]);
+    if (!valid && x && y) {
+      const std::string after =
+          result.empty() ? "first" : fmt::format("after [{}, {}]", result.back()[0], result.back()[1]);
+      throw error(key, fmt::format("[{}, {}] {}", *x, *y, after), expected);
+    }
     if (!valid) throw error(key, found_text(entry) + " in the list", expected);
     result.push_back({*x, *y});
   }

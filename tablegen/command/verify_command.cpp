@@ -141,6 +141,7 @@ void verify_geometry(const TableCommandLine& line, const std::string& file) {
     check.samples = static_cast<int>(line.whole_number("loaded-samples", 1, 10'000'000));
     check.seed = options.seed;
     check.material = {line.number("modulus"), line.number("poisson")};
+    check.material.validate();
     ProgressBar loaded_bar("verify the loaded part", !line.quiet());
     of_loaded = verify_loaded_table(contact.search(), LoadedTable(std::move(*loaded)), check,
                                     [&](double share) { loaded_bar.show(share); });

@@ -204,7 +204,12 @@ void ArrayFileWriter::close() {
   impl_->require_written(H5Fflush(impl_->file.get(), H5F_SCOPE_LOCAL) >= 0, impl_->file.place(""));
   impl_->require_written(impl_->file.close(), impl_->file.place(""));
   if (impl_->mode == Mode::whole_or_nothing) seal_file(impl_->temporary.name);
-  if (!impl_->temporary.name.empty()) impl_->temporary.publish(impl_->file.name());
+  if (!impl_->temporary.name.empty()) {
+    impl_->temporary.publish(impl_->file.name());
+  } else if (!impl_->temporary.lock.is_of(impl_->file.name())) {
+    throw ComputationError(
+        fmt::format("{}: was removed, renamed or replaced while it was written", impl_->file.name().string()));
+  }
   impl_->temporary = {};
 }
 

@@ -448,6 +448,11 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
   expect_rejected("study plan.toml --count -o out", "unknown key 'train.sped'");
   rejected(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
            "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
+  rejected(
+      begin +
+          "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 0.05\n[sampling]\nsamples = 20\n"
+          "[probability]\nmethod = \"fragility\"\nmeasure = \"wheel_force\"\nlimit = 1\nintensity = \"a\"\n",
+      "probability.intensity: found no [[vary]] with values or a range");
   rejected(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n", "plan.toml:4: vary[1].values: found 1 twice");
   rejected(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
   rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",

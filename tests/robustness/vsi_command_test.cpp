@@ -163,6 +163,8 @@ TEST_F(VsiCommand, ARunThatLeavesTheTrackIsRejected) {
   write("steps.toml",
         "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1e5\ntime_step = 1e-5\n");
   expect_rejected("run steps.toml --plan -o out", "integration.time_step");
+  expect_rejected("run steps.toml --plan --resume", "--plan: found --resume too");
+  expect_rejected("critical-speed steps.toml --shift 0.003", "--shift: found no --limit-cycles");
 }
 
 TEST_F(VsiCommand, CreepAnswersFromTheShippedTableAndSaysWhereItDoesNot) {

@@ -266,6 +266,20 @@ TEST_F(ArrayFile, AllowsOneWriterOfAGrowingFile) {
   EXPECT_EQ(ArrayFileWriter::reopen(file(), "test-file", 1).records(), 10U);
 }
 
+// Rows that nobody can find under the file's name are not written.
+TEST_F(ArrayFile, AGrowingFileThatIsRemovedOrReplacedIsNotFinished) {
+  for (const bool replaced : {false, true}) {
+    ArrayFileWriter out(file(), "test-file", 1, Mode::growing);
+    out.create_growing("x", {}, "m", "positions");
+    out.append("x", rows(0, 10, 1));
+    out.flush();
+    std::filesystem::remove(file());
+    if (replaced) std::ofstream(file()) << "another file";
+    EXPECT_THROW(out.close(), ComputationError) << replaced;
+    std::filesystem::remove(file());
+  }
+}
+
 TEST_F(ArrayFile, TwoThreadsMayUseTwoFiles) {
   const auto work = [&](const char* name, double value) {
     for (int i = 0; i < 20; ++i) {

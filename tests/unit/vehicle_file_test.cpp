@@ -286,7 +286,8 @@ TEST(VehicleFile, RejectsValuesWithFileLineAndKey) {
                   {"wheelset.x: found 2.5 m after -2.5 m", "in order from the front"});
   expect_rejected(wagon + "series_ky = 1e6\n",
                   {"connection[1].series_ky: found a stiffness in series without damper, expected cy too"});
-  expect_rejected(wagon + "stop_y = [[0.03, 600], [0.02, 900]]\n", {"connection[1].stop_y", "points", "m and N"});
+  expect_rejected(wagon + "stop_y = [[0.03, 600], [0.02, 900]]\n",
+                  {"connection[1].stop_y", "[0.02, 900] after [0.03, 600]", "points", "m and N"});
   expect_rejected(wagon + "stop_y = [[0.02, 600], [0.03, 900]]\n",
                   {"connection[1].stop_y: found 2 points, first 600 N", "there the free travel ends"});
   expect_rejected(wagon + "damper_curve_y = [[0.02, 600], [0.03, 500]]\n",

@@ -54,7 +54,7 @@ po::options_description assess_options() {
       ("clauses", po::value<std::vector<std::string>>()->composing()->value_name("FILE.toml"),
        "further clauses, or others of the same id; may be given many times")  //
       ("fail-on", text_value()->value_name("any|verified"),
-       "exit code 3 where a limit is not met: any, or one whose number was read in the standard")                  //
+       "exit code 3 where a limit fails: any, or one whose number was read in the standard")                       //
       ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs with contact, no verdict")  //
       ("output,o", text_value()->value_name("DIR"),
        "folder of assessment.html, assessment.json and runs; default: <scene>.assessment");

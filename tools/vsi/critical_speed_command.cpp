@@ -101,8 +101,8 @@ po::options_description critical_speed_options() {
 // Where the outputs of limit cycles are wanted without these, or cannot be written.
 void check_outputs(const CommandLine& line) {
   const bool cycles = line.given("limit-cycles");
-  for (const char* option : {"output", "diagram", "start-kmh"}) {
-    if (line.given(option) && !cycles) {
+  for (const char* option : {"output", "diagram", "start-kmh", "shift", "max-cycles"}) {
+    if (line.chosen(option) && !cycles) {
       throw input_error(fmt::format("--{}", option), "no --limit-cycles", "--limit-cycles with it");
     }
   }

@@ -35,7 +35,7 @@ const CommandTable& commands() {
       {{exit_code::done, "done"},
        {exit_code::failed, "the computation failed"},
        {exit_code::wrong_input, "the input is wrong"},
-       {exit_code::clause_fails, "computed, and a limit is not met (assess --fail-on)"},
+       {exit_code::clause_fails, "computed, and a limit fails (assess --fail-on)"},
        {exit_code::interrupted, "ended by Ctrl-C"}}};
   return table;
 }

@@ -324,6 +324,7 @@ int run_command(const Arguments& arguments) {
       throw input_error("--check-reduction", fmt::format("--{} too", other), "one of them");
     }
   }
+  if (line.given("plan") && line.given("resume")) throw input_error("--plan", "--resume too", "one of them");
   try {
     if (line.given("plan")) {
       if (line.given("output")) check_output(scene, file, options);

@@ -272,6 +272,9 @@ int RunPool::make(Board& board, std::size_t number, SharedSetUp& shared) const {
     const InputError placed = scene ? with_scene_line(wrong, *scene, scene_file_) : wrong;
     print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, placed.what()));
     return wrong_input;
+  } catch (const std::bad_alloc&) {
+    print_message(fmt::format("{}: {}: not enough memory: fewer --threads need less, vsi run --plan states how much\n",
+                              options_.command, run.name));
   } catch (const std::exception& failure) {
     print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, failure.what()));
   }

@@ -261,6 +261,9 @@ std::size_t read_gridded(TomlSection& s, std::string_view key, const StudyPlan& 
   for (const StudyVariable& v : plan.variables) {
     if (!v.random() && v.numeric()) names.push_back(v.name);
   }
+  if (names.empty()) {
+    throw s.error(key, "no [[vary]] with values or a range", "the name of one: it is what the study goes along");
+  }
   const std::string name = s.text_of(key, names);
   const auto found =
       std::find_if(plan.variables.begin(), plan.variables.end(), [&](const auto& v) { return v.name == name; });
