@@ -49,8 +49,8 @@ WriterLock WriterLock::of_descriptor(int descriptor) noexcept {
 }
 
 bool WriterLock::is_of(const std::filesystem::path& file) const noexcept {
-  struct stat locked {
-  }, named{};
+  struct stat locked {};
+  struct stat named {};
   if (!held() || ::fstat(descriptor_, &locked) != 0) return true;
   return ::stat(file.c_str(), &named) == 0 && named.st_dev == locked.st_dev && named.st_ino == locked.st_ino;
 }

@@ -24,9 +24,9 @@ struct LoadedWheelForce : WheelForce {
 };
 
 /// Forces of the loaded contact of one wheel: elastic forces are the derivative of the tabulated energy. Each part of
-/// the contact has its creep force, by the model's law for its ellipse (LoadedPartOf), from the
-/// creepage at the mean point of the wheel in contact; parts that merge count as one ellipse by the depth of the saddle
-/// between them (docs/theory/contact_table.md).
+/// the contact has its creep force, by the model's law for its ellipse (LoadedPartOf), from the creepage at the mean
+/// point of the wheel in contact; parts that merge count as one ellipse by the depth of the saddle between them
+/// (docs/theory/contact_table.md).
 /// @param lookup at the pose that relative_pose() returns
 [[nodiscard]] LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side,
                                                   const WheelsetMotion& wheelset, const RailHeadMotion& rail,
