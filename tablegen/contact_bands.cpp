@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "railtab/tablegen/ellipse_of_pressure.hpp"
-
 namespace railtab {
 
 namespace {
@@ -53,7 +51,9 @@ ContactBand describe(const WheelRailPair& pair, const ContactElements& e, const 
   }
   for (double* mean : {&band.x, &band.s_rail, &band.s_wheel}) *mean /= band.normal_force;
   // an element's own second moment: its pressure is constant
-  PressureMoments m{.xx = e.dx * e.dx / 12.0, .xs = 0.0, .ss = e.ds * e.ds / 12.0, .mean_pressure = 0.0};
+  PressureMoments& m = band.moments;
+  m.xx = e.dx * e.dx / 12.0;
+  m.ss = e.ds * e.ds / 12.0;
   for (const int k : members) {
     const double share = pressure[k] * e.area() / band.normal_force;
     const double u = x(k) - band.x, v = line(k).s - band.s_rail;

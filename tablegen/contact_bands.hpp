@@ -5,6 +5,7 @@
 
 #include "railtab/runtime/profile/wheel_rail_pair.hpp"
 #include "railtab/tablegen/contact_elements.hpp"
+#include "railtab/tablegen/ellipse_of_pressure.hpp"
 
 namespace railtab {
 
@@ -21,6 +22,7 @@ struct ContactBand {
   double s_wheel = 0.0, y_wheel = 0.0, z_wheel = 0.0;
   double rolling_radius = 0.0;  ///< nominal radius + z_wheel [m]
   double angle = 0.0;           ///< contact angle: that of the band's force [rad]
+  PressureMoments moments;      ///< of elements whose pressure is constant
   /// Ellipse that rolls as the area does (EllipseOfPressure). A yawed wheel's is sheared, x = skew·s + ...; a is its
   /// semi-axis along x at one s, so that π a b is its area [m].
   double a = 0.0, b = 0.0;

@@ -20,8 +20,10 @@ struct EllipseOfPressure {
   double a, b;  ///< semi-axes, a along x at one s [m]
   double skew;  ///< ⟨x s⟩/⟨s²⟩ [-]
 
-  EllipseOfPressure(const PressureMoments& m, double force)
-      : a(std::sqrt(5.0 * (m.xx - m.xs * m.xs / m.ss))), b(std::sqrt(5.0 * m.ss)), skew(m.xs / m.ss) {
+  /// By the second moments alone.
+  explicit EllipseOfPressure(const PressureMoments& m)
+      : a(std::sqrt(5.0 * (m.xx - m.xs * m.xs / m.ss))), b(std::sqrt(5.0 * m.ss)), skew(m.xs / m.ss) {}
+  EllipseOfPressure(const PressureMoments& m, double force) : EllipseOfPressure(m) {
     const double by_pressure = 1.125 * force / (std::numbers::pi * m.mean_pressure);
     const double scale = std::pow(by_pressure / (a * b), 0.25);
     a *= scale;

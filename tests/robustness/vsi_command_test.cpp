@@ -163,8 +163,13 @@ TEST_F(VsiCommand, ARunThatLeavesTheTrackIsRejected) {
   write("steps.toml",
         "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 1e5\ntime_step = 1e-5\n");
   expect_rejected("run steps.toml --plan -o out", "integration.time_step");
-  expect_rejected("run steps.toml --plan --resume", "--plan: found --resume too");
-  expect_rejected("critical-speed steps.toml --shift 0.003", "--shift: found no --limit-cycles");
+}
+
+TEST_F(VsiCommand, OptionsWithoutEffectAreRejected) {
+  write("scene.toml", rigid_scene + "duration = 0.01\n");
+  expect_rejected("run scene.toml --plan --resume", "--plan: found --resume too");
+  expect_rejected("critical-speed scene.toml --shift 0.003", "--shift: found no --limit-cycles");
+  expect_rejected("critical-speed scene.toml --max-cycles 5", "--max-cycles: found no --limit-cycles");
 }
 
 TEST_F(VsiCommand, CreepAnswersFromTheShippedTableAndSaysWhereItDoesNot) {

@@ -77,13 +77,7 @@ EllipseErrors ellipse_errors(const ContactSearch& search, const WheelsetPose& at
   options.elements.across_narrowest *= 2;
   const LoadedContact fine = loaded_contact(search, coarse.pose, options);
   const ContactBand& band = fine.bands.at(0);
-  double ss = 0.0, xx = 0.0;
-  for (int k = 0; k < fine.elements.count(); ++k) {
-    const double s = fine.elements.line[static_cast<std::size_t>(k / fine.elements.nx)].s - band.s_rail;
-    const double x = fine.elements.x[static_cast<std::size_t>(k % fine.elements.nx)];
-    ss += fine.pressure[k] / fine.pressure.sum() * s * s;
-    xx += fine.pressure[k] / fine.pressure.sum() * x * x;
-  }
+  const EllipseOfPressure of_moments(band.moments);
   EllipseErrors mean;
   for (const auto& [pitch, lateral] : {std::pair{1.0, 0.0}, {1.001, 0.0}, {0.999, 0.02}, {1.0, -0.02}}) {
     RelativeMotion motion = running_motion(coarse.pose, 30.0, -30.0 / 0.46 * pitch);
@@ -104,7 +98,7 @@ EllipseErrors ellipse_errors(const ContactSearch& search, const WheelsetPose& at
       return (Eigen::Vector2d(f.x, f.y) - solution / bound).norm();
     };
     mean.as_in_runs += error(band.a, band.b) / 4.0;
-    mean.by_moments += error(std::sqrt(5.0 * xx), std::sqrt(5.0 * ss)) / 4.0;
+    mean.by_moments += error(of_moments.a, of_moments.b) / 4.0;
   }
   return mean;
 }
