@@ -42,11 +42,10 @@ struct LoadedRolling {
 /// Tangential tractions of a converged normal contact: Kalker's exact theory of steady rolling on the elements with
 /// pressure, with the bound μp and the rigid slip of the true kinematics at each row of elements:
 ///
-///   w_x = (v + ω × arm)·x/V,   w_y = (v + ω × arm)·t/V + (ω·n/V)(x − x_c),   arm: from the wheelset centre to the
-///   wheel's
+///   w_x = (v + ω × arm)·x/V,   w_y = (v + ω × arm)·t/V + (ω·n/V)(x − x_c),
 ///
-/// deepest point at x_c on that line of the rail, undeformed; t, n the rail's local tangent and normal. Bands feel each
-/// other through the half-space of the developed surface.
+/// arm from the wheelset centre to the wheel's deepest point at x_c on that line of the rail, undeformed; t, n the
+/// rail's local tangent and normal. Bands feel each other through the half-space of the developed surface.
 /// Wheel and rail as quasi-identical: 1/G = ½(1/G_w + 1/G_r), ν/G = ½(ν_w/G_w + ν_r/G_r).
 /// @param motion of the wheelset against the rail, its rotation about the axle included, track axes @throws InputError
 [[nodiscard]] LoadedRolling loaded_rolling(const WheelRailPair& pair, const LoadedContact& contact,

@@ -118,7 +118,7 @@ std::optional<double> limit_for(const Clause& clause, const MeasuredValue& value
 double Verdict::utilisation() const noexcept {
   if (!at) return 0.0;
   const double above = clause->limit.lower ? limit : at->value, below = clause->limit.lower ? at->value : limit;
-  return below > 0.0 ? above / below : above > 0.0 ? INFINITY : 0.0;
+  return below > 0.0 ? above / below : above > below ? INFINITY : 0.0;
 }
 
 std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentFacts& facts,

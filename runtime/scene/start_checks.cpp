@@ -38,6 +38,12 @@ VsiModel with_steel(const VsiModel& model) {
   return steel;
 }
 
+VsiModel with_full_slope(const VsiModel& model) {
+  VsiModel clean = model;
+  clean.contact.friction_law.initial_slope = 1.0;
+  return clean;
+}
+
 /// Of profile files that the online search takes as they are: curves through noisy points have bumps, between which the
 /// search for an equilibrium goes to and fro.
 std::string noise_hint(const ContactGeometry& geometry) {
@@ -116,6 +122,10 @@ std::string no_equilibrium_message(const VsiModel& model, const EquilibriumRepor
   if (has_equilibrium(with_steel(model), time)) {
     return fmt::format("{}; there is one with wheels and rails of steel, but not with contact.material.E = {:.3g} Pa",
                        what, model.contact.normal.material.E);
+  }
+  if (const double slope = model.contact.friction_law.initial_slope;
+      slope < 1.0 && has_equilibrium(with_full_slope(model), time)) {
+    return fmt::format("{}; there is one with contact.initial_slope = 1, but not with {:.3g}", what, slope);
   }
   const WheelRailPair& pair = model.geometry->pair();
   return fmt::format(

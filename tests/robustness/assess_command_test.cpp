@@ -331,6 +331,8 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
   expect_rejected("assess scene.toml --train 'hslm-a*3' -o out", "found 'hslm-a*3', expected a vehicle");
   expect_rejected("assess scene.toml --train lm71 -o out",
                   "found 'lm71', a load model at rest, expected trains that move");
+  write("unknown.toml", vertical + stiff_span + "[assessment]\ntrains = [\"nobody\"]\n");
+  expect_rejected("check unknown.toml", "--train, assessment.trains: found 'nobody', expected a vehicle");
   write("spatial.toml", "[contact]\nmode = \"online\"\n" + stiff_span);
   expect_rejected("assess spatial.toml --train velaro-e-coach -o out",
                   "--train, assessment.trains: 'velaro-e-coach': train.vehicle: found velaro-e-coach, whose data are "

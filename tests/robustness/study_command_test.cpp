@@ -301,6 +301,19 @@ TEST_F(StudyCommand, SubsetSimulationIsTheSameAfterKills) {
   EXPECT_EQ(text("killed/study.json"), text("whole/study.json"));
 }
 
+// A limit that every sample of the first level exceeds: 20 of 20 trials.
+TEST_F(StudyCommand, OneLevelHasTheIntervalOfItsTrials) {
+  write("plan.toml", std::string("scene = \"scene.toml\"\n") + friction +
+                         "[probability]\nmethod = \"subset\"\nmeasure = \"wheel_unloading_unfiltered\"\nlimit = "
+                         "0.001\nsamples = 20\nlevel_probability = 0.2\nseed = 2\n");
+  ASSERT_EQ(study("plan.toml -o out --threads 2"), 0);
+  const nlohmann::json found = json("out/study.json")["probability"]["probability"];
+  EXPECT_EQ(found["value"], 1.0);
+  EXPECT_EQ(found["high"], 1.0);
+  const double z = 1.959964;  // of 95 %
+  EXPECT_NEAR(found["low"], 20.0 / (20.0 + z * z), 1e-6);
+}
+
 TEST_F(StudyCommand, FindsAPeakWithAQuarterOfTheGrid) {
   write("plan.toml",
         "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nrange = \"100:199:1\"\n"

@@ -260,6 +260,10 @@ TEST_F(VsiCommand, ForcesThatASceneCannotGiveAreSaidAtItsEnd) {
   EXPECT_NE(pull.find(held_down), std::string::npos) << pull;
   EXPECT_NE(vsi("run scene.toml -o r.h5 --resume").output.find(held_down), std::string::npos);
   EXPECT_EQ(vsi("run scene.toml -o r.h5 -q").output, "");
+  for (const char* again : {"", " --resume"}) {
+    const std::string json = vsi(std::string("run scene.toml -o r.h5 --json 2> /dev/null") + again).output;
+    EXPECT_NE(json.find("\"warnings\":[\"negative contact force"), std::string::npos) << json;
+  }
   EXPECT_EQ(output_of(rigid, "-5e4").find("warning"), std::string::npos);
 }
 

@@ -98,6 +98,28 @@ TEST_F(Clauses, WrongFilesAreRejectedWithTheirLine) {
   EXPECT_NE(message_of("edition = \n").find("own.toml:1"), std::string::npos);
 }
 
+TEST_F(Clauses, LimitsMayBeZeroOrBelow) {
+  const auto met = [&](const std::string& limit, double amount) {
+    write("own.toml", "edition = \"x\"\n[[clause]]\nid = \"own\"\nclause = \"1\"\ntitle = \"t\"\nmeasure = "
+                      "\"deck_acceleration\"\nunit = \"m/s2\"\n" + limit);
+    const std::vector<Clause> clauses = clauses_with({folder_ / "own.toml"});
+    const std::vector<Verdict> verdicts =
+        judge(clauses, {"ballasted", 50.0}, {value("deck_acceleration", moving_load, amount)}, {});
+    const Verdict& own = of(verdicts, "own");
+    EXPECT_EQ(own.outcome == Outcome::pass, own.utilisation() <= 1.0) << limit << ": " << amount;
+    return own.outcome == Outcome::pass;
+  };
+  const std::string least = "sense = \"at least\"\n";
+  EXPECT_TRUE(met("limit = -1.0\n", -2.0));
+  EXPECT_FALSE(met("limit = -1.0\n", -0.5));
+  EXPECT_TRUE(met("limit = 0.0\n", 0.0));
+  EXPECT_FALSE(met("limit = 0.0\n", 0.1));
+  EXPECT_TRUE(met("limit = -1.0\n" + least, -0.5));
+  EXPECT_FALSE(met("limit = -1.0\n" + least, -2.0));
+  EXPECT_TRUE(met("limit = 0.0\n" + least, 0.0));
+  EXPECT_FALSE(met("limit = 0.0\n" + least, -0.1));
+}
+
 TEST_F(Clauses, TheWorstValueDecides) {
   const std::vector<Clause> clauses = library_clauses();
   const AssessmentFacts facts{"ballasted", 200.0 / 3.6};

@@ -155,7 +155,10 @@ class Study {
     differences_.add("A", kind, "creep force D2", creep(curved));
     differences_.add("A", kind, "creep force of planar slip D2", creep(planar));
     differences_.add("A", kind, "contact angle", band.angle - patch["delta"]);
-    if (c.bands.size() == 1) differences_.add("A", kind, "spin", curved.bands[0].creepage.spin / vref + patch["cphi"]);
+    // of the normal force's direction, as CONTACT's
+    const double spin =
+        patch_creepage(motion, Eigen::Vector3d::Zero(), ContactAxes(band.angle), curved_.speed).spin / vref;
+    if (c.bands.size() == 1) differences_.add("A", kind, "spin", spin + patch["cphi"]);
     double force_d4 = NAN, d2_d4 = NAN;
     if (curved_reference) {
       const Row& d4 = *curved_reference;

@@ -69,12 +69,13 @@ std::string mark_cell(const Verdict& v) {
 /// Rows of one stage of a limit, without the cells that all its stages share. @pre the stage has a value
 std::vector<std::string> stage_rows(const Assessment& assessment, const Verdict& v) {
   const Clause& clause = *v.clause;
-  const double share = 100.0 * v.utilisation();
+  const double share = 100.0 * v.utilisation();  // infinite beyond a limit of zero or below
   std::vector<std::string> rows{fmt::format(
-      "<td>{}<br>{}</td><td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{:.0f} %"
+      "<td>{}<br>{}</td><td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{}"
       "<span class=\"bar {}\"><i style=\"width:{:.0f}%\"></i></span></td><td>{}{}</td><td>{}</td>",
       stage_in_words(*v.stage), mark_cell(v), amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤",
-      amount_in_words(v.limit, clause.unit), share, mark_class(v), std::min(100.0, share),
+      amount_in_words(v.limit, clause.unit), std::isfinite(share) ? fmt::format("{:.0f} %", share) : "–",
+      mark_class(v), std::min(100.0, share),
       escaped(place_in_words(*v.at)), v.at->run.empty() ? "" : "<br><small>run " + escaped(v.at->run) + "</small>",
       unloading_cell(assessment, v))};
   std::vector<std::string> more = over_speed_in_words(assessment, v);

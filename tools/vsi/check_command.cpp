@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "assess_trains.hpp"
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
 #include "command/output_place.hpp"
@@ -28,10 +29,13 @@ struct Checked {
   std::vector<std::string> warnings;
 };
 
-/// All that a run does before it factorises.
-Checked check(const SceneParameters& scene) {
+/// All that a run does before it factorises, and the trains that an assessment adds.
+Checked check(const SceneParameters& scene, const std::filesystem::path& file) {
   const VsiModel model = build_model(scene);
   static_cast<void>(OutputSelection(scene.output, model_header(model)));
+  if (const std::vector<std::string>& trains = scene.assessment.trains; !trains.empty()) {
+    static_cast<void>(assess_trains(scene, trains, file.parent_path()));
+  }
   return {scene_layout(scene, model), model_parts(scene, model), scene_warnings(scene, model)};
 }
 
@@ -73,7 +77,7 @@ int check_command(const Arguments& arguments) {
   const std::filesystem::path file = line.required("scene");
   const SceneParameters scene = read_scene(file);
   try {
-    const Checked checked = check(scene);
+    const Checked checked = check(scene, file);
     if (line.given("output")) {
       const std::string output = line.text("output");
       const std::string picture = layout_svg(checked.layout, scene.name);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
@@ -101,18 +102,14 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
   return 0;
 }
 
-/// Wheel forces that the scene's track or contact cannot give, wherever they come from.
-void warn_of_negative_force(const report::Headline& headline, const SceneParameters& scene, const RunOptions& options) {
+/// Wheel forces that the scene's track or contact cannot give, wherever they come from; empty: none.
+std::string negative_force(const report::Headline& headline, const SceneParameters& scene) {
   const report::Extreme& least = headline.smallest_Q;
-  if (!least.found()) return;
-  const std::string where = fmt::format("{}, t = {:.3f} s", least.where, least.time);
-  if (scene.contact.normal == NormalContact::rigid && least.value < 0.0) {
-    warn(options,
-         fmt::format(
-             "negative contact force (smallest Q {:.4g} kN, {}): the wheel would lift off there, but contact.normal = "
-             "\"rigid\" holds it on its rail; contact.normal = \"hertz\" computes lift-off and landing",
-             1e-3 * least.value, where));
-  }
+  if (!least.found() || scene.contact.normal != NormalContact::rigid || least.value >= 0.0) return {};
+  return fmt::format(
+      "negative contact force (smallest Q {:.4g} kN, {}, t = {:.3f} s): the wheel would lift off there, but "
+      "contact.normal = \"rigid\" holds it on its rail; contact.normal = \"hertz\" computes lift-off and landing",
+      1e-3 * least.value, least.where, least.time);
 }
 
 /// Ctrl-C while steps are made: a first one asks the run to end after its step, a second one ends the program.
@@ -131,31 +128,41 @@ class Interrupt {
 };
 
 /// What a run says that could not begin, and its exit code. Results of another run that are in its place stay there.
-int conclude_without_results(const RunSummary& summary, const RunOptions& options) {
+/// @param warnings those that it has given
+int conclude_without_results(const RunSummary& summary, const RunOptions& options,
+                             const std::vector<std::string>& warnings) {
   if (options.ended) {
     options.ended({}, summary);
     return failed;
   }
-  if (options.json) print_json_line(report::headline_json({}, summary));
+  if (options.json) {
+    nlohmann::ordered_json json = report::headline_json({}, summary);
+    json["warnings"] = warnings;
+    print_json_line(json);
+  }
   print_message(
       fmt::format("vsi run: {}; no step was made, and {} stays as it was\n", summary.message, options.output));
   return failed;
 }
 
 /// What a run that has ended says, and its exit code.
+/// @param warnings those that it has given
 int conclude(const SceneParameters& scene, const report::Headline& headline, const RunSummary& summary,
-             const RunOptions& options) {
+             const RunOptions& options, std::vector<std::string> warnings) {
+  std::vector<std::string> last{report::uncovered_queries(summary), negative_force(headline, scene)};
+  std::erase(last, "");
+  warnings.insert(warnings.end(), last.begin(), last.end());
   if (options.ended) {
     options.ended(headline, summary);
   } else if (options.json) {
     nlohmann::ordered_json json = report::headline_json(headline, summary);
     json["results"] = options.output;
+    json["warnings"] = warnings;
     print_json_line(json);
   } else if (!options.quiet && summary.steps > 0) {
     print_formatted("{}Results: {}\n", report::headline_text(headline, summary), options.output);
   }
-  if (const std::string uncovered = report::uncovered_queries(summary); !uncovered.empty()) warn(options, uncovered);
-  warn_of_negative_force(headline, scene, options);
+  for (const std::string& warning : last) warn(options, warning);
   if (summary.complete) return done;
   if (options.ended) return summary.interrupted ? interrupted : failed;
   if (summary.interrupted) {
@@ -203,7 +210,10 @@ class RunDisplay {
     observer.note = [this](std::string_view note) {
       if (!options_.quiet) print_message(fmt::format("vsi run: note: {}\n", note));
     };
-    observer.warning = [this](std::string_view warning) { warn(options_, warning); };
+    observer.warning = [this](std::string_view warning) {
+      warnings_.emplace_back(warning);
+      warn(options_, warning);
+    };
     observer.ready = [this, resumed] {
       if (!resumed) say_what_is_replaced(options_);
       setup_.end();
@@ -225,8 +235,8 @@ class RunDisplay {
   [[nodiscard]] int finish(const SceneParameters& scene, const RunSummary& summary, bool has_results) {
     setup_.end();
     progress_.wipe();
-    if (!has_results) return conclude_without_results(summary, options_);
-    return conclude(scene, collector_->result(summary), summary, options_);
+    if (!has_results) return conclude_without_results(summary, options_, warnings_);
+    return conclude(scene, collector_->result(summary), summary, options_, warnings_);
   }
 
  private:
@@ -234,6 +244,7 @@ class RunDisplay {
   SetupProgress setup_;
   ProgressBar progress_;
   std::optional<report::HeadlineCollector> collector_;
+  std::vector<std::string> warnings_;
 };
 
 /// Results must not overwrite what the run reads.
@@ -268,7 +279,10 @@ void say_how_it_resumes(const RecordedRun& run, const RunOptions& options) {
 int run_to_file(const SceneParameters& scene, const RunOptions& options) {
   RecordedRun run(scene, options.output, options.resume);
   if (!options.quiet) say_how_it_resumes(run, options);
-  if (run.is_complete()) return conclude(scene, report::headline_of(*run.before()), run.before()->summary, options);
+  if (run.is_complete()) {
+    const RunResults& before = *run.before();
+    return conclude(scene, report::headline_of(before), before.summary, options, before.header.warnings);
+  }
   RunDisplay display(options);
   if (run.is_resumed()) display.take_up(*run.before(), run.records_before());
   try {

@@ -182,7 +182,13 @@ Json interval_json(const ConfidenceInterval& interval) {
   return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
+// A limit that the first level reaches is a matter of its independent samples alone.
 ConfidenceInterval subset_interval(const StudyPlan& plan, const SubsetResult& subset) {
+  if (subset.outcome == SubsetOutcome::found && subset.levels.size() == 1) {
+    const std::size_t samples = subset.levels.front().evaluations;
+    const auto beyond = std::lround(subset.probability * static_cast<double>(samples));
+    return wilson_interval(static_cast<std::size_t>(beyond), samples, plan.confidence);
+  }
   return lognormal_interval(subset.probability, subset.variation, plan.confidence);
 }
 
