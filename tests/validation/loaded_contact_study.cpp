@@ -159,6 +159,12 @@ class Study {
     const double spin =
         patch_creepage(motion, Eigen::Vector3d::Zero(), ContactAxes(band.angle), curved_.speed).spin / vref;
     if (c.bands.size() == 1) differences_.add("A", kind, "spin", spin + patch["cphi"]);
+    constexpr double flank = 1.15;  // rad; steeper contacts touch on the flange alone
+    if (std::abs(band.angle) > flank) {
+      const double cosine = patch["penetration"] / row["approach"];  // of d = z cos(angle)
+      differences_.add("A", "flank", "cosine here", std::cos(band.angle) / cosine - 1.0);
+      differences_.add("A", "flank", "cosine D2", std::cos(patch["delta"]) / cosine - 1.0);
+    }
     double force_d4 = NAN, d2_d4 = NAN;
     if (curved_reference) {
       const Row& d4 = *curved_reference;
