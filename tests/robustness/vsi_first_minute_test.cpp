@@ -49,6 +49,10 @@ TEST_F(FirstMinute, EveryKindOfFileIsNamedWithItsCommands) {
   expect_said("q.csv", {"queries of creep forces", "> vsi creep --query q.csv"});
   write("modes.csv", "mode,frequency,mass\n1,5,1\n");
   expect_said("modes.csv", {"natural modes of a structure", "> a scene's structure.mode_table = \"modes.csv\""});
+  write("commented.csv", "# made by hand\n\ny,z,roll,yaw\n0,0,0,0\n");
+  expect_said("commented.csv", {"queries of the contact", "y,z,roll,yaw"});
+  write("points.txt", "# y z\n-60.5 20.1\n-59.0;19.0\n");
+  expect_said("points.txt", {"points of two columns, as of a profile", "--wheel points.txt", "--rail points.txt"});
   const nlohmann::json json = nlohmann::json::parse(vsi("r.h5 --json").output);
   EXPECT_EQ(json["kind"], "results of a run");
   EXPECT_EQ(json["commands"][0], "vsi report r.h5 -o report.html");

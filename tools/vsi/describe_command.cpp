@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
@@ -64,6 +66,14 @@ Description of_array_file(const std::string& file) {
             {fmt::format("tablegen info {}", file), fmt::format("tablegen verify {}", file),
              fmt::format("a scene's contact.creep_table = \"{}\"", file)}};
   }
+  if (type == "railtab-creep-shard") {
+    return {"a shard of a creep table",
+            {},
+            {fmt::format("tablegen info {}", file), fmt::format("tablegen merge {} OTHER.h5 -o table.h5", file)}};
+  }
+  if (type == "railtab-creep-partial" || type == "railtab-loaded-partial") {
+    return {"what an interrupted command has computed", {}, {"the same command of tablegen goes on from it"}};
+  }
   if (type == "railtab-study") return {"results of a study of many runs, one value per run in each array", {}, {}};
   return {fmt::format("a file of the kind {}", type), {}, {fmt::format("tablegen info {}", file)}};
 }
@@ -117,7 +127,30 @@ std::string kind_of_page(std::string_view first) {
   return std::string(first.substr(begin.size(), first.size() - begin.size() - end.size()));
 }
 
-Description of_text(const std::string& file, const std::string& first, const std::string& ending) {
+/// The first line that is neither blank nor a comment of a CSV file or a profile; empty: none.
+std::string first_content(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.remove_suffix(1);
+    if (!line.empty() && line.front() != '#' && line.front() != '!') return std::string(line);
+  }
+  return {};
+}
+
+/// Whether a line is two numbers, as of a profile's point.
+bool is_point(std::string line) {
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  std::istringstream in(line);
+  double y = 0.0, z = 0.0;
+  return in >> y >> z && (in >> std::ws).eof();
+}
+
+/// @param text the file's beginning
+Description of_text(const std::string& file, std::string_view text, const std::string& ending) {
+  const std::string first(text.substr(0, text.find('\n'))), content = first_content(text);
   static const std::map<std::string, std::string> profiles{
       {".prw", "wheel"}, {".whl", "wheel"}, {".prr", "rail"}, {".ban", "rail"}};
   const auto profile = profiles.find(ending);
@@ -144,22 +177,29 @@ Description of_text(const std::string& file, const std::string& first, const std
     return {fmt::format("a page of railtab: {}", printable(kind)), {}, {"open it in a browser"}};
   }
   if (first.starts_with("<svg ")) return {"a picture (SVG)", {}, {"open it in a browser"}};
+  if (is_point(content)) {
+    return {"points of two columns, as of a profile",
+            {"begins with: " + printable(content)},
+            {fmt::format("tablegen geometry --wheel {} --rail 60E1 -o table.h5", file),
+             fmt::format("tablegen geometry --wheel S1002 --rail {} -o table.h5", file)}};
+  }
   if (ending == ".csv") {
-    if (first.starts_with("ratio,")) {
-      return {"queries of creep forces", {printable(first)}, {fmt::format("vsi creep --query {} -o R.csv", file)}};
+    if (content.starts_with("ratio,")) {
+      return {"queries of creep forces", {printable(content)}, {fmt::format("vsi creep --query {} -o R.csv", file)}};
     }
-    if (first.starts_with("y,")) {
+    if (content.starts_with("y,")) {
       return {"queries of the contact",
-              {printable(first)},
+              {printable(content)},
               {fmt::format("vsi contact TABLE.h5 --query {} -o R.csv", file)}};
     }
-    if (first.starts_with("mode,")) {
-      const bool table = first.find("frequency") != std::string::npos;
+    if (content.starts_with("mode,")) {
+      const bool table = content.find("frequency") != std::string::npos;
       return {table ? "natural modes of a structure" : "shapes of natural modes",
-              {"columns: " + printable(first)},
+              {"columns: " + printable(content)},
               {fmt::format("a scene's structure.{} = \"{}\"", table ? "mode_table" : "mode_shapes", file)}};
     }
-    return {"columns of numbers (CSV)", {"columns: " + printable(first)}, {"docs/file_formats says what scenes read"}};
+    return {
+        "columns of numbers (CSV)", {"columns: " + printable(content)}, {"docs/file_formats says what scenes read"}};
   }
   throw input_error(file,
                     first.empty() ? "an empty file" : fmt::format("a file that begins with '{}'", printable(first, 40)),
@@ -175,10 +215,12 @@ Description describe(const std::string& file) {
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".toml") return of_toml(file);
   std::ifstream in(file);
-  std::string first(200, '\0');
-  in.read(first.data(), static_cast<std::streamsize>(first.size()));
-  first.resize(static_cast<std::size_t>(in.gcount()));
-  return of_text(file, first.substr(0, first.find('\n')), ending);
+  std::string text(4096, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad() || !in.is_open())
+    throw input_error(file, "a file that cannot be read", "a file with the right to read it");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return of_text(file, text, ending);
 }
 
 }  // namespace
