@@ -73,8 +73,8 @@ bool CellRefinement::in_range(const CellBox& box) const {
 double CellRefinement::share_of_queries(const CellBox& box) const {
   double share = (box.high[0] - box.low[0]) / (options_.lateral.high - options_.lateral.low);
   if (yaw_axis_) {
-    const double most = std::max(std::abs(options_.yaw.low), std::abs(options_.yaw.high));
-    share *= (std::sqrt(box.high[1]) - std::sqrt(box.low[1])) / most;
+    const Interval yaw = options_.yaw_amounts();
+    share *= (std::sqrt(box.high[1]) - std::sqrt(box.low[1])) / (yaw.high - yaw.low);
   }
   if (roll_axis_) share *= (box.high[2] - box.low[2]) / (options_.roll.high - options_.roll.low);
   return share;

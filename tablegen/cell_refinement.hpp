@@ -27,7 +27,6 @@ class CellRefinement {
 
  private:
   struct Trial;
-  struct Check;
   void refine(const CellBox& box, std::size_t node, CellTree& tree) const;
   [[nodiscard]] Trial attempt(const CellBox& box, double share) const;
   void check_samples(const CellBox& box, const BoxSamples& samples, Trial& trial) const;

@@ -53,7 +53,7 @@ struct ContactElements {
   int nx = 0, ns = 0;
   double dx = 0.0, ds = 0.0;      ///< sides [m]
   std::vector<double> x;          ///< centres along the rail, relative to the wheelset centre [m]
-  std::vector<SurfaceLine> line;  ///< of each row; overlap is −reach where no wheel surface was found
+  std::vector<SurfaceLine> line;  ///< of each row; of the rail alone where no wheel surface was found
   Eigen::VectorXd overlap;        ///< undeformed, at the centres [m]; negative: a gap
   std::vector<double> s_wheel;    ///< of the wheel's point at the centres [m]
 

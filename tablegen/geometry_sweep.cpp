@@ -35,10 +35,8 @@ void set_axes(const GeometrySweepOptions& o, GeometryTableData& table) {
   table.lateral.low = o.lateral.low - table.nominal_radius * o.roll.high;
   table.lateral.high = o.lateral.high - table.nominal_radius * o.roll.low;
   table.lateral.cells = cells_for(table.lateral.high - table.lateral.low, o.lateral_root);
-  const bool through_zero = o.yaw.low <= 0 && o.yaw.high >= 0;
-  const double yaw_low = through_zero ? 0.0 : std::min(std::abs(o.yaw.low), std::abs(o.yaw.high));
-  const double yaw_high = std::max(std::abs(o.yaw.low), std::abs(o.yaw.high));
-  table.yaw_squared = {yaw_low * yaw_low, yaw_high * yaw_high, yaw_low < yaw_high ? o.yaw_roots : 1};
+  const Interval yaw = o.yaw_amounts();
+  table.yaw_squared = {yaw.low * yaw.low, yaw.high * yaw.high, yaw.low < yaw.high ? o.yaw_roots : 1};
   table.roll = {o.roll.low, o.roll.high,
                 o.roll.low < o.roll.high ? cells_for(o.roll.high - o.roll.low, o.roll_root) : 1};
 }
@@ -86,6 +84,11 @@ void append_trees(const std::vector<CellTree>& trees, GeometryTableData& table) 
 
 }  // namespace
 
+Interval GeometrySweepOptions::yaw_amounts() const noexcept {
+  const auto [least, most] = std::minmax({std::abs(yaw.low), std::abs(yaw.high)});
+  return {yaw.low <= 0.0 && yaw.high >= 0.0 ? 0.0 : least, most};
+}
+
 void GeometrySweepOptions::validate() const {
   check_interval("--lateral [m]", lateral, 0.1);
   check_interval("--yaw [rad]", yaw, 0.2);
@@ -101,8 +104,9 @@ void GeometrySweepOptions::validate() const {
   check_range("geometry sweep: iterated cell", iterated_cell, 1e-12, 1);
   check_range("geometry sweep: fallback cell", fallback_cell, 1e-12, 1);
   check_range("--tolerance [m]", tolerance, 1e-12, 1e-3);
-  if (!(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count)) {
-    throw input_error("--shard", fmt::format("{}/{}", shard.index, shard.count), "I/N with I in 1..N");
+  if (!shard.valid()) {
+    throw input_error("--shard", fmt::format("{}/{}", shard.index, shard.count),
+                      fmt::format("I/N with I in 1..N, N at most {}", TableShard::most));
   }
 }
 

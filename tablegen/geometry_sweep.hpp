@@ -30,6 +30,7 @@ struct GeometrySweepOptions {
   TableShard shard;                   ///< the slab of root cells to generate
   double tolerance = 1e-8;            ///< penetration error asked for, 1e-12..1e-3 [m]
 
+  [[nodiscard]] Interval yaw_amounts() const noexcept;  ///< least and largest amount of yaw [rad]
   /// @throws InputError naming the first member out of its range.
   void validate() const;
 
@@ -43,7 +44,7 @@ using Progress = std::function<void(double)>;
 /// Halves the root cells until every leaf's polynomials lead the Newton iteration to what the online search finds, at
 /// points of the closed leaf and lowerings up to searched_lowering (OpenMP over the root cells, each by itself). What
 /// is still wrong in the smallest leaves limits the lowering up to which they are trusted.
-/// @throws InputError for options out of range, ComputationError where the wheel meets the rail nowhere in the range.
+/// @throws InputError for options out of range, and where the wheel meets the rail nowhere in the range.
 [[nodiscard]] GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
                                                const Progress& progress = {});
 

@@ -176,7 +176,6 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
   const double half = 0.5 * (box_.high[0] - box_.low[0]);
   std::vector<std::vector<BranchDatum>> orphans;
   for (BoxSample& s : samples_) {
-    s.patch_component.fill(-1);
     const PoseTrigonometry trig(s.pose);
     for (int n = 0; n < s.lowered.count; ++n) {
       const ContactPatch& patch = s.lowered.patch[n];
@@ -197,14 +196,15 @@ void BoxSamples::follow_lowered(const ContactSearch& search) {
         touch = r.touch;
         if (followed && k > 0) way.push_back(datum(s, y, touch.z_touch, touch.z_touch_dy, touch.s_wheel, touch.s_rail));
       }
+      int component = -1;  // branch of the patch
       for (int t = 0; followed && t < s.touches.count; ++t) {
-        if (std::abs(s.touches.touch[t].s_wheel - touch.s_wheel) < same_touch) s.patch_component[n] = s.component[t];
+        if (std::abs(s.touches.touch[t].s_wheel - touch.s_wheel) < same_touch) component = s.component[t];
       }
-      if (s.patch_component[n] < 0) {
+      if (component < 0) {
         orphans.push_back(std::move(way));
         continue;
       }
-      auto& data = lowered_data_[static_cast<std::size_t>(s.patch_component[n])];
+      auto& data = lowered_data_[static_cast<std::size_t>(component)];
       data.insert(data.end(), way.begin(), way.end());
     }
   }
@@ -261,7 +261,6 @@ void BoxSamples::collect() {
     // A patch at the largest lowering touches at a lower one, how much lower is not asked here.
     if (!lowered_data_[c].empty()) b.least_height = std::min(b.least_height, lowering_);
     if (b.least_height > lowering_ + touching_margin) continue;
-    b.everywhere = std::all_of(b.at_sample.begin(), b.at_sample.end(), [](bool here) { return here; });
     b.data.insert(b.data.end(), lowered_data_[c].begin(), lowered_data_[c].end());
     branches_.push_back(std::move(b));
   }

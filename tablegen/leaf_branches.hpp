@@ -27,8 +27,7 @@ struct BoxSample {
   WheelsetPose pose;              ///< z: of first touch; NaN where the wheel does not meet the rail
   TouchPoints touches;            ///< up to some height above first touch, in increasing s_wheel
   ContactPatches lowered;         ///< patches at the largest lowering
-  std::array<int, TouchPoints::capacity> component{};           ///< branch of each touch
-  std::array<int, ContactPatches::capacity> patch_component{};  ///< branch of each patch; -1: of none
+  std::array<int, TouchPoints::capacity> component{};  ///< branch of each touch
 };
 
 /// A point of a branch: a wheel that touches at (lateral, yaw², roll), in local coordinates; lateral may be outside
@@ -44,7 +43,6 @@ struct SampledBranch {
   std::vector<BranchDatum> data;
   std::vector<bool> at_sample;  ///< exists for a touching wheel at that sample
   double least_height = 0;      ///< above first touch, at any sample [m]
-  bool everywhere = false;      ///< exists at all samples
 };
 
 /// The online search on a grid of points of the closed box (5 along lateral, 3 along the others), corners included.

@@ -22,7 +22,7 @@ constexpr int format_version = 4;
 constexpr auto flush_every = std::chrono::milliseconds(500);
 constexpr std::size_t heading = 7, node_heading = 4;
 
-/// Everything that the columns depend on.
+/// What the columns depend on of the options that commands set.
 std::string request(const GeometryTableData& table, const LoadedSweepOptions& o, const std::string& version) {
   std::uint64_t sum = checksum_seed;
   for (const ProfileKnots* profile : {&table.wheel, &table.rail})
@@ -152,6 +152,7 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
     flushed = now;
   };
   for (const LoadedSweepColumn& column : store.known) append(column);
+  if (out) out->flush();  // in the place of the earlier file, with all that it held
   store.keep = append;
   table.loaded = sweep_loaded(contact.search(), options, std::move(store), progress);
   certify(contact.search(), options, *table.loaded);

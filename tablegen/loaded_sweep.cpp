@@ -10,6 +10,7 @@
 #include <mutex>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -215,9 +216,10 @@ class LoadedSweep {
   }
 
   void solve(const std::vector<ColumnPlace>& wanted, bool last) {
-    std::vector<ColumnPlace> missing;
+    std::set<ColumnPlace> places;  // neighbouring intervals ask for the node between them twice
     for (const ColumnPlace& place : wanted)
-      if (!solved_.contains(place)) missing.push_back(place);
+      if (!solved_.contains(place)) places.insert(place);
+    const std::vector<ColumnPlace> missing(places.begin(), places.end());
     std::vector<LoadedSweepColumn> found(missing.size());
     ParallelFailure failure;
     std::mutex one_at_a_time;

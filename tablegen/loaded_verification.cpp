@@ -81,11 +81,12 @@ LoadedVerification verify_loaded_table(const ContactSearch& search, const Loaded
   std::vector<WheelsetPose> poses;
   std::size_t misses = 0;
   while (poses.size() < static_cast<std::size_t>(options.samples)) {
-    constexpr double inner = 1.0 - LoadedTable::border;
-    const double yaw = std::sqrt(inner * data.yaw_squared.back());
+    constexpr double border = LoadedTable::border;
+    const double yaw = std::sqrt((1.0 - border) * data.yaw_squared.back());
+    const double of_roll = border * (data.roll.back() - data.roll.front());
     WheelsetPose pose{.y = within(data.shift.front(), data.shift[data.shift.size() - 2]),
                       .z = 0.0,
-                      .roll = inner * within(data.roll.front(), data.roll.back()),
+                      .roll = within(data.roll.front() + of_roll, data.roll.back() - of_roll),
                       .yaw = within(-yaw, yaw)};
     const TouchPoint touch = search.first_touch(pose.y, pose.roll, pose.yaw);
     const double approach = within(options.approach.low, options.approach.high);

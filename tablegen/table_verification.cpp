@@ -279,7 +279,7 @@ GeometryVerification verify_geometry_table(const TableContact& contact, const Ve
       throw ComputationError("verification: the wheel does not meet the rail in more than 95 % of the range");
     }
     if (progress) progress(static_cast<double>(result.samples) / options.samples);
-    timed = std::move(queries);
+    if (queries.size() > timed.size()) timed = std::move(queries);
   }
   result.searched_share = static_cast<double>(searched) / result.samples;
   result.fallback_share = 1.0 - static_cast<double>(result.answered_by_table) / result.samples;

@@ -48,7 +48,6 @@ class UndeformedDistance {
   [[nodiscard]] SurfaceLine rail_point(double s_rail) const noexcept;
 
   [[nodiscard]] const WheelRailPair& pair() const noexcept { return pair_; }
-  [[nodiscard]] const WheelsetCentre& centre() const noexcept { return centre_; }
 
  private:
   struct Sample {

@@ -6,7 +6,7 @@
 
 namespace railtab {
 
-/// Local coordinates in a leaf, -1..1 on each axis, 0 on a fixed one: a lateral, b yaw², c roll.
+/// Local coordinates in a leaf, -1..1 on each axis: a lateral, b yaw², c roll. That of a fixed axis is not used.
 struct LocalPoint {
   float a, b, c;
 };

@@ -35,16 +35,21 @@ void check_axis(const TableAxis& axis, std::string_view name) {
   }
 }
 
-/// Every node below a root is the child of one node, and comes after it; every leaf is named once, in order.
+/// Every node below a root is the child of one node, and comes after it; every leaf is named once.
 void check_tree(const GeometryTableData& data, std::size_t roots) {
   std::size_t next_child = roots;
   std::size_t leaves = 0;
-  std::vector<bool> named(data.node.size(), false);
+  std::vector<bool> named(data.node.size(), false), leaf_named(data.leaf_branch.size(), false);
   for (std::size_t n = 0; n < data.node.size(); ++n) {
     const std::uint32_t code = data.node[n];
     const std::size_t index = CellNode::index(code);
     if (CellNode::is_leaf(code)) {
-      leaves = std::max(leaves, index + 1);
+      if (index >= leaf_named.size() || leaf_named[index]) {
+        throw input_error(fmt::format("node {}", n), fmt::format("leaf {}", index),
+                          fmt::format("one of {} leaves that belongs to no other node", leaf_named.size()));
+      }
+      leaf_named[index] = true;
+      ++leaves;
       continue;
     }
     if (index <= n || index < roots || index + 1 >= data.node.size() || named[index]) {

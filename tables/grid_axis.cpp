@@ -8,11 +8,11 @@
 
 namespace railtab {
 
-GridAxis::GridAxis(std::string name, std::vector<double> nodes) : name_(std::move(name)), nodes_(std::move(nodes)) {
-  if (nodes_.empty()) throw input_error(fmt::format("axis {}", name_), "no nodes", "at least one node");
+GridAxis::GridAxis(const std::string& name, std::vector<double> nodes) : nodes_(std::move(nodes)) {
+  if (nodes_.empty()) throw input_error(fmt::format("axis {}", name), "no nodes", "at least one node");
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (!std::isfinite(nodes_[i]) || (i > 0 && !(nodes_[i] > nodes_[i - 1]))) {
-      throw input_error(fmt::format("axis {}, node {}", name_, i), fmt::format("{}", nodes_[i]),
+      throw input_error(fmt::format("axis {}, node {}", name, i), fmt::format("{}", nodes_[i]),
                         i > 0 ? fmt::format("a finite number above {}", nodes_[i - 1]) : "a finite number");
     }
   }

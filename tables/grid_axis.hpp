@@ -9,7 +9,7 @@ namespace railtab {
 class GridAxis {
  public:
   /// @throws InputError naming the axis and the first node that breaks the order.
-  GridAxis(std::string name, std::vector<double> nodes);
+  GridAxis(const std::string& name, std::vector<double> nodes);
 
   struct Cell {
     int index;        ///< left node
@@ -20,13 +20,9 @@ class GridAxis {
   /// The cell that holds `value`; on an axis of one node, inside means within 1e-12 of it. NaN is outside.
   [[nodiscard]] Cell locate(double value) const noexcept;
 
-  [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  [[nodiscard]] const std::vector<double>& nodes() const noexcept { return nodes_; }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(nodes_.size()); }
-  [[nodiscard]] int cells() const noexcept { return size() > 1 ? size() - 1 : 1; }
 
  private:
-  std::string name_;
   std::vector<double> nodes_;
   bool uniform_ = false;
   double inverse_step_ = 0.0;

@@ -301,6 +301,12 @@ LoadedTable::LoadedTable(LoadedTableData data) : data_(std::move(data)) {
   }
   const std::size_t middle = data_.roll.size() / 2 * data_.yaw_squared.size();
   for (std::size_t i = 0; i < nodes; ++i) rise_.push_back(data_.height[4 * (i * columns + middle)]);
+  const auto levels = static_cast<std::size_t>(data_.levels);
+  for (std::size_t last = levels - 1; last < nodes; last += levels) {
+    if (rise_[last] > 0.0F) continue;
+    throw input_error(fmt::format("loaded table: height, lateral node {}", last / levels),
+                      fmt::format("{} m at the last level", rise_[last]), "above first touch");
+  }
   weight_parts();
 }
 

@@ -38,7 +38,7 @@ def run(
                  exceptions too, and they are raised again; the results up to there are kept, with a checkpoint.
     on_progress  called with the share of the run that is done, 0 to 1, some times a second
 
-    Returns the summary with the keys of `vsi run --json` (docs/guide/vsi.md). Warnings of the scene are issued by
+    Returns the summary with the keys of `vsi run --json` (docs/guide/vsi.md) but `warnings`: those are issued by
     warnings.warn. Ctrl-C ends the run after its step. Other Python threads run meanwhile.
 
     Raises InputError where the scene is wrong, and ComputationError where the run cannot go on: its results up to there

@@ -8,8 +8,6 @@
 #include <cstring>
 #include <utility>
 
-#include "railtab/runtime/base/input_error.hpp"
-
 namespace railtab {
 
 namespace {
@@ -30,7 +28,8 @@ WriterLock::WriterLock(const std::filesystem::path& file) : descriptor_(::open(f
   const int error = lock_whole(descriptor_);
   if (error != EAGAIN && error != EACCES) return;
   ::close(descriptor_);
-  throw input_error(file.string(), "a file that another run is writing", "one that no run is writing");
+  throw FileInUse(
+      input_error(file.string(), "a file that another run is writing", "one that no run is writing").what());
 }
 
 WriterLock WriterLock::if_free(const std::filesystem::path& file) noexcept {

@@ -2,15 +2,23 @@
 
 #include <filesystem>
 
+#include "railtab/runtime/base/input_error.hpp"
+
 namespace railtab {
+
+/// Another process is writing the file.
+class FileInUse : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 /// Keeps a second process from writing the same growing file, and one from removing another's; released by the end of
 /// the process, however it ends.
 class WriterLock {
  public:
   WriterLock() = default;
-  /// @throws InputError where another writer holds the file, or it cannot be opened for writing. Where the file system
-  /// has no locks, there is no protection.
+  /// @throws FileInUse where another writer holds the file, InputError where it cannot be opened for writing. Where the
+  /// file system has no locks, there is no protection.
   explicit WriterLock(const std::filesystem::path& file);
   /// Not held where another writer holds the file, it cannot be opened for writing, or the file system has no locks.
   [[nodiscard]] static WriterLock if_free(const std::filesystem::path& file) noexcept;

@@ -25,7 +25,6 @@ class ContactScan {
   /// @throws InputError where spacing is not in (0, 1e-2] m or gives more than most_blocks blocks
   ContactScan(const WheelRailPair& pair, double spacing);
 
-  [[nodiscard]] int intervals() const noexcept { return intervals_; }
   [[nodiscard]] int blocks() const noexcept { return static_cast<int>(box_.size()); }
   [[nodiscard]] double spacing() const noexcept { return spacing_; }
   /// Arc length of scan point k on the wheel [m].

@@ -167,7 +167,7 @@ std::vector<double> TomlSection::numbers(std::string_view key, const NumberKind&
 }
 
 std::vector<std::array<double, 2>> TomlSection::points(std::string_view key, std::string_view units) {
-  const std::string expected = fmt::format("points [[a, b], [c, d], …] in {}, a < c, both columns not negative", units);
+  const std::string expected = fmt::format("points [[a, b], [c, d], …] in {}, 0 < a < c, b and d not below 0", units);
   const toml::array* list = require(key, expected).as_array();
   if (!list || list->empty()) throw error(key, found_text(*table_->get(key)), expected);
   std::vector<std::array<double, 2>> result;

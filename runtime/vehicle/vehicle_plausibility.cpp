@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -66,6 +67,36 @@ void add_light_car_body(const VehicleData& data, std::vector<std::string>& sente
   }
 }
 
+// No moment of inertia exceeds the sum of the other two. Published ones do by up to a third; wrong units by far more.
+void add_impossible_inertias(const VehicleData& data, std::vector<std::string>& sentences) {
+  if (data.motion == MotionPlane::vertical) return;  // Jy alone is known
+  constexpr double published = 2.0;
+  constexpr std::array names{"Jx", "Jy", "Jz"};
+  for (const RigidBody& body : data.parts.bodies) {
+    const Eigen::Vector3d& J = body.inertia;
+    Eigen::Index largest = 0;
+    const double most = J.maxCoeff(&largest), others = J.sum() - most;
+    if (most <= published * others) continue;
+    sentences.push_back(
+        fmt::format("{}: {} of {}, {:.4g} kg m², is more than twice the sum of the other two moments of inertia, "
+                    "{:.4g} kg m², which "
+                    "it cannot exceed: are they in kg m²?",
+                    data.name, names[static_cast<std::size_t>(largest)], body.name, most, others));
+  }
+}
+
+void add_loose_wheelsets(const VehicleData& data, std::vector<std::string>& sentences) {
+  const VehicleDescription& parts = data.parts;
+  if (data.stands_on_joints || parts.bodies.size() == parts.wheelsets.size()) return;
+  for (const int w : parts.wheelsets) {
+    const bool joined = std::any_of(parts.suspension.begin(), parts.suspension.end(),
+                                    [&](const Suspension& s) { return s.body_a == w || s.body_b == w; });
+    if (joined) continue;
+    sentences.push_back(fmt::format("{}: no connection joins {} to the vehicle, which will run away from it", data.name,
+                                    parts.bodies[static_cast<std::size_t>(w)].name));
+  }
+}
+
 }  // namespace
 
 std::vector<StaticDeflection> static_deflections(const VehicleData& data) {
@@ -88,6 +119,8 @@ std::vector<std::string> implausible_values(const VehicleData& data) {
   add_deflections(data, sentences);
   add_overlapping_wheels(data, sentences);
   add_light_car_body(data, sentences);
+  add_impossible_inertias(data, sentences);
+  add_loose_wheelsets(data, sentences);
   return sentences;
 }
 

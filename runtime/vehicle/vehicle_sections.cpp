@@ -139,6 +139,12 @@ std::string on_side(std::string name, std::string_view side) {
   return star == name.npos ? name : name.replace(star, 1, side);
 }
 
+bool acts(const SuspensionUnit& unit) {
+  const auto nonlinear = [](const NonlinearUnit& n) { return n.replaces_damper() || !n.stop.empty(); };
+  return unit.kx + unit.ky + unit.kz + unit.cx + unit.cy + unit.cz > 0.0 ||
+         std::any_of(unit.nonlinear.begin(), unit.nonlinear.end(), nonlinear);
+}
+
 void read_connection(TomlSection& section, VehicleData& data) {
   const bool vertical = is_vertical(data);
   const std::string name = section.text("name");
@@ -165,6 +171,10 @@ void read_connection(TomlSection& section, VehicleData& data) {
     data.linearised.push_back(stand_in);
   }
   section.reject_others();
+  if (!acts(unit) && turning.isZero() && !yaw_friction.acts()) {
+    throw section.error("name", fmt::format("'{}' without stiffness, damping, friction and stop", name),
+                        "one of them: what the connection does");
+  }
   if (both_sides && y == 0.0) throw section.error("y", "0 with both_sides", "the distance from the track's centre");
   for (const auto& [first, second] : joins) {
     for (const double side : both_sides ? std::vector<double>{-1.0, 1.0} : std::vector<double>{1.0}) {

@@ -15,7 +15,7 @@ struct EnergyBalance {
   double kinetic = 0;
   double strain = 0;   ///< suspension and structure, bump stops and dry friction that sticks included
   double gravity = 0;  ///< of the static loads, zero in the nominal position
-  double contact = 0;  ///< Hertz springs: (2/5) F d of every patch
+  double contact = 0;  ///< elastic energy: (2/5) F d of every patch, that of the loaded table with its share
 
   double dissipated = 0;     ///< by dampers of train and structure and by dry friction
   double creep_work = 0;     ///< of creep forces on train and track; negative where they slow the motion down

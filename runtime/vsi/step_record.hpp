@@ -24,7 +24,7 @@ struct WheelRecord {
   double pressure = 0;                                ///< largest normal pressure [Pa]
 };
 
-/// Displacement and acceleration of one body or node: x, y, z, roll, pitch, yaw.
+/// Motion of one body or node, track axes: x, y, z [m, m/s, m/s²], then roll, pitch, yaw [rad, rad/s, rad/s²].
 struct MotionRecord {
   double displacement[6] = {};
   double velocity[6] = {};

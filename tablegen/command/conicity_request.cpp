@@ -25,12 +25,6 @@ namespace {
 
 constexpr std::array error_sizes = {"random-error", "grid", "spacing"};
 
-void reject(const TableCommandLine& line, std::initializer_list<const char*> options, const char* expected) {
-  for (const char* option : options) {
-    if (line.chosen(option)) throw input_error(fmt::format("--{}", option), line.text(option), expected);
-  }
-}
-
 bool errors_chosen(const TableCommandLine& line) {
   return std::any_of(error_sizes.begin(), error_sizes.end(), [&](const char* option) { return line.chosen(option); });
 }
@@ -114,7 +108,7 @@ void set_amplitudes(const TableCommandLine& line, ConicityRequest& request) {
     throw input_error("--amplitude", line.text("amplitude"), "a number in 1e-6..0.1 m");
   }
   if (line.given("reference")) {
-    reject(line, {"amplitudes"}, "no amplitudes beside --reference, whose file has its own");
+    line.reject({"amplitudes"}, "no amplitudes beside --reference, whose file has its own");
     request.reference = read_conicity_bands(line.text("reference"));
     for (const ConicityBand& band : request.reference) request.amplitudes.push_back(band.amplitude);
   } else if (line.given("amplitudes")) {
@@ -151,10 +145,9 @@ ConicityErrorOptions error_options(const TableCommandLine& line, const ConicityR
 }
 
 void set_table(const TableCommandLine& line, ConicityRequest& request) {
-  reject(line,
-         {"wheel", "rail", "left-wheel", "left-rail", "smoothing", "rail-inclination", "gauge", "gauge-height",
-          "flange-back", "wheel-radius", "half-spacing", "lateral", "random-error", "grid", "spacing"},
-         "only with --wheel and --rail in place of a table");
+  line.reject({"wheel", "rail", "left-wheel", "left-rail", "smoothing", "rail-inclination", "gauge", "gauge-height",
+               "flange-back", "wheel-radius", "half-spacing", "lateral", "random-error", "grid", "spacing"},
+              "only with --wheel and --rail in place of a table");
   request.name = line.text("file");
   request.table.emplace(
       in_file(request.name, [&] { return TableContact(GeometryTable(read_geometry_table(request.name))); }));
@@ -162,7 +155,7 @@ void set_table(const TableCommandLine& line, ConicityRequest& request) {
 
 void set_pair(const TableCommandLine& line, ConicityRequest& request) {
   if (line.chosen("half-spacing")) {
-    reject(line, {"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
+    line.reject({"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
   }
   const double noise = requested_noise(line);
   request.pair = requested_wheelset(line, noise);
@@ -211,7 +204,7 @@ ConicityRequest conicity_request(const TableCommandLine& line) {
   set_amplitudes(line, request);
   request.contact = contact_options(line);
   if (!errors_chosen(line)) {
-    reject(line, {"runs", "seed", "error-direction"}, "only with --random-error, --grid or --spacing");
+    line.reject({"runs", "seed", "error-direction"}, "only with --random-error, --grid or --spacing");
   }
   if (line.given("output")) {
     request.output = line.text("output");

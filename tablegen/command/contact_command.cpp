@@ -60,9 +60,10 @@ void contact_command(const std::vector<std::string>& arguments) {
       own, {}, arguments);
   if (line.help_printed()) return;
   if (line.given("pose")) return loaded_contact_command(line);
-  for (const char* other : {"wheel", "rail", "table", "load", "dz", "pitch-rate", "output"}) {
-    if (line.given(other)) throw input_error(fmt::format("--{}", other), line.text(other), "only with a --pose");
-  }
+  line.reject(
+      {"wheel", "rail", "smoothing", "rail-inclination", "gauge", "gauge-height", "flange-back", "wheel-radius",
+       "table", "load", "dz", "friction", "velocity", "pitch-rate", "motion", "modulus", "most-elements", "output"},
+      "only with a --pose");
   RollingContactOptions options;
   options.elements = static_cast<int>(line.whole_number("elements", 8, 240));
   const std::string creepage_text = line.required("creepage");
@@ -72,9 +73,9 @@ void contact_command(const std::vector<std::string>& arguments) {
   ExtrapolatedRollingContact contact(ratio, line.number("poisson"), options);
   const ExtrapolatedContactSolution s = contact.solve(creepage);
   if (!s.coarse.converged || !s.fine.converged) {
-    throw std::runtime_error(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; tolerance {:.2g}",
-                                         s.coarse.residual, options.elements / 2, s.fine.residual, options.elements,
-                                         options.tolerance));
+    throw ComputationError(fmt::format("no solution: residual {:.2g} on {} elements, {:.2g} on {}; tolerance {:.2g}",
+                                       s.coarse.residual, options.elements / 2, s.fine.residual, options.elements,
+                                       options.tolerance));
   }
   if (line.json()) {
     const nlohmann::ordered_json j{{"ratio", ratio},

@@ -49,11 +49,9 @@ ContactSearch requested_search(const TableCommandLine& line) {
     if (!line.quiet()) print_notes("contact", search.pair());
     return search;
   }
-  for (const char* other : {"wheel", "rail"}) {
-    if (line.given(other)) {
-      throw input_error(fmt::format("--{}", other), line.text(other), "no profiles beside --table, which has its own");
-    }
-  }
+  line.reject(
+      {"wheel", "rail", "smoothing", "rail-inclination", "gauge", "gauge-height", "flange-back", "wheel-radius"},
+      "nothing of the pair beside --table, which has its own");
   const std::string file = line.text("table");
   return in_file(file, [&] { return TableContact(GeometryTable(read_geometry_table(file))).search(); });
 }
@@ -70,11 +68,7 @@ LoadedContactOptions requested_options(const TableCommandLine& line) {
 void set_motion(const TableCommandLine& line, Case& c) {
   const double friction = line.number("friction");
   if (friction == 0.0) {
-    for (const char* other : {"pitch-rate", "motion"}) {
-      if (line.given(other)) {
-        throw input_error(fmt::format("--{}", other), line.text(other), "only with --friction above 0");
-      }
-    }
+    line.reject({"velocity", "pitch-rate", "motion"}, "only with --friction above 0");
     return;
   }
   c.rolling.emplace();
@@ -305,11 +299,7 @@ po::options_description loaded_contact_options() {
 }
 
 void loaded_contact_command(const TableCommandLine& line) {
-  for (const char* other : {"ratio", "creepage"}) {
-    if (line.given(other)) {
-      throw input_error(fmt::format("--{}", other), line.text(other), "either an ellipse or a --pose, not both");
-    }
-  }
+  line.reject({"ratio", "creepage"}, "either an ellipse or a --pose, not both");
   if (line.given("output")) {
     require_writable_place(line.text("output"), "--output");
     require_replaceable_text(line.text("output"), csv_header);

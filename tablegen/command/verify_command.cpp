@@ -142,6 +142,11 @@ void verify_geometry(const TableCommandLine& line, const std::string& file) {
     check.seed = options.seed;
     check.material = {line.number("modulus"), line.number("poisson")};
     check.material.validate();
+    if (!check.material.has_contact_modulus(loaded->contact_modulus)) {
+      throw input_error(
+          "--modulus, --poisson", fmt::format("{} Pa, {}", check.material.E, check.material.nu),
+          fmt::format("those of the loaded part of {}, E/(2(1 - nu²)) = {} Pa", file, loaded->contact_modulus));
+    }
     ProgressBar loaded_bar("verify the loaded part", !line.quiet());
     of_loaded = verify_loaded_table(contact.search(), LoadedTable(std::move(*loaded)), check,
                                     [&](double share) { loaded_bar.show(share); });

@@ -110,7 +110,7 @@ CreepTableData read_creep_table(const std::filesystem::path& name) {
   }
   table.layout = creep_table_layout(layout);
   table.poisson = in.number("options", "poisson", 0.0, 0.5);
-  table.elements = static_cast<int>(in.number("options", "elements", 1.0, 1e6));
+  table.elements = static_cast<int>(file.whole_number("options", "elements", 8, 240));
   for (std::size_t i = 0; i < 4; ++i) table.nodes[i] = in.numbers(axis_field(axes(table.layout)[i]));
   table.values = in.numbers(values_field(table.layout));
   if (table.layout == CreepTableLayout::smooth) {

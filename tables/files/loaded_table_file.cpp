@@ -86,9 +86,7 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
   table.height = in.floats(height_field);
   table.pressed = in.counts(pressed_field);
   table.part = in.floats(part_field);
-  for (const std::string& name : file.attribute_names("loaded/statistics")) {
-    table.statistics.emplace_back(name, in.number("loaded/statistics", name));
-  }
+  table.statistics = read_statistics(file, "loaded/statistics");
   require_consistent(table, file.file().string() + ": loaded");
   return table;
 }

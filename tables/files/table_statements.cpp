@@ -16,11 +16,11 @@ void write_statements(ArrayFileWriter& file, const TableProvenance& provenance, 
   file.attribute("", "checksum", content_checksum);
 }
 
-TableStatistics read_statistics(const ArrayFileReader& file) {
+TableStatistics read_statistics(const ArrayFileReader& file, const std::string& group) {
   TableStatistics statistics;
-  if (!file.contains("statistics")) return statistics;
-  for (const std::string& name : file.attribute_names("statistics")) {
-    statistics.emplace_back(name, FieldReader(file).number("statistics", name));
+  if (!file.contains(group)) return statistics;
+  for (const std::string& name : file.attribute_names(group)) {
+    statistics.emplace_back(name, FieldReader(file).number(group, name));
   }
   return statistics;
 }

@@ -15,8 +15,8 @@ using TableStatistics = std::vector<std::pair<std::string, double>>;
 void write_statements(ArrayFileWriter& file, const TableProvenance& provenance, const TableStatistics& statistics,
                       const std::string& content_checksum);
 
-/// Empty where the file has none.
-[[nodiscard]] TableStatistics read_statistics(const ArrayFileReader& file);
+/// Empty where the file has none. @param group of the attributes
+[[nodiscard]] TableStatistics read_statistics(const ArrayFileReader& file, const std::string& group = "statistics");
 [[nodiscard]] TableProvenance read_provenance(const ArrayFileReader& file);
 
 /// @param found of the contents as they were read @throws InputError where the file states another checksum

@@ -54,7 +54,7 @@ class Runs(FolderTest):
 
         command = json.loads(vsi("run", "scene.toml", "-o", "command.h5", "--json").splitlines()[0])
         summary = railtab.run("scene.toml")
-        for only in ("results", "seconds", "real_time_factor"):
+        for only in ("results", "seconds", "real_time_factor", "warnings"):
             command.pop(only, None)
             summary.pop(only, None)
         self.assertFalse(summary.pop("interrupted"))

@@ -65,6 +65,9 @@ TEST(ContactCommand, ExtremesAreFinite) {
 
 TEST(ContactCommand, RejectsBadInput) {
   expect_rejected("--creepage 0,0,0", "found no --ratio ");
+  for (const char* option : {"friction 0.3", "velocity 7", "motion 0,0,0,0", "modulus 1e11", "gauge 1.4"}) {
+    expect_rejected(std::string("--ratio 1 --creepage 0,0,0 --") + option, "only with a --pose");
+  }
   expect_rejected("--ratio 1", "found no --creepage ");
   expect_rejected("--ratio -2 --creepage 0,0,0", "expected 1e-4..1e4");
   expect_rejected("--ratio nan --creepage 0,0,0", "a number");

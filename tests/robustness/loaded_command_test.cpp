@@ -115,9 +115,16 @@ TEST_F(LoadedCommand, WrongInputIsSaid) {
   rejected("t.h5 --levels 2", "levels");
   rejected("t.h5 --yaw -1", "yaw");
   rejected("t.h5 --roll 0:0", "roll");
+  add_loaded_part();
+  const Outcome other_steel = tablegen("verify t.h5 --samples 100 --loaded-samples 5 --modulus 200e9");
+  EXPECT_EQ(other_steel.exit_code, 2) << other_steel.output;
+  EXPECT_NE(other_steel.output.find("--modulus, --poisson: found 200000000000 Pa, 0.28, expected those of the loaded"),
+            std::string::npos)
+      << other_steel.output;
   write("scene.toml",
         "[contact]\ntable = \"t.h5\"\nelastic = \"half-space\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = "
         "0.1\n");
+  make_table();
   expect_rejected("run scene.toml -o out", "a table with a loaded part (tablegen loaded adds it)");
 }
 

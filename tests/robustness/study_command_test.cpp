@@ -370,18 +370,18 @@ TEST_F(StudyCommand, FindsWhereALimitIsReached) {
   EXPECT_FALSE(json("out/study.json")["threshold"]["thresholds"][0].contains("reached"));
 }
 
-// A force on a coach that does not act on what is measured has no share of its variance.
+// A key that does not act on what is measured has no share of its variance.
 TEST_F(StudyCommand, FindsWhichVariableMatters) {
   write(
       "plan.toml",
       "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\ndistribution = \"uniform\"\nlow = 100\nhigh = 200\n"
-      "[[vary]]\nkey = \"assessment.line_speed_kmh\"\ndistribution = \"uniform\"\nlow = 100\nhigh = 200\n"
+      "[[vary]]\nkey = \"assessment.section_step\"\ndistribution = \"uniform\"\nlow = 0.1\nhigh = 1\n"
       "[importance]\nmeasure = \"wheel_unloading\"\nsamples = 8\n");
   ASSERT_EQ(study("plan.toml -o out"), 0);
   EXPECT_EQ(table("out/runs.csv").size(), 33U);
   const nlohmann::json variables = json("out/study.json")["importance"]["variables"];
   EXPECT_GT(variables["train.speed_kmh"]["total"]["value"], 0.3);
-  EXPECT_EQ(variables["assessment.line_speed_kmh"]["total"]["value"], 0.0);
+  EXPECT_EQ(variables["assessment.section_step"]["total"]["value"], 0.0);
   EXPECT_GT(variables["train.speed_kmh"]["total"]["value"], 1.0);  // which no share is
   const Outcome again = vsi("study plan.toml -o out");
   EXPECT_NE(again.output.find("errors of sampling: 8 samples are too few"), std::string::npos) << again.output;
@@ -459,6 +459,12 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
            "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
   write("plan.toml", "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.sped\"\nvalues = [1]\n");
   expect_rejected("study plan.toml --count -o out", "unknown key 'train.sped'");
+  rejected(begin + "key = \"assessment.seeds\"\nvalues = [1, 2]\n",
+           "vary[1].key: found 'assessment.seeds', expected a key that runs of a study depend on");
+  rejected(begin +
+               "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 0.05\nat_least = 0.5\n"
+               "at_most = 0.2\n",
+           "vary[1].at_most: found 0.2, expected more than at_least = 0.5");
   rejected(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
            "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
   rejected(

@@ -268,6 +268,27 @@ TEST_F(SweepCommand, InputThatIsWrongForAllRunsIsNamedOnce) {
   EXPECT_EQ(log.find(message, first + 1), std::string::npos) << log;
 }
 
+// Two sweeps into one folder: what one of them is computing is no wrong input of the other, which takes the next run.
+TEST_F(SweepCommand, ASecondOneTakesOtherRuns) {
+  write("long.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 20\n"
+        "[output]\nevery = 100000\n");
+  const std::vector<std::string> command{"sweep", "long.toml", "--speed", "30:31:1", "--threads", "1", "-o", "out"};
+  const pid_t first = start(command);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!fs::exists(folder_ / "out/v030.000.h5") && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const int second = vsi(command);
+  EXPECT_LE(second, 1) << text("log");
+  EXPECT_LE(wait(first), 1) << text("log");
+  EXPECT_NE(text("log").find("v030.000.h5: found a file that another run is writing"), std::string::npos)
+      << text("log");
+  EXPECT_EQ(vsi(command), 0) << text("log");
+  const std::string summary = text("out/summary.csv");
+  EXPECT_EQ(std::count(summary.begin(), summary.end(), '\n'), 3) << summary;
+}
+
 // Ctrl-C that the pool alone is told of ends the runs of its workers too, each with a checkpoint.
 TEST_F(SweepCommand, AnInterruptEndsTheRunsInProgress) {
   write("long.toml",

@@ -527,6 +527,7 @@ TEST_F(VsiCommand, VehicleSaysWhatNoVehicleHas) {
   expect(changed("mass = 32000.0", "mass = 32.0"),
          "vsi vehicle: warning: manchester-coach: the car body of 32 kg is lighter than the wheelsets, 7252 kg in all");
   expect(changed("half_wheelbase = ", "half_wheelbase = 0.1 # "), "the wheels of wheelset-1 and wheelset-2 overlap");
+  expect(changed("Jz = ", "Jz = 1.0 # "), "is more than twice the sum of the other two moments of inertia");
   const std::string soft = changed("kz = 0.430e6", "kz = 4.3e3");
   expect(soft, "the springs of secondary suspension deflect by 18");
   EXPECT_EQ(soft.find("primary suspension deflect"), std::string::npos) << soft;

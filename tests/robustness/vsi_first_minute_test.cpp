@@ -113,6 +113,14 @@ TEST_F(FirstMinute, ANewSceneIsValidAndRuns) {
   expect_rejected("new s.toml", "s.toml: found a file, expected a new name");
 }
 
+TEST_F(FirstMinute, ANewSceneFindsItsVehicleFromWhereItStands) {
+  std::filesystem::create_directory(folder_ / "sub");
+  ASSERT_EQ(run("'" VSI_COMMAND "' vehicle manchester-coach --toml > sub/mine.toml").exit_code, 0);
+  ASSERT_EQ(run("cd sub && '" VSI_COMMAND "' new ../s.toml -q --train mine.toml").exit_code, 0);
+  EXPECT_NE(text_of("s.toml").find("vehicle = \"sub/mine.toml\""), std::string::npos) << text_of("s.toml");
+  expect_said("check s.toml", {"The scene is valid"});
+}
+
 TEST_F(FirstMinute, ANewSceneWithoutABridgeIsValid) {
   for (const char* train : {"ice3-like-coach", "freight-21t", "traxx-locomotive"}) {
     const std::string name = std::string(train) + ".toml";

@@ -262,7 +262,7 @@ TEST_F(VsiCommand, ForcesThatASceneCannotGiveAreSaidAtItsEnd) {
   EXPECT_EQ(vsi("run scene.toml -o r.h5 -q").output, "");
   for (const char* again : {"", " --resume"}) {
     const std::string json = vsi(std::string("run scene.toml -o r.h5 --json 2> /dev/null") + again).output;
-    EXPECT_NE(json.find("\"warnings\":[\"negative contact force"), std::string::npos) << json;
+    EXPECT_NE(json.find("\"warnings\": [\"negative contact force"), std::string::npos) << json;
   }
   EXPECT_EQ(output_of(rigid, "-5e4").find("warning"), std::string::npos);
 }

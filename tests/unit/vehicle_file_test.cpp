@@ -299,6 +299,16 @@ TEST(VehicleFile, RejectsValuesWithFileLineAndKey) {
   expect_rejected("name = ", {"coach.toml:1: "});
 }
 
+TEST(VehicleFile, RejectsConnectionsThatDoNothing) {
+  const std::string empty =
+      std::string(wagon) + "[[connection]]\nname = \"cover\"\njoins = [[\"wheelset-1\", \"car-body\"]]\n";
+  EXPECT_NE(
+      message_of(empty).find("name: found 'cover' without stiffness, damping, friction and stop, expected one of them"),
+      std::string::npos)
+      << message_of(empty);
+  EXPECT_EQ(message_of(empty + "k_roll = 1e5\n"), "no InputError");
+}
+
 TEST(VehicleFile, RejectsBodiesThatAreNotThere) {
   expect_rejected(replaced(wagon, "\"wheelset-2\", \"car-body\"", "\"wheelset-2\", \"car_body\""),
                   {"connection[1].joins: found body 'car_body', expected one of car-body, wheelset-1, wheelset-2"});

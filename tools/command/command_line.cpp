@@ -128,6 +128,12 @@ void CommandLine::require(const std::string& name) const {
   throw missing(all_.find(name, false), positional, usage_);
 }
 
+void CommandLine::reject(std::initializer_list<const char*> options, std::string_view expected) const {
+  for (const char* option : options) {
+    if (chosen(option)) throw input_error(fmt::format("--{}", option), text(option), expected);
+  }
+}
+
 std::string CommandLine::required(const std::string& name) const {
   require(name);
   return text(name);

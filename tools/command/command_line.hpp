@@ -39,6 +39,8 @@ class CommandLine {
   [[nodiscard]] bool given(const std::string& name) const { return values_.count(name) > 0; }
   /// Whether the arguments have the option: given() and no default.
   [[nodiscard]] bool chosen(const std::string& name) const { return given(name) && !values_[name].defaulted(); }
+  /// @throws InputError where one of the options is chosen that are not allowed, with what is expected in its place
+  void reject(std::initializer_list<const char*> options, std::string_view expected) const;
   /// @throws InputError where the option is missing
   [[nodiscard]] std::string required(const std::string& name) const;
   /// All values of an option that may be given many times. @throws InputError where there is none

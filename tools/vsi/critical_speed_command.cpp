@@ -25,6 +25,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double to_kmh = 3.6;
+// What the outputs of limit cycles begin with.
+constexpr const char *branch_mark = "speed_m_s,", *svg_mark = "<svg ";
 
 struct Stability : HuntingCase {
   SpeedSearch search;
@@ -112,10 +114,12 @@ void check_outputs(const CommandLine& line) {
   if (line.given("output")) {
     require_fitting_name(line.text("output"), "-o", "a table in CSV", {".csv"});
     require_writable_place(line.text("output"), "-o");
+    require_replaceable_text(line.text("output"), branch_mark);
   }
   if (line.given("diagram")) {
     require_fitting_name(line.text("diagram"), "--diagram", "a picture in SVG", {".svg"});
     require_writable_place(line.text("diagram"), "--diagram");
+    require_replaceable_text(line.text("diagram"), svg_mark);
   }
 }
 
@@ -145,8 +149,8 @@ HuntingBranch followed_branch(const CommandLine& line, const SceneParameters& sc
 }
 
 void write_outputs(const CommandLine& line, const Stability& s) {
-  if (line.given("output")) write_text_file(line.text("output"), branch_csv(*s.branch), "speed_m_s,");
-  if (line.given("diagram")) write_text_file(line.text("diagram"), branch_svg(*s.branch, name_of(s)), "<svg ");
+  if (line.given("output")) write_text_file(line.text("output"), branch_csv(*s.branch), branch_mark);
+  if (line.given("diagram")) write_text_file(line.text("diagram"), branch_svg(*s.branch, name_of(s)), svg_mark);
 }
 
 // A branch that breaks off has been written and printed as far as it is known.

@@ -63,7 +63,6 @@ std::vector<std::size_t> at_intervals(const std::vector<StepRecord>& steps, doub
   std::vector<std::size_t> records;
   for (double k = 0.0; first + k * interval <= steps.back().time + 1e-9 * length; k += 1.0) {
     records.push_back(nearest_record(steps, first + k * interval));
-    if (interval >= length + 1.0) break;
   }
   return records;
 }

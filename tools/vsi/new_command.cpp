@@ -147,8 +147,9 @@ int new_command(const Arguments& arguments) {
   const VehicleData data = in_file("--train", [&] { return find_vehicle(scene.vehicle); });
   const VehicleModel vehicle = build_vehicle(data, data.motion);
   if (scene.vehicle.ends_with(".toml")) {  // a scene's files are relative to it
-    const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
-    scene.vehicle = std::filesystem::absolute(scene.vehicle).lexically_relative(folder).string();
+    const std::filesystem::path folder =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(output)).parent_path();
+    scene.vehicle = std::filesystem::canonical(scene.vehicle).lexically_relative(folder).string();
   }
   write_text_file(output, scene_text(scene, vehicle.length, contact_text(vehicle, data.motion)), mark);
   if (line.json()) {

@@ -47,6 +47,11 @@ bool is_row(const RunRow& run, std::string_view row, std::string_view columns) {
 
 }  // namespace
 
+int code_of_runs(int code, const RunCount& count, std::size_t asked) noexcept {
+  if (code == exit_code::failed && count.finished == asked) code = exit_code::done;
+  return code == exit_code::done && count.ended_early > 0 ? exit_code::failed : code;
+}
+
 std::string read_row(const RunPool& pool, const RunRow& run, std::string_view columns) {
   const fs::path file = pool.file(run.name, ".row");
   std::string row = whole_text(file);

@@ -268,6 +268,8 @@ int RunPool::make(Board& board, std::size_t number, SharedSetUp& shared) const {
   try {
     scene = run.scene();
     return make_row(board, number, *scene, shared);
+  } catch (const FileInUse& in_use) {  // of this run alone
+    print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, in_use.what()));
   } catch (const InputError& wrong) {
     const InputError placed = scene ? with_scene_line(wrong, *scene, scene_file_) : wrong;
     print_message(fmt::format("{}: {}: {}\n", options_.command, run.name, placed.what()));

@@ -10,7 +10,8 @@ namespace railtab::vsi {
 namespace {
 
 bool alike(const BridgeParameters& a, const BridgeParameters& b) {
-  return a.length == b.length && a.mass == b.mass && a.E * a.Iy == b.E * b.Iy && a.damping_ratio == b.damping_ratio;
+  return a.length == b.length && a.mass == b.mass && a.E * a.Iy == b.E * b.Iy && a.E * a.Iz == b.E * b.Iz &&
+         a.damping_ratio == b.damping_ratio;
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ int run_shard(const StudyPlan& plan, StudyRuns& runs, const PartOf& shard, const
         "the results of all\n",
         shard.index, shard.count, count.finished, own.size(), count.ended_early);
   }
-  return code == done && count.ended_early > 0 ? failed : code;
+  return code_of_runs(code, count, own.size());
 }
 
 /// @return exit code of the runs
@@ -92,8 +92,9 @@ int make_result(const StudyPlan& plan, StudyRuns& runs, const CommandLine& line,
   return code;
 }
 
+/// @param code of the runs @return that of the command
 int report_study(const StudyPlan& plan, const SceneParameters& scene, const StudyRuns& runs, const StudyResult& result,
-                 const CommandLine& line) {
+                 const CommandLine& line, int code) {
   const fs::path folder = line.required("output");
   std::string rows;
   StudyReport report{plan, runs, result, scene.name, scene.text, runs.table(result.points, rows), {}, {}, {}};
@@ -116,7 +117,7 @@ int report_study(const StudyPlan& plan, const SceneParameters& scene, const Stud
     print_formatted("{}{} runs finished, {} of them ended early: {}\n", study_text(report), report.count.finished,
                     report.count.ended_early, (folder / "runs.csv").string());
   }
-  return report.count.ended_early > 0 ? failed : done;
+  return code_of_runs(code, report.count, result.points.size());
 }
 
 int run_study(const StudyPlan& plan, const CommandLine& line) {
@@ -134,7 +135,7 @@ int run_study(const StudyPlan& plan, const CommandLine& line) {
   StudyResult result;
   const int code = make_result(plan, runs, line, result);
   if (code > failed) return code;
-  return std::max(code, report_study(plan, scene, runs, result, line));
+  return report_study(plan, scene, runs, result, line, code);
 }
 
 int code_of_study(const StudyPlan& plan, const CommandLine& line) {

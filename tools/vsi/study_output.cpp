@@ -310,10 +310,18 @@ std::string subset_text(const StudyPlan& plan, const SubsetResult& subset) {
       plan.measure, plan.limit, p.value, p.low, p.high, 100.0 * plan.confidence, subset.variation, subset.levels.size(),
       subset.evaluations);
   if (subset.outcome == SubsetOutcome::too_rare) {
-    text += "  the limit was not reached: the probability is lower; most_levels allows more\n";
+    text += "  the limit was not reached: this is the probability of the last level; most_levels allows more\n";
   }
   if (subset.outcome == SubsetOutcome::stalled) {
     text += "  all runs of a level have the same value: no level can follow, the probability is at most this\n";
+  }
+  constexpr double few = 20.0;
+  if (const double chains = plan.level_probability * static_cast<double>(plan.sampling.samples);
+      subset.levels.size() > 1 && chains < few) {
+    text += fmt::format(
+        "  {:.0f} chains a level may miss a region beyond the limit, and the interval does not say so: {:.0f} "
+        "or more samples, other seeds\n",
+        chains, few / plan.level_probability);
   }
   return text;
 }

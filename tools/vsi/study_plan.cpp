@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -38,7 +39,14 @@ const SceneKey* known_key(const std::string& key) {
   return found == keys.end() ? nullptr : &*found;
 }
 
-StudyKey study_key(const std::string& key) {
+/// Of the section's member "key". @throws InputError where no run depends on it
+StudyKey study_key(TomlSection& s) {
+  const std::string key = s.text("key");
+  constexpr std::array of_assessments{"assessment.line_speed_kmh", "assessment.track", "assessment.trains",
+                                      "assessment.seeds", "assessment.rules"};
+  if (std::find(of_assessments.begin(), of_assessments.end(), key) != of_assessments.end()) {
+    throw s.error("key", fmt::format("'{}'", key), "a key that runs of a study depend on");
+  }
   const SceneKey* known = known_key(key);
   StudyKey result;
   result.key = key;
@@ -71,7 +79,7 @@ std::vector<std::array<double, 2>> read_table(const TomlSection& set, const toml
 /// A [[vary.set]]: a key by a formula or a table of the variable.
 StudyKey read_set(TomlSection& set, const toml::table& table) {
   constexpr NumberKind factor{"", -1e12, 1e12}, power{"", -10.0, 10.0}, offset{"", -any, any};
-  StudyKey key = study_key(set.text("key"));
+  StudyKey key = study_key(set);
   if (set.has("table")) {
     for (const char* other : {"factor", "power", "offset"}) {
       if (set.has(other)) throw set.error(other, "a table too", "a table, or factor, power and offset");
@@ -189,6 +197,8 @@ Distribution read_bounded(TomlSection& s) {
   const Distribution whole = d;
   if (s.has("at_least")) d.low = s.number("at_least", {"", -any, any});
   if (s.has("at_most")) d.high = s.number("at_most", {"", -any, any});
+  if (!(d.low < d.high))
+    throw s.error("at_most", fmt::format("{}", d.high), fmt::format("more than at_least = {}", d.low));
   const double between = probability(whole, d.high).below - probability(whole, d.low).below;
   constexpr double least = 1e-6;
   if (!(between > least)) {
@@ -207,7 +217,7 @@ StudyVariable read_variable(TomlSection& s, const toml::table& table) {
                   "key = \"SECTION.KEY\", or [[vary.set]] with a key and factor, power, offset or a table, and a name "
                   "for the variable");
   }
-  if (s.has("key")) v.keys.push_back(study_key(s.text("key")));
+  if (s.has("key")) v.keys.push_back(study_key(s));
   std::vector<TomlSection> sets = s.sections("set");
   for (std::size_t i = 0; i < sets.size(); ++i) {
     v.keys.push_back(read_set(sets[i], *table.get("set")->as_array()->get(i)->as_table()));

@@ -106,7 +106,7 @@ int sweep_command(const Arguments& arguments) {
   RunPool sweep(scene_file, folder, {"vsi sweep", line.quiet() || line.json()});
   std::vector<PooledRun> runs;
   for (const SweepRun& run : own) runs.push_back(pooled(scene, run));
-  int code = sweep.run(runs, processes);
+  const int code = sweep.run(runs, processes);
   const bool whole = shard.count == 1;
   const fs::path summary = folder / "summary.csv";
   std::string text = summary_columns();
@@ -122,9 +122,7 @@ int sweep_command(const Arguments& arguments) {
         others == 1 ? "" : "s", others == 1 ? "is" : "are"));
   }
   if (code == interrupted) print_message("vsi sweep: interrupted; the same command goes on\n");
-  // runs that another process was computing may have finished there meanwhile
-  if (code == failed && count.finished == (whole ? all : own).size()) code = done;
-  return code == done && count.ended_early > 0 ? failed : code;
+  return code_of_runs(code, count, (whole ? all : own).size());
 }
 
 }  // namespace railtab::vsi
