@@ -77,11 +77,10 @@ void add_impossible_inertias(const VehicleData& data, std::vector<std::string>& 
     Eigen::Index largest = 0;
     const double most = J.maxCoeff(&largest), others = J.sum() - most;
     if (most <= published * others) continue;
-    sentences.push_back(
-        fmt::format("{}: {} of {}, {:.4g} kg m², is more than twice the sum of the other two moments of inertia, "
-                    "{:.4g} kg m², which "
-                    "it cannot exceed: are they in kg m²?",
-                    data.name, names[static_cast<std::size_t>(largest)], body.name, most, others));
+    sentences.push_back(fmt::format(
+        "{}: {} of {}, {:.4g} kg m², is more than twice the sum of the other two moments of inertia, {:.4g} kg m², and "
+        "cannot exceed it: are they in kg m²?",
+        data.name, names[static_cast<std::size_t>(largest)], body.name, most, others));
   }
 }
 

@@ -217,8 +217,9 @@ Description describe(const std::string& file) {
   std::ifstream in(file);
   std::string text(4096, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad() || !in.is_open())
+  if (in.bad() || !in.is_open()) {
     throw input_error(file, "a file that cannot be read", "a file with the right to read it");
+  }
   text.resize(static_cast<std::size_t>(in.gcount()));
   return of_text(file, text, ending);
 }
