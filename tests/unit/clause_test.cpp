@@ -100,8 +100,10 @@ TEST_F(Clauses, WrongFilesAreRejectedWithTheirLine) {
 
 TEST_F(Clauses, LimitsMayBeZeroOrBelow) {
   const auto met = [&](const std::string& limit, double amount) {
-    write("own.toml", "edition = \"x\"\n[[clause]]\nid = \"own\"\nclause = \"1\"\ntitle = \"t\"\nmeasure = "
-                      "\"deck_acceleration\"\nunit = \"m/s2\"\n" + limit);
+    write("own.toml",
+          "edition = \"x\"\n[[clause]]\nid = \"own\"\nclause = \"1\"\ntitle = \"t\"\nmeasure = "
+          "\"deck_acceleration\"\nunit = \"m/s2\"\n" +
+              limit);
     const std::vector<Clause> clauses = clauses_with({folder_ / "own.toml"});
     const std::vector<Verdict> verdicts =
         judge(clauses, {"ballasted", 50.0}, {value("deck_acceleration", moving_load, amount)}, {});

@@ -74,10 +74,9 @@ std::vector<std::string> stage_rows(const Assessment& assessment, const Verdict&
       "<td>{}<br>{}</td><td class=\"n\"><b>{}</b></td><td class=\"n\">{} {}</td><td class=\"n\">{}"
       "<span class=\"bar {}\"><i style=\"width:{:.0f}%\"></i></span></td><td>{}{}</td><td>{}</td>",
       stage_in_words(*v.stage), mark_cell(v), amount_in_words(v.at->value, clause.unit), clause.limit.lower ? "≥" : "≤",
-      amount_in_words(v.limit, clause.unit), std::isfinite(share) ? fmt::format("{:.0f} %", share) : "–",
-      mark_class(v), std::min(100.0, share),
-      escaped(place_in_words(*v.at)), v.at->run.empty() ? "" : "<br><small>run " + escaped(v.at->run) + "</small>",
-      unloading_cell(assessment, v))};
+      amount_in_words(v.limit, clause.unit), std::isfinite(share) ? fmt::format("{:.0f} %", share) : "–", mark_class(v),
+      std::min(100.0, share), escaped(place_in_words(*v.at)),
+      v.at->run.empty() ? "" : "<br><small>run " + escaped(v.at->run) + "</small>", unloading_cell(assessment, v))};
   std::vector<std::string> more = over_speed_in_words(assessment, v);
   if (v.outcome == Outcome::fail && !clause.consequence.empty()) more.push_back(clause.consequence);
   if (v.outcome == Outcome::not_judged) more.push_back("not judged: " + v.reason);
