@@ -188,12 +188,15 @@ GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySwee
                       fmt::format("at most {}, one per root cell", root_cells(table)));
   }
   append_trees(make_trees(search, options, table, progress), table);
-  if (options.shard.whole() && table.coefficient.empty()) {
-    throw InputError(
-        "geometry table: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
-        "side, units), --gauge, --flange-back and --lateral");
-  }
+  if (options.shard.whole()) require_contact(table);
   return table;
+}
+
+void require_contact(const GeometryTableData& table) {
+  if (!table.coefficient.empty()) return;
+  throw InputError(
+      "geometry table: the wheel does not meet the rail anywhere in the range; check the profile files (origin, side, "
+      "units), --gauge, --flange-back and --lateral");
 }
 
 }  // namespace railtab

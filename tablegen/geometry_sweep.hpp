@@ -48,6 +48,9 @@ using Progress = std::function<void(double)>;
 [[nodiscard]] GeometryTableData sweep_geometry(const ContactSearch& search, const GeometrySweepOptions& options,
                                                const Progress& progress = {});
 
+/// @throws InputError where the wheel meets the rail nowhere in the range of a whole table
+void require_contact(const GeometryTableData& table);
+
 /// sweep_geometry(), and, of a whole table, the check of certify_merged_geometry_table(), with finer cells until it
 /// passes. A part (options.shard) is not certified: merge_geometry_tables() first.
 /// @throws ComputationError where the second refinement does not reach the tolerance; the message says what was

@@ -6,6 +6,7 @@
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/geometry_parts.hpp"
+#include "railtab/tablegen/geometry_sweep.hpp"
 #include "railtab/tablegen/outline_certificate.hpp"
 #include "railtab/tablegen/table_verification.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -140,11 +141,7 @@ GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySwee
     parts.push_back(std::move(*found));
   }
   GeometryTableData table = merge_geometry_tables(std::move(parts));
-  if (table.coefficient.empty()) {
-    throw InputError(
-        "geometry table: the wheel does not meet the rail anywhere in the range; check the profile files (origin, "
-        "side, units), --gauge, --flange-back and --lateral");
-  }
+  require_contact(table);
   return table;
 }
 

@@ -87,6 +87,9 @@ VehicleData read_root(TomlSection& root, const std::string& text, const std::fil
   data.text = text;
   read_heading(root, data);
   read_joints(root, place, data);
+  if (!root.has("length")) {
+    throw root.error("length", "nothing", "a length [m]; a file without one is a joint, for joint_front or joint_rear");
+  }
   data.parts.length = root.number("length", distance_kind);
   data.top_speed = root.number("top_speed_kmh", speed_kind, 0.0) / 3.6;
   if (root.has("template")) {

@@ -171,5 +171,11 @@ inline constexpr std::uint64_t checksum_seed = 14695981039346656037ULL;
 [[nodiscard]] inline std::uint64_t checksum(std::span<const std::uint32_t> values, std::uint64_t seed) noexcept {
   return checksum_of_bytes(std::as_bytes(values), seed);
 }
+/// Of an array after its length.
+template <class T>
+[[nodiscard]] std::uint64_t counted_checksum(std::span<const T> values, std::uint64_t seed) noexcept {
+  const double length = static_cast<double>(values.size());
+  return checksum(values, checksum({&length, 1}, seed));
+}
 
 }  // namespace railtab

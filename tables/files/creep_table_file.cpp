@@ -54,10 +54,7 @@ Field values_field(CreepTableLayout layout) {
 /// Over every number of the table, every array after its length.
 std::string content_checksum(const CreepTableData& table) {
   std::uint64_t sum = checksum({});
-  const auto add = [&sum](std::span<const double> values) {
-    const double length = static_cast<double>(values.size());
-    sum = checksum(values, checksum({&length, 1}, sum));
-  };
+  const auto add = [&sum](std::span<const double> values) { sum = counted_checksum(values, sum); };
   for (const std::vector<double>& nodes : table.nodes) add(nodes);
   add(table.values);
   const std::array<double, 4> options{table.poisson, static_cast<double>(table.elements), table.ratio_stretch,

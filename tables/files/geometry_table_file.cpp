@@ -92,10 +92,7 @@ const Field coefficient_field{"branches/coefficient",
 /// Over every number of the table, in the order of the lists above, lengths included.
 std::string content_checksum(const GeometryTableData& table) {
   std::uint64_t sum = checksum({});
-  const auto add = [&sum](std::span<const double> values) {
-    const double length = static_cast<double>(values.size());
-    sum = checksum(values, checksum({&length, 1}, sum));
-  };
+  const auto add = [&sum](std::span<const double> values) { sum = counted_checksum(values, sum); };
   for (const ProfileKnots* profile : {&table.wheel, &table.rail}) {
     for (const ProfileColumn& column : profile_columns) add(profile->*column.values);
   }
@@ -106,10 +103,7 @@ std::string content_checksum(const GeometryTableData& table) {
   }
   const std::array<double, 2> shard{static_cast<double>(table.shard.index), static_cast<double>(table.shard.count)};
   add(shard);
-  const auto add_array = [&](const auto& values) {
-    const double length = static_cast<double>(values.size());
-    sum = checksum(std::span(values), checksum({&length, 1}, sum));
-  };
+  const auto add_array = [&](const auto& values) { sum = counted_checksum(std::span(values), sum); };
   add_array(table.node);
   add_array(table.leaf_branch);
   add_array(table.trusted_lowering);

@@ -92,10 +92,7 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
 }
 
 std::uint64_t loaded_checksum(const LoadedTableData& table, std::uint64_t sum) noexcept {
-  const auto add = [&sum](std::span<const double> values) {
-    const double length = static_cast<double>(values.size());
-    sum = checksum(values, checksum({&length, 1}, sum));
-  };
+  const auto add = [&sum](std::span<const double> values) { sum = counted_checksum(values, sum); };
   for (const TableColumn& column : columns()) add(table.*column.values);
   const std::array<double, 3> level{static_cast<double>(table.levels), table.largest_level, table.contact_modulus};
   add(level);

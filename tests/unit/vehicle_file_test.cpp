@@ -11,6 +11,7 @@
 #include "railtab/runtime/scene/scene.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_warnings.hpp"
+#include "railtab/runtime/vehicle/joint_file.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
@@ -307,6 +308,21 @@ TEST(VehicleFile, RejectsConnectionsThatDoNothing) {
       std::string::npos)
       << message_of(empty);
   EXPECT_EQ(message_of(empty + "k_roll = 1e5\n"), "no InputError");
+}
+
+TEST(VehicleFile, VehiclesAndJointsAreToldApart) {
+  std::string without = wagon;
+  const std::size_t length = without.find("length = ");
+  without.erase(length, without.find('\n', length) + 1 - length);
+  expect_rejected(without, {"coach.toml", "length: found nothing", "a file without one is a joint"});
+  try {
+    static_cast<void>(parse_joint(wagon, "joint.toml"));
+    ADD_FAILURE() << "a vehicle is no joint";
+  } catch (const InputError& wrong) {
+    EXPECT_NE(std::string(wrong.what()).find("length: found a vehicle, which has one, expected a joint"),
+              std::string::npos)
+        << wrong.what();
+  }
 }
 
 TEST(VehicleFile, RejectsBodiesThatAreNotThere) {
