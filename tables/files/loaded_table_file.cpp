@@ -3,6 +3,7 @@
 #include <array>
 
 #include "railtab/tables/files/file_fields.hpp"
+#include "railtab/tables/files/table_statements.hpp"
 
 namespace railtab {
 

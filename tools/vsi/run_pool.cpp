@@ -24,6 +24,7 @@
 #include "railtab/runtime/base/printable_text.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/runtime/base/writer_lock.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/recorded_run.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"

@@ -20,7 +20,7 @@ namespace po = boost::program_options;
 namespace {
 
 namespace fs = std::filesystem;
-using exit_code::done, exit_code::failed, exit_code::interrupted;
+using exit_code::done, exit_code::interrupted;
 
 RunRow row_of(const SweepRun& run) { return {run.name, row_begin(run)}; }
 
