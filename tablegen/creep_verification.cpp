@@ -46,6 +46,7 @@ std::vector<CreepForce> solve_exactly(const std::vector<CreepCase>& cases, const
                                       const Progress& progress, CreepVerification& result) {
   RollingContactOptions options;
   options.elements = table.elements;
+  static_cast<void>(ExtrapolatedRollingContact(1.0, table.poisson, options));  // rejects the table's before the threads
   std::vector<CreepForce> forces(cases.size());
   std::vector<double> extrapolated(cases.size());
   int failed = 0, done = 0;

@@ -16,8 +16,9 @@ VehicleData parse_joint(const std::string& text, const std::filesystem::path& pl
   data.place = place.string();
   data.text = text;
   data.is_joint = true;
-  if (root.has("length"))
+  if (root.has("length")) {
     throw root.error("length", "a vehicle, which has one", "a joint: bodies, wheelsets, connections");
+  }
   read_heading(root, data);
   read_further_bodies(root, data);
   if (std::optional<TomlSection> wheelset = root.find_section("wheelset")) read_wheelsets(*wheelset, data);

@@ -77,10 +77,11 @@ void add_impossible_inertias(const VehicleData& data, std::vector<std::string>& 
     Eigen::Index largest = 0;
     const double most = J.maxCoeff(&largest), others = J.sum() - most;
     if (most <= published * others) continue;
-    sentences.push_back(fmt::format(
-        "{}: {} of {}, {:.4g} kg m², is more than twice the sum of the other two moments of inertia, {:.4g} kg m², and "
-        "cannot exceed it: are they in kg m²?",
-        data.name, names[static_cast<std::size_t>(largest)], body.name, most, others));
+    sentences.push_back(
+        fmt::format("{}: {} of {}, {:.4g} kg m², is more than twice the sum of the other two moments of inertia, "
+                    "{:.4g} kg m²; no body "
+                    "has one above the sum of the others: are they in kg m²?",
+                    data.name, names[static_cast<std::size_t>(largest)], body.name, most, others));
   }
 }
 
@@ -91,8 +92,8 @@ void add_loose_wheelsets(const VehicleData& data, std::vector<std::string>& sent
     const bool joined = std::any_of(parts.suspension.begin(), parts.suspension.end(),
                                     [&](const Suspension& s) { return s.body_a == w || s.body_b == w; });
     if (joined) continue;
-    sentences.push_back(fmt::format("{}: no connection joins {} to the vehicle, which will run away from it", data.name,
-                                    parts.bodies[static_cast<std::size_t>(w)].name));
+    sentences.push_back(fmt::format("{}: no connection joins {} to the vehicle: it will run away from the rest",
+                                    data.name, parts.bodies[static_cast<std::size_t>(w)].name));
   }
 }
 

@@ -339,6 +339,16 @@ TEST_F(AssessCommand, TrainsOfTheUser) {
                   "vertical only");
 }
 
+// Spans that differ in their lateral stiffness alone are judged one by one.
+TEST_F(AssessCommand, ASoftSpanBesideAStiffOneIsJudged) {
+  const auto span = [](double Iz) { return stiff_span + "Iz = " + std::to_string(Iz) + "\n"; };
+  write("scene.toml", vertical + span(60.0) + span(0.5));
+  const json decks = object(vsi("assess scene.toml --stage check -o out --json"))["decks"];
+  ASSERT_EQ(decks.size(), 2U);
+  write("alike.toml", vertical + span(60.0) + span(60.0));
+  EXPECT_EQ(object(vsi("assess alike.toml --stage check -o alike --json"))["decks"].size(), 1U);
+}
+
 // Shards make the runs, and the command without one the verdict of all, the same as in one go.
 TEST_F(AssessCommand, ShardsShareTheRuns) {
   write("scene.toml", vertical + stiff_span);

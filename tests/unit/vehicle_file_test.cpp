@@ -14,6 +14,7 @@
 #include "railtab/runtime/vehicle/joint_file.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
+#include "railtab/runtime/vehicle/vehicle_plausibility.hpp"
 #include "railtab/runtime/vehicle/vehicle_summary.hpp"
 
 namespace railtab {
@@ -308,6 +309,14 @@ TEST(VehicleFile, RejectsConnectionsThatDoNothing) {
       std::string::npos)
       << message_of(empty);
   EXPECT_EQ(message_of(empty + "k_roll = 1e5\n"), "no InputError");
+}
+
+TEST(VehicleFile, WheelsetsThatNothingJoinsAreTold) {
+  const std::string loose = replaced(wagon, "x = [2.5, -2.5]", "x = [2.5, -2.5, -4.0]");
+  const std::vector<std::string> sentences = implausible_values(parse_vehicle(loose, "coach.toml"));
+  EXPECT_EQ(sentences, std::vector<std::string>{
+                           "wagon: no connection joins wheelset-3 to the vehicle: it will run away from the rest"});
+  EXPECT_TRUE(implausible_values(parse_vehicle(wagon, "coach.toml")).empty());
 }
 
 TEST(VehicleFile, VehiclesAndJointsAreToldApart) {

@@ -23,6 +23,9 @@
 #include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "railtab/tables/files/array_file.hpp"
+#include "railtab/tables/files/creep_table_file.hpp"
+#include "railtab/tables/files/geometry_table_file.hpp"
+#include "study_output.hpp"
 
 namespace railtab::vsi {
 namespace po = boost::program_options;
@@ -53,19 +56,20 @@ Description of_results(const std::string& file) {
 Description of_array_file(const std::string& file) {
   const std::string type = array_file_type(file);
   if (type == results_filetype) return of_results(file);
-  if (type == "railtab-geometry-table") {
+  if (type == geometry_table_filetype) {
     return {"a contact geometry table",
             {},
             {fmt::format("tablegen info {}", file), fmt::format("tablegen conicity {}", file),
              fmt::format("tablegen verify {}", file), fmt::format("vsi contact {} --query Q.csv -o R.csv", file),
              fmt::format("a scene's contact.table = \"{}\"", file)}};
   }
-  if (type == "railtab-creep-table") {
+  if (type == creep_table_filetype) {
     return {"a creep table",
             {},
             {fmt::format("tablegen info {}", file), fmt::format("tablegen verify {}", file),
              fmt::format("a scene's contact.creep_table = \"{}\"", file)}};
   }
+  // Those of tablegen, on which this program does not depend.
   if (type == "railtab-creep-shard") {
     return {"a shard of a creep table",
             {},
@@ -74,7 +78,7 @@ Description of_array_file(const std::string& file) {
   if (type == "railtab-creep-partial" || type == "railtab-loaded-partial") {
     return {"what an interrupted command has computed", {}, {"the same command of tablegen goes on from it"}};
   }
-  if (type == "railtab-study") return {"results of a study of many runs, one value per run in each array", {}, {}};
+  if (type == study_filetype) return {"results of a study of many runs, one value per run in each array", {}, {}};
   return {fmt::format("a file of the kind {}", type), {}, {fmt::format("tablegen info {}", file)}};
 }
 
@@ -218,7 +222,7 @@ Description describe(const std::string& file) {
   std::string text(4096, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (in.bad() || !in.is_open()) {
-    throw input_error(file, "a file that cannot be read", "a file with the right to read it");
+    throw input_error(file, "a file that cannot be read", "a readable file");
   }
   text.resize(static_cast<std::size_t>(in.gcount()));
   return of_text(file, text, ending);

@@ -319,8 +319,8 @@ std::string subset_text(const StudyPlan& plan, const SubsetResult& subset) {
   if (const double chains = plan.level_probability * static_cast<double>(plan.sampling.samples);
       subset.levels.size() > 1 && chains < few) {
     text += fmt::format(
-        "  {:.0f} chains a level may miss a region beyond the limit, and the interval does not say so: {:.0f} "
-        "or more samples, other seeds\n",
+        "  only {:.0f} chains per level: they may miss a region beyond the limit, of which the interval knows nothing; "
+        "take {:.0f} samples or more, and compare seeds\n",
         chains, few / plan.level_probability);
   }
   return text;

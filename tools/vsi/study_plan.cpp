@@ -197,8 +197,9 @@ Distribution read_bounded(TomlSection& s) {
   const Distribution whole = d;
   if (s.has("at_least")) d.low = s.number("at_least", {"", -any, any});
   if (s.has("at_most")) d.high = s.number("at_most", {"", -any, any});
-  if (!(d.low < d.high))
+  if (!(d.low < d.high)) {
     throw s.error("at_most", fmt::format("{}", d.high), fmt::format("more than at_least = {}", d.low));
+  }
   const double between = probability(whole, d.high).below - probability(whole, d.low).below;
   constexpr double least = 1e-6;
   if (!(between > least)) {
