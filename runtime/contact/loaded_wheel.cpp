@@ -585,13 +585,6 @@ class LoadedContactForce {
   V creep_power_{};
 };
 
-WheelKinematics<double> right_wheel(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                                    const RailHeadMotion& rail) {
-  WheelMotion<double> motion;
-  motion.set(0, on_right(side, wheelset), on_right(side, rail));
-  return {model.geometry->pair(), motion, model.speed};
-}
-
 /// −1 of a left wheel, which is computed as a right one.
 double mirror_of(WheelSide side) { return side == WheelSide::left ? -1.0 : 1.0; }
 
@@ -602,8 +595,6 @@ Generalised<V> in_track(Generalised<V> force, const V& mirror) {
     if (changes_sign[i]) force[i] = mirror * force[i];
   return force;
 }
-
-WheelsetPose pose_of(const WheelKinematics<double>& wheel) { return {wheel.y, wheel.z, wheel.roll, wheel.yaw}; }
 
 /// Mean force over a step, of the right wheel: what depends on the end of the step, and the share of the creep forces
 /// at its start.
@@ -620,13 +611,16 @@ MeanForce<T> mean_over_step(const WheelRailPair& pair, const LoadedMemory& start
   const Pose<double> metric{1.0, 1.0, radius * radius, radius * radius};
   const Pose<double> from{start.pose.y, start.pose.z, start.pose.roll, start.pose.yaw};
   std::array<T, 4> mean, path;
-  T work = weight * end.energy() - start.weight * start.energy, length = constant<T>(0.0);
+  T work = end.energy() - start.energy, length = constant<T>(0.0);
   for (std::size_t j = 0; j < 4; ++j) {
+    const double before = start.force[static_cast<Eigen::Index>(j)];
     path[j] = end.pose()[j] - from[j];
-    mean[j] = 0.5 * (start.weight * start.force[static_cast<Eigen::Index>(j)] + weight * end.elastic()[j]);
-    work -= mean[j] * path[j];
+    mean[j] = 0.5 * (start.weight * before + weight * end.elastic()[j]);
+    work -= 0.5 * (before + end.elastic()[j]) * path[j];
     length += metric[j] * path[j] * path[j];
   }
+  // The energy is that of the table alone: a step into its margin or out of it has no gradient.
+  work = start.weight * weight * work;
   const T ends = mean[0] * mean[0] + mean[1] * mean[1];
   T share = constant<T>(1.0);
   if (number(length) > 0.0) {
@@ -801,7 +795,7 @@ LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelC
   }
   LoadedWheelResponse response;
   const double mirror = mirror_of(side);
-  WheelForces<T>(force, mirror, lookup).give(0, pose_of(wheel), lookup, response.force);
+  WheelForces<T>(force, mirror, lookup).give(0, wheel.pose(), lookup, response.force);
   std::array<Generalised<Number<T>>, 9> of_right = tangent_of(force, wheel, rates, total, sum, of_motion);
   set_tangents(of_right, mirror, {response.tangent.data()});
   return response;
@@ -811,10 +805,10 @@ LoadedWheelResponse response_of(const LoadedContactForce<T>& force, const WheelC
 
 LoadedWheelForce loaded_wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                                     const RailHeadMotion& rail, const LoadedLookup& lookup) noexcept {
-  const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
+  const WheelKinematics<double> wheel = right_wheel(model.geometry->pair(), side, wheelset, rail, model.speed);
   const LoadedContactForce<double> force(model, rail.friction, wheel, lookup, nullptr);
   LoadedWheelForce result;
-  WheelForces<double>(force, mirror_of(side), lookup).give(0, pose_of(wheel), lookup, result);
+  WheelForces<double>(force, mirror_of(side), lookup).give(0, wheel.pose(), lookup, result);
   return result;
 }
 
@@ -840,7 +834,7 @@ ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pos
 Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                           const LoadedLookup& lookup) noexcept {
-  const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
+  const WheelKinematics<double> wheel = right_wheel(model.geometry->pair(), side, wheelset, rail, model.speed);
   const LoadedContactForce<double> end(model, rail.friction, wheel, lookup, nullptr);
   const MeanForce<double> mean = mean_over_step(model.geometry->pair(), start, end, lookup.table_share);
   Generalised<double> force = end.generalised(mean.end);
@@ -853,7 +847,7 @@ LoadedWheelResponse loaded_wheel_response(const WheelContactModel& model, WheelS
                                           const LoadedLookup& lookup, const LoadedSlopes& slopes,
                                           const StepRates& rates, const LoadedMemory* start) noexcept {
   constexpr std::size_t normal_packs = (LoadedLookup::capacity + 3) / 4;
-  const WheelKinematics<double> wheel = right_wheel(model, side, wheelset, rail);
+  const WheelKinematics<double> wheel = right_wheel(model.geometry->pair(), side, wheelset, rail, model.speed);
   const auto response = [&]<std::size_t packs>() {
     const LoadedContactForce<Dual<packs>> force(model, rail.friction, wheel, lookup, &slopes);
     return response_of(force, model, side, wheel, lookup, rates, start);

@@ -10,26 +10,13 @@
 #include "railtab/runtime/contact/creepage.hpp"
 #include "railtab/runtime/contact/mean_force.hpp"
 #include "railtab/runtime/contact/reflection.hpp"
+#include "railtab/runtime/contact/wheel_kinematics.hpp"
 
 namespace railtab {
 
 namespace {
 
-// Rotation by the rail's roll: components along track axes -> along rail-head axes (y, z).
-struct RailAxes {
-  double c, s;
-  explicit RailAxes(double roll) : c(std::cos(roll)), s(std::sin(roll)) {}
-  [[nodiscard]] Vector3 from_track(const Vector3& v) const { return {v[0], c * v[1] + s * v[2], -s * v[1] + c * v[2]}; }
-  [[nodiscard]] Vector3 to_track(const Vector3& v) const { return {v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]}; }
-};
-
-WheelsetPose pose_on_right(const WheelRailPair& pair, const WheelsetMotion& w, const RailHeadMotion& r) {
-  const RailAxes axes(r.displacement[2]);
-  const Vector3 centre = axes.from_track({0.0, w.displacement[1] - r.displacement[0] - pair.rail_offset(),
-                                          w.displacement[2] - r.displacement[1] - pair.nominal_radius()});
-  return {centre[1] + pair.rail_offset(), centre[2] + pair.nominal_radius(), w.displacement[3] - r.displacement[2],
-          w.displacement[5] - r.yaw};
-}
+Vector3 vector(const std::array<double, 3>& v) { return Vector3::Map(v.data()); }
 
 struct PatchForce {
   Vector3 force, moment;     // on the wheel, in rail-head axes, moment about the wheelset centre
@@ -84,39 +71,27 @@ PatchForce patch_force(const WheelContactModel& model, const PatchLoad& load, co
 
 WheelsetPose relative_pose(const WheelRailPair& pair, WheelSide side, const WheelsetMotion& wheelset,
                            const RailHeadMotion& rail) noexcept {
-  return pose_on_right(pair, on_right(side, wheelset), on_right(side, rail));
+  constexpr double any_speed = 0.0;
+  return right_wheel(pair, side, wheelset, rail, any_speed).pose();
 }
 
 WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
                        const RailHeadMotion& rail, const PatchLoads& loads) noexcept {
   WheelForce result;
   if (loads.size() == 0) return result;
-  const WheelRailPair& pair = model.geometry->pair();
-  const WheelsetMotion w = on_right(side, wheelset);
-  const RailHeadMotion r = on_right(side, rail);
-  const WheelsetPose pose = pose_on_right(pair, w, r);
-  const RailAxes rail_axes(r.displacement[2]);
-
-  // Velocity of the wheelset centre against the rail's material, along the rail's tangent (1, yaw, slope).
-  const double V = model.speed;
-  const Vector3 velocity = rail_axes.from_track(
-      {V + w.velocity[0], w.velocity[1] - r.velocity[0] - V * r.yaw, w.velocity[2] - r.velocity[1] - V * r.slope});
-  const Vector3 axle(-std::sin(pose.yaw), std::cos(pose.yaw) * std::cos(pose.roll),
-                     std::cos(pose.yaw) * std::sin(pose.roll));
-  const Vector3 rotation = rail_axes.from_track({w.velocity[3] - r.velocity[2], 0.0, w.velocity[5]}) +
-                           (w.velocity[4] - V / pair.nominal_radius()) * axle;
+  const WheelKinematics<double> wheel = right_wheel(model.geometry->pair(), side, wheelset, rail, model.speed);
+  const Vector3 velocity = vector(wheel.velocity), axle = vector(wheel.axle), rotation = vector(wheel.rotation);
 
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const ContactPatch& patch = loads[i].contact;
     const ContactAxes axes(patch.angle);
     // To the wheel's own undeformed surface, the penetration below the rail's: rolling radii are those of the wheel.
-    const Vector3 arm = Vector3(patch.x, patch.y_rail - (pose.y - pair.rail_offset()),
-                                patch.z_rail - (pose.z - pair.nominal_radius())) +
+    const Vector3 arm = Vector3(patch.x, patch.y_rail - wheel.centre_y, patch.z_rail - wheel.centre_z) +
                         patch.penetration * axes.normal;
     // The rail's own roll rate moves its surface at the contact point.
-    const Vector3 surface_velocity = r.velocity[2] * Vector3(0.0, -patch.z_rail, patch.y_rail);
+    const Vector3 surface_velocity = wheel.rail_rate * Vector3(0.0, -patch.z_rail, patch.y_rail);
     // rotation × arm already counts the relative roll rate about the wheelset centre; the rail rolls about its head.
-    const Vector3 centre_shift = r.velocity[2] * Vector3(0.0, -arm[2], arm[1]);
+    const Vector3 centre_shift = wheel.rail_rate * Vector3(0.0, -arm[2], arm[1]);
     const PatchForce p =
         patch_force(model, loads[i], axes, arm,
                     {velocity + centre_shift - surface_velocity, rotation, model.friction * rail.friction});
@@ -126,8 +101,8 @@ WheelForce wheel_force(const WheelContactModel& model, WheelSide side, const Whe
     result.outside_creep_table += p.outside_creep_table;
     const Vector3 spin_moment = p.moment - arm.cross(p.force);
     const double rail_moment = patch.y_rail * p.force[2] - patch.z_rail * p.force[1] + spin_moment[0];
-    const Vector3 force = rail_axes.to_track(p.force);
-    const Vector3 moment = rail_axes.to_track(p.moment);
+    const Vector3 force = vector(wheel.to_track(p.force[0], p.force[1], p.force[2]));
+    const Vector3 moment = vector(wheel.to_track(p.moment[0], p.moment[1], p.moment[2]));
     Vector9& share = result.patch[i];
     share << force, moment[0], p.moment.dot(axle), moment[2], -force[1], -force[2], -rail_moment;
     if (side == WheelSide::left) share = reflected(share);

@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <concepts>
 
 #include "railtab/runtime/base/lane_numbers.hpp"
+#include "railtab/runtime/contact/reflection.hpp"
 #include "railtab/runtime/contact/wheel_contact.hpp"
 
 namespace railtab {
@@ -81,6 +83,19 @@ struct WheelKinematics {
   [[nodiscard]] Vector from_track(const V& x, const V& across, const V& down) const noexcept {
     return {x, rail_cos * across + rail_sin * down, rail_cos * down - rail_sin * across};
   }
+  [[nodiscard]] Vector to_track(const V& x, const V& across, const V& down) const noexcept {
+    return {x, rail_cos * across - rail_sin * down, rail_sin * across + rail_cos * down};
+  }
+  [[nodiscard]] WheelsetPose pose() const noexcept requires std::same_as<V, double> { return {y, z, roll, yaw}; }
 };
+
+/// Of one wheel, a left one seen in the mirror. @param speed V of the train [m/s]
+[[nodiscard]] inline WheelKinematics<double> right_wheel(const WheelRailPair& pair, WheelSide side,
+                                                         const WheelsetMotion& wheelset, const RailHeadMotion& rail,
+                                                         double speed) noexcept {
+  WheelMotion<double> motion;
+  motion.set(0, on_right(side, wheelset), on_right(side, rail));
+  return {pair, motion, speed};
+}
 
 }  // namespace railtab

@@ -11,6 +11,9 @@ namespace {
 
 // Well below penetration and creepage of sliding, well above the rounding of the contact search.
 constexpr double move = 1e-6;  // m, rad
+// Half of the least lateral way where a loaded table answers: the lateral force of the half-space solutions, whose
+// nodes may lie a few micrometres apart, is known to some 1e-4 of the load, and by less way its slope is that error.
+constexpr double loaded_move = 5e-5;  // m
 constexpr double creepage_step = 1e-6;
 constexpr Eigen::Index lateral_dof = 1;
 
@@ -36,9 +39,10 @@ ContactSlopes contact_slopes(const WheelContactModel& model, const WheelsetMotio
     return Vector6((wheelset_force(model, ahead) - wheelset_force(model, behind)) / (2.0 * step));
   };
   const double radius = model.geometry->pair().nominal_radius();
+  const double least = model.geometry->loaded() ? loaded_move : move;
   for (Eigen::Index dof = 0; dof < 6; ++dof) {
     slopes.by_displacement.col(dof) =
-        difference(&WheelsetMotion::displacement, dof, dof == lateral_dof ? std::max(move, 0.5 * travel) : move);
+        difference(&WheelsetMotion::displacement, dof, dof == lateral_dof ? std::max(least, 0.5 * travel) : move);
     const double arm = dof < 3 ? 1.0 : radius;
     slopes.by_velocity.col(dof) = difference(&WheelsetMotion::velocity, dof, creepage_step * model.speed / arm);
   }

@@ -463,6 +463,17 @@ TEST(LoadedWheel, MeanForceDoesTheWorkOfTheEnergysChange) {
   }
 }
 
+// Before the step the table had no part in the contact: its energy then is not known.
+TEST(LoadedWheel, MeanForceOfAStepIntoTheTableIsHalfOfThatAtItsEnd) {
+  States states(States::Rails::still);
+  WheelContactModel model = model_with(LinearCreep{});
+  const State end = states.next(WheelSide::right);
+  const WheelContact to = end.contact();
+  const WheelForce force = wheel_force(model, end.side, end.wheelset, end.rail, to);
+  const Vector9 mean = mean_force(model, end.side, end.wheelset, end.rail, ContactMemory{}, to, force);
+  EXPECT_LT((mean - 0.5 * total(force)).norm(), 1e-9 * total(force).norm());
+}
+
 TEST(LoadedWheel, CreepForcesAreThoseOfExactRollingContact) {
   States states(States::Rails::still);
   const WheelContactModel model = model_with(creep_law("table", 0.28));
