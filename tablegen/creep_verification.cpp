@@ -7,12 +7,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
-#include <optional>
 #include <random>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/creep_layout.hpp"
+#include "railtab/tablegen/parallel_failure.hpp"
 #include "railtab/tablegen/random_number.hpp"
 #include "railtab/tablegen/rolling_contact.hpp"
 
@@ -50,26 +51,24 @@ std::vector<CreepForce> solve_exactly(const std::vector<CreepCase>& cases, const
   std::vector<CreepForce> forces(cases.size());
   std::vector<double> extrapolated(cases.size());
   int failed = 0, done = 0;
+  ParallelFailure failure;
+  std::mutex one_at_a_time;
 #pragma omp parallel for schedule(dynamic, 16)
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    std::optional<ExtrapolatedRollingContact> contact;
-#pragma omp critical(rolling_contact_set_up)
-    contact.emplace(cases[i].ratio, table.poisson, options);
-    const ExtrapolatedContactSolution s = contact->solve(cases[i].creepage);
-    forces[i] = s.force;
-    extrapolated[i] = std::hypot(s.force.x - s.fine.force.x, s.force.y - s.fine.force.y);
-    // one thread at a time creates and destroys FFTW plans.
-#pragma omp critical(rolling_contact_set_up)
-    contact.reset();
-#pragma omp critical(creep_verification)
-    {
+    failure.guard([&] {
+      ExtrapolatedRollingContact contact(cases[i].ratio, table.poisson, options);
+      const ExtrapolatedContactSolution s = contact.solve(cases[i].creepage);
+      forces[i] = s.force;
+      extrapolated[i] = std::hypot(s.force.x - s.fine.force.x, s.force.y - s.fine.force.y);
+      const std::scoped_lock lock(one_at_a_time);
       failed += !(s.coarse.converged && s.fine.converged);
       result.safe_method += s.coarse.safe_method || s.fine.safe_method;
       result.worst_residual = std::max({result.worst_residual, s.coarse.residual, s.fine.residual});
       ++done;
       if (progress && done % 64 == 0) progress(static_cast<double>(done) / static_cast<double>(cases.size()));
-    }
+    });
   }
+  failure.rethrow();
   if (failed > 0) throw ComputationError(fmt::format("creep verification: {} exact solutions do not converge", failed));
   result.extrapolated_p99 = error_statistics(std::move(extrapolated)).p99;
   return forces;

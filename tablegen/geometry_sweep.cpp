@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/cell_refinement.hpp"
 #include "railtab/tablegen/geometry_parts.hpp"
+#include "railtab/tablegen/parallel_failure.hpp"
 
 namespace railtab {
 
@@ -47,16 +48,18 @@ std::vector<CellTree> make_trees(const ContactSearch& search, const GeometrySwee
   const auto roots = root_range(options.shard, root_cells(table));
   const CellRefinement refinement(search, options);
   std::vector<CellTree> trees(static_cast<std::size_t>(roots.second - roots.first));
-  std::atomic<std::size_t> done = 0;
+  std::size_t done = 0;
+  ParallelFailure failure;
+  std::mutex one_at_a_time;
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t n = 0; n < trees.size(); ++n) {
-    trees[n] = refinement.tree(root_box(table, roots.first + static_cast<std::int64_t>(n)));
-    const std::size_t count = ++done;
-    if (progress && count % 4 == 0) {
-#pragma omp critical(sweep_progress)
-      progress(static_cast<double>(count) / static_cast<double>(trees.size()));
-    }
+    failure.guard([&] {
+      trees[n] = refinement.tree(root_box(table, roots.first + static_cast<std::int64_t>(n)));
+      const std::scoped_lock lock(one_at_a_time);
+      if (++done % 4 == 0 && progress) progress(static_cast<double>(done) / static_cast<double>(trees.size()));
+    });
   }
+  failure.rethrow();
   return trees;
 }
 

@@ -7,12 +7,14 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <random>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/contact/hertz.hpp"
 #include "railtab/runtime/contact/paper_search.hpp"
 #include "railtab/tablegen/intersection/outline_overlap.hpp"
+#include "railtab/tablegen/parallel_failure.hpp"
 #include "railtab/tablegen/random_number.hpp"
 
 namespace railtab {
@@ -45,13 +47,17 @@ std::vector<Query> draw_queries(const ContactSearch& search, const VerificationO
     q.pose.roll = uniform_in(generator, options.roll);
     q.pose.z = uniform_in(generator, options.lowering);
   }
+  ParallelFailure failure;
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::size_t n = 0; n < queries.size(); ++n) {
-    Query& q = queries[n];
-    const double first = search.touch_height(q.pose.y, q.pose.roll, q.pose.yaw);
-    q.touches = std::isfinite(first);
-    q.pose.z += first;
+    failure.guard([&] {
+      Query& q = queries[n];
+      const double first = search.touch_height(q.pose.y, q.pose.roll, q.pose.yaw);
+      q.touches = std::isfinite(first);
+      q.pose.z += first;
+    });
   }
+  failure.rethrow();
   return queries;
 }
 
@@ -122,35 +128,38 @@ struct Differences {
 /// Answers the queries by table and online search, in parallel.
 void compare_queries(const TableContact& contact, const ContactSearch& finer, const OutlineOverlap& outlines,
                      double deep, std::vector<Query>& queries, Differences& sum) {
+  const auto compare_query = [&](Query& q, Differences& own) {
+    if (!q.touches) return;
+    ContactPatches answer;
+    const TableAnswer way = contact.answer(q.pose, 0.0, answer);
+    q.answered = way != TableAnswer::none;
+    q.searched = way == TableAnswer::searched;
+    if (!q.answered) return;
+    const RegionComparison regions = compare(outlines.regions(q.pose), answer);
+    own.outline += static_cast<int>(regions.mismatch);
+    own.in_band += static_cast<int>(regions.in_band);
+    if (!compare_patches(answer, contact.search().patches(q.pose), deep, own.patches)) return;
+    ++own.online;
+    std::vector<PatchError> unused;
+    own.finer += compare_patches(answer, finer.patches(q.pose), deep, unused);
+  };
+  ParallelFailure failure;
+  std::mutex one_at_a_time;
 #pragma omp parallel
   {
     Differences own;
 #pragma omp for schedule(dynamic, 64)
-    for (std::size_t n = 0; n < queries.size(); ++n) {
-      Query& q = queries[n];
-      if (!q.touches) continue;
-      ContactPatches answer;
-      const TableAnswer way = contact.answer(q.pose, 0.0, answer);
-      q.answered = way != TableAnswer::none;
-      q.searched = way == TableAnswer::searched;
-      if (!q.answered) continue;
-      const RegionComparison regions = compare(outlines.regions(q.pose), answer);
-      own.outline += static_cast<int>(regions.mismatch);
-      own.in_band += static_cast<int>(regions.in_band);
-      if (!compare_patches(answer, contact.search().patches(q.pose), deep, own.patches)) continue;
-      ++own.online;
-      std::vector<PatchError> unused;
-      own.finer += compare_patches(answer, finer.patches(q.pose), deep, unused);
-    }
-#pragma omp critical(verification_errors)
-    {
+    for (std::size_t n = 0; n < queries.size(); ++n) failure.guard([&] { compare_query(queries[n], own); });
+    failure.guard([&] {
+      const std::scoped_lock lock(one_at_a_time);
       sum.patches.insert(sum.patches.end(), own.patches.begin(), own.patches.end());
       sum.online += own.online;
       sum.finer += own.finer;
       sum.outline += own.outline;
       sum.in_band += own.in_band;
-    }
+    });
   }
+  failure.rethrow();
 }
 
 /// Least mean time of several passes over the same poses: the machine's other work only ever adds.

@@ -142,9 +142,8 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
       statistic(table.statistics, "certified.error.penetration.max"), table.tolerance);
   if (const double poses = statistic(table.statistics, "certified.outlines.poses"); poses > 0.0) {
     text += fmt::format(
-        "               on {:.0f} poses of all leaves by the exact overlap of the outlines; missing contacts at "
-        "{:.0f}, "
-        "whose leaves are limited\n",
+        "               by the exact overlap of the outlines at {:.0f} poses of all leaves: contacts missed at {:.0f}, "
+        "whose leaves are valid for a smaller lowering\n",
         poses, statistic(table.statistics, "certified.outlines.mismatches"));
   }
   text += table.loaded ? loaded_text(*table.loaded)

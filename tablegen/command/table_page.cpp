@@ -97,8 +97,13 @@ std::string shift_charts(const WheelsetFunctions& functions) {
                            {}};
   difference.series.push_back(
       over_shift(functions, "Δr", [](const WheelsetContact& c) { return c.radius_difference / mm; }));
-  report::Chart angle{
-      "Contact angle", "Against the track plane, of the point that touches first.", shift, "angle [°]", {}, {}, {}};
+  report::Chart angle{"Contact angle",
+                      "Its amount, against the track plane, of the point that touches first.",
+                      shift,
+                      "angle [°]",
+                      {},
+                      {},
+                      {}};
   angle.series.push_back(
       over_shift(functions, "left", [](const WheelsetContact& c) { return degrees * std::abs(c.left.angle); }));
   angle.series.push_back(
@@ -120,8 +125,8 @@ std::string shift_charts(const WheelsetFunctions& functions) {
 std::string conicity_chart(const WheelsetFunctions& functions) {
   const RadiusDifferenceCurve& curve = functions.radius_difference;
   report::Chart chart{"Equivalent conicity",
-                      "EN 15302, wheelset roll " + std::string(functions.roll == WheelsetRoll::free ? "on" : "off") +
-                          "; a gap: no such wave.",
+                      "After EN 15302, " + std::string(functions.roll == WheelsetRoll::free ? "with" : "without") +
+                          " roll of the wheelset. The curve is interrupted where there is no such wave.",
                       "amplitude [mm]",
                       "tan γe [-]",
                       {},

@@ -102,8 +102,8 @@ nlohmann::ordered_json functions_json(const WheelsetFunctions& functions, const 
 
 std::string functions_text(const WheelsetFunctions& functions, const std::vector<double>& amplitudes) {
   const RadiusDifferenceCurve& curve = functions.radius_difference;
-  std::string text = fmt::format("\n{:>8}{:>12}{:>16}{:>16}{:>14}{:>14}\n", "y", "delta r", "angle left", "angle right",
-                                 "radius left", "radius right");
+  std::string text = fmt::format("\n{:>8}{:>12}{:>16}{:>16}{:>14}{:>14}\n", "y", "delta r", "|angle| left",
+                                 "|angle| right", "radius left", "radius right");
   text += fmt::format("{:>8}{:>12}{:>16}{:>16}{:>14}{:>14}\n", "[mm]", "[mm]", "[mrad]", "[mrad]", "[mm]", "[mm]");
   const double excess = 0.25 * functions.diameter_difference;  // of the right wheel's radius over the nominal one
   for (const double y : shifts(curve, 1.0 * mm)) {

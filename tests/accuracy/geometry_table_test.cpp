@@ -87,6 +87,23 @@ TEST(GeometryTableAccuracy, EqualsTheOnlineSearchWithRoll) {
   EXPECT_LT(v.searched_share, 0.10);
 }
 
+// Cells that see fewer queries may search more of them: those of a table over 7 to 10 mrad and over −10 to −7 mrad see
+// as many, and more than those of a table over −10 to 10 mrad.
+TEST(GeometryTableAccuracy, CellsOfAYawOfOneSignAreAsFineAsTheirMirrorImages) {
+  GeometrySweepOptions options = coarse();
+  options.lateral = {3e-3, 5.5e-3};
+  options.yaw = {7e-3, 10e-3};
+  const TableContact contact{GeometryTable(sweep_geometry(s1002_on_60e1(), options))};
+  const GeometryVerification v = verify(contact, 3000);
+  expect_exact(v);
+  options.yaw = {-10e-3, -7e-3};
+  const GeometryTableData mirrored = sweep_geometry(s1002_on_60e1(), options);
+  EXPECT_EQ(mirrored.trusted_lowering, contact.table().data().trusted_lowering);
+  options.yaw = {-10e-3, 10e-3};
+  const GeometryVerification w = verify(TableContact{GeometryTable(sweep_geometry(s1002_on_60e1(), options))}, 3000);
+  EXPECT_LT(v.fallback_share + v.searched_share, 2.0 * (w.fallback_share + w.searched_share) + 0.005);
+}
+
 // Finer cells leave less to be searched; that is all they do.
 TEST(GeometryTableAccuracy, FinerCellsSearchLess) {
   GeometrySweepOptions options = coarse();

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "railtab/tables/files/array_file.hpp"
 #include "vsi_fixture.hpp"
 
 namespace railtab {
@@ -29,6 +30,16 @@ class LoadedCommand : public VsiCommand {
         "loaded t.h5 --lateral=-0.003:-0.001 --roll=-0.0005:0.0005 --yaw 0 --levels 9 --elements 12 "
         "--force-error 0.02 --light-error 0.05 --largest-load 150e3 --quiet");
     ASSERT_EQ(made.exit_code, 0) << made.output;
+  }
+  /// Kills `tablegen loaded` once a condition of the shell holds. @return columns of the file that it leaves
+  [[nodiscard]] std::size_t columns_after_a_kill(const std::string& condition) const {
+    const Outcome killed = run(
+        fmt::format("{{ '{}' loaded t.h5 --lateral=-0.003:-0.001 --roll=-0.001:0.001 --levels 25 --elements 40 "
+                    "--threads 1 --quiet & p=$!; until {}; do kill -0 $p || exit 1; sleep 0.01; done; kill -9 $p; }}",
+                    TABLEGEN_COMMAND, condition));
+    EXPECT_EQ(killed.exit_code, 0) << "not killed in time: " << killed.output;
+    const ArrayFileReader file(folder_ / "t.h5.loaded-partial", "railtab-loaded-partial", 4);
+    return file.read("columns").shape.at(0);
   }
   std::vector<std::vector<std::string>> rows(const std::string& file) const {
     std::ifstream in(folder_ / file);
@@ -94,6 +105,17 @@ TEST_F(LoadedCommand, LoadsTotalsAndColumnsOfBothKindsOfTable) {
   const Outcome verified = tablegen("verify t.h5 --samples 200 --loaded-samples 20 --json --quiet");
   EXPECT_EQ(verified.exit_code, 0) << verified.output;
   EXPECT_NE(verified.output.find("\"light_force\""), std::string::npos) << verified.output;
+}
+
+// The second is killed once it has put its file in the place of the first's.
+TEST_F(LoadedCommand, KeepsColumnsThroughKills) {
+  make_table();
+  const std::size_t first = columns_after_a_kill("test -n \"$(find . -name t.h5.loaded-partial -size +50k)\"");
+  EXPECT_GT(first, 0U);
+  const Outcome inode = run("stat -c %i t.h5.loaded-partial");
+  const std::string replaced =
+      fmt::format("test \"$(stat -c %i t.h5.loaded-partial)\" != {}", inode.output.substr(0, inode.output.size() - 1));
+  EXPECT_GE(columns_after_a_kill(replaced), first);
 }
 
 TEST_F(LoadedCommand, WrongInputIsSaid) {
