@@ -34,12 +34,16 @@ const char* fmi2GetVersion() { return "2.0"; }
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
   if (!callbacks) return nullptr;
-  fmi2Component component = nullptr;
-  const Log log(*callbacks, name ? name : "");
-  static_cast<void>(reported(log, "fmi2Instantiate", [&] {
-    component = new Instance{log, railtab::fmi::simulation_of(type, guid, resources)};
-  }));
-  return component;
+  try {
+    fmi2Component component = nullptr;
+    const Log log(*callbacks, name ? name : "");
+    static_cast<void>(reported(log, "fmi2Instantiate", [&] {
+      component = new Instance{log, railtab::fmi::simulation_of(type, guid, resources)};
+    }));
+    return component;
+  } catch (const std::bad_alloc&) {  // of the log
+    return nullptr;
+  }
 }
 
 void fmi2FreeInstance(fmi2Component component) { delete static_cast<Instance*>(component); }
@@ -111,11 +115,11 @@ fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference variabl
                        const fmi2Real values[]) {
   return on_instance(component, "fmi2SetReal", [&](Instance& instance) {
     require_phase(instance, {Phase::instantiated, Phase::initialization, Phase::stepping});
+    instance.equilibrium_is_due = instance.phase == Phase::initialization;  // also where a later value is wrong
     for (size_t i = 0; i < count; ++i) {
       require_input(instance, variables[i]);
       instance.track.set(variables[i], values[i]);
     }
-    instance.equilibrium_is_due = instance.phase == Phase::initialization;
   });
 }
 

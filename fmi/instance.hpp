@@ -49,6 +49,16 @@ struct KeptState {
   bool equilibrium_is_due;
 };
 
+/// fmi2Error with a message; without memory for it fmi2Fatal.
+inline fmi2Status failed(const Log& log, std::string_view function, std::string_view why) noexcept {
+  try {
+    log.error(fmt::format("{}: {}", function, why));
+    return fmi2Error;
+  } catch (...) {
+    return fmi2Fatal;
+  }
+}
+
 /// fmi2OK; where `work` throws fmi2Error with a message, without memory for one fmi2Fatal: no exception leaves the
 /// library.
 template <class Work>
@@ -59,11 +69,10 @@ fmi2Status reported(const Log& log, std::string_view function, const Work& work)
   } catch (const std::bad_alloc&) {
     return fmi2Fatal;
   } catch (const std::exception& failure) {
-    log.error(fmt::format("{}: {}", function, failure.what()));
+    return failed(log, function, failure.what());
   } catch (...) {
-    log.error(fmt::format("{}: an exception of unknown type", function));
+    return failed(log, function, "an exception of unknown type");
   }
-  return fmi2Error;
 }
 
 /// The same of work on an instance; fmi2Error where there is none.

@@ -15,9 +15,10 @@ double entry(const Eigen::VectorXd& dofs, int dof) { return dof == held ? 0.0 : 
 
 // Steps of `time_step` in `length`; 0 where it is no multiple of it.
 long steps_in(double length, double time_step) {
-  constexpr double most = 1e9, rounding = 1e-6;  // of a step
+  constexpr double most = 1e9, relative = 1e-6, part_of_a_step = 1e-3;
   const double steps = length / time_step;
-  if (!(steps > 0.5 && steps < most) || std::abs(steps - std::round(steps)) > rounding * std::round(steps)) return 0;
+  const double rounding = std::min(relative * std::round(steps), part_of_a_step);
+  if (!(steps > 0.5 && steps < most) || std::abs(steps - std::round(steps)) > rounding) return 0;
   return std::lround(steps);
 }
 

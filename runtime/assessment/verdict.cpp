@@ -28,13 +28,23 @@ std::string excluded(const Clause& clause, const AssessmentFacts& facts) {
   return {};
 }
 
-bool of_span(const Clause& clause, const MeasuredValue& value) {
+/// Whether a clause is about a deck of the value's span; none where that is not known.
+std::optional<bool> of_span(const Clause& clause, const MeasuredValue& value) {
+  if (!clause.span) return true;
   const auto span = value.quantities.find("span");
-  return !clause.span || (span != value.quantities.end() && within(span->second, *clause.span));
+  if (span == value.quantities.end()) return std::nullopt;
+  return within(span->second, *clause.span);
 }
 
-std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasure>& missing) {
-  std::string reasons;
+/// What keeps values of a clause's measure from being judged by it.
+struct Unjudged {
+  bool other_spans = false;
+  std::string reason;  ///< of the last value that lacks something; empty: none does
+};
+
+std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasure>& missing,
+                            const std::string& unjudged) {
+  std::string reasons = unjudged;
   for (const MissingMeasure& m : missing) {
     if (m.measure == clause.measure) {
       if (!reasons.empty()) reasons += "; ";
@@ -53,18 +63,29 @@ std::string no_value_reason(const Clause& clause, const std::vector<MissingMeasu
 /// The verdict of one stage; none where the stage has no value that the clause is about.
 std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
                                    const std::vector<MeasuredValue>& values, const std::vector<MissingMeasure>& missing,
-                                   bool& other_spans) {
+                                   Unjudged& unjudged) {
   Verdict verdict{&clause, stage, Outcome::pass, {}, 0.0, {}};
   const auto failing = [](const Verdict& v) { return v.at && v.utilisation() > 1.0; };
   Verdict overestimated = verdict;
+  std::string lacking;
   for (const MeasuredValue& value : values) {
     if (value.measure != clause.measure || value.stage != stage) continue;
-    if (!of_span(clause, value)) {
-      other_spans = true;
+    const std::optional<bool> about = of_span(clause, value);
+    if (!about) {
+      lacking = fmt::format("the span of {} is not known", value.where);
+      continue;
+    }
+    if (!*about) {
+      unjudged.other_spans = true;
       continue;
     }
     const std::optional<double> limit = limit_for(clause, value);
-    if (!limit) continue;
+    if (!limit || !std::isfinite(*limit) || !std::isfinite(value.value)) {
+      lacking = !limit                   ? fmt::format("{} of {} is not known", clause.limit.of, value.where)
+                : !std::isfinite(*limit) ? fmt::format("the limit of {} is not a number", value.where)
+                                         : fmt::format("the value of {} is not a number", value.where);
+      continue;
+    }
     Verdict next = verdict;
     next.at = value;
     next.limit = *limit;
@@ -80,7 +101,12 @@ std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
     overestimated.reason = overestimated.at->overestimated;
     return overestimated;
   }
+  if (!lacking.empty()) unjudged.reason = lacking;
   if (!verdict.at) return std::nullopt;
+  if (!lacking.empty()) {
+    verdict.outcome = Outcome::not_judged;
+    verdict.reason = lacking;
+  }
   for (const MissingMeasure& m : missing) {
     if (m.measure != clause.measure || m.stage != stage || !m.partly) continue;
     verdict.outcome = Outcome::not_judged;
@@ -107,7 +133,7 @@ std::string_view outcome_name(Outcome outcome) noexcept {
 
 std::optional<double> limit_for(const Clause& clause, const MeasuredValue& value) {
   const ClauseLimit& limit = clause.limit;
-  if (value.measure != clause.measure || !of_span(clause, value)) return std::nullopt;
+  if (value.measure != clause.measure || !of_span(clause, value).value_or(false)) return std::nullopt;
   if (limit.of.empty()) return limit.constant;
   const auto quantity = value.quantities.find(limit.of);
   if (quantity == value.quantities.end()) return std::nullopt;
@@ -131,15 +157,16 @@ std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentF
       verdicts.push_back({&clause, {}, Outcome::not_applicable, std::move(reason), 0.0, {}});
       continue;
     }
-    bool any = false, other_spans = false;
+    bool any = false;
+    Unjudged unjudged;
     for (const AssessmentStage stage : {check, moving_load, contact}) {
-      if (auto verdict = judge_stage(clause, stage, values, missing, other_spans)) {
+      if (auto verdict = judge_stage(clause, stage, values, missing, unjudged)) {
         verdicts.push_back(std::move(*verdict));
         any = true;
       }
     }
     if (any) continue;
-    if (other_spans) {
+    if (unjudged.other_spans && unjudged.reason.empty()) {
       verdicts.push_back({&clause,
                           {},
                           Outcome::not_applicable,
@@ -147,7 +174,8 @@ std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentF
                           0.0,
                           {}});
     } else {
-      verdicts.push_back({&clause, {}, Outcome::not_judged, no_value_reason(clause, missing), 0.0, {}});
+      verdicts.push_back(
+          {&clause, {}, Outcome::not_judged, no_value_reason(clause, missing, unjudged.reason), 0.0, {}});
     }
   }
   return verdicts;

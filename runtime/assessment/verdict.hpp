@@ -66,7 +66,8 @@ struct Verdict {
 
 /// All clauses against all values: a verdict per clause and stage that has values for it, one "not judged" where none
 /// has. A value whose measure is only partly known fails or is not judged, one that is overestimated passes or is not
-/// judged. @param clauses outlive the verdicts
+/// judged; so is what carries no span or other quantity that the clause asks for, or is not a number.
+/// @param clauses outlive the verdicts
 [[nodiscard]] std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentFacts& facts,
                                          const std::vector<MeasuredValue>& values,
                                          const std::vector<MissingMeasure>& missing);

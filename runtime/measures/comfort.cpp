@@ -70,8 +70,10 @@ SperlingIndex::SperlingIndex(SperlingDirection direction, double step, double wi
     : samples_(std::max(1L, std::lround(window / step))) {
   constexpr double lowest = 0.4, highest = 30.0;  // [Hz]
   const double length = step * static_cast<double>(samples_);
-  for (long k = std::max(1L, std::lround(std::ceil(lowest * length))); static_cast<double>(k) / length <= highest;
-       ++k) {
+  constexpr double rounding =
+      1e-3;  // of a line: a window that is no multiple of the step is a little longer or shorter
+  for (long k = std::max(1L, std::lround(std::ceil(lowest * length - rounding)));
+       static_cast<double>(k) / length <= highest; ++k) {
     if (2 * k >= samples_) break;
     const double turn = -2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(samples_);
     lines_.push_back({sperling_weighting(direction, static_cast<double>(k) / length), std::polar(1.0, turn), 1.0, 0.0});

@@ -1,6 +1,7 @@
 #include "railtab/runtime/measures/running_safety.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace railtab {
@@ -11,7 +12,7 @@ double nadal_limit(double flange_angle, double friction) noexcept {
 }
 
 double weinstock_ratio(double Y_left, double Q_left, double Y_right, double Q_right) noexcept {
-  if (!(Q_left > 0.0 && Q_right > 0.0)) return 0.0;
+  assert(Q_left > 0.0 && Q_right > 0.0);
   return std::abs(Y_left / Q_left) + std::abs(Y_right / Q_right);
 }
 

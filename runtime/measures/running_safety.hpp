@@ -5,8 +5,8 @@ namespace railtab {
 /// Nadal's limit of Y/Q of the wheel that climbs, (tan δ − μ)/(1 + μ tan δ): flange angle δ [rad], friction μ.
 [[nodiscard]] double nadal_limit(double flange_angle, double friction) noexcept;
 
-/// Weinstock's criterion: |Y/Q| of both wheels of a wheelset together, against Nadal's limit + μ. 0 where a wheel bears
-/// nothing. Forces [N].
+/// Weinstock's criterion: |Y/Q| of both wheels of a wheelset together, against Nadal's limit + μ. Forces [N].
+/// @pre Q_left, Q_right > 0
 [[nodiscard]] double weinstock_ratio(double Y_left, double Q_left, double Y_right, double Q_right) noexcept;
 
 /// Wheel unloading ΔQ/Q0 = (Q0 − Q)/Q0: the largest, and the longest time without a break above a limit, ends of it

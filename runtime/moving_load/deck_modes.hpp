@@ -4,11 +4,18 @@
 
 namespace railtab {
 
-/// Up to which deck accelerations count, from the first and third frequency; all [Hz]. [EN1990A2, A2.4.4.2.1]
-[[nodiscard]] double cut_off_frequency(double first, double third) noexcept;
+/// The first and the third mode that bend a deck under its axles, or the last of fewer: those that move the line of the
+/// axles by a tenth at least of what the mode moves it by that moves it most. Twist about the line and lateral bending
+/// do not.
+struct BendingModes {
+  int first = 0, third = 0;
+};
+/// @param on_line largest amounts of the modes on the line, normalised to a modal mass of 1 kg [kg^-1/2]
+[[nodiscard]] BendingModes bending_modes(const Eigen::ArrayXd& on_line);
 
 /// @param omega rising [rad/s]
-[[nodiscard]] int count_dynamic_modes(const Eigen::ArrayXd& omega, const DynamicModes& modes);
+[[nodiscard]] int count_dynamic_modes(const Eigen::ArrayXd& omega, const BendingModes& bending,
+                                      const DynamicModes& modes);
 
 /// Where the largest motions are sought: the line in even intervals, then other places with their shapes, places ×
 /// modes.

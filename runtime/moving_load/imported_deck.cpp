@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/structure/deck_attachment.hpp"
+#include "railtab/runtime/structure/deck_interpolation.hpp"
 #include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
@@ -14,17 +16,6 @@
 
 namespace railtab {
 namespace {
-
-/// Modes up to the cut-off and some beyond it, which the static deflection needs.
-ModalBasis enough_modes(const FeStructure& structure, const DynamicModes& wanted) {
-  constexpr int first_try = 20, most = 320;
-  for (int count = std::max(first_try, 2 * wanted.count);; count *= 2) {
-    ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, std::min(count, most));
-    const auto found = static_cast<int>(basis.omega2.size());
-    const Eigen::ArrayXd omega = basis.omega2.array().sqrt();
-    if (found < count || count >= most || 2 * count_dynamic_modes(omega, wanted) <= found) return basis;
-  }
-}
 
 /// Vertical motion of the modes at x on the track's centre line, at the height of the deck's nodes.
 Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis, double x) {
@@ -41,6 +32,30 @@ Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis,
       motion += row[static_cast<Eigen::Index>(k)] * basis.shape.row(found->dof[k]).array().transpose();
   }
   return motion;
+}
+
+/// The largest vertical motion of each mode on the line.
+Eigen::ArrayXd largest_on_line(const DeckFunction& deck, const ModalBasis& basis, double begin, double end) {
+  constexpr int points = 49;
+  Eigen::ArrayXd largest = Eigen::ArrayXd::Zero(basis.shape.cols());
+  for (int i = 0; i < points; ++i) {
+    const double x = begin + (end - begin) * (i + 0.5) / points;
+    largest = largest.max(on_centre_line(deck, basis, x).abs());
+  }
+  return largest;
+}
+
+/// Modes up to the cut-off and some beyond it, which the static deflection needs.
+ModalBasis enough_modes(const FeStructure& structure, const DeckFunction& line, double begin, double end,
+                        const DynamicModes& wanted) {
+  constexpr int first_try = 20, most = 320;
+  for (int count = std::max(first_try, 2 * wanted.count);; count *= 2) {
+    ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, std::min(count, most));
+    const auto found = static_cast<int>(basis.omega2.size());
+    if (found < count || count >= most) return basis;
+    const BendingModes bending = bending_modes(largest_on_line(line, basis, begin, end));
+    if (2 * count_dynamic_modes(basis.omega2.array().sqrt(), bending, wanted) <= found) return basis;
+  }
 }
 
 /// The cubic through the values at 0, h/3, 2h/3 and h.
@@ -85,7 +100,9 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
     throw input_error("structure.deck", fmt::format("a deck of {:.4g} m along the track", end - begin),
                       "a longer one: see structure.units and structure.axes");
   }
-  const ModalBasis basis = by_modes ? ModalBasis{modal.shape, modal.omega.cwiseAbs2()} : enough_modes(structure, modes);
+  const DeckFunction line = deck_function(structure, nodes);
+  const ModalBasis basis =
+      by_modes ? ModalBasis{modal.shape, modal.omega.cwiseAbs2()} : enough_modes(structure, line, begin, end, modes);
   ModalDeck deck;
   deck.name = "structure";
   deck.start = begin;
@@ -97,20 +114,23 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
     deck.damping =
         (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
   }
-  deck.dynamic_modes = count_dynamic_modes(deck.omega, modes);
+  const BendingModes bending = bending_modes(largest_on_line(line, basis, begin, end));
+  deck.first_bending = bending.first;
+  deck.third_bending = bending.third;
+  deck.dynamic_modes = count_dynamic_modes(deck.omega, bending, modes);
   const double most_damped = deck.damping.head(deck.dynamic_modes).maxCoeff();
   if (most_damped >= 1.0) {
     throw input_error("structure", fmt::format("a mode with damping ratio {:.4g}", most_damped),
                       "damping below the critical one in all modes");
   }
-  set_line(deck_function(structure, nodes), basis, end - begin, deck);
+  set_line(line, basis, end - begin, deck);
   std::vector<double> x;
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(nodes.size()), deck.modes());
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const FeNode& node = structure.nodes.at(nodes[k]);
     x.push_back(node.position[0] - begin);
-    for (const int row : node.rows[2]) {
-      shapes.row(static_cast<Eigen::Index>(k)) += basis.shape.row(row) / static_cast<double>(node.rows[2].size());
+    for (const auto& [row, share] : node_motion(node, z_dof)) {
+      if (row >= 0) shapes.row(static_cast<Eigen::Index>(k)) += share * basis.shape.row(row);  // supports are at rest
     }
   }
   set_points(static_cast<int>(deck.knots.size()) - 1, shapes, x, deck);

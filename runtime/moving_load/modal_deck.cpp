@@ -16,6 +16,12 @@ namespace {
 
 using std::numbers::pi;
 
+/// All [Hz].
+double cut_off_frequency(double first, double third) noexcept {
+  constexpr double least = 30.0;
+  return std::max({least, 1.5 * first, third});
+}
+
 }  // namespace
 
 bool has_free_end(const ModalDeck& deck) {
@@ -48,16 +54,28 @@ Eigen::ArrayXd ModalDeck::shape_at(double x, int derivative) const {
   return 2.0 * c.col(2) + 6.0 * u * c.col(3);
 }
 
-double cut_off_frequency(double first, double third) noexcept {
-  constexpr double least = 30.0;  // [Hz]
-  return std::max({least, 1.5 * first, third});
+double ModalDeck::cut_off() const noexcept {
+  return cut_off_frequency(frequency(first_bending), frequency(third_bending));
 }
 
-int count_dynamic_modes(const Eigen::ArrayXd& omega, const DynamicModes& modes) {
-  const auto found = static_cast<int>(omega.size());
-  if (modes.count > 0) return std::min(modes.count, found);
+BendingModes bending_modes(const Eigen::ArrayXd& on_line) {
+  constexpr double least = 0.1;
+  const double limit = least * on_line.maxCoeff();
+  BendingModes result;
+  int found = 0;
+  for (int mode = 0; mode < on_line.size() && found < 3; ++mode) {
+    if (on_line[mode] < limit) continue;
+    ++found;
+    if (found == 1) result.first = mode;
+    result.third = mode;
+  }
+  return result;
+}
+
+int count_dynamic_modes(const Eigen::ArrayXd& omega, const BendingModes& bending, const DynamicModes& modes) {
+  if (modes.count > 0) return std::min(modes.count, static_cast<int>(omega.size()));
   const double limit =
-      2.0 * pi * (1.0 + 1e-9) * cut_off_frequency(omega[0] / (2.0 * pi), omega[std::min(2, found - 1)] / (2.0 * pi));
+      2.0 * pi * (1.0 + 1e-9) * cut_off_frequency(omega[bending.first] / (2.0 * pi), omega[bending.third] / (2.0 * pi));
   return static_cast<int>((omega <= limit).count());
 }
 
@@ -93,7 +111,8 @@ ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes
   const Eigen::ArrayXd n = Eigen::ArrayXd::LinSpaced(count, 1.0, count);
   deck.omega = first * n.square();
   deck.damping = Eigen::ArrayXd::Constant(count, span.damping_ratio);
-  deck.dynamic_modes = count_dynamic_modes(deck.omega, modes);
+  deck.third_bending = 2;
+  deck.dynamic_modes = count_dynamic_modes(deck.omega, {deck.first_bending, deck.third_bending}, modes);
   const int elements = 16 * std::max(3, deck.dynamic_modes);
   const double h = span.length / elements, amplitude = std::sqrt(2.0 / (span.mass * span.length));
   for (int e = 0; e < elements; ++e) {

@@ -23,6 +23,8 @@ struct ModalDeck {
   std::vector<Cubics> shape;  ///< of each element, modes × 4: c_n0 … c_n3
   Eigen::ArrayXd omega;       ///< circular natural frequencies, rising [rad/s]
   Eigen::ArrayXd damping;     ///< ratios of critical, 0 <= ζ < 1
+  int first_bending = 0;      ///< number of the first mode that bends the deck under the axles (BendingModes)
+  int third_bending = 0;      ///< of the third, or the last of fewer
   int dynamic_modes = 0;      ///< the first of them, that vibrate; the others deflect as at rest
   /// Where the largest motions are sought: along the line first, evenly spaced, then places of an imported deck.
   std::vector<double> point_x;   ///< [m]
@@ -33,13 +35,17 @@ struct ModalDeck {
   [[nodiscard]] double length() const noexcept { return knots.back(); }
   [[nodiscard]] int modes() const noexcept { return static_cast<int>(omega.size()); }
   [[nodiscard]] double frequency(int mode) const { return omega[mode] / (2.0 * std::numbers::pi); }  ///< [Hz]
+  /// Of the first bending mode [Hz].
+  [[nodiscard]] double first_frequency() const { return frequency(first_bending); }
+  /// Up to which accelerations count [Hz], by the first and third bending mode. [EN1990A2, A2.4.4.2.1]
+  [[nodiscard]] double cut_off() const noexcept;
   /// φ (derivative 0), dφ/dx (1) or d²φ/dx² (2) of all modes at 0 <= x <= length.
   [[nodiscard]] Eigen::ArrayXd shape_at(double x, int derivative = 0) const;
 };
 
 /// Which modes vibrate.
 struct DynamicModes {
-  int count = 0;  ///< 0: all up to the greatest of 30 Hz, 1.5 f1 and f3 [EN1990A2, A2.4.4.2.1], at least three
+  int count = 0;  ///< 0: all up to ModalDeck::cut_off()
 };
 
 /// A simply supported span, frequencies (nπ/L)² √(EI/m) and shapes √(2/(mL)) sin(nπx/L); the

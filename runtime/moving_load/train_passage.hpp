@@ -26,8 +26,8 @@ struct PassagePeaks {
 /// shortest period, serve to find the peaks, which Newton iteration on the solution, in time and along the line, then
 /// takes to their tops. (On a deck with a free end accelerations jump as axles come and go: there the peaks are those
 /// of 64 samples in the shortest period.) After the last axle the vibration is followed until its envelope is below the
-/// peaks found. Cost: pieces × modes exponentials, and the shapes at all points where the modes' amplitudes could
-/// exceed the peak.
+/// peaks found, for 50 periods of the first mode at most. Cost: pieces × modes exponentials, and the shapes at all
+/// points where the modes' amplitudes could exceed the peak.
 /// @param force that of this deck and train @pre speed > 0 [m/s]
 [[nodiscard]] PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const ModalForce& force,
                                          double speed);

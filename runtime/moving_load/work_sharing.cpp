@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -21,11 +22,15 @@ void share_work(std::size_t count, int threads, const std::function<void(std::si
       }
     }
   };
-  std::vector<std::thread> others;
-  const std::size_t wanted = std::min(count, static_cast<std::size_t>(threads));
-  for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  {
+    std::vector<std::jthread> others;
+    const std::size_t wanted = std::min(count, static_cast<std::size_t>(threads));
+    try {
+      for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
+    } catch (const std::system_error&) {  // no more threads to be had: fewer do the work
+    }
+    work();
+  }
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }

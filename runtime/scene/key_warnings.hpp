@@ -26,7 +26,7 @@ struct Warning {
 };
 
 extern const Warning vehicle_above_top_speed, vehicle_above_critical_speed, vehicle_linearised, vehicle_implausible;
-extern const Warning speed_outside_run, start_on_flanges, judging_outside_run;
+extern const Warning speed_outside_run, speed_without_brakes, start_on_flanges, judging_outside_run;
 extern const Warning steps_too_long, records_too_few;
 extern const Warning noisy_wheel_profile, noisy_rail_profile;
 extern const Warning energy_rule_with_paper_search, inaccurate_loaded_table;

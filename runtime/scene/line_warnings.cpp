@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
@@ -138,6 +139,30 @@ void judged_beyond_run(const SceneCase& at, Warnings& list) {
 
 const Warning judging_outside_run{"no wheel runs where it is judged", judged_beyond_run};
 const Warning speed_outside_run{"the speeds lie outside the run", speed_beyond_run};
+const Warning speed_without_brakes{
+    "the speed changes, and no load turns a wheelset", [](const SceneCase& at, Warnings& list) {
+      if (!at.model.speed_profile) return;
+      const SpeedProfile& profile = *at.model.speed_profile;
+      double lowest = profile.speed(0.0), highest = lowest;
+      constexpr int samples = 1000;
+      for (int i = 1; i <= samples; ++i) {
+        const double speed = profile.speed(at.duration * i / samples);
+        lowest = std::min(lowest, speed);
+        highest = std::max(highest, speed);
+      }
+      constexpr double constant = 1e-3;  // of the speed
+      constexpr std::size_t about_axle = 4;
+      const auto& loads = at.scene.loads;
+      const bool turned = std::any_of(loads.begin(), loads.end(), [](const LoadParameters& load) {
+        const bool moment = load.load[about_axle].value_or(0.0) != 0.0 || !load.file.empty();
+        return moment && load.body.find("wheelset") != std::string::npos;
+      });
+      if (turned || highest - lowest <= constant * highest) return;
+      list.push_back(fmt::format(
+          "train.speed_file {} changes the speed by forces on the car bodies at their centres of gravity, which load "
+          "the rear of a train that brakes; brakes and traction are a [[load]] with My on every wheelset",
+          file_name(at.scene.train.speed_file)));
+    }};
 const Warning deviation_zero{"it is 0", [](const SceneCase& at, Warnings& list) {
                                if (!at.scene.span_deviation || at.scene.span_deviation->amplitude != 0.0) return;
                                list.emplace_back("span_deviation.amplitude is 0: no span turns");

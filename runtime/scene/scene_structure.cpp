@@ -69,8 +69,8 @@ StructureModel scene_structure(const SceneParameters& scene) {
   one.track.elements_per_bay = 1;
   StructureModel structure = build_structure(one);
   structure.left_out.push_back(fmt::format(
-      "rail nodes between sleepers: under a wheel a rail deflects there as at rest; at the frequency f its inertia "
-      "changes the share (f / {:.3g} Hz)² of that",
+      "rail nodes between sleepers: between them a rail deflects under a wheel as at rest; at the frequency f the "
+      "inertia that is left out changes this deflection by a share of (f / {:.3g} Hz)²",
       lowest_frequency_of_bay(scene.track)));
   return structure;
 }

@@ -139,8 +139,8 @@ std::string no_equilibrium_message(const VsiModel& model, const EquilibriumRepor
 std::string steady_start_warning(const EquilibriumReport& start) {
   if (start.steady) return {};
   return "the track's deflection under the moving train is far from the static one (a track so soft that its dampers "
-         "carry more than its springs, or a train near the track's critical speed): the run begins with the static "
-         "deflection, and its first seconds are a transient";
+         "carry more than its springs, a train near the track's critical speed, or a [[wheel]] on a steep part of its "
+         "deviation): the run begins with the static deflection, and its first seconds are a transient";
 }
 
 std::string displacement_warning(const SceneParameters& scene, const VsiModel& model, const VsiState& state) {

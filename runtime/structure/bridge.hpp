@@ -39,12 +39,12 @@ struct Bridge {
   std::vector<std::string> left_out{};       // StructureModel::left_out
   double end = 0.0;                          // [m]: the track goes on beyond for its own length_after
   std::vector<StructureNode> nodes;  // of interest; a name that begins with "deck-" gives the rails above a name too
-  // Rotations of theirs that are fitted to displacements around them: node, 3 to 5 for roll, pitch, yaw.
-  struct FittedRotation {
+  // Motions of theirs that are sums of dofs: node, 0 to 5 for x to yaw.
+  struct SummedMotion {
     std::size_t node, motion;
     DofSum sum;
   };
-  std::vector<FittedRotation> fitted{};
+  std::vector<SummedMotion> summed{};
   std::vector<DeckRow> deck{};                     // vertical motions of the decks' nodes, forces in their sections
   std::vector<std::array<double, 2>> deck_ends{};  // from and to [m]
   /// The attachment of a ballast spring at (x, y, z) [m], y right of the track's centre and z below the rail-head top;

@@ -77,7 +77,7 @@ StructureModel relative_to_supports(StructureModel structure) {
   s.carried = carried;
   const auto add = [](const Columns& more, Columns& rows) { rows = rows.size() > 0 ? Columns(rows + more) : more; };
   add(node_rows(structure.nodes, s.carried), s.carried_nodes);
-  if (structure.fitted_nodes.size() > 0) add(structure.fitted_nodes * s.carried, s.carried_nodes);
+  if (structure.summed_nodes.size() > 0) add(structure.summed_nodes * s.carried, s.carried_nodes);
   if (structure.deck.rows.size() > 0) add(structure.deck.rows * s.carried, s.carried_deck);
   return structure;
 }

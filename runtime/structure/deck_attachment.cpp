@@ -10,6 +10,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/interval_search.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
+#include "railtab/runtime/structure/deck_interpolation.hpp"
 #include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/matrix_assembly.hpp"
 
@@ -55,13 +56,7 @@ void settle_expanded(std::vector<DeckNode>& nodes) {
 /// Adds `value` times motion `k` of a node to row `to`; what is held moves with its support, if there is one.
 void add_motion(DeckAttachment& deck, int to, const FeNode& node, std::size_t k, double value) {
   if (value == 0.0) return;
-  std::vector<int> rows = node.rows[k];
-  if (rows.empty() && (k == y_dof || k == z_dof) && node.support[k - y_dof] != held) {
-    rows.push_back(support_dof(node.support[k - y_dof]));
-  }
-  if (rows.empty()) return;  // at rest
-  const double share = value / static_cast<double>(rows.size());
-  for (int row : rows) {
+  for (const auto& [row, share] : node_motion(node, k)) {
     auto at = std::find(deck.dof.begin(), deck.dof.end(), row);
     const auto column = at - deck.dof.begin();
     if (at == deck.dof.end()) {
@@ -69,7 +64,7 @@ void add_motion(DeckAttachment& deck, int to, const FeNode& node, std::size_t k,
       deck.rows.conservativeResize(6, column + 1);
       deck.rows.col(column).setZero();
     }
-    deck.rows(to, column) += share;
+    deck.rows(to, column) += value * share;
   }
 }
 

@@ -59,16 +59,19 @@ Shares triangle_around(const std::vector<const SurfaceNode*>& near, const Eigen:
 
 }  // namespace
 
-DofSum vertical_motion(const FeNode& node) {
+DofSum node_motion(const FeNode& node, std::size_t k) {
   DofSum sum;
-  const std::vector<int>& rows = node.rows[z_dof];
+  const std::vector<int>& rows = node.rows[k];
   const auto equal = 1.0 / static_cast<double>(rows.size());
   constexpr std::size_t with_middle = 3;  // of a shell's thickness, over which the displacement is a parabola
   constexpr double outer = 1.0 / 6.0, middle = 4.0 / 6.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     sum.emplace_back(rows[i], rows.size() != with_middle ? equal : i == 1 ? middle : outer);
   }
-  if (rows.empty() && node.support[1] != held) sum.emplace_back(support_dof(node.support[1]), 1.0);
+  const bool may_stand = k == y_dof || k == z_dof;
+  if (rows.empty() && may_stand && node.support[k - y_dof] != held) {
+    sum.emplace_back(support_dof(node.support[k - y_dof]), 1.0);
+  }
   return sum;
 }
 
@@ -76,7 +79,7 @@ SurfaceMotion surface_motion(const FeStructure& structure, const std::vector<int
   std::vector<SurfaceNode> nodes;
   for (const int number : deck) {
     const FeNode& node = structure.nodes.at(number);
-    nodes.push_back({node.position.head<2>(), vertical_motion(node)});
+    nodes.push_back({node.position.head<2>(), node_motion(node, z_dof)});
   }
   return [nodes = std::move(nodes)](double x, double y) -> std::optional<DofSum> {
     constexpr std::size_t most = 14;

@@ -9,9 +9,9 @@
 
 namespace railtab {
 
-/// Vertical displacement of a node, down; of an expanded one the mean over its rows, of a shell's three (bottom,
-/// middle, top) that over its thickness by Simpson's rule. Empty where it is at rest.
-[[nodiscard]] DofSum vertical_motion(const FeNode& node);
+/// Motion k of a node, x to yaw; of an expanded one the mean over its rows, of a shell's three (bottom, middle, top)
+/// that over its thickness by Simpson's rule; of one that is held that of its support. Empty where it is at rest.
+[[nodiscard]] DofSum node_motion(const FeNode& node, std::size_t k);
 
 /// Vertical displacement of a deck's surface at (x, y), by the straight line or the smallest triangle of nodes around
 /// it: at a node its own. None where no such nodes are near.

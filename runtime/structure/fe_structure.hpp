@@ -51,8 +51,8 @@ struct FeSupport {
 };
 
 /// A node in railtab's axes [m], and its rows: none for a motion that is held (or that the model does not have), one,
-/// or several where the program has expanded a beam or shell into solids that share the number of the node; the node's
-/// motion is then the mean of theirs.
+/// or several where the program has expanded a beam or shell into solids that share the number of the node
+/// (node_motion()).
 struct FeNode {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::array<std::vector<int>, 6> rows;

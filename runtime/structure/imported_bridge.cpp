@@ -57,7 +57,7 @@ StructureSupports settled_supports(const FeStructure& structure, const FeDamping
 
 StructureNode reported(std::string name, const FeNode& node) {
   StructureNode result{std::move(name), node.position[0], {}, node.position[1], node.position[2]};
-  for (std::size_t k = 0; k < 6; ++k) result.dof[k] = node.rows[k].empty() ? held : node.rows[k].front();
+  for (std::size_t k = 0; k < 6; ++k) result.dof[k] = node.rows[k].size() == 1 ? node.rows[k].front() : held;
   return result;
 }
 
@@ -66,10 +66,21 @@ std::vector<DeckRow> deck_channels(const FeStructure& structure, const std::vect
   std::vector<DeckRow> rows;
   for (const int number : deck) {
     const FeNode& node = structure.nodes.at(number);
-    rows.push_back({{DeckQuantity::displacement, node.position[0], node.position[1]}, vertical_motion(node)});
+    rows.push_back({{DeckQuantity::displacement, node.position[0], node.position[1]}, node_motion(node, z_dof)});
   }
   rows.insert(rows.end(), structure.sections.begin(), structure.sections.end());
   return rows;
+}
+
+/// Motions of nodes that have several rows for one.
+void add_mean_motions(const FeStructure& structure, const std::vector<ReportedDeckNode>& reported_nodes,
+                      Bridge& bridge) {
+  for (std::size_t n = 0; n < reported_nodes.size(); ++n) {
+    const FeNode& node = structure.nodes.at(reported_nodes[n].number);
+    for (std::size_t k = 0; k < node.rows.size(); ++k) {
+      if (node.rows[k].size() > 1) bridge.summed.push_back({n, k, node_motion(node, k)});
+    }
+  }
 }
 
 /// Rotations of a surface's nodes that have none of their own, from the displacements around them.
@@ -78,8 +89,8 @@ void fit_rotations(const FeStructure& structure, const std::vector<ReportedDeckN
     const FeNode& node = structure.nodes.at(reported_nodes[n].number);
     if (!node.rows[roll_dof].empty() || !node.rows[pitch_dof].empty() || !node.rows[yaw_dof].empty()) continue;
     const SurfaceSlopes slopes = surface_slopes(bridge.surface, node.position[0], node.position[1]);
-    if (slopes.roll) bridge.fitted.push_back({n, roll_dof, *slopes.roll});
-    if (slopes.pitch) bridge.fitted.push_back({n, pitch_dof, *slopes.pitch});
+    if (slopes.roll) bridge.summed.push_back({n, roll_dof, *slopes.roll});
+    if (slopes.pitch) bridge.summed.push_back({n, pitch_dof, *slopes.pitch});
   }
 }
 
@@ -122,6 +133,7 @@ Bridge bridge_of(FeStructure structure, const ImportParameters& parameters, Deck
   for (const ReportedDeckNode& node : named) {
     bridge.nodes.push_back(reported(node.name, structure.nodes.at(node.number)));
   }
+  add_mean_motions(structure, named, bridge);
   if (is_surface(structure, deck)) {
     bridge.surface = surface_motion(structure, deck);
     fit_rotations(structure, named, bridge);

@@ -116,8 +116,9 @@ struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide
   std::vector<StructureNode> nodes;  ///< nodes of interest
-  /// Their rotations that are fitted to displacements around them, 6 rows each; empty: none.
-  Eigen::SparseMatrix<double, Eigen::RowMajor> fitted_nodes{};
+  /// Their motions that are sums of dofs, such as rotations fitted to displacements around them, 6 rows each; empty:
+  /// none.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> summed_nodes{};
   DeckChannels deck{};
   /// Position along the track of every dof [m], not decreasing; empty where it is not known.
   std::vector<double> dof_x;

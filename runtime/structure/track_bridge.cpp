@@ -233,19 +233,19 @@ class OrderAlongTrack {
   std::vector<int> number_;
 };
 
-/// Fitted rotations of the nodes of interest, and the channels of the deck.
+/// Motions of the nodes of interest that are sums of dofs, and the channels of the deck.
 void set_rows(Bridge& bridge, const OrderAlongTrack& order, StructureModel& model) {
-  SumRows fitted;
-  for (Bridge::FittedRotation& rotation : bridge.fitted) {
-    order.renumber(rotation.sum);
-    const std::string& name = bridge.nodes[rotation.node].name;
+  SumRows sums;
+  for (Bridge::SummedMotion& motion : bridge.summed) {
+    order.renumber(motion.sum);
+    const std::string& name = bridge.nodes[motion.node].name;
     for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-      if (model.nodes[n].name == name) fitted.set(static_cast<int>(6 * n + rotation.motion), rotation.sum);
+      if (model.nodes[n].name == name) sums.set(static_cast<int>(6 * n + motion.motion), motion.sum);
     }
   }
-  if (!bridge.fitted.empty()) {
+  if (!bridge.summed.empty()) {
     const auto rows = static_cast<Eigen::Index>(6 * model.nodes.size());
-    fitted.build(rows, model, model.fitted_nodes, model.supports.carried_nodes);
+    sums.build(rows, model, model.summed_nodes, model.supports.carried_nodes);
   }
   for (DeckRow& row : bridge.deck) order.renumber(row.sum);
   set_channels(bridge.deck, model);

@@ -172,16 +172,6 @@ std::vector<CarriedWeight> carried_weights(const FreeVehicle& vehicle, double gr
   return weights;
 }
 
-void check_wheel_loads(const FreeVehicle& free, const VehicleModel& vehicle) {
-  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
-    const double load = vehicle.static_load[vehicle.dof[static_cast<std::size_t>(vehicle.wheelsets[w])][z_dof]];
-    if (load > 0.0) continue;
-    throw input_error(free.wheelset(w).place,
-                      fmt::format("wheelset {} that carries {:.6g} N", free.wheelset(w).name, load),
-                      "a vehicle that stands on all its wheelsets");
-  }
-}
-
 }  // namespace
 
 void VehicleImport::validate(int vehicles) const {
@@ -242,7 +232,7 @@ VehicleModel import_vehicle(const VehicleImport& import, MotionPlane plane, cons
   if (weight.geometric_stiffness == GeometricStiffness::included) {
     add_geometric_stiffness(vehicle, carried_weights(free, weight.gravity));
   }
-  check_wheel_loads(free, vehicle);
+  check_wheel_loads(vehicle, [&](std::size_t wheelset) { return free.wheelset(wheelset).place; });
   return vehicle;
 }
 

@@ -178,6 +178,18 @@ StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& wei
   return rest;
 }
 
+void check_wheel_loads(const VehicleModel& vehicle, const std::function<std::string(std::size_t)>& place) {
+  if (vehicle.gravity == 0.0) return;
+  for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
+    const auto body = static_cast<std::size_t>(vehicle.wheelsets[w]);
+    const int vertical = vehicle.dof[body][z_dof];
+    if (vertical == held || vehicle.static_load[vertical] > 0.0) continue;
+    throw input_error(place(w),
+                      fmt::format("{} that carries {:.6g} N", vehicle.bodies[body].name, vehicle.static_load[vertical]),
+                      "a vehicle that stands on all its wheelsets");
+  }
+}
+
 VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   const std::string& name = parts.name;
   check_bodies(name, parts.bodies);
@@ -215,6 +227,7 @@ VehicleModel assemble_vehicle(const VehicleDescription& parts) {
   const StandingVehicle rest = standing(vehicle, weight_of(vehicle, parts.bodies, parts.weight.gravity));
   vehicle.gravity = parts.weight.gravity;
   vehicle.static_load = rest.reaction;
+  check_wheel_loads(vehicle, [&](std::size_t) { return name; });
   if (parts.weight.geometric_stiffness == GeometricStiffness::included) {
     add_geometric_stiffness(vehicle, parts.suspension, rest.displacement);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "railtab/runtime/base/spring_damper.hpp"
@@ -34,5 +35,9 @@ struct StandingVehicle {
 /// @param weight all dofs × cases [N]; the stiffness is decomposed once for all of them
 /// @throws InputError where a weight is not carried by the wheelsets through springs
 [[nodiscard]] StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& weight);
+
+/// Every wheelset of a vehicle with weight must carry some of it. @param place of a wheelset, for messages
+/// @throws InputError
+void check_wheel_loads(const VehicleModel& vehicle, const std::function<std::string(std::size_t wheelset)>& place);
 
 }  // namespace railtab

@@ -15,12 +15,12 @@ void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord
   }
 }
 
-// Rotations that follow from the displacements around a node, which has none of its own.
-void add_fitted(const VsiModel& model, const LinearMotion& motion, StepRecord& record) {
-  const auto& fitted = model.structure->fitted_nodes;
-  for (int row = 0; row < fitted.outerSize(); ++row) {
+// Motions that are sums of dofs.
+void add_sums(const VsiModel& model, const LinearMotion& motion, StepRecord& record) {
+  const auto& sums = model.structure->summed_nodes;
+  for (int row = 0; row < sums.outerSize(); ++row) {
     const auto node = static_cast<std::size_t>(row / 6), k = static_cast<std::size_t>(row % 6);
-    for (StructureSupports::Columns::InnerIterator entry(fitted, row); entry; ++entry) {
+    for (StructureSupports::Columns::InnerIterator entry(sums, row); entry; ++entry) {
       record.nodes[node].displacement[k] += entry.value() * motion.displacement[entry.col()];
       record.nodes[node].velocity[k] += entry.value() * motion.velocity[entry.col()];
       record.nodes[node].acceleration[k] += entry.value() * motion.acceleration[entry.col()];
@@ -104,7 +104,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   record.nodes.resize(model.structure->nodes.size());
   for (std::size_t n = 0; n < record.nodes.size(); ++n)
     fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
-  add_fitted(model, state.structure, record);
+  add_sums(model, state.structure, record);
   add_carried(model, record);
 }
 

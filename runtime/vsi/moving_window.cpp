@@ -116,7 +116,7 @@ namespace {
 // What fitted rotations and the channels of the deck need of a span; its ends belong to its neighbours too.
 void add_followed(const StructureModel& structure, const SpanModes& span, std::vector<int>& dofs) {
   const DofRange inside = dofs_within(structure.dof_x, span.from, span.to);
-  for (const auto* rows : {&structure.fitted_nodes, &structure.deck.rows}) {
+  for (const auto* rows : {&structure.summed_nodes, &structure.deck.rows}) {
     for (Eigen::Index i = 0; i < rows->nonZeros(); ++i) {
       const int dof = rows->innerIndexPtr()[i];
       if (dof >= inside.begin && dof < inside.end()) dofs.push_back(dof);

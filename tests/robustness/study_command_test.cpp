@@ -453,6 +453,13 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
            "plan.toml:2: vary[1].train.sped: unknown key 'train.sped'; did you mean 'train.speed'?");
   rejected(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
            "plan.toml:2: vary[1].train.speed_kmh: found 9000, expected");
+  std::string many = "scene = \"scene.toml\"\n";
+  for (const char* key : {"train.speed_kmh", "contact.friction"}) {
+    many += std::string("[[vary]]\nkey = \"") + key + "\"\nrange = \"0.1:0.9:1e-4\"\n";
+  }
+  rejected(many,
+           "plan.toml: [[vary]]: found 6.4016e+07 points of all values together, times sampling.samples, expected "
+           "at most 1000000");
   rejected(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
            "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
   rejected(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",

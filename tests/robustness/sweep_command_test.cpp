@@ -132,6 +132,15 @@ std::string numbers_of(const std::string& line) {
   return line.substr(0, line.rfind(',', message - 1));
 }
 
+TEST_F(SweepCommand, RunsOfOneNameAreRejectedBeforeTheFirst) {
+  write("scene.toml", scene);
+  EXPECT_EQ(vsi({"sweep", "scene.toml", "--speed", "50:50.0004:0.0004", "--seeds", "2", "-o", "close"}), 2);
+  EXPECT_NE(text("log").find("speeds: found two runs of the name v050.000-s001, expected steps of at least 0.001 m/s"),
+            std::string::npos)
+      << text("log");
+  EXPECT_FALSE(fs::exists(folder_ / "close/v050.000-s001.h5"));
+}
+
 TEST_F(SweepCommand, ShardsAndAKillMakeTheSameSummary) {
   write("scene.toml", scene);
   const std::vector<std::string> sweep{"sweep", "scene.toml", "--speed-kmh", "100:200:50", "--seeds", "2", "--quiet"};

@@ -135,6 +135,11 @@ TEST_F(SceneWarnings, OfLoadsAndSpeedsThatChangeNothing) {
   write("late.csv", "t[s],V[m/s]\n10,30\n12,40\n");
   expect(plan("[train]\nspeed_file = \"late.csv\"\n"),
          "the run is at t = 0 to 0.1 s: its first speed holds throughout");
+  write("brake.csv", "t[s],V[m/s]\n0,40\n0.1,39\n");
+  const std::string braked = "[train]\nspeed_file = \"brake.csv\"\n";
+  expect(plan(braked), "warning: train.speed_file brake.csv changes the speed by forces on the car bodies");
+  EXPECT_EQ(plan(braked + "[[load]]\nbody = \"wheelset-1\"\nMy = 1e3\n").find("forces on the car bodies"),
+            std::string::npos);
   write("flat.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-90,0,0,0,0\n90,0,0,0,0\n");
   expect(plan("[irregularity]\nfile = \"flat.csv\"\n"), "flat.csv is zero throughout: the track is perfect");
 }

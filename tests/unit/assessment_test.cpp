@@ -85,7 +85,7 @@ TEST(OverSpeed, BandsInWhichALimitIsExceeded) {
     EXPECT_NE(text.find(sentence + "\n"), std::string::npos) << text;
     EXPECT_NE(page.find("→ " + sentence + "<"), std::string::npos);
   }
-  EXPECT_EQ(text.find("FAILS: 1 limit not met, worst with train a; "), 1U) << text;
+  EXPECT_EQ(text.find("FAILS: 1 limit fails, worst with train a; "), 1U) << text;
   const auto json = assessment_json(a);
   const auto in_json = std::ranges::find_if(
       json["verdicts"], [](const auto& v) { return v["id"] == "en1990.deck-acceleration.ballasted"; });
@@ -149,7 +149,7 @@ TEST(Assessment, OneLimitWithItsValuesByStage) {
   a.verdicts = judge(a.clauses, a.facts, a.values, {});
   EXPECT_EQ(std::ranges::count_if(a.verdicts, [](const Verdict& verdict) { return verdict.failed(); }), 2);
   EXPECT_EQ(a.failures(false), 1);
-  EXPECT_TRUE(verdict_in_words(a).starts_with("FAILS: 1 limit not met, worst with train a and train r; 0 met, "))
+  EXPECT_TRUE(verdict_in_words(a).starts_with("FAILS: 1 limit fails, worst with train a and train r; 0 pass, "))
       << verdict_in_words(a);
   const auto counted = [](const std::string& text, const std::string& what) {
     int count = 0;
@@ -264,7 +264,7 @@ TEST(Assessment, TextPageAndJsonSayWhatFailsAndWhere) {
   a.verdicts = judge(a.clauses, a.facts, a.values, {});
   EXPECT_EQ(a.failures(false), 1);
   EXPECT_EQ(a.failures(true), 1);
-  EXPECT_TRUE(verdict_in_words(a).starts_with("FAILS: 1 limit not met, worst with hslm-a8; "));
+  EXPECT_TRUE(verdict_in_words(a).starts_with("FAILS: 1 limit fails, worst with hslm-a8; "));
   const std::string text = assessment_text(a);
   EXPECT_NE(
       text.find(" FAIL  Deck acceleration, ballasted track\n       EN 1990:2002/A1:2005 A2.4.4.2.1(4), read in the "

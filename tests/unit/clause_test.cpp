@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "../folder_fixture.hpp"
@@ -152,6 +153,27 @@ TEST_F(Clauses, TheWorstValueDecides) {
   EXPECT_EQ(of(verdicts, "en1991.n0.upper").outcome, Outcome::pass);
   EXPECT_EQ(of(verdicts, "en1990.lateral-frequency").outcome, Outcome::fail) << "at least 1.2 Hz";
   EXPECT_EQ(of(verdicts, "en1990.comfort.acceptable").outcome, Outcome::pass);
+}
+
+TEST_F(Clauses, WhatIsNotKnownOrNoNumberIsNotJudged) {
+  const std::vector<Clause> clauses = library_clauses();
+  const AssessmentFacts facts{"ballasted", 200.0 / 3.6};
+  MeasuredValue imported = value("first_frequency", check, 3.0);
+  imported.quantities.erase("span");
+  const auto judged = [&](const std::vector<MeasuredValue>& values, std::string_view id) {
+    return of(judge(clauses, facts, values, {}), id);
+  };
+  const Verdict unknown = judged({imported}, "en1991.n0.upper");
+  EXPECT_EQ(unknown.outcome, Outcome::not_judged);
+  EXPECT_EQ(unknown.reason, "the span of here is not known");
+  EXPECT_EQ(judged({imported, value("first_frequency", check, 4.0, 25.0)}, "en1991.n0.upper").outcome,
+            Outcome::not_judged)
+      << "one deck of two";
+  const Verdict none =
+      judged({value("deck_acceleration", contact, std::nan("")), value("deck_acceleration", contact, 1.0)},
+             "en1990.deck-acceleration.ballasted");
+  EXPECT_EQ(none.outcome, Outcome::not_judged);
+  EXPECT_EQ(none.reason, "the value of here is not a number");
 }
 
 TEST_F(Clauses, LimitsFollowTheQuantitiesOfTheValue) {

@@ -8,6 +8,7 @@
 
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/moving_load/static_deflection.hpp"
 #include "railtab/runtime/moving_load/train_passage.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
@@ -79,6 +80,16 @@ class BeamFiles : public testing::InFolder {
            entries;
   }
 };
+
+// Modes that do not move the line of the axles, such as torsion about it, have no part in the limit of accelerations.
+TEST(BendingModes, AreThoseThatMoveTheLineOfTheAxles) {
+  const BendingModes of_girder = bending_modes(Eigen::ArrayXd{{1e-9, 2e-3, 8e-3, 0.0, 7e-3, 5e-4, 9e-3, 8e-3}});
+  EXPECT_EQ(of_girder.first, 1);
+  EXPECT_EQ(of_girder.third, 4);
+  const BendingModes few = bending_modes(Eigen::ArrayXd{{1e-9, 8e-3, 0.0}});
+  EXPECT_EQ(few.first, 1);
+  EXPECT_EQ(few.third, 1);
+}
 
 TEST_F(BeamFiles, OneSpanIsTheBuiltInOne) {
   BridgeParameters p;

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -51,6 +55,14 @@ TEST(RandomTrack, HasTheMeanSquareOfItsSpectrum) {
     EXPECT_NEAR(variance(alignment) / sum.alignment, 1.0, 0.25) << name;
     EXPECT_NEAR(variance(cross) / sum.cross_level, 1.0, 0.25) << name;
     EXPECT_NEAR(variance(gauge) / sum.gauge, 1.0, 0.25) << name;
+    // σ of vertical deviation and alignment in mm, computed apart from the formulas' coefficients
+    const std::map<std::string, std::array<double, 2>> known{{"german-low", {0.98, 0.71}},
+                                                             {"german-high", {1.61, 1.21}},
+                                                             {"fra-4", {5.7, 5.7 * 0.750}},
+                                                             {"fra-5", {3.6, 3.6 * 0.603}},
+                                                             {"fra-6", {1.43, 1.43}}};
+    EXPECT_NEAR(1e3 * std::sqrt(sum.vertical) / known.at(name)[0], 1.0, 0.015) << name;
+    EXPECT_NEAR(1e3 * std::sqrt(sum.alignment) / known.at(name)[1], 1.0, 0.015) << name;
     if (name != "german-low") continue;
     EXPECT_NEAR(std::sqrt(sum.vertical), 0.98e-3, 0.01e-3);
     EXPECT_NEAR(std::sqrt(sum.alignment), 0.71e-3, 0.01e-3);

@@ -239,7 +239,7 @@ TEST(ReportPage, LimitsStandOnTheirMeasures) {
   EXPECT_EQ(figure(page, "Wheel unloading ΔQ/Q0, unfiltered").find("class=\"limit\""), std::string::npos);
   EXPECT_NE(figure(page, "Wheel unloading ΔQ/Q0, low-passed at 20 Hz").find("0.6 – EN 14363"), std::string::npos);
   // 10 kN + 100 kN/3
-  EXPECT_NE(figure(page, "Track shifting force ΣY, mean over 2 m").find("43.3 kN – EN 14363"), std::string::npos);
+  EXPECT_NE(figure(page, "Track shift force ΣY, mean over 2 m").find("43.3 kN – EN 14363"), std::string::npos);
 }
 
 TEST(ReportPage, TheMeanOverTwoMetresIsTheHeadlines) {
@@ -325,7 +325,8 @@ TEST(ReportPage, OfALongTrainIsSmallAndStatesItsResolution) {
     const std::size_t values = decoded(history["of"]["data"]).size() / 2;
     EXPECT_TRUE(history["every"] == 1 || values <= 2000u) << values;
   }
-  EXPECT_NE(page.find("of these, of every 12 records"), std::string::npos) << "the page states its resolution";
+  EXPECT_NE(page.find("of each group of records, at most 12 here"), std::string::npos)
+      << "the page states its resolution";
 }
 
 TEST(ComparisonPage, LaysRunsOverEachOtherAndStatesTheirDifferences) {

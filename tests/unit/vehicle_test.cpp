@@ -246,6 +246,22 @@ TEST(Vehicle, RejectsWhatIsNoVehicle) {
   EXPECT_NE(assemble({axle, box}, {spring}, {0}, {DofIndices{}}).find("v.held_dofs: found 1 bodies"),
             std::string::npos);
   EXPECT_NE(assemble({axle, box}, {}, {0}).find("no spring carries"), std::string::npos);
+
+  RigidBody rear = axle, overhanging = box;
+  rear.name = "rear";
+  rear.position.x() = -2.0;
+  overhanging.position.x() = 2.0;
+  Suspension front_spring = spring, rear_spring = spring;
+  front_spring.body_b = rear_spring.body_b = 2;
+  front_spring.rotational_stiffness.setZero();
+  rear_spring.rotational_stiffness.setZero();
+  rear_spring.body_a = 1;
+  rear_spring.point.x() = -2.0;
+  // the rear carries its own 9.81 kN less the box's 29.43 kN on a lever of one wheelbase
+  EXPECT_NE(assemble({axle, rear, overhanging}, {front_spring, rear_spring}, {0, 1})
+                .find("v: found rear that carries -19620 N, expected a vehicle that stands on all its wheelsets"),
+            std::string::npos)
+      << assemble({axle, rear, overhanging}, {front_spring, rear_spring}, {0, 1});
 }
 
 }  // namespace

@@ -70,14 +70,17 @@ std::string verdict_in_words(const Assessment& assessment) {
   const int failed = assessment.failures(false), verified = assessment.failures(true),
             passed = assessment.count(Outcome::pass), open = assessment.count(Outcome::not_judged);
   const auto clauses = [](int n) { return fmt::format("{} limit{}", n, n == 1 ? "" : "s"); };
+  const auto fail = [&](int n) { return clauses(n) + (n == 1 ? " fails" : " fail"); };
   if (failed == 0 && passed == 0) return fmt::format("NOTHING JUDGED: {} not judged", open);
-  if (failed == 0) return fmt::format("PASSES as far as it was judged: {} met, {} not judged", clauses(passed), open);
+  if (failed == 0)
+    return fmt::format("PASSES as far as it was judged: {} pass{}, {} not judged", clauses(passed),
+                       passed == 1 ? "es" : "", open);
   std::vector<std::string> trains;
   for (const Verdict& v : assessment.verdicts) {
     const bool named = !v.failed() || v.at->train.empty() || std::ranges::count(trains, v.at->train) > 0;
     if (!named) trains.push_back(v.at->train);
   }
-  return fmt::format("FAILS: {} not met{}{}; {} met, {} not judged", clauses(failed),
+  return fmt::format("FAILS: {}{}{}; {} pass, {} not judged", fail(failed),
                      verified == failed ? "" : fmt::format(" ({} of them read in the standard)", verified),
                      trains.empty() ? "" : fmt::format(", worst with {}", fmt::join(trains, " and ")), passed, open);
 }

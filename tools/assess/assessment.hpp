@@ -74,7 +74,7 @@ struct LimitVerdicts {
 /// In the order of pages: failures, consequences, the others by how near they are, those without values.
 [[nodiscard]] std::vector<LimitVerdicts> by_limit(const std::vector<Verdict>& verdicts);
 
-/// "FAILS: 2 limits not met, worst with hslm-a2; …", "PASSES …": in words, for text and page.
+/// "FAILS: 2 limits fail, worst with hslm-a2; …", "PASSES …": in words, for text and page.
 [[nodiscard]] std::string verdict_in_words(const Assessment& assessment);
 /// "hslm-a8, 200.0 km/h, span 1, x = 12.50 m, t = 3.200 s"
 [[nodiscard]] std::string place_in_words(const MeasuredValue& value);

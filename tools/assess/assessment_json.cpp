@@ -75,6 +75,8 @@ Json deck_json(const DeckAssessment& deck) {
   Json json{{"name", deck.deck.name},
             {"length", deck.deck.length()},
             {"frequencies", frequencies},
+            {"first_bending_frequency", deck.deck.frequency(deck.deck.first_bending)},
+            {"third_bending_frequency", deck.deck.frequency(deck.deck.third_bending)},
             {"cut_off", deck.cut_off},
             {"dynamic_analysis", {{"need", need_name(deck.need.need)}, {"reason", deck.need.reason}}}};
   if (deck.lateral_frequency) json["lateral_frequency"] = *deck.lateral_frequency;

@@ -155,11 +155,14 @@ std::string deck_table(const Assessment& assessment) {
       frequencies += fmt::format("{}{:.3f}", n == 0 ? "" : ", ", deck.deck.frequency(n));
     }
     html += fmt::format(
-        "<h3>{}</h3><table><tr><td>length</td><td>{:.6g} m</td></tr><tr><td>vertical frequencies</td><td>{} Hz</td>"
-        "</tr><tr><td>damping of the first mode</td><td>{:.2f} %</td></tr><tr><td>accelerations count up to</td><td>"
-        "{:.1f} Hz (the greatest of 30 Hz, 1.5 f₁ and f₃)</td></tr><tr><td>dynamic analysis by EN 1991-2, 6.4.4</td>"
+        "<h3>{}</h3><table><tr><td>length</td><td>{:.6g} m</td></tr><tr><td>natural frequencies</td><td>{} Hz</td>"
+        "</tr><tr><td>damping of the first bending mode</td><td>{:.2f} %</td></tr><tr><td>accelerations count up "
+        "to</td><td>"
+        "{:.1f} Hz (the greatest of 30 Hz, 1.5 f₁ and f₃; f₁ = {:.3f} Hz and f₃ = {:.3f} Hz bend the "
+        "deck)</td></tr><tr><td>dynamic analysis by EN 1991-2, 6.4.4</td>"
         "<td><b>{}</b>: {}</td></tr></table>",
-        escaped(deck.deck.name), deck.deck.length(), frequencies, 100.0 * deck.deck.damping[0], deck.cut_off,
+        escaped(deck.deck.name), deck.deck.length(), frequencies, 100.0 * deck.deck.damping[deck.deck.first_bending],
+        deck.cut_off, deck.deck.frequency(deck.deck.first_bending), deck.deck.frequency(deck.deck.third_bending),
         need_name(deck.need.need), escaped(deck.need.reason));
   }
   return html;

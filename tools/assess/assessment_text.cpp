@@ -58,7 +58,7 @@ std::string assessment_text(const Assessment& assessment) {
   const auto out = std::back_inserter(text);
   for (const DeckAssessment& deck : assessment.decks) {
     fmt::format_to(out, "{}: {:.6g} m, first frequency {:.3f} Hz; dynamic analysis {}: {}\n", deck.deck.name,
-                   deck.deck.length(), deck.deck.frequency(0), need_name(deck.need.need), deck.need.reason);
+                   deck.deck.length(), deck.deck.first_frequency(), need_name(deck.need.need), deck.need.reason);
   }
   text += "\n";
   bool open = false;

@@ -11,6 +11,7 @@ namespace railtab::assess {
 namespace {
 
 constexpr double averaged = 2.0, five_feet = 1.524;  // [m]
+constexpr double least_share = 0.05;                 // of Q0 that a wheel carries where its Y/Q counts
 
 /// The steepest place of a wheel profile between the flange tip and the field side, against the horizontal [rad], over
 /// chords of a millimetre at least.
@@ -145,7 +146,9 @@ class WheelJudge : public RunJudge {
         percentiles.add(x - averaged, *mean);  // by where its 2 m begin
       }
       if (const auto mean = shift_5ft.add(x, sum)) raise("track_shift_5ft", *mean, spot, Q0);
-      raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), spot);
+      if (Q[0][k] > least_share * Q0 && Q[1][k] > least_share * Q0) {
+        raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), spot);
+      }
     }
     raise_sections("track_shift_percentile", percentiles, name, Q0);
   }
@@ -179,7 +182,6 @@ class WheelJudge : public RunJudge {
   }
 
   void guided_wheel(std::size_t w, const Series& Q, const Series& Y) {
-    constexpr double least_share = 0.05;  // of Q0, for a quotient
     const double Q0 = header_.static_wheel_load[w];
     TrackMean quotient(averaged), quotient_5ft(five_feet);
     SectionPercentiles quotients = sections(), forces = sections();

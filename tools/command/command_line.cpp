@@ -76,11 +76,11 @@ CommandLine::CommandLine(std::string usage, const po::options_description& own,
                          const std::vector<std::string>& positional, const std::vector<std::string>& arguments)
     : usage_(std::move(usage)), positional_(positional), own_options_(own.options().size()) {
   po::options_description shared("All commands");
-  shared.add_options()("help,h", "print this help")                                       //
-      ("version", "print the version")                                                    //
-      ("threads", text_value("0")->value_name("N"), "threads to use, 0: all processors")  //
-      ("quiet,q", "no progress bar and no text, errors apart")                            //
-      ("json", "print one JSON object on stdout")                                         //
+  shared.add_options()("help,h", "print this help")                                                                  //
+      ("version", "print the version")                                                                               //
+      ("threads", text_value("0")->value_name("N"), "threads of commands that share their work, 0: all processors")  //
+      ("quiet,q", "no progress bar and no text, errors apart")                                                       //
+      ("json", "print one JSON object on stdout")                                                                    //
       ("json-usage", "print this help as JSON");
   all_.add(own).add(shared);
   po::positional_options_description places;

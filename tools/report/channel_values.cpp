@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sliding_mean.hpp"
+#include "railtab/runtime/measures/track_mean.hpp"
 
 namespace railtab::report {
 
@@ -18,7 +18,7 @@ bool sparse(const RunResults& run) {
 
 std::vector<double> sliding_means(const RunResults& run, const std::function<double(const StepRecord&)>& value) {
   constexpr double averaged = 2.0;  // m
-  SlidingMean mean(averaged);
+  TrackMean mean(averaged);
   std::vector<double> means;
   means.reserve(run.steps.size());
   for (const StepRecord& step : run.steps) {

@@ -82,8 +82,8 @@ HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(heade
   for (std::size_t i = 0; i < header.node_names.size(); ++i) {
     if (is_deck(header.node_names[i])) deck_.push_back({i, header.node_names[i]});
   }
-  quotient_.assign(wheels, SlidingMean(averaged));
-  shift_.assign(wheels / 2, SlidingMean(averaged));
+  quotient_.assign(wheels, TrackMean(averaged));
+  shift_.assign(wheels / 2, TrackMean(averaged));
 }
 
 void HeadlineCollector::add_sliding_means(const StepRecord& step) {

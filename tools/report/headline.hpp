@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "railtab/runtime/measures/track_mean.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
-#include "sliding_mean.hpp"
 
 namespace railtab::report {
 
@@ -58,12 +58,12 @@ class HeadlineCollector {
   };
 
   std::vector<std::string> wheel_names_, wheelset_names_;
-  std::vector<Followed> car_bodies_;   // by the names of their vehicles
-  std::vector<Followed> deck_;         // nodes
-  std::vector<SlidingMean> quotient_;  // per wheel
-  std::vector<SlidingMean> shift_;     // per wheelset
-  WheelExtremes recorded_;             // of the recorded steps
-  Headline headline_;                  // without those
+  std::vector<Followed> car_bodies_;  // by the names of their vehicles
+  std::vector<Followed> deck_;        // nodes
+  std::vector<TrackMean> quotient_;   // per wheel
+  std::vector<TrackMean> shift_;      // per wheelset
+  WheelExtremes recorded_;            // of the recorded steps
+  Headline headline_;                 // without those
   double first_position_ = 0.0;
   double last_position_ = 0.0;
   bool any_ = false;

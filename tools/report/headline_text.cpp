@@ -39,13 +39,13 @@ void member(nlohmann::ordered_json& json, const char* name, const Extreme& extre
 std::string contact_energy_text(const ContactEnergy& e) {
   std::string text = fmt::format(
       "Energy of the normal contacts: gained {:.3g} J, {:.3g} J of it by stiffness that varies; most in a step {:.3g} "
-      "J, "
-      "t = {:.4f} s\n",
+      "J, t = {:.4f} s\n",
       e.gain, e.stiffness_work, e.largest_step, e.largest_step_time);
   if (e.impacts > 0) {
-    fmt::format_to(std::back_inserter(text),
-                   "  {} impacts of wheelsets, most in one {:.3g} J of {:.3g} J, t = {:.4f} s\n", e.impacts,
-                   e.largest_impact, e.largest_impact_stored, e.largest_impact_time);
+    const std::string of =
+        e.largest_impact_stored > 0.0 ? fmt::format(" of {:.3g} J", e.largest_impact_stored) : std::string();
+    fmt::format_to(std::back_inserter(text), "  {} impacts of wheelsets, most in one {:.3g} J{}, t = {:.4f} s\n",
+                   e.impacts, e.largest_impact, of, e.largest_impact_time);
   }
   return text;
 }

@@ -162,10 +162,11 @@ std::string model(const ResultHeader& header) {
 std::string resolution_text(const HistoryStore& histories) {
   if (histories.coarsest() == 1) return "Charts hold every record of all channels.";
   return fmt::format(
-      "Charts hold every record of a channel where there are few, else the smallest and the largest value of so many "
-      "records that 40\u00a0000 values are left of the channels shown at first and 2000 of others: of these, of every "
-      "{} "
-      "records. Values are stored in 65\u00a0534 steps of their channel's range.",
+      "Channels that are shown at first have up to 40\u00a0000 values, others 2000. Of a longer channel charts hold "
+      "the "
+      "smallest and the largest value of each group of records, at most {} here. Values are rounded to 1/65\u00a0534 "
+      "of "
+      "their channel's range.",
       histories.coarsest());
 }
 

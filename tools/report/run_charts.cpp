@@ -167,10 +167,11 @@ std::string RunCharts::quotient_mean() {
 
 /// The smallest limit of all wheelsets [EN 14363]: 10 kN + P0/3, P0 the static axle load.
 std::string RunCharts::track_shift() {
-  Chart chart = chart_over(Over::position, "Track shifting force ΣY, mean over 2 m",
-                           "Amount of the mean of both wheels' Y over the last 2 m of way; the limit is that of the "
-                           "lightest wheelset.",
-                           "|ΣY|₂ₘ [kN]");
+  Chart chart =
+      chart_over(Over::position, "Track shift force ΣY, mean over 2 m",
+                 "Amount of the sum of both wheels' Y, its mean over the last 2 m of way; the limit is that of the "
+                 "lightest wheelset.",
+                 "|ΣY|₂ₘ [kN]");
   double lightest = std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (sparse(runs_[r])) continue;

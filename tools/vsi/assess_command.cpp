@@ -220,8 +220,16 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
 /// Speeds of a train's runs: those asked for, or the line's and the critical one below it.
 std::vector<double> contact_speeds(const AssessTrain& train, const Request& request, const Assessment& assessment,
                                    StageReport& report) {
-  if (!request.speeds.empty()) return request.speeds;
   const double line = assessment.facts.line_speed;
+  constexpr double same = 1e-6;
+  if (!request.speeds.empty()) {
+    const bool of_line = std::any_of(request.speeds.begin(), request.speeds.end(),
+                                     [&](double speed) { return std::abs(speed - line) <= same * line; });
+    std::string note = "Runs at the speeds of the command";
+    if (!of_line) note += fmt::format(", none at the line speed, {:.1f} km/h, which no run judges", 3.6 * line);
+    report.notes.push_back(note + ".");
+    return request.speeds;
+  }
   const double critical = std::round(1e3 * governing_speed(train.axles, assessment.decks, line)) / 1e3;
   constexpr double alike = 0.01;
   const std::string of = train.own ? "the train" : train.name;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -23,21 +24,22 @@ namespace {
 using assess::Assessment;
 using assess::RunAssessment;
 
-/// A random track rises from zero, and has done so where the bridge begins.
-void fade_in(ContactPlan& plan) {
+/// The train starts before the bridge. A random track rises from zero, and has done so where the bridge begins.
+void start_before_bridge(const std::vector<assess::DeckAssessment>& decks, ContactPlan& plan) {
   SceneParameters& scene = plan.scene;
-  if (!scene.spectrum) return;
-  std::string note = fmt::format("The random track rises from zero over {:g} m (irregularity.fade_in).",
-                                 scene.spectrum->fade_length());
-  if (const double shortage = scene.train.start + scene.spectrum->fade_length(); shortage > 0.0) {
+  double begin = 0.0;  // of the bridge
+  for (const assess::DeckAssessment& deck : decks) begin = std::min(begin, deck.deck.start);
+  const double rise = scene.spectrum ? scene.spectrum->fade_length() : 0.0;
+  std::string note;
+  if (rise > 0.0) note = fmt::format("The random track rises from zero over {:g} m (irregularity.fade_in).", rise);
+  if (const double shortage = scene.train.start + rise - begin; shortage > 0.0) {
     scene.train.start -= shortage;
     scene.track.length_before += shortage;
-    note += fmt::format(
-        " The train starts {:g} m earlier, at x = {:g} m, so that it has risen where the bridge begins (train.start, "
-        "track.length_before).",
-        shortage, scene.train.start);
+    note += fmt::format("{}The train starts {:g} m earlier, at x = {:g} m, {} (train.start, track.length_before).",
+                        note.empty() ? "" : " ", shortage, scene.train.start,
+                        rise > 0.0 ? "so that it has risen where the bridge begins" : "where the bridge begins");
   }
-  plan.notes.push_back(std::move(note));
+  if (!note.empty()) plan.notes.push_back(std::move(note));
 }
 
 /// Decks vibrate on freely behind the train, at times more than under it.
@@ -45,7 +47,7 @@ void follow_free_vibration(const std::vector<assess::DeckAssessment>& decks, Con
   constexpr double periods = 3.0;
   if (plan.scene.track_kind != TrackKind::flexible) return;
   double lowest = std::numeric_limits<double>::infinity();
-  for (const assess::DeckAssessment& deck : decks) lowest = std::min(lowest, deck.deck.frequency(0));
+  for (const assess::DeckAssessment& deck : decks) lowest = std::min(lowest, deck.deck.first_frequency());
   IntegrationParameters& integration = plan.scene.integration;
   integration.free_vibration = std::max(integration.free_vibration, periods / lowest);
   plan.notes.push_back(
@@ -141,8 +143,11 @@ void follow_deck_of(ContactPlan& plan) {
                         plan.window.deck_cut_off));
 }
 
+/// Runs that lack a measure, by its name and the reason.
+using Gaps = std::map<std::pair<std::string, std::string>, std::vector<std::string>>;
+
 /// Values of a run for the whole assessment.
-void take_up(const ContactPlan& plan, const SweepRun& run, const RunPool& pool, Assessment& assessment) {
+void take_up(const ContactPlan& plan, const SweepRun& run, const RunPool& pool, Assessment& assessment, Gaps& gaps) {
   RunAssessment& entry = assessment.runs.emplace_back();
   entry.name = run.name;
   entry.train = plan.train;
@@ -167,11 +172,20 @@ void take_up(const ContactPlan& plan, const SweepRun& run, const RunPool& pool, 
     assessment.values.push_back(value);
     entry.values.push_back(std::move(value));
   }
-  for (MissingMeasure& missing : measures.missing) {
-    const bool known = std::any_of(assessment.missing.begin(), assessment.missing.end(), [&](const MissingMeasure& m) {
-      return m.measure == missing.measure && m.reason == missing.reason;
+  for (const MissingMeasure& missing : measures.missing) gaps[{missing.measure, missing.reason}].push_back(run.name);
+}
+
+/// A measure that some runs lack and others have is known in part.
+void note_gaps(const Gaps& gaps, Assessment& assessment) {
+  for (const auto& [gap, runs] : gaps) {
+    const auto& [measure, reason] = gap;
+    const bool partly = std::any_of(assessment.values.begin(), assessment.values.end(), [&](const MeasuredValue& v) {
+      return v.measure == measure && v.stage == AssessmentStage::contact;
     });
-    if (!known) assessment.missing.push_back(std::move(missing));
+    const std::string where =
+        runs.size() == 1 ? runs.front() : fmt::format("{} and {} more", runs.front(), runs.size() - 1);
+    assessment.missing.push_back(
+        {measure, AssessmentStage::contact, partly ? fmt::format("{} (run {})", reason, where) : reason, partly});
   }
 }
 
@@ -218,7 +232,7 @@ void add_series(Assessment& assessment) {
 ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::DeckAssessment>& decks,
                          const std::vector<double>& speeds, int seeds) {
   ContactPlan plan{train.name, train.own, *train.scene, {}, {}, {}};
-  fade_in(plan);
+  start_before_bridge(decks, plan);
   follow_free_vibration(decks, plan);
   lengthen_track(train.axles, *std::max_element(speeds.begin(), speeds.end()), plan);
   record_what_is_judged(plan.scene);
@@ -288,9 +302,11 @@ RunCount ContactRuns::count(const PartOf& shard) const {
 
 void ContactRuns::measure(Assessment& assessment) const {
   assessment.window = plans_.front().window;
+  Gaps gaps;
   for (const ContactPlan& plan : plans_) {
-    for (const SweepRun& run : plan.runs) take_up(plan, run, pool_, assessment);
+    for (const SweepRun& run : plan.runs) take_up(plan, run, pool_, assessment, gaps);
   }
+  note_gaps(gaps, assessment);
   note_early_ends(assessment);
   add_series(assessment);
 }

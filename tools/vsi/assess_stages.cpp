@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "over_speed.hpp"
-#include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/moving_load/speed_search.hpp"
 #include "railtab/runtime/moving_load/static_deflection.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
@@ -75,8 +74,8 @@ void check_decks(const SceneParameters& scene, Assessment& assessment) {
   for (ModalDeck& modal : decks_of_scene(scene, {})) {
     DeckAssessment& deck = assessment.decks.emplace_back();
     deck.deck = std::move(modal);
-    const double first = deck.deck.frequency(0);
-    deck.cut_off = cut_off_frequency(first, deck.deck.frequency(std::min(2, deck.deck.modes() - 1)));
+    const double first = deck.deck.first_frequency();
+    deck.cut_off = deck.deck.cut_off();
     const BridgeParameters* span = scene.structure.files.nodes.empty() ? span_at(scene, deck.deck.start) : nullptr;
     if (span) {
       check_span(*span, deck, assessment);

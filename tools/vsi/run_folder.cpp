@@ -47,8 +47,10 @@ bool is_row(const RunRow& run, std::string_view row, std::string_view columns) {
 
 }  // namespace
 
-int code_of_runs(int code, const RunCount& count, std::size_t asked) noexcept {
-  if (code == exit_code::failed && count.finished == asked) code = exit_code::done;
+int code_of_runs(int code, const RunCount& count) noexcept {
+  const bool all = count.finished == count.asked;
+  if (code == exit_code::failed && all) code = exit_code::done;
+  if (code == exit_code::done && !all) code = exit_code::failed;
   return code == exit_code::done && count.ended_early > 0 ? exit_code::failed : code;
 }
 
@@ -70,7 +72,7 @@ std::string message_cell(std::string message) {
 }
 
 RunCount count_rows(const RunPool& pool, const std::vector<RunRow>& runs, std::string_view columns, std::string& rows) {
-  RunCount count;
+  RunCount count{.asked = runs.size()};
   for (const RunRow& run : runs) {
     if (!pool.finished(run.name)) continue;
     const std::string row = read_row(pool, run, columns);

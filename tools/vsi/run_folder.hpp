@@ -18,11 +18,12 @@ struct RunRow {
 };
 
 struct RunCount {
+  std::size_t asked = 0;  ///< different runs
   std::size_t finished = 0, ended_early = 0;
 };
-/// Exit code of a command whose pool has ended with `code`: 1 where runs ended early. Runs that failed because another
-/// process was computing them may have finished there meanwhile. @param asked number of different runs
-[[nodiscard]] int code_of_runs(int code, const RunCount& count, std::size_t asked) noexcept;
+/// Exit code of a command whose pool has ended with `code`: 1 where runs ended early or are not finished. Runs that
+/// failed because another process was computing them may have finished there meanwhile.
+[[nodiscard]] int code_of_runs(int code, const RunCount& count) noexcept;
 
 /// Row of a finished run. @throws InputError naming the file where it is not that row, with all `columns`
 [[nodiscard]] std::string read_row(const RunPool& pool, const RunRow& run, std::string_view columns);

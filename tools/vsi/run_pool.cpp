@@ -174,7 +174,7 @@ int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
                         static_cast<double>(runs.size()));
     }
   }
-  if (!board.stop && board.next < runs.size()) code = std::max(code, failed);
+  if (!board.stop && std::find(told.begin(), told.end(), false) != told.end()) code = std::max(code, failed);
   return asked != 0 ? interrupted : code;
 }
 
@@ -225,7 +225,9 @@ void RunPool::set_aside(const std::string& name, const char* suffix, const std::
     if (k > most) throw input_error(old.string(), fmt::format("{} files set aside", most), "fewer: remove them");
     aside = fmt::format("{}.{}-{}", old.string(), why, k);
   }
-  fs::rename(old, aside);
+  std::error_code gone;  // taken away by another process
+  fs::rename(old, aside, gone);
+  if (gone) return;
   print_message(fmt::format("{}: {}: {} is set aside as {}\n", options_.command, name, old.filename().string(),
                             aside.filename().string()));
 }
@@ -246,11 +248,31 @@ void RunPool::check_results(const std::string& name, const SceneParameters& scen
   }
 }
 
+namespace {
+
+/// Held while results are judged, which another process may be writing. Not held where nobody can write them.
+/// @throws FileInUse
+WriterLock lock_of(const fs::path& results) {
+  WriterLock lock;
+  try {
+    lock = WriterLock(results);
+  } catch (const FileInUse&) {
+    throw;
+  } catch (const InputError&) {
+    return lock;
+  }
+  if (lock.is_of(results)) return lock;
+  throw FileInUse(fmt::format("{}: was replaced by another process", results.string()));
+}
+
+}  // namespace
+
 /// Results that cannot be read, cut off by a full disk or a kill, or that are another run's would stand in the way of
 /// their run for good; and a row is only believed beside its results.
 void RunPool::set_others_aside(const std::string& name, const SceneParameters& scene) const {
   std::string why = "alone";
   if (fs::exists(file(name, ".h5"))) {
+    const WriterLock lock = lock_of(file(name, ".h5"));
     try {
       check_results(name, scene);
       return;

@@ -74,7 +74,7 @@ int run_shard(const StudyPlan& plan, StudyRuns& runs, const PartOf& shard, const
         "the results of all\n",
         shard.index, shard.count, count.finished, own.size(), count.ended_early);
   }
-  return code_of_runs(code, count, own.size());
+  return code_of_runs(code, count);
 }
 
 /// @return exit code of the runs
@@ -117,7 +117,7 @@ int report_study(const StudyPlan& plan, const SceneParameters& scene, const Stud
     print_formatted("{}{} runs finished, {} of them ended early: {}\n", study_text(report), report.count.finished,
                     report.count.ended_early, (folder / "runs.csv").string());
   }
-  return code_of_runs(code, report.count, result.points.size());
+  return code_of_runs(code, report.count);
 }
 
 int run_study(const StudyPlan& plan, const CommandLine& line) {

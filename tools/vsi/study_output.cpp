@@ -291,9 +291,14 @@ std::string exceedance_text(const StudyPlan& plan, const StudyResult& result) {
   const FragilityFit& f = *result.fragility;
   const std::string unit = plan.variables[plan.intensity].unit;
   if (!f.curve) {
-    return text +
-           "  no fragility curve: the likelihood has no finite maximum; runs at intensities between those "
-           "without and those with nothing but exceedances are missing\n";
+    const auto no_run = [&](auto of) { return std::none_of(result.exceedance.begin(), result.exceedance.end(), of); };
+    const bool none = no_run([](const ExceedanceCount& e) { return e.exceeded > 0; });
+    const bool all = no_run([](const ExceedanceCount& e) { return e.exceeded < e.runs; });
+    return text + fmt::format("  no fragility curve: the likelihood has no finite maximum; {}\n",
+                              none  ? "no run exceeds the limit: higher intensities, or a lower limit"
+                              : all ? "every run exceeds the limit: lower intensities, or a higher limit"
+                                    : "runs at intensities between those without and those with nothing but "
+                                      "exceedances are missing");
   }
   text += fmt::format("  lognormal curve: median {:.5g} {}, logarithmic deviation {:.4g}\n", f.curve->median, unit,
                       f.curve->deviation);

@@ -402,6 +402,22 @@ double StudyKey::value(double x) const noexcept {
 
 bool StudyVariable::numeric() const noexcept { return random() || !values.front().other; }
 
+namespace {
+
+void check_size(const StudyPlan& plan) {
+  constexpr double most = 1e6;
+  double points = static_cast<double>(std::max<std::size_t>(plan.sampling.samples, 1));
+  for (const StudyVariable& variable : plan.variables) {
+    if (!variable.random()) points *= static_cast<double>(variable.values.size());
+  }
+  if (points <= most) return;
+  throw input_error(fmt::format("{}: [[vary]]", plan.file.string()),
+                    fmt::format("{:.6g} points of all values together, times sampling.samples", points),
+                    fmt::format("at most {:.0f}", most));
+}
+
+}  // namespace
+
 StudyPlan read_study_plan(const std::filesystem::path& file) {
   StudyPlan plan;
   plan.file = file;
@@ -432,6 +448,7 @@ StudyPlan read_study_plan(const std::filesystem::path& file) {
   check_variables(root, plan);
   std::optional<TomlSection> sampling = root.find_section("sampling");
   if (sampling) read_sampling(*sampling, plan);
+  check_size(plan);
   root.reject_others();
   return plan;
 }

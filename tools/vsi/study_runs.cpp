@@ -13,7 +13,6 @@
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
-#include "railtab/runtime/moving_load/deck_modes.hpp"
 #include "railtab/runtime/reliability/sampling.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -69,8 +68,7 @@ double cut_off_of(const SceneParameters& scene) {
   double cut_off = assess::RunWindow{}.deck_cut_off;
   if (scene.spans.empty() && scene.structure.files.nodes.empty()) return cut_off;
   for (const ModalDeck& deck : decks_of_scene(scene, DynamicModes{})) {
-    const double third = deck.frequency(std::min(2, deck.modes() - 1));
-    cut_off = std::max(cut_off, cut_off_frequency(deck.frequency(0), third));
+    cut_off = std::max(cut_off, deck.cut_off());
   }
   return cut_off;
 }
@@ -91,7 +89,14 @@ std::string in_scene(const StudyKey& key, const StudyValue& value) {
 }
 
 /// @throws InputError where no run could have the measure
-void require_deck_of_measure(const StudyPlan& plan, const SceneParameters& scene) {
+void require_measure(const StudyPlan& plan, const SceneParameters& scene) {
+  const auto begins = [&](auto... of) { return (plan.measure.starts_with(of) || ...); };
+  const bool lateral = begins("derailment", "track_shift", "guiding_force", "weinstock");
+  if (lateral && scene.contact.normal == NormalContact::rigid) {
+    throw input_error(plan.measure_place + ".measure", fmt::format("\"{}\"", plan.measure),
+                      fmt::format("one without lateral forces, or a scene with them: {} has contact.normal = \"rigid\"",
+                                  plan.scene_file.string()));
+  }
   const bool of_deck =
       plan.measure.starts_with("deck_") || plan.measure == "track_twist" || plan.measure == "horizontal_rotation";
   if (!of_deck || !scene.spans.empty() || scene.structure.files.given()) return;
@@ -242,7 +247,7 @@ SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
 void StudyRuns::check(const std::vector<StudyPoint>& points) const {
   for (const StudyPoint& point : points) {
     try {
-      require_deck_of_measure(plan_, scene_of(point));
+      require_measure(plan_, scene_of(point));
     } catch (const InputError& wrong) {
       throw with_plan_line(wrong, plan_);
     }

@@ -122,7 +122,7 @@ int sweep_command(const Arguments& arguments) {
         others == 1 ? "" : "s", others == 1 ? "is" : "are"));
   }
   if (code == interrupted) print_message("vsi sweep: interrupted; the same command goes on\n");
-  return code_of_runs(code, count, (whole ? all : own).size());
+  return code_of_runs(code, count);
 }
 
 }  // namespace railtab::vsi

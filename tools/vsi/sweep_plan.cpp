@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "run_folder.hpp"
@@ -72,12 +73,13 @@ std::vector<SweepRun> sweep_runs(const SceneParameters& scene, const std::vector
                       fmt::format("at most {} runs", most_runs));
   }
   std::vector<SweepRun> runs;
+  std::set<std::string> names;
   for (double speed : speeds) {
     for (int k = 0; k < seeds; ++k) {
       const int seed = scene.spectrum ? scene.spectrum->seed + k : 0;
       std::string name = fmt::format("v{:07.3f}", speed);
       if (scene.spectrum) name += fmt::format("-s{:03}", seed);
-      if (!runs.empty() && runs.back().name == name) {
+      if (!names.insert(name).second) {
         throw input_error("speeds", fmt::format("two runs of the name {}", name),
                           "steps of at least 0.001 m/s (0.0036 km/h)");
       }
