@@ -368,7 +368,7 @@ railtab_status railtab_contact_height(const railtab_contact* contact, int side, 
     const railtab::WheelsetPose right{y, 0.0, roll, yaw};
     const railtab::WheelsetPose pose = *of_side == railtab::WheelSide::right ? right : right.mirrored();
     *z = lowered_pose(contact->table.patches.search(), contact->table.geometry, pose, railtab::Lowering::under_load,
-                      load, [] { return "railtab_contact_height"; })
+                      load, contact->model.normal, [] { return "railtab_contact_height"; })
              .pose.z;
     return RAILTAB_OK;
   });

@@ -51,6 +51,7 @@ class Poses {
     if (by_ == By::height) return pose;
     return lowered_pose(geometry_.search(), geometry_.contact(), pose,
                         by_ == By::lowering ? Lowering::given : Lowering::under_load, vertical,
+                        table_material(geometry_.contact()),
                         [&] { return fmt::format("{}: query {}", rows_.call(), i); })
         .pose;
   }
@@ -73,7 +74,8 @@ py::array_t<ContactRow> array_of(std::vector<ContactRow> rows) {
 void append_contacts(const Geometry& geometry, const WheelsetPose& pose, std::int64_t query,
                      std::vector<ContactRow>& rows) {
   const ContactPatches patches = geometry.patches(pose);
-  const std::array<PatchLoading, ContactPatches::capacity> loads = patch_loadings(geometry.contact(), pose, patches);
+  const std::array<PatchLoading, ContactPatches::capacity> loads =
+      patch_loadings(geometry.contact(), pose, patches, table_material(geometry.contact()));
   for (int i = 0; i < patches.count; ++i) {
     const ContactPatch& p = patches.patch[static_cast<std::size_t>(i)];
     const PatchLoading& load = loads[static_cast<std::size_t>(i)];
@@ -105,7 +107,7 @@ py::array_t<double> rail_force(const Geometry& geometry, const Doubles& y, const
   const py::gil_scoped_release release;
   for (py::ssize_t i = 0; i < poses.rows().count(); ++i, out += 3) {
     Eigen::Map<Vector3> force(out);
-    force = frictionless_force(geometry.contact(), poses(i));
+    force = frictionless_force(geometry.contact(), poses(i), table_material(geometry.contact()));
   }
   return result;
 }
@@ -135,9 +137,10 @@ py::dict table_info(const TableGeometry& geometry) {
                 "lateral"_a = py::make_tuple(data.lateral.low, data.lateral.high),
                 "largest_yaw"_a = std::sqrt(data.yaw_squared.high),
                 "roll"_a = py::make_tuple(data.roll.low, data.roll.high),
-                "loaded"_a = geometry.contact().loaded() != nullptr, "bytes"_a = geometry.table().bytes(),
-                "program_version"_a = data.provenance.program_version, "command_line"_a = data.provenance.command_line,
-                "created"_a = data.provenance.created);
+                "loaded"_a = geometry.contact().loaded() != nullptr,
+                "unused_loaded_error"_a = geometry.contact().unused_loaded_error(),
+                "bytes"_a = geometry.table().bytes(), "program_version"_a = data.provenance.program_version,
+                "command_line"_a = data.provenance.command_line, "created"_a = data.provenance.created);
   for (const auto& [name, value] : data.statistics) info[py::str(name)] = value;
   return info;
 }

@@ -25,6 +25,9 @@ std::string difference_of_parts(const GeometryTableData& p, const GeometryTableD
   }
   if (p.lateral != q.lateral || p.yaw_squared != q.yaw_squared || p.roll != q.roll) return "other axes";
   if (p.tolerance != q.tolerance || p.statistics != q.statistics) return "other options";
+  if (p.provenance.program_version != q.provenance.program_version) {
+    return fmt::format("another version of the program ({})", q.provenance.program_version);
+  }
   return {};
 }
 

@@ -118,6 +118,12 @@ void certify(const ContactSearch& search, const LoadedSweepOptions& options, Loa
   LoadedVerificationOptions check;
   check.material = options.contact.wheel;
   const LoadedVerification found = verify_loaded_table(search, LoadedTable(table), check);
+  if (found.above_5_kn == 0) {
+    throw ComputationError(
+        fmt::format("loaded table: none of the {} random poses of its check carries more than 5 kN within the table: a "
+                    "greater --largest-load, or wider ranges; the columns solved are kept",
+                    found.samples));
+  }
   table.statistics.emplace_back("certified.samples", found.samples);
   table.statistics.emplace_back("certified.answered", found.answered);
   add_certified_errors(found, table.statistics);
@@ -128,6 +134,7 @@ void certify(const ContactSearch& search, const LoadedSweepOptions& options, Loa
 void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOptions& options,
                       const TableProvenance& provenance, const Progress& progress) {
   options.validate();
+  const std::string made_of = array_file_checksum(file);
   GeometryTableData table = read_geometry_table(file);
   if (!table.shard.whole()) throw input_error(file.string(), "a part of a table", "a whole one: merge the parts first");
   const TableContact contact = in_file(file.string(), [&table] { return TableContact(GeometryTable(table)); });
@@ -156,6 +163,10 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
   store.keep = append;
   table.loaded = sweep_loaded(contact.search(), options, std::move(store), progress);
   certify(contact.search(), options, *table.loaded);
+  if (array_file_checksum(file) != made_of) {
+    throw input_error(file.string(), "another table than when the command began",
+                      "that table until the command ends: the same command makes the loaded part of the new one");
+  }
   write_geometry_table(file, table);
   if (out) out->close();
   std::filesystem::remove(partial);

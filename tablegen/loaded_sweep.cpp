@@ -98,8 +98,12 @@ class LoadedSweep {
     yaw_squared_ = yaw_squared_nodes(options.yaw, options.yaw_nodes);
     column_.contact = options.contact;
     column_.levels = options.levels;
-    column_.largest_level =
-        std::pow(contact_at_load(search, {}, options.largest_load, options.contact).contact.elastic_energy, 0.2);
+    const ContactAtLoad most = contact_at_load(search, {}, options.largest_load, options.contact);
+    if (!most.converged) {
+      throw ComputationError(
+          fmt::format("loaded table: no solution under --largest-load {} N at y = 0", options.largest_load));
+    }
+    column_.largest_level = std::pow(most.contact.elastic_energy, 0.2);
     set_roll(2);
     if (pressures_agree_over_roll()) set_roll(1);
   }

@@ -123,7 +123,8 @@ std::optional<GeometryTableData> earlier_part(const std::filesystem::path& file,
 }
 
 GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySweepOptions& options, int refinement,
-                                 const std::filesystem::path& file, const Progress& progress) {
+                                 const TableProvenance& provenance, const std::filesystem::path& file,
+                                 const Progress& progress) {
   GeometrySweepOptions own = options;
   const auto count =
       static_cast<int>(std::min<std::int64_t>(parts_of_a_table, root_cells(geometry_heading(search, options))));
@@ -131,11 +132,14 @@ GeometryTableData sweep_in_parts(const ContactSearch& search, const GeometrySwee
   for (int part = 1; part <= count; ++part) {
     own.shard = {part, count};
     const std::filesystem::path place = part_file(file, refinement, part);
-    std::optional<GeometryTableData> found = earlier_part(place, geometry_heading(search, own));
+    GeometryTableData heading = geometry_heading(search, own);
+    heading.provenance = provenance;
+    std::optional<GeometryTableData> found = earlier_part(place, heading);
     if (!found) {
       found = sweep_geometry(search, own, [&](double share) {
         if (progress) progress((part - 1 + share) / count);
       });
+      found->provenance = provenance;
       if (!is_taken(place)) write_geometry_table(place, *found);
     }
     parts.push_back(std::move(*found));
@@ -177,7 +181,7 @@ void generate_geometry_table_file(const ContactSearch& search, const GeometrySwe
   GeometryTableData table;
   if (options.shard.whole()) {
     table = refined_until_it_meets_tolerance(options, [&](const GeometrySweepOptions& current, int refinement) {
-      return sweep_in_parts(search, current, refinement, file, progress);
+      return sweep_in_parts(search, current, refinement, provenance, file, progress);
     });
   } else {
     table = sweep_geometry(search, options, progress);

@@ -22,6 +22,12 @@ struct ProfileKnots {
   std::vector<double> dy, dz;  ///< dy/ds, dz/ds [-]
   /// What was done to the points of a profile file when it was read, for the user; part of the provenance.
   std::vector<std::string> notes = {};
+  std::string inclination = {};  ///< of a built-in rail, "1:40" or "upright"; empty: that of the points of its file
 };
+
+/// "S1002", "60E1 1:40".
+[[nodiscard]] inline std::string profile_in_words(const ProfileKnots& profile) {
+  return profile.inclination.empty() ? profile.name : profile.name + " " + profile.inclination;
+}
 
 }  // namespace railtab

@@ -45,7 +45,7 @@ class Results(Mapping):
     def __getitem__(self, name: str) -> numpy.ndarray:
         data = self._dataset(name)
         rows = data[: self._records] if "rows" in data.attrs else data[()]
-        return rows.astype(str) if data.dtype.kind == "S" else rows
+        return numpy.char.decode(rows, "utf-8") if data.dtype.kind == "S" else rows
 
     def __iter__(self) -> Iterator[str]:
         names: list[str] = []

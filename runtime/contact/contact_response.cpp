@@ -7,6 +7,13 @@
 
 namespace railtab {
 
+namespace {
+
+/// Whether the force is the mean over a step at whose start there are patches.
+bool starts_by_patches(const StepRates& rates) { return rates.start && rates.start->count > 0; }
+
+}  // namespace
+
 WheelContact wheel_contact(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept {
   WheelContact contact;
   contact.pose = pose;
@@ -69,8 +76,8 @@ Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, cons
                             const RailHeadMotion& rail, const WheelContact& contact, const StepRates& rates) noexcept {
   const double share = contact.loaded.table_share;
   Matrix9 tangent = Matrix9::Zero();
-  if (contact.by_patches()) {
-    tangent = (1.0 - share) * wheel_force_tangent(model, side, wheelset, rail, contact.patches, rates);
+  if (contact.by_patches() || starts_by_patches(rates)) {
+    tangent = wheel_force_tangent(model, side, wheelset, rail, contact.patches, rates, 1.0 - share);
   }
   const LoadedMemory* start = rates.start ? &rates.start->loaded : nullptr;
   if (share > 0.0 || (start && start->weight > 0.0)) {
@@ -93,14 +100,14 @@ WheelResponse wheel_response(const WheelContactModel& model, WheelSide side, con
   if (geometry.loaded()) {
     LoadedSlopes slopes;
     result.contact.loaded = geometry.loaded()->lookup(p.y, p.z, p.roll, p.yaw, slopes);
-    if (!result.contact.by_patches()) {
+    if (!result.contact.by_patches() && !starts_by_patches(rates)) {
       const LoadedMemory* start = rates.start ? &rates.start->loaded : nullptr;
       static_cast<LoadedWheelResponse&>(result) =
           loaded_wheel_response(model, side, wheelset, rail, result.contact.loaded, slopes, rates, start);
       return result;
     }
   }
-  result.contact.patches = geometry.patches(p);
+  if (result.contact.by_patches()) result.contact.patches = geometry.patches(p);
   result.force = wheel_force(model, side, wheelset, rail, result.contact);
   result.tangent = wheel_force_tangent(model, side, wheelset, rail, result.contact, rates);
   return result;

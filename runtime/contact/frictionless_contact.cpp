@@ -11,9 +11,19 @@
 
 namespace railtab {
 
-Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept {
+NormalContactModel table_material(const ContactGeometry& geometry) noexcept {
+  NormalContactModel normal;
+  if (!geometry.loaded()) return normal;
+  const double nu = normal.material.nu;
+  normal.material.E = 2.0 * (1.0 - nu * nu) * geometry.loaded()->data().contact_modulus;
+  return normal;
+}
+
+Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose,
+                           const NormalContactModel& normal) noexcept {
   WheelContactModel model;
   model.geometry = &geometry;
+  model.normal = normal;
   model.friction = 0.0;
   model.speed = 1.0;
   WheelsetMotion motion;
@@ -21,11 +31,12 @@ Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& 
   return wheel_force(model, WheelSide::right, motion, {}, wheel_contact(geometry, pose)).rail;
 }
 
-std::optional<double> lowering_under_load(const ContactGeometry& geometry, const WheelsetPose& touch, double load) {
+std::optional<double> lowering_under_load(const ContactGeometry& geometry, const WheelsetPose& touch, double load,
+                                          const NormalContactModel& normal) {
   WheelsetPose pose = touch;
   const auto excess = [&](double dz) {
     pose.z = touch.z + dz;
-    return frictionless_force(geometry, pose)[1] - load;
+    return frictionless_force(geometry, pose, normal)[1] - load;
   };
   double low = 0.0, high = 1e-6, at_high = excess(high), at_low = -load;
   while (at_high < 0.0 && high < deepest_lowering) {
@@ -42,7 +53,8 @@ std::optional<double> lowering_under_load(const ContactGeometry& geometry, const
 }
 
 LoweredPose lowered_pose(const ContactSearch& search, const ContactGeometry& geometry, const WheelsetPose& at,
-                         Lowering by, double value, const std::function<std::string()>& place) {
+                         Lowering by, double value, const NormalContactModel& normal,
+                         const std::function<std::string()>& place) {
   if (by == Lowering::given && !(value >= 0.0 && value <= deepest_lowering)) {
     throw input_error(place(), fmt::format("dz = {}", value),
                       fmt::format("0 to {} m below first touch", deepest_lowering));
@@ -60,7 +72,7 @@ LoweredPose lowered_pose(const ContactSearch& search, const ContactGeometry& geo
       throw input_error(place(), fmt::format("load = {}", value),
                         fmt::format("above 0, at most {} N", largest_query_load));
     }
-    const std::optional<double> lowering = lowering_under_load(geometry, result.pose, value);
+    const std::optional<double> lowering = lowering_under_load(geometry, result.pose, value, normal);
     if (!lowering) {
       throw input_error(place(),
                         fmt::format("load = {} N, not carried {} m below first touch", value, deepest_lowering),

@@ -19,15 +19,20 @@ inline constexpr double largest_query_load = 1e7;
 /// Rounding of the height of first touch [m]: a wheel that just touches has its patch.
 inline constexpr double touch_rounding = 1e-13;
 
+/// Normal contact of the steel that a geometry's loaded table was made for, else of the default one. Forces without
+/// friction depend on the contact modulus alone.
+[[nodiscard]] NormalContactModel table_material(const ContactGeometry& geometry) noexcept;
+
 /// Force on the rail (y, z) [N] and its moment about x through the rail-head origin [N m] of a right wheel that rests
-/// at a pose, without friction.
-[[nodiscard]] Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose) noexcept;
+/// at a pose, without friction. @pre a loaded table has the contact modulus of `normal`
+[[nodiscard]] Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose,
+                                         const NormalContactModel& normal) noexcept;
 
 /// The lowering below first touch at which the wheel carries a vertical load [m], 0 to deepest_lowering; none where the
 /// contact does not carry it there.
 /// @param touch the pose at first touch @param load above 0 [N]
 [[nodiscard]] std::optional<double> lowering_under_load(const ContactGeometry& geometry, const WheelsetPose& touch,
-                                                        double load);
+                                                        double load, const NormalContactModel& normal);
 
 /// How a query says where a wheel is.
 enum class Lowering { given, under_load };
@@ -43,7 +48,7 @@ struct LoweredPose {
 /// @throws InputError where wheel and rail never meet, or the value is out of range
 [[nodiscard]] LoweredPose lowered_pose(const ContactSearch& search, const ContactGeometry& geometry,
                                        const WheelsetPose& at, Lowering by, double value,
-                                       const std::function<std::string()>& place);
+                                       const NormalContactModel& normal, const std::function<std::string()>& place);
 
 /// What carries the load in one patch: normal force [N], semi-axes along and across the rolling direction [m], largest
 /// pressure [Pa]. Zero where the patch bears nothing.
@@ -55,6 +60,6 @@ struct PatchLoading {
 /// part, Hertz's ellipse of patch_loads().
 [[nodiscard]] std::array<PatchLoading, ContactPatches::capacity> patch_loadings(
     const ContactGeometry& geometry, const WheelsetPose& pose, const ContactPatches& patches,
-    const NormalContactModel& normal = {}) noexcept;
+    const NormalContactModel& normal) noexcept;
 
 }  // namespace railtab

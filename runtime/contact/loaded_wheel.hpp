@@ -37,9 +37,10 @@ struct LoadedWheelForce : WheelForce {
 [[nodiscard]] ContactPatches loaded_patches(const WheelRailPair& pair, const WheelsetPose& pose,
                                             const LoadedLookup& lookup) noexcept;
 
-/// Mean over a time step, from its start to the state of `lookup`: of the elastic forces the discrete gradient of the
-/// energy [Gonzalez1996], F̄ = ½(F₀ + F₁) + (U₁ − U₀ − ½(F₀ + F₁)·Δq) M⁻¹Δq/(Δq·M⁻¹Δq), whose work is the change of
-/// the energy; of creep and damping forces the mean of both ends, in proportion to the normal force's.
+/// Mean over a time step, from its start to the state of `lookup`, with the table's shares w at both ends: of the
+/// elastic forces F̄ = ½(w₀F₀ + w₁F₁) + w₀w₁ (U₁ − U₀ − ½(F₀ + F₁)·Δq) M⁻¹Δq/(Δq·M⁻¹Δq), within the table the discrete
+/// gradient of the energy [Gonzalez1996], whose work is the change of the energy; of creep and damping forces the mean
+/// of both ends, in proportion to the normal force's.
 [[nodiscard]] Vector9 loaded_mean_force(const WheelContactModel& model, WheelSide side, const LoadedMemory& start,
                                         const WheelsetMotion& wheelset, const RailHeadMotion& rail,
                                         const LoadedLookup& lookup) noexcept;

@@ -197,17 +197,21 @@ std::optional<PatchLoads> combined_loads(const PatchLoads& here, const WheelsetP
 }  // namespace
 
 Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side, const WheelsetMotion& wheelset,
-                            const RailHeadMotion& rail, const ContactPatches& patches,
-                            const StepRates& rates) noexcept {
+                            const RailHeadMotion& rail, const ContactPatches& patches, const StepRates& rates,
+                            double share) noexcept {
   Matrix9 tangent = Matrix9::Zero();
   if (patches.count == 0 && (!rates.start || rates.start->count == 0)) return tangent;
   const WheelRailPair& pair = model.geometry->pair();
   const WheelsetPose pose = relative_pose(pair, side, wheelset, rail);
   const auto total = [&](const WheelsetPose& at, const ContactPatches& p, const WheelForce& f) -> Vector9 {
-    if (rates.start) return mean_force(pair, *rates.start, at, p, f);
+    if (rates.start) {  // whose patches have their share already
+      WheelForce end = f;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(p.count); ++i) end.patch[i] *= share;
+      return mean_force(pair, *rates.start, at, p, end);
+    }
     Vector9 sum;
     sum << f.wheelset, f.rail;
-    return sum;
+    return share * sum;
   };
   const PatchLoads loads = patch_loads(model.normal, *model.geometry, pose, patches);
   const Vector9 here = total(pose, patches, wheel_force(model, side, wheelset, rail, loads));

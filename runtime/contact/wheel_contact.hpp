@@ -112,8 +112,10 @@ struct StepRates {
 /// Derivative of (wheelset force 6, rail force 3) with respect to (wheelset displacement 6, rail displacement 3) in a
 /// time step. By differences of the force itself along the wheelset's motions and the rail's roll; the rail's
 /// translations follow, since only relative motion matters, and so do the loads when the rail rolls.
+/// @param share of the patches in the contact; those at the start of a mean force have theirs
 [[nodiscard]] Matrix9 wheel_force_tangent(const WheelContactModel& model, WheelSide side,
                                           const WheelsetMotion& wheelset, const RailHeadMotion& rail,
-                                          const ContactPatches& patches, const StepRates& rates) noexcept;
+                                          const ContactPatches& patches, const StepRates& rates,
+                                          double share = 1.0) noexcept;
 
 }  // namespace railtab

@@ -81,7 +81,10 @@ ProfileKnots standard_profile(ProfileKind kind, std::string_view name, double ra
   for (const Entry& e : entries) {
     if (e.kind == kind &&
         (same_ignoring_case(name, e.name) || (!e.alias.empty() && same_ignoring_case(name, e.alias)))) {
-      return spline_segments(kind, std::string(e.name), e.segments(rail_inclination));
+      ProfileKnots knots = spline_segments(kind, std::string(e.name), e.segments(rail_inclination));
+      if (!wheel)
+        knots.inclination = rail_inclination > 0.0 ? fmt::format("1:{:.6g}", 1.0 / rail_inclination) : "upright";
+      return knots;
     }
   }
   throw input_error(wheel ? "wheel profile" : "rail profile", fmt::format("\"{}\"", name),

@@ -73,7 +73,7 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, Model
       const WheelRailPair& pair = geometry->pair();
       const std::string coaches = model.wheelset_geometry.empty() ? "" : "coach " + coaches_on(model, *geometry) + ": ";
       plan.built.push_back(fmt::format("{}contact geometry: {}, {} on {}", coaches, contact_mode_name(scene.contact),
-                                       pair.wheel().knots().name, pair.rail().knots().name));
+                                       profile_in_words(pair.wheel().knots()), profile_in_words(pair.rail().knots())));
       plan.built.push_back(coaches +
                            (geometry->loaded()
                                 ? "elastic contact forces: half-space solutions, from the loaded part of the table"

@@ -60,7 +60,8 @@ std::string start(const SceneParameters& scene, OperatorLevels& operators, const
     const bool jumps = model.geometry && model.geometry->is_paper();
     const IntegrationParameters pre_roll = jumps ? scene.integration : pre_roll_parameters(scene.integration);
     VsiState early(model);
-    early.time = -static_cast<double>(before) * scene.integration.time_step;
+    const double early_begin = -static_cast<double>(before) * scene.integration.time_step;
+    early.time = early_begin;
     const EquilibriumReport rest = steady_start(at_rest, early);
     RunSummary rolled;
     if (rest.converged) rolled = simulate(operators, pre_roll, 0.0, 1, early, {});
@@ -70,6 +71,10 @@ std::string start(const SceneParameters& scene, OperatorLevels& operators, const
       state = std::move(early);
       return {};
     }
+    warn(
+        fmt::format("the pre-roll over {:.2g} s fails ({}): the run begins without it, and its first forces lack what "
+                    "the sleepers excite",
+                    -early_begin, rest.converged ? rolled.message : "no equilibrium where it begins"));
   }
   const EquilibriumReport rest = steady_start(at_rest, state);
   if (!rest.converged) return no_equilibrium_message(at_rest, rest, state.time);

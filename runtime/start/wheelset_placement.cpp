@@ -7,6 +7,7 @@
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
+#include "railtab/runtime/vsi/step.hpp"
 
 namespace railtab {
 
@@ -203,6 +204,7 @@ bool displace_train(const VsiModel& model, double shift, double yaw, VsiState& s
     motion.displacement[dof[2]] = displacement[wheelset_unknowns * w + 2];
     if (dof[3] != held) motion.displacement[dof[3]] = displacement[wheelset_unknowns * w + 3];
   }
+  evaluate_contact_at(model, state);
   return true;
 }
 

@@ -395,9 +395,11 @@ class TrainNewton {
     constexpr double most = 20.0, accepted_error = 0.5;  // of the force tolerance
     constexpr double growth = 1.2;
     constexpr double least_load = 10.0;  // of the change: the tangent of a wheel about to lift holds no further
+    constexpr double most_slip = 1e-4;   // creepage: less than from sticking to sliding, whose tangent holds no further
     if (problem_.start || problem_.wheelsets_per_group > 1 || !ws_.found.empty()) return false;
     GroupNewton& n = ws_.group[index(g)];
     double& error = ws_.tangent_error[index(g)];
+    if (largest_slip_change(g) > most_slip) return false;
     const double sum = n.extrapolated + of_forces;
     const double lighter = std::min(s_.end_force[rail_unknown(2 * g) + 1], s_.end_force[rail_unknown(2 * g + 1) + 1]);
     if (lighter < least_load * sum || sum >= most * limits_.force_tolerance ||
@@ -410,6 +412,19 @@ class TrainNewton {
     part_of(s_.force, g) += part_of(ws_.force_change, g);
     part_of(s_.end_force, g) += part_of(ws_.force_change, g);
     return true;
+  }
+
+  // How much a correction changes the creepages of a wheelset at most. A train at walking pace slides after a move of a
+  // tenth of a micrometre.
+  [[nodiscard]] double largest_slip_change(int g) const {
+    const auto c = ws_.correction.segment<wheelset_unknowns>(wheelset_unknowns * g);
+    const double radius = train_[g].geometry->pair().nominal_radius();
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      largest = std::max(largest, std::abs(problem_.velocity_rate[k] * c[k]) * (k < 3 ? 1.0 : radius));
+    }
+    const double of_rails = problem_.rail_velocity_rate * c.tail<6>().cwiseAbs().maxCoeff();
+    return std::max(largest, of_rails) / train_[g].creepage_speed();
   }
 
   // How much closer a correction brings wheel and rail at most [m]. Up to first_order_, a patch that it makes bears no

@@ -187,12 +187,12 @@ NewtonReport evaluate_contact(const TrainContact& train, const ContactProblem& p
 /// inverses in the workspace it is made first of all. A group that has converged rests while others iterate, unless its
 /// neighbours disturb it. A correction that changes forces little is made by the tangent alone, without a further
 /// evaluation, if its error is less than half the force tolerance by the errors that the tangent has shown in the last
-/// evaluations, and both wheels carry ten times that change. What else the solution holds of the contacts, such as the
-/// patches' normal forces, then belongs to a displacement at which forces differ by at most 20 tolerances. The
-/// published method's pairs jump as a wheel moves: they are searched in the first evaluations and then held, each
-/// moving with its bodies' particles, so that Newton ends on forces that are smooth. Converged: the residual is below
-/// the tolerance or the next correction below one of the limits; the forces are those at the displacement, or by the
-/// tangent.
+/// evaluations, both wheels carry ten times that change, and no creepage changes by more than 10⁻⁴. What else the
+/// solution holds of the contacts, such as the patches' normal forces, then belongs to a displacement at which forces
+/// differ by at most 20 tolerances. The published method's pairs jump as a wheel moves: they are searched in the first
+/// evaluations and then held, each moving with its bodies' particles, so that Newton ends on forces that are smooth.
+/// Converged: the residual is below the tolerance or the next correction below one of the limits; the forces are those
+/// at the displacement, or by the tangent.
 [[nodiscard]] NewtonReport solve_contact(const TrainContact& train, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
                                          NewtonWorkspace& workspace, InitialForces forces = InitialForces::unknown);

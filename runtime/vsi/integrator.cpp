@@ -195,7 +195,10 @@ void Integrator::reinitialise(VsiState& state) {
   if (force_rule_.may_keep_energy()) evaluate_contact_at(model_, state);
   if (account_ || (!energy_ && !contact_energy_) || model_.normal_contact != NormalContact::hertz) return;
   account_.emplace(model_, state);
-  if (contact_energy_) energy_record_.emplace(*account_, state);
+  if (!contact_energy_) return;
+  VsiState at = state;  // which wheels touch is no part of a resumed state
+  if (!force_rule_.may_keep_energy()) evaluate_contact_at(model_, at);
+  energy_record_.emplace(*account_, at);
 }
 
 }  // namespace railtab

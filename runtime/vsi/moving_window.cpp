@@ -187,7 +187,7 @@ DofRange MovingWindow::move(VsiState& state) {
   const DofRange range = dofs_between(model_.structure->dof_x, now.from, now.to);
   from_ = now.from;
   to_ = now.to;
-  if (placed_ && now == before) return range;
+  if (placed_ && (now == before || step == moved_at_)) return range;
   LinearMotion& structure = state.structure;
   const std::array motions{&structure.displacement, &structure.velocity, &structure.acceleration};
   Eigen::VectorXd lost = structure.displacement;  // what no mode keeps of it
@@ -218,6 +218,7 @@ DofRange MovingWindow::move(VsiState& state) {
   hold_outside(range);
   if (model_.ground_motion && now != before) join(old, before.to, left, range, state);
   placed_ = true;
+  moved_at_ = step;
   return range;
 }
 

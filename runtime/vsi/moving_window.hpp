@@ -75,6 +75,7 @@ class MovingWindow {
   std::vector<Followed> followed_;           // of every span
   std::vector<Eigen::VectorXd> compliance_;  // of every span's modes in a step
   bool placed_ = false;
+  long moved_at_ = 0;  // step of the last move, which a run prepares for and then makes
   double from_ = 0.0, to_ = 0.0, error_ = 0.0;
 };
 

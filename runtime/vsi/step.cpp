@@ -178,6 +178,7 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   }
   if (model.structure) set_rail_forces(contacts, now.end_force, state.structure);
   state.contact.end_force = std::move(now.end_force);
+  state.contact.rail_x = std::move(now.rail_x);
   state.contact.memory = std::move(now.memory);
   state.contact.normal = std::move(now.normal);
   state.contact.creep_power = std::move(now.creep_power);

@@ -14,6 +14,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
+#include "railtab/tablegen/geometry_parts.hpp"
 #include "railtab/tables/files/array_file.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 #include "table_command_line.hpp"
@@ -87,7 +88,13 @@ std::string other_options(const BatchPair& pair, const GeometryRequest& request)
   } catch (const po::error&) {
     found = table.provenance.command_line;  // of a version with other options
   }
-  return found == geometry_options_text(pair.arguments) ? "" : found;
+  if (found != geometry_options_text(pair.arguments)) return found;
+  const GeometryTableData wanted = geometry_heading(request.search, request.options);
+  const bool same = table.lateral == wanted.lateral && table.yaw_squared == wanted.yaw_squared &&
+                    table.roll == wanted.roll && table.tolerance == wanted.tolerance &&
+                    table.track_gauge == wanted.track_gauge && table.gauge_height == wanted.gauge_height &&
+                    table.flange_back == wanted.flange_back && table.nominal_radius == wanted.nominal_radius;
+  return same ? "" : table.provenance.command_line;  // merged of shards, whose options it does not say
 }
 
 GeometryRequest request_of(const BatchPair& pair) {

@@ -91,6 +91,7 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   j["file"] = file;
   j["wheel"] = table.wheel.name;
   j["rail"] = table.rail.name;
+  if (!table.rail.inclination.empty()) j["rail_inclination"] = table.rail.inclination;
   j["track_gauge"] = table.track_gauge;
   j["gauge_height"] = table.gauge_height;
   j["flange_back"] = table.flange_back;
@@ -114,13 +115,14 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
 
 std::string table_text(const GeometryTableData& table, const std::string& file) {
   const auto milliradians = [&](double square) { return 1e3 * std::sqrt(square); };
-  std::string text = fmt::format("{}: contact geometry of {} on {}\n", file, table.wheel.name, table.rail.name);
+  std::string text =
+      fmt::format("{}: contact geometry of {} on {}\n", file, table.wheel.name, profile_in_words(table.rail));
   text += fmt::format("  pair         gauge {:.4f} m at {:.1f} mm, flange backs {:.4f} m, nominal radius {:.4f} m\n",
                       table.track_gauge, 1e3 * table.gauge_height, table.flange_back, table.nominal_radius);
   text += fmt::format("  lateral      {:.3f} .. {:.3f} mm, {} root cells (y - R0 roll)\n", 1e3 * table.lateral.low,
                       1e3 * table.lateral.high, table.lateral.cells);
   text +=
-      fmt::format("  yaw          +-{:.3f} .. +-{:.3f} mrad, {} root cells (even in yaw)\n",
+      fmt::format("  yaw          {:.3f} .. {:.3f} mrad to either side, {} root cells\n",
                   milliradians(table.yaw_squared.low), milliradians(table.yaw_squared.high), table.yaw_squared.cells);
   text += fmt::format("  roll         {:.3f} .. {:.3f} mrad, {} root cells\n", 1e3 * table.roll.low,
                       1e3 * table.roll.high, table.roll.cells);

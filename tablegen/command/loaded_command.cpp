@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <string>
 
 #include "command/json_text.hpp"
@@ -67,11 +66,11 @@ void loaded_command(const std::vector<std::string>& arguments) {
   if (const double error = table.loaded->certified_force_error(); error > largest_certified_force_error) {
     const std::string warning = fmt::format(
         "tablegen loaded: warning: {}: the force above 5 kN is off by {:.2g} % (99 % of its check), more than {:.0f} "
-        "%: "
-        "where the contact jumps differs too much with roll and yaw for one table; runs use it only with "
-        "contact.elastic = \"half-space\". A smaller --roll, --yaw or --lateral may serve.\n",
+        "%; runs use it only with contact.elastic = \"half-space\". Where the contact jumps may differ too much with "
+        "roll and yaw for one table (smaller --roll, --yaw or --lateral), or nodes be too far apart (--levels, "
+        "--elements, --force-error).\n",
         file, 100.0 * error, 100.0 * largest_certified_force_error);
-    std::fputs(warning.c_str(), stderr);
+    print_message(warning);
   }
   if (line.quiet() && !line.json()) return;
   if (line.json()) {

@@ -70,9 +70,9 @@ std::string contact_figure(const WheelRailPair& pair, const GeometryTableData& t
       "in the direction of travel. A line joins the points that touch, one per millimetre of lateral shift from {:.0f} "
       "to "
       "{:.0f} mm.</p></figcaption><div class=\"pair\">{}{}</div></figure>\n",
-      report::escaped(table.wheel.name), report::escaped(table.rail.name), std::ceil(functions.contacts.front().y / mm),
-      std::floor(functions.contacts.back().y / mm), contact_lines(pair, functions, false),
-      contact_lines(pair, functions, true));
+      report::escaped(table.wheel.name), report::escaped(profile_in_words(table.rail)),
+      std::ceil(functions.contacts.front().y / mm), std::floor(functions.contacts.back().y / mm),
+      contact_lines(pair, functions, false), contact_lines(pair, functions, true));
 }
 
 template <class F>
@@ -148,11 +148,11 @@ std::string conicity_chart(const WheelsetFunctions& functions) {
 std::string table_page(const WheelRailPair& pair, const GeometryTableData& table, const WheelsetFunctions& functions,
                        const std::string& description) {
   std::string body = fmt::format("<h1>{} on {}</h1><p class=\"lead\">Contact geometry table; wheelset without yaw</p>",
-                                 report::escaped(table.wheel.name), report::escaped(table.rail.name));
+                                 report::escaped(table.wheel.name), report::escaped(profile_in_words(table.rail)));
   body += report::html_section("Wheel and rail", contact_figure(pair, table, functions) + shift_charts(functions));
   body += report::html_section("Conicity", conicity_chart(functions));
   body += report::html_section("The table", fmt::format("<pre>{}</pre>", report::escaped(description)));
-  return report::html_page(table_page_kind, table.wheel.name + " on " + table.rail.name, body,
+  return report::html_page(table_page_kind, table.wheel.name + " on " + profile_in_words(table.rail), body,
                            table.provenance.program_version);
 }
 

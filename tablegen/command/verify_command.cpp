@@ -102,7 +102,7 @@ std::string text(const LoadedVerification& v) {
 }
 
 void verify_creep(const TableCommandLine& line, const std::string& file) {
-  if (line.given("dz")) throw input_error("--dz", "on a creep table", "a geometry table, or no --dz");
+  line.reject({"dz", "loaded-samples", "modulus", "poisson"}, "a geometry table, or none of it");
   const TableCreep law =
       in_file(file, [&file] { return TableCreep{std::make_shared<const CreepTable>(read_creep_table(file))}; });
   CreepVerificationOptions options;
@@ -120,11 +120,7 @@ void verify_creep(const TableCommandLine& line, const std::string& file) {
 }
 
 void verify_geometry(const TableCommandLine& line, const std::string& file) {
-  for (const char* option : {"ratio", "creepage"}) {
-    if (line.given(option)) {
-      throw input_error(fmt::format("--{}", option), "on a geometry table", "a creep table, or none of it");
-    }
-  }
+  line.reject({"ratio", "creepage"}, "a creep table, or none of it");
   GeometryTableData table = read_geometry_table(file);
   std::optional<LoadedTableData> loaded = std::move(table.loaded);
   table.loaded.reset();
@@ -133,11 +129,8 @@ void verify_geometry(const TableCommandLine& line, const std::string& file) {
   options.samples = static_cast<int>(line.whole_number("samples", 1, 100'000'000));
   options.seed = static_cast<std::uint64_t>(line.whole_number("seed", 0, 1LL << 53));
   if (line.given("dz")) options.lowering = line.interval("dz");
-  ProgressBar bar("verify", !line.quiet());
-  const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
-  std::optional<LoadedVerification> of_loaded;
+  LoadedVerificationOptions check;
   if (loaded) {
-    LoadedVerificationOptions check;
     check.samples = static_cast<int>(line.whole_number("loaded-samples", 1, 10'000'000));
     check.seed = options.seed;
     check.material = {line.number("modulus"), line.number("poisson")};
@@ -147,6 +140,14 @@ void verify_geometry(const TableCommandLine& line, const std::string& file) {
           "--modulus, --poisson", fmt::format("{} Pa, {}", check.material.E, check.material.nu),
           fmt::format("those of the loaded part of {}, E/(2(1 - nu²)) = {} Pa", file, loaded->contact_modulus));
     }
+  } else {
+    line.reject({"loaded-samples", "modulus", "poisson"},
+                "a table with a loaded part (tablegen loaded), or none of it");
+  }
+  ProgressBar bar("verify", !line.quiet());
+  const GeometryVerification result = verify_geometry_table(contact, options, [&](double share) { bar.show(share); });
+  std::optional<LoadedVerification> of_loaded;
+  if (loaded) {
     ProgressBar loaded_bar("verify the loaded part", !line.quiet());
     of_loaded = verify_loaded_table(contact.search(), LoadedTable(std::move(*loaded)), check,
                                     [&](double share) { loaded_bar.show(share); });

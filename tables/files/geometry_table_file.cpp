@@ -123,6 +123,7 @@ void write_profile(ArrayFileWriter& file, const std::string& group, const Profil
   for (const ProfileColumn& column : profile_columns) out.write(field_of(group, column), profile.*column.values);
   file.attribute(group, "name", profile.name);
   if (!profile.notes.empty()) file.attribute(group, "notes", fmt::format("{}", fmt::join(profile.notes, "\n")));
+  if (!profile.inclination.empty()) file.attribute(group, "inclination", profile.inclination);
 }
 
 void write_axis(ArrayFileWriter& file, const AxisColumn& column, const TableAxis& axis) {
@@ -145,10 +146,12 @@ ProfileKnots read_profile(const ArrayFileReader& file, FieldReader& in, const st
   profile.kind = kind;
   profile.name = file.text(group, "name");
   const std::vector<std::string> present = file.attribute_names(group);
-  if (std::find(present.begin(), present.end(), "notes") != present.end()) {
+  const auto has = [&](const char* name) { return std::find(present.begin(), present.end(), name) != present.end(); };
+  if (has("notes")) {
     std::istringstream notes(file.text(group, "notes"));
     for (std::string line; std::getline(notes, line);) profile.notes.push_back(line);
   }
+  if (has("inclination")) profile.inclination = file.text(group, "inclination");
   for (const ProfileColumn& column : profile_columns) profile.*column.values = in.numbers(field_of(group, column));
   return profile;
 }

@@ -167,7 +167,7 @@ TEST(ContactInC, PatchesAreThoseOfTheCppLibraryToTheLastBit) {
           railtab_contact_patches(contact.get(), m.c_side(), &wheelset, &rail, found.data(), &count);
       const WheelsetPose pose = relative_pose(cpp.table.geometry.pair(), m.side, m.wheelset, m.rail);
       const ContactPatches expected = cpp.table.patches.patches(pose, touch_rounding);
-      const auto loads = patch_loadings(cpp.table.geometry, pose, expected);
+      const auto loads = patch_loadings(cpp.table.geometry, pose, expected, cpp.model.normal);
       EXPECT_EQ(status, expected.from_table ? RAILTAB_OK : RAILTAB_SEARCHED);
       ASSERT_EQ(count, expected.count);
       for (int i = 0; i < count; ++i) {
@@ -338,7 +338,14 @@ TEST(ContactInC, TheDimensionsAreThoseOfTheTable) {
 TEST(ContactInC, AWheelAtItsHeightCarriesTheLoad) {
   railtab_contact_parameters p = parameters();
   p.friction = 0.0;
+  p.young = 70e9;
+  const Handle softer = contact_of("s1002_60e1.h5", p);
+  p.young = 210e9;
   const Handle contact = contact_of("s1002_60e1.h5", p);
+  double of_steel = 0.0, of_softer = 0.0;
+  ASSERT_EQ(railtab_contact_height(contact.get(), RAILTAB_RIGHT, 1e-3, 0.0, 0.0, 60e3, &of_steel), RAILTAB_OK);
+  ASSERT_EQ(railtab_contact_height(softer.get(), RAILTAB_RIGHT, 1e-3, 0.0, 0.0, 60e3, &of_softer), RAILTAB_OK);
+  EXPECT_GT(of_softer, of_steel + 20e-6) << "twice as deep";
   for (const railtab_side side : {RAILTAB_LEFT, RAILTAB_RIGHT}) {
     railtab_wheelset_motion wheelset{};
     wheelset.displacement[1] = 1e-3;

@@ -23,7 +23,7 @@ void print_wheel(const CppContact& contact, WheelSide side) {
   wheelset.displacement << 0.0, right.y,
       lowered_pose(contact.table.patches.search(), contact.table.geometry,
                    side == WheelSide::right ? right : right.mirrored(), Lowering::under_load, 60e3,
-                   [] { return std::string(); })
+                   contact.model.normal, [] { return std::string(); })
           .pose.z,
       0.0, 0.0, right.yaw;
   wheelset.velocity[1] = 0.01;
@@ -32,7 +32,7 @@ void print_wheel(const CppContact& contact, WheelSide side) {
   print("on the rail", found.force.rail);
   for (int i = 0; i < 9; ++i) print("derivatives", Vector9(found.tangent.row(i)));
   const ContactPatches patches = contact.table.patches.patches(found.contact.pose, touch_rounding);
-  const auto loads = patch_loadings(contact.table.geometry, found.contact.pose, patches);
+  const auto loads = patch_loadings(contact.table.geometry, found.contact.pose, patches, contact.model.normal);
   for (int i = 0; i < patches.count; ++i) {
     const ContactPatch& p = patches.patch[i];
     print("patch", std::vector<double>{p.y_rail, p.z_rail, p.angle, p.rolling_radius, loads[i].normal_force, loads[i].a,

@@ -20,7 +20,7 @@ LOADED_TABLE = TABLES / "loaded.h5"
 SOURCE = Path(os.environ["RAILTAB_SOURCE_DIR"])
 
 # A coach on a bridge, with the table beside it.
-SCENE = """name = "a coach on a bridge"
+SCENE = """name = "a coach on a bridge, Brücke"
 [train]
 vehicle = "manchester-coach"
 speed_kmh = 200

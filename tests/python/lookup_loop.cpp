@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
       const Vector6& q = motion.displacement;
       const WheelsetPose pose{q[1], q[2], q[3], q[5]};
       const ContactPatches patches = table.patches.patches(pose, 1e-13);
-      const auto loads = patch_loadings(table.geometry, pose, patches);
+      const auto loads = patch_loadings(table.geometry, pose, patches, table_material(table.geometry));
       for (int i = 0; i < patches.count; ++i) {
         const auto at = static_cast<std::size_t>(i);
         rows.push_back({patches.patch[at], loads[at]});

@@ -132,6 +132,11 @@ TEST_F(LoadedCommand, WrongInputIsSaid) {
     EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
     EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
   };
+  const Outcome none_loaded = tablegen("verify t.h5 --loaded-samples 5");
+  EXPECT_EQ(none_loaded.exit_code, 2) << none_loaded.output;
+  EXPECT_NE(none_loaded.output.find("--loaded-samples: found 5, expected a table with a loaded part"),
+            std::string::npos)
+      << none_loaded.output;
   rejected("absent.h5", "absent.h5");
   rejected("t.h5 --lateral 0.001:-0.001", "lateral");
   rejected("t.h5 --levels 2", "levels");

@@ -35,6 +35,10 @@ TEST_F(GeometryTableFile, KeepsWhatWasSaidAboutTheProfiles) {
   const GeometryTableData read = read_geometry_table(file_);
   EXPECT_EQ(read.wheel.notes, table.wheel.notes);
   EXPECT_TRUE(read.rail.notes.empty());
+  EXPECT_TRUE(read.rail.inclination.empty());
+  table.rail.inclination = "1:20";
+  write_geometry_table(file_, table);
+  EXPECT_EQ(profile_in_words(read_geometry_table(file_).rail), table.rail.name + " 1:20");
 }
 
 TEST_F(GeometryTableFile, TellsATableFromAnotherOne) {

@@ -99,6 +99,27 @@ bool same(const StepRecord& a, const StepRecord& b) {
 
 class ResumedRun : public ::testing::TestWithParam<Reduction> {};
 
+void expect_same_when_resumed(const SceneParameters& scene, const RecordedRun& whole, std::size_t checkpoint) {
+  const auto step = static_cast<std::size_t>(whole.checkpoints[checkpoint].step);
+  const RecordedRun resumed = recorded(scene, whole.checkpoints[checkpoint]);
+  ASSERT_EQ(resumed.records.size() + step + 1, whole.records.size());
+  for (std::size_t i = 0; i < resumed.records.size(); ++i)
+    ASSERT_TRUE(same(resumed.records[i], whole.records[step + 1 + i])) << "step " << step + 1 + i;
+}
+
+// At 80 m/s the first wheelset enters a span of 16 m every 200 steps, right before a checkpoint.
+TEST(ResumedWindow, MovesOnceWhereTheRunGoesOn) {
+  SceneParameters scene = coach_on_spans(Reduction::window);
+  scene.reduction.behind = scene.reduction.ahead = 6.0;
+  scene.train.speed = 80.0;
+  scene.train.start = -15.96;
+  scene.integration.reinitialise_every = 200;
+  scene.integration.duration = 0.45;
+  const RecordedRun whole = recorded(scene);
+  ASSERT_EQ(whole.checkpoints.size(), 2U);
+  for (const std::size_t c : {0U, 1U}) expect_same_when_resumed(scene, whole, c);
+}
+
 // From every checkpoint: the window moves several times in between, and spans fall behind.
 TEST_P(ResumedRun, IsTheUninterruptedOneToTheLastBit) {
   SceneParameters scene = coach_on_spans(GetParam());
@@ -109,13 +130,7 @@ TEST_P(ResumedRun, IsTheUninterruptedOneToTheLastBit) {
   scene.track.length_after = 60.0;
   const RecordedRun whole = recorded(scene);
   ASSERT_GE(whole.checkpoints.size(), 2U);
-  for (std::size_t c = 0; c < whole.checkpoints.size(); c += 5) {
-    const auto step = static_cast<std::size_t>(whole.checkpoints[c].step);
-    const RecordedRun resumed = recorded(scene, whole.checkpoints[c]);
-    ASSERT_EQ(resumed.records.size() + step + 1, whole.records.size());
-    for (std::size_t i = 0; i < resumed.records.size(); ++i)
-      ASSERT_TRUE(same(resumed.records[i], whole.records[step + 1 + i])) << "step " << step + 1 + i;
-  }
+  for (std::size_t c = 0; c < whole.checkpoints.size(); c += 5) expect_same_when_resumed(scene, whole, c);
 }
 INSTANTIATE_TEST_SUITE_P(Reductions, ResumedRun, ::testing::Values(Reduction::none, Reduction::window),
                          [](const auto& instance) {

@@ -114,6 +114,35 @@ TEST(StandingTrain, ACoachStartsWithoutShock) {
   EXPECT_NEAR(mean / (4.0 * Jy * a / (0.46 * 0.46)), 1.0, 0.05);
 }
 
+// A coach brakes from 0.5 m/s to a stand in half a second, with the tolerance of runs by default. Wheels would slide
+// after a move of a tenth of a micrometre: no correction may take them there unseen.
+TEST(StandingTrain, ACoachThatStopsDoesNotSlideToAndFro) {
+  VsiModel model;
+  model.vehicle = build_vehicle(library_vehicle("manchester-coach"), MotionPlane::spatial, {});
+  model.vehicle_x = {0.0};
+  model.geometry = std::make_shared<const ContactGeometry>(
+      ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
+                                  ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));
+  model.contact.geometry = model.geometry.get();
+  model.speed_profile.emplace(std::vector<double>{0.0, 0.5}, std::vector<double>{0.5, 0.0});
+  model.contact.speed = 0.5;
+  model.contact.speed_floor = 0.1;
+  VsiState state(model);
+  ASSERT_TRUE(steady_start(model, state).converged);
+  double largest = 0.0, largest_jump = 0.0, before = 0.0;
+  RunObserver observer;
+  observer.record = [&](const StepRecord& record) {
+    const double X = record.wheels[0].X;
+    if (record.time > 0.5) largest_jump = std::max(largest_jump, std::abs(X - before));
+    before = X;
+    largest = std::max(largest, std::abs(X));
+  };
+  ASSERT_TRUE(simulate(model, {}, 1.0, 1, state, observer).complete);
+  std::printf("X of a wheel up to %.0f N, from step to step by %.0f N\n", largest, largest_jump);
+  EXPECT_LT(largest, 2e3) << "friction would bear 16 kN";
+  EXPECT_LT(largest_jump, 200.0);
+}
+
 TEST(RailFriction, IsEachRailsAndChangesAlongTheTrack) {
   const RailFriction friction({10.0, 20.0}, {0.1, 0.3}, {0.4, 0.4});
   EXPECT_EQ(friction.at(RailSide::left, 0.0), 0.1);

@@ -92,6 +92,28 @@ TEST(Start, MovedAsideEveryWheelCarriesItsLoad) {
   }
 }
 
+// Whatever the rule of the contact forces: the first record is of the train where it has been moved to, in all of X and
+// Y.
+TEST(Start, MovedAsideTheFirstRecordIsOfThatPlace) {
+  for (const ContactForceRule rule : {ContactForceRule::endpoint, ContactForceRule::energy}) {
+    SceneParameters scene = coach_on_rigid_track(50.0);
+    scene.train.initial_lateral_shift = 3e-3;
+    scene.integration.contact_force = rule;
+    scene.integration.duration = 0.002;
+    std::vector<std::vector<WheelRecord>> records;
+    RunObserver observer;
+    observer.record = [&](const StepRecord& record) { records.push_back(record.wheels); };
+    ASSERT_TRUE(run_scene(scene, observer).complete);
+    ASSERT_GE(records.size(), 2U);
+    for (std::size_t w = 0; w < records[0].size(); ++w) {
+      const WheelRecord &first = records[0][w], &next = records[1][w];
+      EXPECT_GT(std::abs(next.X), 2e3);
+      EXPECT_NEAR(first.X / next.X, 1.0, 0.2) << "wheel " << w;
+      EXPECT_NEAR(first.Y, next.Y, 0.02 * next.Q) << "wheel " << w;
+    }
+  }
+}
+
 double tape_circle_offset(const VsiModel& model) { return model.geometry->pair().tape_circle_offset(); }
 
 // From the tread over the steep flange, where a wheelset that rolls hardly sinks (contact angle of 70 degrees), to the

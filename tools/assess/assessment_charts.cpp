@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "over_speed.hpp"
@@ -21,6 +22,35 @@ report::Series curve(const std::string& label, const TrainResponse& response, Qu
     series.y.push_back(factor * (p.*quantity).value);
   }
   return series;
+}
+
+/// Between the speeds computed along the straight line, 0 beyond them.
+double value_at(const TrainResponse& response, Quantity quantity, double speed) {
+  const std::vector<PassagePeaks>& passages = response.passages;
+  const auto above = std::ranges::lower_bound(passages, speed, {}, &PassagePeaks::speed);
+  if (above == passages.end()) return 0.0;
+  const double value = ((*above).*quantity).value;
+  if (above->speed == speed) return value;
+  if (above == passages.begin()) return 0.0;
+  const PassagePeaks& below = *(above - 1);
+  const double share = (speed - below.speed) / (above->speed - below.speed);
+  return (1.0 - share) * (below.*quantity).value + share * value;
+}
+
+/// From zero to the largest value of all trains.
+report::Band all_trains(const DeckAssessment& deck, Quantity quantity, double factor) {
+  std::set<double> speeds;
+  for (const TrainResponse& response : deck.responses) {
+    for (const PassagePeaks& p : response.passages) speeds.insert(p.speed);
+  }
+  report::Band band{"all trains", {}, std::vector<double>(speeds.size(), 0.0), {}};
+  for (const double speed : speeds) {
+    double most = 0.0;
+    for (const TrainResponse& response : deck.responses) most = std::max(most, value_at(response, quantity, speed));
+    band.x.push_back(3.6 * speed);
+    band.high.push_back(factor * most);
+  }
+  return band;
 }
 
 double largest(const TrainResponse& response, Quantity quantity) {
@@ -59,7 +89,9 @@ std::string deck_curves(const Assessment& assessment, const DeckAssessment& deck
     report::Chart chart;
     chart.title = fmt::format("{}: {} over the speed of moving loads", deck.deck.name, title);
     chart.note =
-        "Anywhere on the deck, each train by itself; those with the largest values, and the scene's own train.";
+        "Anywhere on the deck, each train by itself: the largest of all trains as an area, those with the largest "
+        "values "
+        "and the scene's own train as lines.";
     const std::vector<MeasuredValue> largest = largest_of_passages(deck, *measure);
     const auto most = std::ranges::max_element(largest, {}, &MeasuredValue::value);
     if (most != largest.end()) {
@@ -68,6 +100,7 @@ std::string deck_curves(const Assessment& assessment, const DeckAssessment& deck
     }
     chart.x_label = "speed [km/h]";
     chart.y_label = label;
+    if (deck.responses.size() > 1) chart.bands.push_back(all_trains(deck, measure->peak, factor));
     for (const TrainResponse* response : shown_trains(deck, measure->peak)) {
       chart.series.push_back(curve(deck.trains[response->train].name, *response, measure->peak, factor));
     }

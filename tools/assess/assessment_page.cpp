@@ -30,7 +30,7 @@ constexpr const char* style = R"(<style>
 .bar{display:inline-block;width:64px;height:8px;background:var(--line);border-radius:2px;overflow:hidden;margin-left:6px}
 .bar i{display:block;height:8px;background:#2e7d52}.bar.fail i{background:#c8442f}.bar.note i{background:#b57a00}
 .standing{border:1px solid #b57a00;border-radius:3px;padding:0 4px;font-size:11px;white-space:nowrap}
-.scroll{overflow-x:auto}
+.scroll{overflow-x:auto}@media print{.scroll{overflow:visible}}@page{size:landscape}
 </style>)";
 
 std::string_view mark_class(const Verdict& v) {

@@ -16,6 +16,16 @@
 namespace railtab::report {
 namespace {
 
+/// Input files of both runs whose contents differ, by their names.
+std::string differing_files(const ResultHeader& one, const ResultHeader& other) {
+  std::string names;
+  for (std::size_t i = 0; i < std::min(one.input_files.size(), other.input_files.size()); ++i) {
+    if (one.input_files[i] != other.input_files[i] || one.input_checksums[i] == other.input_checksums[i]) continue;
+    names += (names.empty() ? "" : ", ") + one.input_files[i];
+  }
+  return names;
+}
+
 struct Quantity {
   const char* name;
   const char* unit;
@@ -112,9 +122,15 @@ std::string scene_differences(std::span<const RunResults> runs, const std::vecto
   std::string html;
   for (std::size_t r = 1; r < runs.size(); ++r) {
     const std::string &first = runs[0].header.scene_text, &other = runs[r].header.scene_text;
+    const std::string files = differing_files(runs[0].header, runs[r].header);
     if (first == other) {
-      html += fmt::format("<p>The scenes of {} and {} are equal.</p>", escaped(names[0]), escaped(names[r]));
+      html += fmt::format("<p>The scenes of {} and {} are equal{}.</p>", escaped(names[0]), escaped(names[r]),
+                          files.empty() ? "" : ", but not the contents of " + escaped(files));
       continue;
+    }
+    if (!files.empty()) {
+      html += fmt::format("<p>The contents of {} differ between {} and {}.</p>", escaped(files), escaped(names[0]),
+                          escaped(names[r]));
     }
     html += fmt::format("<pre>only in {}:\n{}only in {}:\n{}</pre>", escaped(names[0]), escaped(missing(other, first)),
                         escaped(names[r]), escaped(missing(first, other)));

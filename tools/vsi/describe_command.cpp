@@ -71,15 +71,13 @@ Description of_array_file(const std::string& file) {
   }
   // Those of tablegen, on which this program does not depend.
   if (type == "railtab-creep-shard") {
-    return {"a shard of a creep table",
-            {},
-            {fmt::format("tablegen info {}", file), fmt::format("tablegen merge {} OTHER.h5 -o table.h5", file)}};
+    return {"a shard of a creep table", {}, {fmt::format("tablegen merge {} OTHER.h5 -o table.h5", file)}};
   }
   if (type == "railtab-creep-partial" || type == "railtab-loaded-partial") {
     return {"what an interrupted command has computed", {}, {"the same command of tablegen goes on from it"}};
   }
   if (type == study_filetype) return {"results of a study of many runs, one value per run in each array", {}, {}};
-  return {fmt::format("a file of the kind {}", type), {}, {fmt::format("tablegen info {}", file)}};
+  return {fmt::format("a file of the kind {}", type), {}, {}};
 }
 
 Description of_toml(const std::string& file) {
