@@ -5,13 +5,12 @@
 namespace railtab {
 
 /// The first and the third mode that bend a deck under its axles, or the last of fewer: those that move the line of the
-/// axles by a tenth at least of what the mode moves it by that moves it most. Twist about the line and lateral bending
-/// do not.
+/// axles by a tenth at least of their largest displacement. Twist about the line and lateral bending do not.
 struct BendingModes {
   int first = 0, third = 0;
 };
-/// @param on_line largest amounts of the modes on the line, normalised to a modal mass of 1 kg [kg^-1/2]
-[[nodiscard]] BendingModes bending_modes(const Eigen::ArrayXd& on_line);
+/// @param share of each mode: its largest vertical motion on the line over its largest displacement anywhere
+[[nodiscard]] BendingModes bending_modes(const Eigen::ArrayXd& share);
 
 /// @param omega rising [rad/s]
 [[nodiscard]] int count_dynamic_modes(const Eigen::ArrayXd& omega, const BendingModes& bending,

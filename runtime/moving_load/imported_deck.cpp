@@ -34,15 +34,21 @@ Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis,
   return motion;
 }
 
-/// The largest vertical motion of each mode on the line.
-Eigen::ArrayXd largest_on_line(const DeckFunction& deck, const ModalBasis& basis, double begin, double end) {
+/// The largest vertical motion of each mode on the line, over its largest displacement anywhere.
+Eigen::ArrayXd share_on_line(const FeStructure& structure, const DeckFunction& deck, const ModalBasis& basis,
+                             double begin, double end) {
   constexpr int points = 49;
   Eigen::ArrayXd largest = Eigen::ArrayXd::Zero(basis.shape.cols());
   for (int i = 0; i < points; ++i) {
     const double x = begin + (end - begin) * (i + 0.5) / points;
     largest = largest.max(on_centre_line(deck, basis, x).abs());
   }
-  return largest;
+  Eigen::ArrayXd anywhere = largest;
+  for (Eigen::Index row = 0; row < basis.shape.rows(); ++row) {
+    const int motion = structure.motion[static_cast<std::size_t>(row)];
+    if (motion >= x_dof && motion <= z_dof) anywhere = anywhere.max(basis.shape.row(row).array().abs().transpose());
+  }
+  return (anywhere > 0.0).select(largest / anywhere, 0.0);
 }
 
 /// Modes up to the cut-off and some beyond it, which the static deflection needs.
@@ -53,7 +59,7 @@ ModalBasis enough_modes(const FeStructure& structure, const DeckFunction& line, 
     ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, std::min(count, most));
     const auto found = static_cast<int>(basis.omega2.size());
     if (found < count || count >= most) return basis;
-    const BendingModes bending = bending_modes(largest_on_line(line, basis, begin, end));
+    const BendingModes bending = bending_modes(share_on_line(structure, line, basis, begin, end));
     if (2 * count_dynamic_modes(basis.omega2.array().sqrt(), bending, wanted) <= found) return basis;
   }
 }
@@ -114,7 +120,7 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
     deck.damping =
         (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
   }
-  const BendingModes bending = bending_modes(largest_on_line(line, basis, begin, end));
+  const BendingModes bending = bending_modes(share_on_line(structure, line, basis, begin, end));
   deck.first_bending = bending.first;
   deck.third_bending = bending.third;
   deck.dynamic_modes = count_dynamic_modes(deck.omega, bending, modes);

@@ -58,13 +58,12 @@ double ModalDeck::cut_off() const noexcept {
   return cut_off_frequency(frequency(first_bending), frequency(third_bending));
 }
 
-BendingModes bending_modes(const Eigen::ArrayXd& on_line) {
+BendingModes bending_modes(const Eigen::ArrayXd& share) {
   constexpr double least = 0.1;
-  const double limit = least * on_line.maxCoeff();
   BendingModes result;
   int found = 0;
-  for (int mode = 0; mode < on_line.size() && found < 3; ++mode) {
-    if (on_line[mode] < limit) continue;
+  for (int mode = 0; mode < share.size() && found < 3; ++mode) {
+    if (!(share[mode] >= least)) continue;
     ++found;
     if (found == 1) result.first = mode;
     result.third = mode;
