@@ -9,7 +9,7 @@ namespace railtab {
 struct BendingModes {
   int first = 0, third = 0;
 };
-/// @param share of each mode: its largest vertical motion on the line over its largest displacement anywhere
+/// @param share of each mode: its largest vertical motion on the line over its largest displacement anywhere [-]
 [[nodiscard]] BendingModes bending_modes(const Eigen::ArrayXd& share);
 
 /// @param omega rising [rad/s]

@@ -34,7 +34,8 @@ Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis,
   return motion;
 }
 
-/// The largest vertical motion of each mode on the line, over its largest displacement anywhere.
+/// The largest vertical motion of each mode on the line, over its largest displacement anywhere, that of
+/// rotations at half the width of the track.
 Eigen::ArrayXd share_on_line(const FeStructure& structure, const DeckFunction& deck, const ModalBasis& basis,
                              double begin, double end) {
   constexpr int points = 49;
@@ -45,8 +46,9 @@ Eigen::ArrayXd share_on_line(const FeStructure& structure, const DeckFunction& d
   }
   Eigen::ArrayXd anywhere = largest;
   for (Eigen::Index row = 0; row < basis.shape.rows(); ++row) {
-    const int motion = structure.motion[static_cast<std::size_t>(row)];
-    if (motion >= x_dof && motion <= z_dof) anywhere = anywhere.max(basis.shape.row(row).array().abs().transpose());
+    constexpr double half_track = 0.75;  // [m]: what a rotation counts as
+    const double arm = structure.motion[static_cast<std::size_t>(row)] <= z_dof ? 1.0 : half_track;
+    anywhere = anywhere.max(arm * basis.shape.row(row).array().abs().transpose());
   }
   return (anywhere > 0.0).select(largest / anywhere, 0.0);
 }
