@@ -202,7 +202,34 @@ class Study {
       const EllipseOfPressure of_moments(band.moments);
       differences_.add("ellipse", kind, "second moments", error(of_moments.a, of_moments.b));
       differences_.add("ellipse", kind, "as in runs", error(band.a, band.b));
+      double scale = 1.0;  // to the ellipse of the contact's own lateral creep stiffness
+      const double stiffness = creep_stiffness(coarse, fine, options);
+      for (int pass = 0; pass < 20; ++pass) {
+        scale *= std::sqrt(stiffness / creep_stiffness_of_ellipse(scale * band.a, scale * band.b, bound));
+      }
+      differences_.add("ellipse", kind, "equal creep stiffness", error(scale * band.a, scale * band.b));
     }
+  }
+
+  /// Lateral creep force per small lateral creepage of a contact of one band [N], extrapolated to elements of size
+  /// zero.
+  [[nodiscard]] double creep_stiffness(const LoadedContact& coarse, const LoadedContact& fine,
+                                       const LoadedContactOptions& options) const {
+    RelativeMotion sideways{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    sideways.velocity.y() = small_creepage * model_.speed;
+    LoadedRollingOptions sticking = rolling_options();
+    sticking.friction = 2.0;
+    sticking.slip = LoadedRollingOptions::SlipField::planar;
+    const auto of = [&](const LoadedContact& c) {
+      const LoadedRolling r = loaded_rolling(pair(), c, options, sideways, sticking);
+      return r.bands.at(0).y / r.bands.at(0).creepage.y;
+    };
+    return 2.0 * of(fine) - of(coarse);
+  }
+  [[nodiscard]] double creep_stiffness_of_ellipse(double a, double b, double bound) const {
+    const PatchCreepage sideways{0.0, small_creepage, 0.0};
+    const Creepage normalised = normalised_creepage(sideways, a, b, shear_modulus, bound);
+    return bound * creep_force(model_.creep_law, a / b, normalised).y / small_creepage;
   }
 
   /// The largest step of the force along random lines, weighted with the table's share in it, by bisection of their
@@ -278,6 +305,7 @@ class Study {
   }
 
  private:
+  static constexpr double small_creepage = 1e-7;
   [[nodiscard]] const WheelRailPair& pair() const { return geometry_->pair(); }
   [[nodiscard]] static WheelsetMotion placed(double y, double roll, double yaw) {
     WheelsetMotion motion;

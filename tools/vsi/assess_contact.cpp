@@ -178,7 +178,7 @@ void take_up(const ContactPlan& plan, const SweepRun& run, const RunPool& pool, 
 /// A measure that some runs lack and others have is known in part.
 void note_gaps(const Gaps& gaps, Assessment& assessment) {
   for (const auto& [gap, runs] : gaps) {
-    const auto& [measure, reason] = gap;
+    const std::string &measure = gap.first, &reason = gap.second;
     const bool partly = std::any_of(assessment.values.begin(), assessment.values.end(), [&](const MeasuredValue& v) {
       return v.measure == measure && v.stage == AssessmentStage::contact;
     });
