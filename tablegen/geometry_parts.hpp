@@ -24,6 +24,11 @@ struct TableLeaf {
 /// Those below a root cell.
 [[nodiscard]] std::vector<TableLeaf> leaves_below(const GeometryTableData& table, std::int64_t root);
 
+[[nodiscard]] bool same_profile(const ProfileKnots& p, const ProfileKnots& q);
+
+/// What of pair, dimensions, axes and tolerance differs between two tables, in words; empty: nothing.
+[[nodiscard]] std::string difference_of_tables(const GeometryTableData& p, const GeometryTableData& q);
+
 /// Why two parts cannot be of one table; empty where they can.
 [[nodiscard]] std::string difference_of_parts(const GeometryTableData& p, const GeometryTableData& q);
 

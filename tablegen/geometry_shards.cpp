@@ -8,15 +8,11 @@
 
 namespace railtab {
 
-namespace {
-
 bool same_profile(const ProfileKnots& p, const ProfileKnots& q) {
   return p.kind == q.kind && p.s == q.s && p.y == q.y && p.z == q.z && p.dy == q.dy && p.dz == q.dz;
 }
 
-}  // namespace
-
-std::string difference_of_parts(const GeometryTableData& p, const GeometryTableData& q) {
+std::string difference_of_tables(const GeometryTableData& p, const GeometryTableData& q) {
   if (!same_profile(p.wheel, q.wheel)) return fmt::format("another wheel profile ({})", q.wheel.name);
   if (!same_profile(p.rail, q.rail)) return fmt::format("another rail profile ({})", q.rail.name);
   if (p.track_gauge != q.track_gauge || p.gauge_height != q.gauge_height || p.flange_back != q.flange_back ||
@@ -24,7 +20,12 @@ std::string difference_of_parts(const GeometryTableData& p, const GeometryTableD
     return "other dimensions of wheelset or track";
   }
   if (p.lateral != q.lateral || p.yaw_squared != q.yaw_squared || p.roll != q.roll) return "other axes";
-  if (p.tolerance != q.tolerance || p.statistics != q.statistics) return "other options";
+  return p.tolerance == q.tolerance ? "" : "other options";
+}
+
+std::string difference_of_parts(const GeometryTableData& p, const GeometryTableData& q) {
+  if (std::string difference = difference_of_tables(p, q); !difference.empty()) return difference;
+  if (p.statistics != q.statistics) return "other options";
   if (p.provenance.program_version != q.provenance.program_version) {
     return fmt::format("another version of the program ({})", q.provenance.program_version);
   }

@@ -1,5 +1,7 @@
 #include "railtab/runtime/contact_files/contact_table_file.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <utility>
 
@@ -21,6 +23,15 @@ ContactTable read_contact_table(const std::filesystem::path& file) {
   TableContact patches = in_file(file.string(), [&] { return TableContact(GeometryTable(std::move(data))); });
   ContactGeometry geometry(patches, std::move(loaded), unused_error);
   return {std::move(patches), std::move(geometry)};
+}
+
+std::string unused_loaded_part(const ContactGeometry& geometry) {
+  if (geometry.unused_loaded_error() == 0.0) return {};
+  return fmt::format(
+      "the loaded part of the table of {} on {} is off by {:.2g} % of the force (99 % of its check), more than {:.0f} "
+      "%, and is not used: forces are those of an ellipse per patch",
+      geometry.pair().wheel().knots().name, geometry.pair().rail().knots().name, 100.0 * geometry.unused_loaded_error(),
+      100.0 * largest_certified_force_error);
 }
 
 }  // namespace railtab

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "railtab/runtime/contact/contact_geometry.hpp"
 
@@ -15,5 +16,8 @@ struct ContactTable {
 
 /// @throws InputError as read_geometry_table() and TableContact, naming the file
 [[nodiscard]] ContactTable read_contact_table(const std::filesystem::path& file);
+
+/// Why the loaded part of a geometry's table is not used, for warnings; empty where there is none or it is used.
+[[nodiscard]] std::string unused_loaded_part(const ContactGeometry& geometry);
 
 }  // namespace railtab

@@ -144,9 +144,8 @@ const Warning speed_without_brakes{
       if (!at.model.speed_profile) return;
       const SpeedProfile& profile = *at.model.speed_profile;
       double lowest = profile.speed(0.0), highest = lowest;
-      constexpr int samples = 1000;
-      for (int i = 1; i <= samples; ++i) {
-        const double speed = profile.speed(at.duration * i / samples);
+      for (const double time : profile.points()) {  // between them the speed is linear
+        const double speed = profile.speed(std::clamp(time, 0.0, at.duration));
         lowest = std::min(lowest, speed);
         highest = std::max(highest, speed);
       }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "railtab/runtime/assessment/dynamic_need.hpp"
+#include "railtab/runtime/contact_files/contact_table_file.hpp"
 #include "railtab/runtime/profile/point_noise.hpp"
 #include "railtab/runtime/scene/key_table.hpp"
 #include "railtab/runtime/scene/scene_case.hpp"
@@ -68,13 +69,9 @@ const Warning inaccurate_loaded_table{
     "a loaded part of a contact table is certified worse than 5 %, and is not used",
     [](const SceneCase& at, Warnings& list) {
       for (const auto& geometry : contact_geometries(at.model)) {
-        if (!geometry || geometry->unused_loaded_error() == 0.0) continue;  // wheels without profiles have none
-        list.push_back(fmt::format(
-            "contact: the loaded part of the table of {} on {} is off by {:.2g} % of the force (99 % of its check), "
-            "more than {:.0f} %, and is not used: forces are those of an ellipse per patch; contact.elastic = "
-            "\"half-space\" uses it nevertheless",
-            geometry->pair().wheel().knots().name, geometry->pair().rail().knots().name,
-            100.0 * geometry->unused_loaded_error(), 100.0 * largest_certified_force_error));
+        const std::string unused = geometry ? unused_loaded_part(*geometry) : "";  // wheels without profiles have none
+        if (unused.empty()) continue;
+        list.push_back(fmt::format("contact: {}; contact.elastic = \"half-space\" uses it nevertheless", unused));
       }
     }};
 

@@ -399,11 +399,11 @@ class TrainNewton {
     if (problem_.start || problem_.wheelsets_per_group > 1 || !ws_.found.empty()) return false;
     GroupNewton& n = ws_.group[index(g)];
     double& error = ws_.tangent_error[index(g)];
-    if (largest_slip_change(g) > most_slip) return false;
     const double sum = n.extrapolated + of_forces;
     const double lighter = std::min(s_.end_force[rail_unknown(2 * g) + 1], s_.end_force[rail_unknown(2 * g + 1) + 1]);
     if (lighter < least_load * sum || sum >= most * limits_.force_tolerance ||
-        error * sum >= accepted_error * limits_.force_tolerance || largest_approach(g) > first_order_) {
+        error * sum >= accepted_error * limits_.force_tolerance || largest_approach(g) > first_order_ ||
+        largest_slip_change(g) > most_slip) {
       return false;
     }
     if (n.extrapolated == 0.0) error *= growth;

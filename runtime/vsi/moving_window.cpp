@@ -113,7 +113,7 @@ WindowModel make_window(const StructureModel& structure, const ReductionParamete
 
 namespace {
 
-// What fitted rotations and the channels of the deck need of a span; its ends belong to its neighbours too.
+// What motions that are sums and the channels of the deck need of a span; its ends belong to its neighbours too.
 void add_followed(const StructureModel& structure, const SpanModes& span, std::vector<int>& dofs) {
   const DofRange inside = dofs_within(structure.dof_x, span.from, span.to);
   for (const auto* rows : {&structure.summed_nodes, &structure.deck.rows}) {

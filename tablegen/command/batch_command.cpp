@@ -47,10 +47,6 @@ std::string_view state_name(State state) {
   return "failed";
 }
 
-bool same_profile(const ProfileKnots& a, const ProfileKnots& b) {
-  return a.s == b.s && a.y == b.y && a.z == b.z && a.dy == b.dy && a.dz == b.dz;
-}
-
 std::vector<std::string> words(const std::string& text) {
   std::istringstream in(text);
   return {std::istream_iterator<std::string>(in), {}};
@@ -89,11 +85,7 @@ std::string other_options(const BatchPair& pair, const GeometryRequest& request)
     found = table.provenance.command_line;  // of a version with other options
   }
   if (found != geometry_options_text(pair.arguments)) return found;
-  const GeometryTableData wanted = geometry_heading(request.search, request.options);
-  const bool same = table.lateral == wanted.lateral && table.yaw_squared == wanted.yaw_squared &&
-                    table.roll == wanted.roll && table.tolerance == wanted.tolerance &&
-                    table.track_gauge == wanted.track_gauge && table.gauge_height == wanted.gauge_height &&
-                    table.flange_back == wanted.flange_back && table.nominal_radius == wanted.nominal_radius;
+  const bool same = difference_of_tables(geometry_heading(request.search, request.options), table).empty();
   return same ? "" : table.provenance.command_line;  // merged of shards, whose options it does not say
 }
 

@@ -90,8 +90,7 @@ std::string deck_curves(const Assessment& assessment, const DeckAssessment& deck
     chart.title = fmt::format("{}: {} over the speed of moving loads", deck.deck.name, title);
     chart.note =
         "Anywhere on the deck, each train by itself: the largest of all trains as an area, those with the largest "
-        "values "
-        "and the scene's own train as lines.";
+        "values and the scene's own train as lines.";
     const std::vector<MeasuredValue> largest = largest_of_passages(deck, *measure);
     const auto most = std::ranges::max_element(largest, {}, &MeasuredValue::value);
     if (most != largest.end()) {

@@ -157,8 +157,7 @@ std::string deck_table(const Assessment& assessment) {
     html += fmt::format(
         "<h3>{}</h3><table><tr><td>length</td><td>{:.6g} m</td></tr><tr><td>natural frequencies</td><td>{} Hz</td>"
         "</tr><tr><td>damping of the first bending mode</td><td>{:.2f} %</td></tr><tr><td>accelerations count up "
-        "to</td><td>"
-        "{:.1f} Hz (the greatest of 30 Hz, 1.5 f₁ and f₃; f₁ = {:.3f} Hz and f₃ = {:.3f} Hz bend the "
+        "to</td><td>{:.1f} Hz (the greatest of 30 Hz, 1.5 f₁ and f₃; f₁ = {:.3f} Hz and f₃ = {:.3f} Hz bend the "
         "deck)</td></tr><tr><td>dynamic analysis by EN 1991-2, 6.4.4</td>"
         "<td><b>{}</b>: {}</td></tr></table>",
         escaped(deck.deck.name), deck.deck.length(), frequencies, 100.0 * deck.deck.damping[deck.deck.first_bending],

@@ -35,6 +35,7 @@ struct Counts {
 struct Queries {
   const TableContact& table;
   const ContactGeometry& geometry;  ///< with the loaded part where the table has one
+  NormalContactModel normal;        ///< of its steel
   NumberRows rows;
   bool by_load, online;
 
@@ -48,7 +49,7 @@ void append_patches(const Queries& queries, const WheelsetPose& pose, std::size_
   const ContactPatches patches = queries.patches(pose);
   const bool loaded = queries.geometry.loaded() != nullptr;
   std::array<PatchLoading, ContactPatches::capacity> loads;
-  if (loaded) loads = patch_loadings(queries.geometry, pose, patches, table_material(queries.geometry));
+  if (loaded) loads = patch_loadings(queries.geometry, pose, patches, queries.normal);
   std::size_t number = 0;
   for (const ContactPatch& p : patches) {
     // x + 0.0 turns -0 into 0
@@ -91,10 +92,10 @@ std::string answer(const Queries& queries, bool total, Counts& counts) {
   for (std::size_t i = 0; i < queries.rows.rows.size(); ++i) {
     const std::vector<double>& q = queries.rows.rows[i];
     const auto [pose, dz] = lowered_pose(queries.table.search(), queries.geometry, {q[0], 0.0, q[2], q[1]},
-                                         queries.by_load ? Lowering::under_load : Lowering::given, q[3],
-                                         table_material(queries.geometry), [&] { return queries.rows.places[i]; });
+                                         queries.by_load ? Lowering::under_load : Lowering::given, q[3], queries.normal,
+                                         [&] { return queries.rows.places[i]; });
     if (total) {
-      const Vector3 f = frictionless_force(queries.geometry, pose, table_material(queries.geometry));
+      const Vector3 f = frictionless_force(queries.geometry, pose, queries.normal);
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", i, dz, f[0] + 0.0, f[1] + 0.0, f[2] + 0.0);
     } else {
       append_patches(queries, pose, i, text, counts);
@@ -122,15 +123,15 @@ int contact_command(const Arguments& arguments) {
   require_writable_place(output, "-o");
   require_no_input(output, {query, table});
   const ContactTable contact = read_contact_table(table);
-  if (const double error = contact.geometry.unused_loaded_error(); error > 0.0) {
-    print_message(
-        fmt::format("vsi contact: warning: {}: its loaded part is off by {:.2g} % of the force (99 % of its check), "
-                    "more than {:.0f} %, and is not used: forces are those of an ellipse per patch\n",
-                    table, 100.0 * error, 100.0 * largest_certified_force_error));
+  if (const std::string unused = unused_loaded_part(contact.geometry); !unused.empty()) {
+    print_message(fmt::format("vsi contact: warning: {}: {}\n", table, unused));
   }
   const bool by_load = has_loads(query), total = line.given("total");
-  const Queries queries{contact.patches, contact.geometry,
-                        read_number_rows(query, {"y", "yaw", "roll", by_load ? "load" : "dz"}), by_load,
+  const Queries queries{contact.patches,
+                        contact.geometry,
+                        table_material(contact.geometry),
+                        read_number_rows(query, {"y", "yaw", "roll", by_load ? "load" : "dz"}),
+                        by_load,
                         line.given("online")};
   const char* const mark = total ? total_header : patch_header;
   require_replaceable_text(output, mark);

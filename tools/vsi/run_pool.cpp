@@ -225,9 +225,10 @@ void RunPool::set_aside(const std::string& name, const char* suffix, const std::
     if (k > most) throw input_error(old.string(), fmt::format("{} files set aside", most), "fewer: remove them");
     aside = fmt::format("{}.{}-{}", old.string(), why, k);
   }
-  std::error_code gone;  // taken away by another process
-  fs::rename(old, aside, gone);
-  if (gone) return;
+  std::error_code error;
+  fs::rename(old, aside, error);
+  if (error == std::errc::no_such_file_or_directory) return;  // taken away by another process
+  if (error) throw fs::filesystem_error("cannot rename", old, aside, error);
   print_message(fmt::format("{}: {}: {} is set aside as {}\n", options_.command, name, old.filename().string(),
                             aside.filename().string()));
 }
